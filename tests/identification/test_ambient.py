@@ -91,12 +91,25 @@ def test_every_fit_ends_at_a_minimum_of_shapes_poles_forces_and_background() -> 
     band = replace(band, power=power, count=np.full(LINES, 40.0))
     fit = spectral_density.maximise(band, model)
     assert fit.converged
-    A, scale = fit.scaled
+    A, scale = fit.scaled()
     left = scale * fit.gradient
     assert left @ np.linalg.solve(A, left) < 0.1
     for change in (0.99, 1.01):
         other = replace(fit.model, background=change * fit.model.background)
         assert spectral_density.evaluate(band, other).cost > fit.cost - 0.01
+
+
+def test_bending_is_the_second_change_of_the_cost_where_forces_vanish() -> None:
+    rng = np.random.default_rng(6)
+    model, band = _model(rng), _band(rng)
+    model = replace(model, root=0 * model.root)
+    band = replace(band, power=band.power / 1e4)
+    fit, step = spectral_density.evaluate(band, model), 1e-4
+    first = 2 * SENSORS + 4
+    for k, expected in enumerate(fit.bending.diagonal()):
+        pair = [_moved(model, first + k, s).root for s in (step, -step)]
+        costs = [spectral_density.evaluate(band, replace(model, root=L)).cost for L in pair]
+        assert (sum(costs) - 2 * fit.cost) / step**2 == pytest.approx(expected, rel=1e-3)
 
 
 def test_shapes_of_setups_meet_at_shared_sensors() -> None:

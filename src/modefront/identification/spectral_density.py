@@ -44,11 +44,12 @@ close) modes, Mech. Syst. Signal Process. 132 (2019) 490-511, doi:10.1016/j.ymss
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache, cached_property
 
 import numpy as np
 import scipy.linalg as la
 
-from modefront._typing import Complexes, Floats
+from modefront._typing import Complexes, Floats, Ints
 
 PRIOR = 1.0
 """Lines that the prior of the background weighs, beyond the number of sensors."""
@@ -89,6 +90,12 @@ class Band:
     power: Complexes
     order: int
     floor: Floats
+
+    @cached_property
+    def total(self) -> Floats:
+        """Sum of the real part of F F^* over the lines, (sensors, sensors)."""
+        out: Floats = np.tensordot(self.count, self.power.real, 1)
+        return out
 
 
 @dataclass(frozen=True)
@@ -152,23 +159,26 @@ class Fit:
     """A model beside the data: the cost and its derivatives by the parameters.
 
     The parameters are the shapes (mode by mode), ln omega and ln zeta of the free modes, and the
-    real and imaginary part of L (row by row, the lower triangle).
+    real and imaginary part of L (row by row, the lower triangle). ``bending`` is what the second
+    derivatives of S by L add to those of the cost.
     """
 
     model: Density
     cost: float
     gradient: Floats
     information: Floats
+    bending: Floats
     converged: bool = False
 
-    @property
-    def scaled(self) -> tuple[Floats, Floats]:
-        """The information over its diagonal, and the scale; norms of shapes are held."""
+    def scaled(self, bending: Floats | float = 0.0) -> tuple[Floats, Floats]:
+        """Return the information over its diagonal, and the scale; norms of shapes are held."""
         n, A = len(self.model.phi), self.information.copy()
         for r in range(self.model.free):
             rows = slice(r * n, (r + 1) * n)
             phi = self.model.phi[:, r]
             A[rows, rows] += np.outer(phi, phi) * max(np.trace(A[rows, rows]), 1.0)
+        first = len(A) - len(self.bending)
+        A[first:, first:] += bending
         diagonal = A.diagonal()
         scale = 1 / np.sqrt(np.where(diagonal > TINY, diagonal, 1.0))
         return A * np.outer(scale, scale), scale
@@ -177,7 +187,7 @@ class Fit:
         """Return the covariance of ln omega, ln zeta and the shape of a free mode."""
         n, m = len(self.model.phi), self.model.free
         rows = [m * n + mode, m * n + m + mode, *range(mode * n, (mode + 1) * n)]
-        A, scale = self.scaled
+        A, scale = self.scaled()
         value, vector = la.eigh(A)
         half = (scale[:, None] * vector)[rows] / np.sqrt(np.maximum(value, 1e-13))
         out: Floats = half @ half.T
@@ -188,7 +198,8 @@ class Fit:
 class _Matrices:
     """The matrices of the module's text in all blocks, (blocks, modes, modes), and the cost.
 
-    ``seen`` is hat^T F F^* of the data, (blocks, modes, sensors).
+    ``seen`` is F F^* hat of the data, (blocks, sensors, modes), ``own`` is hat^T F F^* hat, and
+    ``weighted`` is D times the number of lines.
     """
 
     h: Complexes
@@ -198,43 +209,49 @@ class _Matrices:
     D: Complexes
     C: Complexes
     seen: Complexes
+    own: Complexes
+    weighted: Complexes
     cost: float
+
+    @property
+    def both(self) -> Complexes:
+        """Sum of D hat^T F F^* over the lines, (modes, sensors)."""
+        out: Complexes = np.tensordot(self.weighted, self.seen.conj(), ((0, 2), (0, 2)))
+        return out
 
 
 def _matrices(band: Band, model: Density) -> _Matrices:
     n, B = len(model.phi), model.background
     h = model.response(band.omega, band.order).T
-    inverse = la.inv(B)
+    inverse = np.linalg.inv(B)
     hat = inverse @ model.phi
     P = model.phi.T @ hat
     N = h[:, :, None] * model.force * h[:, None, :].conj()
     A = np.eye(len(P)) + N @ P
-    Y = np.linalg.inv(A)
+    Y: Complexes = np.asarray(np.linalg.inv(A), complex)
     D = Y @ N
-    seen = hat.T @ band.power
-    explained = np.einsum("krs,ksr->k", D, seen @ hat).real
-    own = band.power.reshape(-1, n * n).real @ inverse.ravel()
-    logarithm = float(np.linalg.slogdet(B)[1])
-    value = np.linalg.slogdet(A)[1] + logarithm + own - explained
-    prior = (PRIOR + n) * (logarithm + float(inverse.diagonal() @ band.floor))
-    return _Matrices(h, hat, N, Y, D, P @ Y, seen, float(band.count @ value) + prior)
+    seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape)
+    own, weighted = hat.T @ seen, band.count[:, None, None] * D
+    weight = band.count.sum() + PRIOR + n
+    cost = weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total + _prior(band))
+    cost += band.count @ np.linalg.slogdet(A)[1] - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
+    return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, float(cost))
 
 
 def evaluate(band: Band, model: Density) -> Fit:
     """Return the cost of a model with its gradient and the expected second derivatives."""
     x, c, m = _matrices(band, model), band.count, model.free
     d, J = _changes(band, model), _root_changes(model.root)
-    weighted = c[:, None, None] * x.D
-    A = x.seen @ x.hat
-    W = c[:, None, None] * (x.C - x.Y.conj().swapaxes(1, 2) @ A @ x.Y)
-    total, again = weighted.sum(axis=0), (weighted @ A @ x.D).sum(axis=0)
-    measured = la.solve(model.background, np.tensordot(weighted, x.seen, ((0, 2), (0, 1))).T).T
+    W = c[:, None, None] * (x.C - x.Y.conj().swapaxes(1, 2) @ x.own @ x.Y)
+    total, again = x.weighted.sum(axis=0), (x.weighted @ x.own @ x.D).sum(axis=0)
+    measured = np.linalg.solve(model.background, x.both.T).T
     shapes = 2 * ((total + again) @ x.hat.T - measured).real
-    NW = np.einsum("krs,ksr->kr", x.N, W)[:, :m]
+    NW = np.sum(x.N * W.swapaxes(1, 2), axis=2)[:, :m]
     poles = 2 * np.sum(d * np.hstack([NW, NW]), axis=0).real
-    forces = np.einsum("aij,kji,ki,kj->a", J, W, x.h, x.h.conj(), optimize=True).real
+    whole = (W.swapaxes(1, 2) * x.h[:, :, None] * x.h.conj()[:, None]).sum(axis=0)
+    forces = (J.reshape(len(J), whole.size) @ whole.ravel()).real
     gradient = np.concatenate([shapes[:m].ravel(), poles, forces])
-    return Fit(model, x.cost, gradient, _information(model, x, c, d, J))
+    return Fit(model, x.cost, gradient, _information(model, x, c, d, J), _bending(whole.T))
 
 
 def modal_responses(
@@ -259,18 +276,36 @@ def _changes(band: Band, model: Density) -> Complexes:
     return np.hstack([-band.order - (2 * x**2 - 2j * zeta * x) / inner, (1 - x**2) / inner])
 
 
-def _entries(M: int) -> list[tuple[int, int, complex]]:
-    """Return row, column and unit of the parameters of L."""
-    lower = [(i, j) for i in range(M) for j in range(i + 1)]
-    return [(i, j, unit) for i, j in lower for unit in ((1, 1j) if j < i else (1,))]
+@cache
+def _entries(M: int) -> tuple[Ints, Ints, Complexes]:
+    """Return rows, columns and units of the parameters of L."""
+    i, j = np.tril_indices(M)
+    parts = np.where(j < i, 2, 1)
+    rows, columns = np.repeat(i, parts), np.repeat(j, parts)
+    again = np.diff(rows * M + columns, prepend=-1) == 0
+    return rows, columns, np.where(again, 1j, 1.0)
 
 
 def _root_changes(L: Complexes) -> Complexes:
     """Return the derivatives of S by the parameters of L, (parameters, modes, modes)."""
-    out = np.zeros((len(L) ** 2, *L.shape), complex)
-    for a, (i, j, unit) in enumerate(_entries(len(L))):
-        out[a, i] = unit * L[:, j].conj()
+    rows, columns, units = _entries(len(L))
+    out = np.zeros((len(rows), *L.shape), complex)
+    out[np.arange(len(rows)), rows] = units[:, None] * L[:, columns].conj().T
     return out + out.conj().swapaxes(1, 2)
+
+
+def _bending(G: Complexes) -> Floats:
+    """Return tr G dL dL^* as second derivatives by the parameters of L.
+
+    G is the gradient by S, without its negative part: S on the boundary of what is possible, as
+    where two shapes are alike, has a singular L, by which expected derivatives alone vanish.
+    """
+    rows, columns, units = _entries(len(G))
+    value, vector = np.linalg.eigh(G)
+    G = vector * np.maximum(value, 0.0) @ vector.conj().T
+    same = columns[:, None] == columns
+    out: Floats = 2 * same * (units.conj()[:, None] * G[np.ix_(rows, rows)] * units).real
+    return out
 
 
 def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Complexes) -> Floats:
@@ -279,36 +314,38 @@ def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Compl
     With a = Phi N, shapes change E by e_j a_r^* and its adjoint, poles by d phi_r a_r^* and its
     adjoint, forces by Phi h J h^* Phi^T. Letters below: shapes, poles, forces.
     """
-    n, M, m = len(model.phi), len(model.omega), model.free
+    (n, M), m = model.phi.shape, model.free
     mode = np.tile(np.arange(m), 2)
-    hat, h, D, C, Q, NC = x.hat, x.h, x.D, x.C, x.N - x.D, x.N @ x.C
-    adjoint = x.Y.conj().swapaxes(1, 2)
+    hat, h, D, C, Q, NC = x.hat, x.h[:, None], x.D, x.C, x.N - x.D, x.N @ x.C
+    adjoint, left = x.Y.conj().swapaxes(1, 2), h.conj().swapaxes(1, 2)
+    NCh, flat = NC * h, J.reshape(M**2, M**2).T
 
     def gram(a: Complexes, b: Complexes) -> Complexes:
-        left = (a * c[:, None, None]).reshape(len(c), -1)
-        out: Complexes = left.T @ b.reshape(len(c), -1)
+        """Return the sum of c a_rs b_tu over the lines, (r, s, t, u)."""
+        out: Complexes = (a.reshape(len(c), -1).T * c) @ b.reshape(len(c), -1)
         return out.reshape(*a.shape[1:], *b.shape[1:])
 
+    def each(a: Complexes, b: Complexes) -> Complexes:
+        """Return the sum of c a_rp b_pt over the lines, (p, r, t)."""
+        out: Complexes = np.ascontiguousarray(a.T * c) @ np.ascontiguousarray(b.swapaxes(0, 1))
+        return out
+
     # (a_r^* E^-1)_l (a_s^* E^-1)_j + Q_rs (E^-1)_lj
-    SS = np.einsum("rtsu,lt,ju->rjsl", gram(D[:, :m], D[:, :m]), hat, hat, optimize=True)
-    SS -= np.einsum("rstu,lt,ju->rjsl", gram(Q[:, :m, :m], D), hat, hat, optimize=True)
-    total = np.tensordot(c, Q, 1)[:m, :m]
-    SS += np.einsum("rs,jl->rjsl", total, la.inv(model.background))
-    SP = np.einsum("k,krp,kp,kpt->rtp", c, NC[:, :m][..., mode], d, D[:, mode], optimize=True)
-    SP += np.einsum(
-        "k,krp,kp,kpt->rtp", c, Q[:, :m][..., mode], d.conj(), adjoint[:, mode], optimize=True
-    )
-    hY, NCh = h.conj()[:, :, None] * adjoint, NC * h[:, None]
-    SF = np.einsum("rijt,aij->rta", gram(NCh[:, :m], hY), J, optimize=True)
-    SP, SF = (np.einsum("rta,jt->rja", y, hat) for y in (SP, SF))
-    T = NC[:, mode][:, :, mode] * d[:, None, :]
-    CP = C[:, mode][:, :, mode] * d[:, None, :] * d.conj()[:, :, None]
-    PP = np.einsum("k,kab,kba->ab", c, T, T, optimize=True)
-    PP += np.einsum("k,kab,kba->ab", c, Q[:, mode][:, :, mode], CP, optimize=True)
-    hC = h.conj()[:, :, None] * C[:, :, mode] * d[:, None, :]
-    PF = np.einsum("k,kpi,kjp,aij->pa", c, NCh[:, mode], hC, J, optimize=True)
-    Ch = h.conj()[:, :, None] * C * h[:, None]
-    FF = np.einsum("ijkl,ajk,bli->ab", gram(Ch, Ch), J, J, optimize=True)
+    SS = gram(D[:, :m], D[:, :m]).swapaxes(1, 2) - gram(Q[:, :m, :m], D)
+    total = np.tensordot(c, Q[:, :m, :m], 1)[..., None, None]
+    SS = (hat @ SS @ hat.T + total * np.linalg.inv(model.background)).transpose(0, 3, 1, 2)
+    SP = each(NC[:, :m, mode] * d[:, None], D[:, mode])
+    SP += each(Q[:, :m, mode] * d.conj()[:, None], adjoint[:, mode])
+    SP = (SP @ hat.T).transpose(1, 2, 0)
+    SF = gram(NCh[:, :m], left * adjoint).transpose(0, 3, 1, 2)
+    SF = hat @ (SF.reshape(m, M, M**2) @ flat)
+    NCp, Qp, Cp = (y[:, mode][:, :, mode] for y in (NC, Q, C))
+    T, CP = NCp * d[:, None], Cp * d[:, None] * d.conj()[:, :, None]
+    PP = np.sum(c[:, None, None] * (T * T.swapaxes(1, 2) + Qp * CP.swapaxes(1, 2)), axis=0)
+    PF = each(NCh[:, mode].swapaxes(1, 2), (left * C[:, :, mode] * d[:, None]).swapaxes(1, 2))
+    PF = PF.reshape(2 * m, M**2) @ flat
+    Ch = left * C * h
+    FF = flat.T @ gram(Ch, Ch).transpose(1, 2, 3, 0).reshape(M**2, M**2) @ flat
     SS, SP, SF = (y.reshape(m * n, size) for y, size in ((SS, m * n), (SP, 2 * m), (SF, M**2)))
     out: Floats = np.block(
         [[2 * SS, 2 * SP, 2 * SF], [2 * SP.T, 2 * PP, 2 * PF], [2 * SF.T, 2 * PF.T, FF]]
@@ -318,13 +355,16 @@ def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Compl
 
 def _expected(band: Band, model: Density, x: _Matrices) -> Floats:
     """Return the background that is most likely if the modal responses are as the model says."""
-    c, weight = band.count, PRIOR + len(model.phi)
-    weighted = c[:, None, None] * x.D
-    again = (weighted @ (x.seen @ x.hat) @ x.D).sum(axis=0) + weighted.sum(axis=0)
-    both = model.phi @ np.tensordot(weighted, x.seen, ((0, 2), (0, 1)))
-    R = np.tensordot(c, band.power, 1) - both - both.conj().T + model.phi @ again @ model.phi.T
-    B = R.real + weight * np.diag(band.floor)
-    out: Floats = (B + B.T) / (2 * (c.sum() + weight))
+    again = (x.weighted @ x.own @ x.D).sum(axis=0) + x.weighted.sum(axis=0)
+    both = (model.phi @ x.both).real
+    B = band.total - both - both.T + model.phi @ again.real @ model.phi.T + _prior(band)
+    out: Floats = (B + B.T) / (2 * (band.count.sum() + PRIOR + len(B)))
+    return out
+
+
+def _prior(band: Band) -> Floats:
+    """Return the sum of squares of the background a priori."""
+    out: Floats = (PRIOR + len(band.floor)) * np.diag(band.floor)
     return out
 
 
@@ -342,13 +382,14 @@ def _background(band: Band, model: Density, x: _Matrices) -> Floats:
     V = la.solve_triangular(R, model.phi, lower=True)
     inner = la.solve_triangular(R, after - model.background, lower=True)
     right = weight * la.solve_triangular(R, inner.T, lower=True)
-    single = V @ np.tensordot(c, x.D.real, 1) @ V.T
+    single = V @ x.weighted.real.sum(axis=0) @ V.T
     flat = x.D.reshape(len(c), -1)
     M = V.shape[1]
-    double = ((c[:, None] * flat).T @ flat).real.reshape(M, M, M, M)
+    double = ((c[:, None] * flat).T @ flat).real.reshape(M, M, M, M).transpose(0, 3, 1, 2)
+    squared = double.reshape(M * M, M * M)
 
     def product(Z: Floats) -> Floats:
-        middle = np.einsum("rtus,tu->rs", double, V.T @ Z @ V)
+        middle = (squared @ (V.T @ Z @ V).ravel()).reshape(M, M)
         out: Floats = weight * Z - single @ Z - Z @ single + V @ middle @ V.T
         return out
 
@@ -396,10 +437,12 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
 
 
 def _step(fit: Fit, damping: float) -> Floats:
-    A, scale = fit.scaled
-    A = A + (damping + 1e-10) * np.eye(len(A))
-    out: Floats = -scale * la.solve(A, scale * fit.gradient, assume_a="pos")
-    return out
+    A, scale = fit.scaled(fit.bending)
+    value, vector = la.eigh(A)
+    out: Floats = vector @ (
+        vector.T @ (scale * fit.gradient) / (np.maximum(value, 1e-10) + damping)
+    )
+    return -scale * out
 
 
 def _moved(model: Density, step: Floats) -> Density:
@@ -408,8 +451,8 @@ def _moved(model: Density, step: Floats) -> Density:
     shapes, omega, zeta, root = np.split(step, np.cumsum([m * n, m, m]))
     phi, L = model.phi.copy(), model.root.copy()
     phi[:, :m] += shapes.reshape(m, n).T
-    for change, (i, j, unit) in zip(root, _entries(len(L)), strict=True):
-        L[i, j] += unit * change
+    rows, columns, units = _entries(len(L))
+    np.add.at(L, (rows, columns), units * root)
     new_omega, new_zeta = model.omega.copy(), model.zeta.copy()
     reach = LONGEST * np.maximum(model.zeta[:m], 1e-4)
     new_omega[:m] *= np.exp(np.clip(omega, -reach, reach))

@@ -272,7 +272,8 @@ def _of_group(
     fit = spectral_density.maximise(band, _first(band, [*modes, *beside], len(modes)), TRIAL_STEPS)
     held, patient = np.array([mode.held for mode in modes]), True
     while fit.model.free:
-        gain = _gains(band, fit)
+        without = _without(band, fit)
+        gain = 2 * (np.array([each.cost for each in without]) - fit.cost)
         worth = np.where(held, np.inf, np.where(_astray(band, fit.model, gain), 0.0, gain))
         if worth.min() >= least:
             if fit.converged or not patient:
@@ -284,11 +285,12 @@ def _of_group(
         for r in worth.argsort()[: int(np.sum(worth < least))].tolist():
             if (selection.alike(pole[r], pole[gone]) < ALONE).all():
                 gone.append(r)
-        model = fit.model
-        for r in sorted(gone, reverse=True):
-            model = model.without(r)
-        held = np.delete(held, gone)
-        fit = spectral_density.maximise(band, model, TRIAL_STEPS)
+        fit, held = without[gone[0]], np.delete(held, gone)
+        if len(gone) > 1:
+            model = fit.model
+            for r in sorted(gone[1:], reverse=True):
+                model = model.without(r - (r > gone[0]))
+            fit = spectral_density.maximise(band, model, TRIAL_STEPS)
     else:
         return []
     model, out = fit.model, []
@@ -326,13 +328,10 @@ def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
     return replace(model, root=np.diag(np.sqrt(level)).astype(complex))
 
 
-def _gains(band: Band, fit: Fit) -> Floats:
-    """Return 2 Delta J of each mode in the band: of the fit without it, all else may follow."""
-    without = [
-        spectral_density.maximise(band, fit.model.without(r), TRIAL_STEPS).cost
-        for r in range(fit.model.free)
-    ]
-    return 2 * (np.array(without) - fit.cost)
+def _without(band: Band, fit: Fit) -> list[Fit]:
+    """Return the fits without each of the modes in the band, which all else may follow."""
+    models = [fit.model.without(r) for r in range(fit.model.free)]
+    return [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
 
 
 def _astray(band: Band, model: Density, gain: Floats) -> Bools:

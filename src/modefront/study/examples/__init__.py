@@ -9,7 +9,7 @@ from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.outputs import write_bytes
 
 SIMULATED = {"hammer-test": "hammer_test", "ambient-test": "ambient_test"}
-"""Modules of examples of which tests are simulated, and modes identified, where written."""
+"""Modules of examples of which tests are simulated where written."""
 
 
 def names() -> list[str]:
