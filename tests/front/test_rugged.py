@@ -64,10 +64,10 @@ def objectives(front: Front) -> Floats:
 
 
 @cache
-def rugged() -> tuple[Front, int]:
+def rugged(points: int = 12) -> tuple[Front, int]:
     """Return the front of the rugged problem, and what it has cost."""
     problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
-    options = Pareto(points=40)
+    options = Pareto(points=points)
     with counted() as costs:
         front = pareto_front(problem, np.array([4.0, 4.0]), options, seed=1, search=FEW)
     return front, costs.eigenproblems
@@ -76,15 +76,16 @@ def rugged() -> tuple[Front, int]:
 @pytest.mark.slow
 def test_a_rugged_front_is_not_behind_an_evolution_with_as_many_evaluations() -> None:
     problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
-    front, spent = rugged()
     truth = rastrigin_front()
     utopia, scale = truth.min(axis=0), np.ptp(truth, axis=0)
-    J = (objectives(front) - utopia) / scale
+    front, spent = rugged(points=40)
     others = []
     for seed in range(5):
         other = evolve_front(problem, "nsga2", 40, spent, np.random.default_rng(seed))
         others.append(hypervolume((np.array([x.J for x in other]) - utopia) / scale))
-    assert hypervolume(J) >= np.median(others)
+    assert hypervolume((objectives(front) - utopia) / scale) >= np.median(others)
+    front, _ = rugged()
+    J = (objectives(front) - utopia) / scale
     assert hypervolume(J) >= 0.97 * hypervolume((truth - utopia) / scale)
     called = [
         row
