@@ -23,7 +23,7 @@ from modefront.work.costs import counted
 from modefront.work.run import Run
 from modefront.work.store import Store
 
-FEW = Search(evaluations=3000)
+FEW = Search(evaluations=4000)
 
 CENTRES = np.array([[-0.9, 0.5, -0.6, 0.8], [0.6, -0.8, 0.7, -0.5]])
 
