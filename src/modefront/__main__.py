@@ -4,12 +4,14 @@ The processes of a run import this module as well, and are spared the command li
 """
 
 import sys
+from typing import Any
 
 
 def main() -> None:
     """Run the command line."""
     if "--scheduler" not in " ".join(sys.argv):
-        sys.modules.setdefault("dask", None)  # type: ignore[arg-type]  # xarray would import it
+        modules: dict[str, Any] = sys.modules
+        modules.setdefault("dask", None)  # xarray would import it
     from modefront.cli.main import main as command
 
     command()

@@ -1,5 +1,7 @@
 """Ranges over equivalent and nearly optimal models against closed forms."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -35,9 +37,9 @@ class Ratios:
         return Evaluation(theta, np.array([x.r @ x.r for x in parts]), slopes, residuals=parts)
 
 
-def along(problem: Problem, q: object, thetas: Floats, slack: float = 0.0) -> tuple[float, float]:
+def along(problem: Problem, q: Any, thetas: Floats, slack: float = 0.0) -> tuple[float, float]:
     """Return the range of a function of the parameters."""
-    least, greatest = (extreme(problem, thetas, q, s, slack, 1e-4) for s in (1.0, -1.0))  # type: ignore[arg-type]
+    least, greatest = (extreme(problem, thetas, q, s, slack, 1e-4) for s in (1.0, -1.0))
     return least, greatest
 
 
