@@ -20,8 +20,9 @@ from modefront.data.csv import renamed
 from modefront.data.frf_csv import read_numbers
 from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import read_functions
-from modefront.errors import Fault, InputError, reason
+from modefront.errors import Fault, InputError
 from modefront.inputs import MOST_DATA, file_size
+from modefront.isolated import IsolatedError, Read, isolated
 from modefront.rounding import LARGEST
 
 ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
@@ -34,6 +35,7 @@ ARRAYS = (".npy", ".mat")
 """Endings of files that hold arrays alone."""
 
 WHAT = "a file with records in time"
+READER = "modefront.data.records:read_arrays"
 
 
 @dataclass(frozen=True)
@@ -162,6 +164,16 @@ def _of_file(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, f
     return names, np.array([row for _, row in signs]), _rate(path, functions[0].x)
 
 
+def read_arrays(path: Path) -> Read:
+    """Return the numbers of a file of NumPy or MATLAB by name, in a process with limits."""
+    if path.suffix.lower() == ".npy":
+        return {"array": np.load(path, allow_pickle=False)}, None
+    from scipy.io import loadmat
+
+    named = {k: x for k, x in loadmat(path).items() if isinstance(x, np.ndarray)}
+    return {name: x for name, x in named.items() if x.dtype.kind in "fiuc"}, None
+
+
 def _of_array(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, float]:
     """Return the records of a file that holds an array alone."""
     file = str(path)
@@ -170,15 +182,10 @@ def _of_array(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, 
         expected = "'rate' and 'sensors' in its [[set]], which the file does not say"
         raise InputError(Fault(file, "records", expected, "nothing"))
     try:
-        if path.suffix.lower() == ".npy":
-            arrays = [np.load(path, allow_pickle=False)]
-        else:
-            from scipy.io import loadmat
-
-            arrays = [x for x in loadmat(path).values() if isinstance(x, np.ndarray)]
-    except (OSError, ValueError, NotImplementedError, TypeError) as error:
-        raise InputError(Fault(file, "file", "an array of numbers", reason(error))) from None
-    count = len(setup.sensors)
+        read, _ = isolated(READER, path)
+    except IsolatedError as error:
+        raise InputError(Fault(file, "file", "an array of numbers", str(error))) from None
+    arrays, count = list(read.values()), len(setup.sensors)
     tables = [x for x in arrays if x.ndim == 2 and x.dtype.kind in "fiu" and count in x.shape]
     if len(tables) != 1:
         expected = f"one array of samples by {count} sensors"
