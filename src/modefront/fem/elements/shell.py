@@ -5,7 +5,8 @@ Matrices are exact sums of monomials of the thickness t,
     K = t (K_membrane + K_shear) + t^3 K_bending,     M = t M_translation + t^3 M_rotary.
 
 A quadrilateral is the mean of its two divisions into triangles, with weights in inverse proportion
-to the squares of their diagonals; it may be warped and skew.
+to the fourth powers of their diagonals: it may be warped, and where it is skew, it is soon that of
+the better angles.
 The director of a node is the mean, by angle, of the normals of the elements there that differ by no
 more than `FOLD` from that of the element itself: across folds, elements have directors of their
 own, and the drilling rotation of one is the bending rotation of the next. Drilling rotations are
@@ -38,7 +39,7 @@ from modefront.fem.elements.common import (
     symmetric,
 )
 from modefront.fem.elements.membrane import membrane
-from modefront.fem.elements.plate import Elements, Rows, bending, mass, shear
+from modefront.fem.elements.plate import Elements, Rows, bending_and_shear, mass
 from modefront.fem.section import Material, Orthotropic
 
 FOLD = 20.0
@@ -90,14 +91,14 @@ def areas(X: Floats) -> Floats:
 def narrowness(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
     """1 / b^2 of each side (elements, corners), by block: the mean over the elements there.
 
-    The breadth b of a quadrilateral is its area over the length of the side.
+    The breadth b of an element is its area over the length of the side.
     """
     ends, own = [], []
     for each in cells:
         following = np.roll(each, -1, axis=1)
         length = np.linalg.norm(X[following] - X[each], axis=2)
         ends.append(np.stack([each, following], 2).reshape(-1, 2))
-        own.append(((each.shape[1] == 4) * (length / areas(X[each])[:, None]) ** 2).ravel())
+        own.append(((length / areas(X[each])[:, None]) ** 2).ravel())
     pairs = np.sort(np.concatenate(ends), axis=1)
     _, side = np.unique(pairs @ [len(X), 1], return_inverse=True)
     mean = np.bincount(side, np.concatenate(own)) / np.bincount(side)
@@ -160,48 +161,38 @@ def _matrices(
 ) -> list[Floats]:
     """Return stiffness and mass by t and t^3, (elements, n, n) each."""
     r = offset * d
+    x = X + r
     A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
     U, omega = A[:, :, :3], A[:, :, 3:]
-    whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], narrow, m, 1.0)
+    V = -cross_matrix(d) @ omega
     quadrilateral = X.shape[1] == 4
-    area = areas(whole.x)
-    squares = ((whole.x[:, 2:] - whole.x[:, :-2]) ** 2).sum(2)
-    parts: list[list[Rows]] = [[], [], [], []]
+    squares = ((x[:, 2:] - x[:, :-2]) ** 2).sum(2)
+    across = squares / areas(x)[:, None] ** 2
+    parts: list[list[Rows]] = [[], [], [], [], []]
     for chosen in DIVISIONS[X.shape[1]]:
         corners, odd = list(chosen), chosen[1] % 2
-        x = whole.x[:, corners]
-        R = axes(x)
-        across = np.swapaxes(R, 1, 2)
-        third = squares[:, 1 - odd] / area**2 if quadrilateral else narrow[:, 2]
+        R = axes(x[:, corners])
+        local = np.swapaxes(R, 1, 2)
+        third = across[:, 1 - odd] if quadrilateral else narrow[:, 2]
         each = Elements(
-            x=(x - x[:, :1]) @ across,
-            d=d[:, corners] @ across,
+            x=(x[:, corners] - x[:, corners[:1]]) @ local,
+            d=d[:, corners] @ local,
             U=R[:, None] @ U[:, corners],
-            V=R[:, None] @ whole.V[:, corners],
+            V=R[:, None] @ V[:, corners],
             theta=(R[:, None] @ omega[:, corners])[:, :, 2],
             narrow=np.stack([narrow[:, corners[0]], narrow[:, corners[1]], third], 1),
             m=(R @ m[:, :, None])[..., 0],
-            share=squares[:, [odd]] / squares.sum(1, keepdims=True) if quadrilateral else 1.0,
-            bow=(1 - 2 * odd) * (R @ hourglass(whole, area)) if quadrilateral else None,
+            share=(squares**2)[:, [odd]] / (squares**2).sum(1, keepdims=True)
+            if quadrilateral
+            else 1.0,
         )
-        found = membrane(each, t, material), bending(each, t, material), *mass(each)
+        found = membrane(each, t, material), *bending_and_shear(each, t, material), *mass(each)
         for part, rows in zip(parts, found, strict=True):
             part.append(rows)
-    stretched, bent, moved, turned = (
+    stretched, bent, sheared, moved, turned = (
         products(*(np.concatenate(each, 1) for each in zip(*part, strict=True))) for part in parts
     )
-    return [stretched + products(*shear(whole, t, material)), bent, moved, turned]
-
-
-def hourglass(each: Elements, area: Floats) -> Floats:
-    """Return what is not linear in d and v: the bow of a diagonal (elements, 3, 1 + n).
-
-    That is zero for linear fields, and the coefficient of xi eta in a parallelogram.
-    """
-    opposite = [areas(each.x[:, np.arange(4) != corner]) for corner in range(4)]
-    weights = np.stack(opposite, 1) * [1, -1, 1, -1] / (2 * area[:, None])
-    fields = np.concatenate([each.d[..., None], each.V], 3)
-    return np.asarray((weights[..., None, None] * fields).sum(1))
+    return [stretched + sheared, bent, moved, turned]
 
 
 def products(B: Floats, D: Floats) -> Floats:
