@@ -110,8 +110,7 @@ def test_terms_are_merged_and_the_constant_comes_first() -> None:
     model = fem.assemble(replace(_frame(np.ones(6)), parameters=PARAMETERS))
     assert model.stiffness.coefficients.exponents.tolist() == [
         [0, 0, 0, 0, 0, 0],
-        [1, 0, 3, 0, 0, 0],
-        [1, 0, 1, 0, 0, 0],
+        *([1, 0, power, 0, 0, 0] for power in (5, 4, 3, 2, 1)),
         [1, 0, 0, 0, 0, 1],
         [0, 0, 0, 1, 0, 0],
     ]
@@ -249,7 +248,7 @@ def test_eccentric_shell_is_the_strip_beside_its_nodes() -> None:
     assert w[1][0] == pytest.approx(w[0][0], rel=2e-3)
 
 
-def test_50000_dofs_are_two_terms() -> None:
+def test_50000_dofs_have_a_term_for_each_power_of_the_thickness() -> None:
     X, cells = fem.grids.plate(1.0, 1.0, 91, 90)
     structure = fem.Structure(
         X,
@@ -259,4 +258,4 @@ def test_50000_dofs_are_two_terms() -> None:
     )
     model = fem.assemble(structure)
     assert len(model.dofs.free) == 49_686
-    assert model.stiffness.coefficients.exponents.tolist() == [[3], [1]]
+    assert model.stiffness.coefficients.exponents.tolist() == [[5], [4], [3], [2], [1]]

@@ -32,7 +32,6 @@ CORNERS = np.array(
 def limits_of(structure: Structure, nodes: Floats) -> tuple[str, ...]:
     """Return warnings on the elements of a structure; its nodes (nodes, 3) are checked."""
     out = []
-    scaled = {name for p in structure.parameters if p.quantity == "thickness" for name in p.of}
     for group in structure.groups:
         cells = np.asarray(group.cells)
         if isinstance(group, Shells):
@@ -42,7 +41,7 @@ def limits_of(structure: Structure, nodes: Floats) -> tuple[str, ...]:
             out += _curved(group, cells, normal / area[:, None], size)
             if cells.shape[1] == 3:
                 out += _obtuse(group, nodes[cells])
-            if group.name in scaled and size.min() < SMALL * group.thickness:
+            if group.name in structure.varied_thickness and size.min() < SMALL * group.thickness:
                 ratio = size.min() / group.thickness
                 out.append(
                     f"shells of group '{group.name}' are as small as {ratio:.2g} of their "

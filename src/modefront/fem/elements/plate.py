@@ -23,8 +23,13 @@ discrete Kirchhoff constraints, and nothing can lock. Inside, the sides' gamma i
 
 where deflections q of the sides make the energy of gamma - mean(gamma) least: without them, a
 shear that changes across a narrow triangle brings one that changes along it. They are zero where
-gamma is constant, as the patch test needs. phi is that of the nominal thickness: at others,
-K(t) = t K_shear + t^3 K_bending is the same element with this share of c.
+gamma is constant, as the patch test needs. Where the thickness t is tau times the nominal one, the
+share 1 / (1 + phi tau^2) of c is taken as
+
+    (1 + phi (3 - 2 tau)) / (1 + phi)^2,
+
+which has its value and slope at tau = 1 and is between -1/8 and 9/8 up to tau = 2: the rows of
+bending and shear are linear in tau, and K = t K_shear + t^3 K_bending has powers of t up to 5.
 Sources: J. L. Batoz, K. J. Bathe, L. W. Ho, doi:10.1002/nme.1620151205; I. Katili,
 doi:10.1002/nme.1620361107; P. S. Lee, K. J. Bathe, doi:10.1016/j.compstruc.2003.11.005.
 
@@ -81,13 +86,16 @@ Rows = tuple[Floats, Floats]
 
 
 class Side(NamedTuple):
-    """Side of shells: its ends, e, gamma_0 times its length, and phi, (elements, 1 or n) each."""
+    """Side of shells: its ends, e, and gamma_0 times its length, as what bends and what shears.
+
+    Both have columns (elements, n), and n more per tau where the thickness varies.
+    """
 
     i: int
     j: int
     e: Floats
-    gamma: Floats
-    phi: Floats
+    bends: Floats
+    shears: Floats
 
 
 @dataclass(frozen=True)
@@ -103,6 +111,7 @@ class Elements:
     narrow : 1 / b^2 of each side, from a corner to the next one (elements, corners)
     m : axis 1 of the material (elements, 3), not across the shell
     share : factor on all integrals, one or (elements, 1)
+    varied : whether the thickness is a parameter
     """
 
     x: Floats
@@ -113,6 +122,7 @@ class Elements:
     narrow: Floats
     m: Floats
     share: float | Floats
+    varied: bool
 
     @cached_property
     def J(self) -> Floats:
@@ -143,11 +153,18 @@ class Elements:
             rise = (self.d[:, i] + self.d[:, j])[:, None] / 2 @ (self.U[:, j] - self.U[:, i])
             gamma = (rise + e @ (self.V[:, i] + self.V[:, j]) / 2)[:, 0]
             phi = t**2 / KAPPA / across * (bend / L2 + twist * self.narrow[:, i, None])
-            yield Side(i, j, e, gamma, phi)
+            bends, rows = gamma / (1 + phi), gamma
+            if self.varied:
+                bends = np.concatenate([(1 + 3 * phi) * bends, -2 * phi * bends], 1) / (1 + phi)
+                rows = np.pad(gamma, ((0, 0), (0, gamma.shape[1])))
+            yield Side(i, j, e, bends, rows - bends)
 
 
-def bending_and_shear(each: Elements, t: float, material: Ply) -> tuple[Rows, Rows]:
-    """Return rows of the bending, per thickness cubed, and of the shear, per thickness."""
+def shear_and_bending(each: Elements, t: float, material: Ply) -> tuple[Rows, Rows]:
+    """Return rows of the shear, per thickness, and of the bending, per thickness cubed.
+
+    Where the thickness varies, their columns are those of 1 and of tau.
+    """
     count = len(each.x)
     inverse = np.linalg.inv(each.J)
     N, dN = TRIANGLE_3.shape(MIDDLES)
@@ -158,10 +175,11 @@ def bending_and_shear(each: Elements, t: float, material: Ply) -> tuple[Rows, Ro
     )
     H = grad_v[:, :, :2] + (g @ each.d)[:, None] @ grad_u
     kappa = np.stack([H[:, 0, 0], H[:, 1, 1], H[:, 0, 1] + H[:, 1, 0]], 1)[:, None]
+    if each.varied:
+        kappa = np.concatenate([kappa, np.zeros_like(kappa)], -1)
     gamma = np.zeros(())
     for k, side in enumerate(each.sheared(t, material)):
-        scale = -1.5 / (1 + side.phi) / (side.e**2).sum(2)
-        bulge = np.swapaxes(side.e, 1, 2)[:, :2] * (scale * side.gamma)[:, None]
+        bulge = np.swapaxes(side.e, 1, 2)[:, :2] * (-1.5 * side.bends / (side.e**2).sum(2))[:, None]
         slope = bows[:, :, :, k, None]
         x, y = slope[:, :, 0] * bulge[:, None, 0], slope[:, :, 1] * bulge[:, None, 1]
         xy = slope[:, :, 0] * bulge[:, None, 1] + slope[:, :, 1] * bulge[:, None, 0]
@@ -169,13 +187,13 @@ def bending_and_shear(each: Elements, t: float, material: Ply) -> tuple[Rows, Ro
         field = (
             N[:, side.i, None] * g[:, None, :, side.j] - N[:, side.j, None] * g[:, None, :, side.i]
         )
-        gamma = gamma + field[..., None] * (side.phi / (1 + side.phi) * side.gamma)[:, None, None]
+        gamma = gamma + field[..., None] * side.shears[:, None, None]
     m = each.m[:, :2, None] / np.linalg.norm(each.m[:, :2], axis=1)[:, None, None]
     G = material.G[1] * np.eye(2) + (material.G[0] - material.G[1]) * m @ np.swapaxes(m, 1, 2)
     relief = np.swapaxes(bows - bows.mean(1, keepdims=True), 2, 3) @ G[:, None]
     q = np.linalg.solve((relief @ bows).sum(1), (relief @ gamma).sum(1))
-    bending = each.integrand(kappa, material.turned(each.m[:, :2])[:, None] / 12)
-    return bending, each.integrand(gamma - bows @ q[:, None], KAPPA * G[:, None])
+    shear = each.integrand(gamma - bows @ q[:, None], KAPPA * G[:, None])
+    return shear, each.integrand(kappa, material.turned(each.m[:, :2])[:, None] / 12)
 
 
 def mass(each: Elements) -> tuple[Rows, Rows]:

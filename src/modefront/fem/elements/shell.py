@@ -2,7 +2,9 @@ r"""Thin and thick shells of 3 or 4 nodes with six DOFs a node, curved by direct
 
 Matrices are exact sums of monomials of the thickness t,
 
-    K = t (K_membrane + K_shear) + t^3 K_bending,     M = t M_translation + t^3 M_rotary.
+    K = t (K_membrane + K_shear) + t^3 K_bending,     M = t M_translation + t^3 M_rotary,
+
+and where t varies, K_shear and K_bending are quadratic in it (`modefront.fem.elements.plate`).
 
 A quadrilateral is the mean of its two divisions into triangles, with weights in inverse proportion
 to the fourth powers of their diagonals: it may be warped, and where it is skew, it is soon that of
@@ -32,14 +34,13 @@ from modefront._typing import Floats, Ints
 from modefront.fem.elements.common import (
     ElementMatrices,
     Part,
-    Ply,
     attachment,
     cross_matrix,
     ply,
     symmetric,
 )
 from modefront.fem.elements.membrane import membrane
-from modefront.fem.elements.plate import Elements, Rows, bending_and_shear, mass
+from modefront.fem.elements.plate import Elements, Rows, mass, shear_and_bending
 from modefront.fem.section import Material, Orthotropic
 
 FOLD = 20.0
@@ -122,7 +123,7 @@ def axes(X: Floats) -> Floats:
     return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
 
 
-# 7 arguments: what elements have, and what they share with others.
+# 8 arguments: what elements have, and what they share with others.
 def shell(
     X: Floats,
     d: Floats,
@@ -131,6 +132,7 @@ def shell(
     material: Material | Orthotropic,
     thickness: float,
     offset: float,
+    varied: bool,
 ) -> ElementMatrices:
     """Matrices of shells, DOFs (u, r) node by node in global axes.
 
@@ -142,24 +144,35 @@ def shell(
     m : vectors (elements, 3) in the shell along axis 1 of the material
     material, thickness : of all elements; thickness in units of length
     offset : distance of the mid-surface from the nodes along the directors
+    varied : whether the thickness is a parameter
     """
-    t, rho = thickness, material.rho
     pieces = [
-        _matrices(X[some], d[some], narrow[some], m[some], ply(material), t, offset)
+        _matrices(X[some], d[some], narrow[some], m[some], material, thickness, offset, varied)
         for some in (slice(first, first + AT_ONCE) for first in range(0, len(X), AT_ONCE))
     ]
-    K1, K3, M1, M3 = (np.concatenate(each) for each in zip(*pieces, strict=True))
-    return ElementMatrices(
-        stiffness=(Part(1, t * K1), Part(3, t**3 * K3)),
-        mass=(Part(1, rho * t * M1), Part(3, rho * t**3 * M3)),
+    K, M = (
+        tuple(Part(power, np.concatenate([piece[power] for piece in each])) for power in each[0])
+        for each in zip(*pieces, strict=True)
     )
+    return ElementMatrices(K, M)
 
 
-# 7 arguments: those of `shell`.
+ByPower = dict[int, Floats]
+"""Matrices (elements, n, n) by the power of the thickness; of 0 where that does not vary."""
+
+
+# 8 arguments: those of `shell`.
 def _matrices(
-    X: Floats, d: Floats, narrow: Floats, m: Floats, material: Ply, t: float, offset: float
-) -> list[Floats]:
-    """Return stiffness and mass by t and t^3, (elements, n, n) each."""
+    X: Floats,
+    d: Floats,
+    narrow: Floats,
+    m: Floats,
+    material: Material | Orthotropic,
+    t: float,
+    offset: float,
+    varied: bool,
+) -> tuple[ByPower, ByPower]:
+    """Return stiffness and mass."""
     r = offset * d
     x = X + r
     A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
@@ -168,7 +181,9 @@ def _matrices(
     quadrilateral = X.shape[1] == 4
     squares = ((x[:, 2:] - x[:, :-2]) ** 2).sum(2)
     across = squares / areas(x)[:, None] ** 2
+    shares = squares**2 / (squares**2).sum(1, keepdims=True)
     parts: list[list[Rows]] = [[], [], [], [], []]
+    own = ply(material)
     for chosen in DIVISIONS[X.shape[1]]:
         corners, odd = list(chosen), chosen[1] % 2
         R = axes(x[:, corners])
@@ -182,17 +197,27 @@ def _matrices(
             theta=(R[:, None] @ omega[:, corners])[:, :, 2],
             narrow=np.stack([narrow[:, corners[0]], narrow[:, corners[1]], third], 1),
             m=(R @ m[:, :, None])[..., 0],
-            share=(squares**2)[:, [odd]] / (squares**2).sum(1, keepdims=True)
-            if quadrilateral
-            else 1.0,
+            share=shares[:, [odd]] if quadrilateral else 1.0,
+            varied=varied,
         )
-        found = membrane(each, t, material), *bending_and_shear(each, t, material), *mass(each)
+        found = membrane(each, t, own), *shear_and_bending(each, t, own), *mass(each)
         for part, rows in zip(parts, found, strict=True):
             part.append(rows)
-    stretched, bent, sheared, moved, turned = (
+    stretched, sheared, bent, moved, turned = (
         products(*(np.concatenate(each, 1) for each in zip(*part, strict=True))) for part in parts
     )
-    return [stretched + sheared, bent, moved, turned]
+    K_1, K_3 = t * sheared, t**3 * bent
+    M_1, M_3 = material.rho * t * moved, material.rho * t**3 * turned
+    if not varied:
+        return {0: t * stretched + K_1 + K_3}, {0: M_1 + M_3}
+    n = A.shape[-1]
+    (K1, K2, K3), (more, K4, K5) = _by_order(K_1, n), _by_order(K_3, n)
+    return {1: t * stretched + K1, 2: K2, 3: K3 + more, 4: K4, 5: K5}, {1: M_1, 3: M_3}
+
+
+def _by_order(K: Floats, n: int) -> tuple[Floats, Floats, Floats]:
+    """Return (elements, n, n) by 1, tau and tau^2, of K whose rows and columns are by 1 and tau."""
+    return K[:, :n, :n], K[:, :n, n:] + K[:, n:, :n], K[:, n:, n:]
 
 
 def products(B: Floats, D: Floats) -> Floats:
