@@ -81,7 +81,7 @@ def _beam(X: Floats, r: Floats) -> ElementMatrices:
 def _shell(X: Floats, thickness: float, offset: float) -> ElementMatrices:
     nodes, cells = X.reshape(-1, 3), [np.arange(len(X) * len(X[0])).reshape(len(X), -1)]
     (d,), (narrow,) = directors(nodes, cells), narrowness(nodes, cells)
-    return shell(X, d, narrow, X[:, 1] - X[:, 0], STEEL, thickness, offset)
+    return shell(X, d, narrow, X[:, 1] - X[:, 0], STEEL, thickness, offset, varied=False)
 
 
 # name: (nodes, directions of each node, element)

@@ -162,6 +162,10 @@ def twisted(x: Floats, y: Floats) -> Floats:
     return np.stack([12 * x, arm * np.cos(angle), arm * np.sin(angle)], 1)
 
 
+def cylinder(x: Floats, y: Floats) -> Floats:
+    return np.stack([np.sin(np.pi / 2 * x), y, np.cos(np.pi / 2 * x)], 1)
+
+
 def _shell_frequencies(
     surface: Surface, h: float, n: int, held: tuple[int, ...], triangles: bool
 ) -> Floats:
@@ -182,10 +186,16 @@ def _shell_frequencies(
         (skew(0), 0.2, (0, 1), [8426.3, 14755.1, 14755.1, 19384.2, 19384.2]),
         (skew(45), 0.001, (0, 1), [102.82, 166.85, 232.63, 246.41, 309.58]),
         (skew(60), 0.001, (0, 1), [190.46, 278.26, 362.86, 456.52, 477.18]),
+        (skew(60), 0.01, (0, 1), [1899.91, 2772.15, 3610.70, 4536.72, 4742.27]),
+        (skew(60), 0.1, (0, 1), [14602.1, 19773.7, 24494.3, 28680.7, 29315.3]),
+        (cylinder, 0.01, (0, 1), [1790.05, 1859.33, 2384.21, 2652.88, 2975.86]),
         (sphere, 0.001, (0,), [21.594, 27.149, 57.291, 80.328, 128.82]),
         (saddle, 0.001, (0,), [14.775, 15.341, 52.441, 56.349, 150.74]),
     ],
-    ids=["thick", "skew by 45", "skew by 60", "sphere", "saddle"],
+    ids=[
+        *("thick", "skew by 45", "skew by 60, thin", "skew by 60", "skew by 60, thick"),
+        *("cylinder", "sphere", "saddle"),
+    ],
 )
 def test_shells_of_16_elements_a_side(
     surface: Surface, h: float, held: tuple[int, ...], reference: list[float], triangles: bool
@@ -195,9 +205,10 @@ def test_shells_of_16_elements_a_side(
     assert np.abs(found / reference - 1).max() < 0.02
 
 
-def test_narrow_elements_twist_as_thick_shells_do() -> None:
+@pytest.mark.parametrize("triangles", [False, True])
+def test_narrow_elements_twist_as_thick_shells_do(triangles: bool) -> None:
     # Shear near the edges takes 15 % of the stiffness; elements are 11 times as long as wide.
-    found = _shell_frequencies(twisted, 0.32, 16, (0,), False)
+    found = _shell_frequencies(twisted, 0.32, 16, (0,), triangles)
     assert np.abs(found / [11.984, 30.765, 96.416, 151.94, 216.46] - 1).max() < 0.02
 
 
@@ -222,10 +233,12 @@ def test_curved_shells_converge_with_order_2(triangles: bool) -> None:
     assert np.all(first / second > 2**1.5)
 
 
-def test_hook_of_raasch() -> None:
+@pytest.mark.parametrize("triangles", [False, True])
+def test_hook_of_raasch(triangles: bool) -> None:
     # N. F. Knight 1997: 5.02 inches in solids; arcs of 60° and 150°, across which it is loaded.
     n, first = 16, np.radians(60)
     X, cells = fem.grids.plate(1.0, 1.0, n, n)
+    cells = fem.grids.triangles(cells) if triangles else cells
     s = X[:, 0] * (14 * first + 46 * np.radians(150))
     a, b = np.minimum(s / 14, first), np.maximum(s - 14 * first, 0) / 46
     u = 14 * np.sin(a) + 46 * (np.sin(first) - np.sin(first - b))

@@ -110,18 +110,8 @@ def plate(divisions: int) -> tuple[MatrixModel, Callable[[NDArray[Any]], Any]]:
     )
     model = mf.mesh_model(structure, ["t"])
 
-    def term(of: str, exponent: float) -> Any:
-        """Return the term of the model with this power of the thickness."""
-        matrix = getattr(model, of)
-        theta = {x: matrix.at(np.array([x])) for x in (1.0, 2.0)}
-        cubic = (theta[2.0] - 2 * theta[1.0]) / 6
-        return cubic if exponent == 3 else theta[1.0] - cubic
-
-    terms = {(of, e): term(of, e) for of in ("stiffness", "mass") for e in (1, 3)}
-
     def function(theta: NDArray[Any]) -> Any:
-        (t,) = theta
-        return tuple(t * terms[of, 1] + t**3 * terms[of, 3] for of in ("stiffness", "mass"))
+        return model.stiffness.at(theta), model.mass.at(theta)
 
     return model, function
 

@@ -4,8 +4,9 @@ r"""Matrices of a structure as affine functions of its parameters, `modefront.li
     c_j(theta) = prod_i theta_i ** e_ji.
 
 A parameter multiplies a property of named members (theta = 1 is the structure as given): Young's
-modulus and density enter once, thickness as t (membrane, translational mass) and t^3 (bending,
-rotary inertia), the geometric stiffness of a prestress once. Terms of equal exponents are one term.
+modulus and density enter once, thickness as powers from t (membrane, translational mass) to t^5
+(bending of thick shells), the geometric stiffness of a prestress once. Terms of equal exponents
+are one term.
 
 ==========  ================================================================
 symbol      meaning
@@ -89,7 +90,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     checks.attempt(check_names, structure)
     checks.attempt(check_parameters, structure)
     blocks = [
-        *element_blocks(X, structure.groups, checks),
+        *element_blocks(X, structure.groups, structure.varied_thickness, checks),
         *spring_blocks(X, structure.springs, checks),
         *mass_blocks(X, structure.masses, checks),
     ]

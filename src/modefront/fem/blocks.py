@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from functools import partial
 
 import numpy as np
@@ -41,14 +41,19 @@ SIX = (0, 1, 2, 3, 4, 5)
 """Directions of nodes of solids, and of beams and shells."""
 
 
-def element_blocks(X: Floats, groups: Sequence[Group], checks: Checks) -> list[Block]:
-    """One block for each group of elements in which nothing is wrong."""
+def element_blocks(
+    X: Floats, groups: Sequence[Group], varied: Set[str], checks: Checks
+) -> list[Block]:
+    """One block for each group of elements in which nothing is wrong.
+
+    ``varied`` has the groups whose thickness is a parameter.
+    """
     shells = [each for each in groups if isinstance(each, Shells)]
     cells = [checks.attempt(_shell_cells, X, each) for each in shells]
     sound = [each for each in cells if each is not None]
     shared = iter(zip(directors(X, sound), narrowness(X, sound), strict=True) if sound else ())
     blocks: list[Block | None] = [
-        checks.attempt(_shells, X, group, each, *next(shared))
+        checks.attempt(_shells, X, group, each, *next(shared), group.name in varied)
         for group, each in zip(shells, cells, strict=True)
         if each is not None
     ]
@@ -132,10 +137,13 @@ def _shell_cells(X: Floats, group: Shells) -> Ints:
     return cells
 
 
-def _shells(X: Floats, group: Shells, cells: Ints, d: Floats, narrow: Floats) -> Block:
+# 6 arguments: those of a group, and what its elements share with others.
+def _shells(
+    X: Floats, group: Shells, cells: Ints, d: Floats, narrow: Floats, varied: bool
+) -> Block:
     x, r, t = X[cells], group.offset * d, group.thickness
     m = _grain(x, group)
-    made = shell(x, d, narrow, m, group.material, t, group.offset)
+    made = shell(x, d, narrow, m, group.material, t, group.offset, varied)
     internal = partial(shell_stresses, x, r, m, ply(group.material), t)
     return Block(group.name, cells, SIX, made, rigid=True, internal=internal)
 

@@ -18,7 +18,7 @@ CURVED = 10.0
 """Square of the size of an element over radius and thickness, from which on it is too coarse."""
 
 SMALL = 4.0
-"""Size of shells over their thickness, below which their shear depends on the nominal thickness."""
+"""Size of shells over their thickness, below which another thickness has another share of shear."""
 
 OBTUSE = 120.0
 """Greatest angle in degrees of half of the triangles of a group, from which on they are poor."""
@@ -32,7 +32,6 @@ CORNERS = np.array(
 def limits_of(structure: Structure, nodes: Floats) -> tuple[str, ...]:
     """Return warnings on the elements of a structure; its nodes (nodes, 3) are checked."""
     out = []
-    scaled = {name for p in structure.parameters if p.quantity == "thickness" for name in p.of}
     for group in structure.groups:
         cells = np.asarray(group.cells)
         if isinstance(group, Shells):
@@ -42,13 +41,12 @@ def limits_of(structure: Structure, nodes: Floats) -> tuple[str, ...]:
             out += _curved(group, cells, normal / area[:, None], size)
             if cells.shape[1] == 3:
                 out += _obtuse(group, nodes[cells])
-            if group.name in scaled and size.min() < SMALL * group.thickness:
+            if group.name in structure.varied_thickness and size.min() < SMALL * group.thickness:
                 ratio = size.min() / group.thickness
                 out.append(
                     f"shells of group '{group.name}' are as small as {ratio:.2g} of their "
-                    "thickness, which is a parameter: at half and twice the nominal one, "
-                    "frequencies differ by up to 10 % from those of a model with that thickness; "
-                    "begin near it"
+                    "thickness, which is a parameter: at twice the nominal one, frequencies differ "
+                    "by up to 11 % from those of a model with that thickness; begin near it"
                 )
         elif isinstance(group, Solids) and cells.shape[1] == 8:
             out += _distorted(group, nodes[cells])
@@ -65,7 +63,7 @@ def _obtuse(group: Shells, X: Floats) -> list[str]:
         return []
     return [
         f"half of the triangles of group '{group.name}' have angles of {angle:.0f}° and more: "
-        "expect bending frequencies too low by 3 % at 120° and 14 % at 150° where a span has 16; "
+        "expect bending frequencies off by 3 % at 120° and 13 % at 150° where a span has 16; "
         "divide along the shorter diagonals, or take quadrilaterals"
     ]
 

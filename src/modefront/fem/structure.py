@@ -71,7 +71,7 @@ class Trusses:
 
 @dataclass(frozen=True)
 class Shells:
-    """Group of flat shells of 3 or 4 nodes.
+    """Group of shells of 3 or 4 nodes, curved where their elements meet at small angles.
 
     Attributes
     ----------
@@ -295,3 +295,8 @@ class Structure:
     loads: Sequence[Load] = ()
     sensors: Sequence[Sensor] = ()
     parameters: Sequence[Parameter] = ()
+
+    @property
+    def varied_thickness(self) -> set[str]:
+        """Groups whose thickness is a parameter."""
+        return {name for p in self.parameters if p.quantity == "thickness" for name in p.of}

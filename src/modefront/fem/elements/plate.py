@@ -14,16 +14,24 @@ bends and twists rather than shears,
     c = -3/2 gamma_0 / (1 + phi),   phi = 12 (D / |e|^2 + G t^3 / 12 / b^2) / (kappa_s G t),
 
 with the bending stiffness D over the length of the side, the twisting stiffness over the breadth b
-of quadrilaterals across it, and kappa_s = 5/6: without the second, that is the exact beam, and of
-triangles, in which shear cannot change along a side. Elements with a side in common have the same c
-there, which the patch test needs.
+across it, the area of an element over the side, and kappa_s = 5/6: without the second, that is the
+exact beam. Elements with a side in common have the same c there, which the patch test needs.
 gamma_k = gamma_0 phi / (1 + phi) then vanishes in thin shells, where triangles are those of
-discrete Kirchhoff constraints, and nothing can lock. Between the sides, gamma has constant
-components along those of a triangle, linear ones in a quadrilateral, and the diagonals of that take
-the share phi / (1 + phi) of the bow which bilinear v has there. phi is that of the nominal
-thickness: at others, K(t) = t K_shear + t^3 K_bending is the same element with this share of c.
+discrete Kirchhoff constraints, and nothing can lock. Inside, the sides' gamma is interpolated by
+
+    gamma = sum_sides gamma_k |e| (N_i grad N_j - N_j grad N_i) + grad sum_sides q_k 4 N_i N_j,
+
+where deflections q of the sides make the energy of gamma - mean(gamma) least: without them, a
+shear that changes across a narrow triangle brings one that changes along it. They are zero where
+gamma is constant, as the patch test needs. Where the thickness t is tau times the nominal one, the
+share 1 / (1 + phi tau^2) of c is taken as
+
+    (1 + phi (3 - 2 tau)) / (1 + phi)^2,
+
+which has its value and slope at tau = 1 and is between -1/8 and 9/8 up to tau = 2: the rows of
+bending and shear are linear in tau, and K = t K_shear + t^3 K_bending has powers of t up to 5.
 Sources: J. L. Batoz, K. J. Bathe, L. W. Ho, doi:10.1002/nme.1620151205; I. Katili,
-doi:10.1002/nme.1620361107; E. N. Dvorkin, K. J. Bathe, doi:10.1108/eb023562.
+doi:10.1002/nme.1620361107; P. S. Lee, K. J. Bathe, doi:10.1016/j.compstruc.2003.11.005.
 
 The mass has the bows 4 N_i N_j e . (v_j - v_i) / 8 of the sides beside linear deflections. The
 error of a frequency then is that of the stiffness; with linear deflections alone it is (k h)^2 / 12
@@ -36,7 +44,6 @@ x         corners (elements, corners, 3)
 U, V      rows of u and v at each corner, by the DOFs
 g         gradients of N (elements, 2, 3)
 H         gradient of v and grad d . grad u
-a         tangents along the coordinates of the cell
 m         axis 1 of the material, projected on the shell
 ========  ============================================================
 """
@@ -53,22 +60,13 @@ from scipy.linalg import block_diag
 
 from modefront._typing import Floats
 from modefront.fem.elements.common import Ply
-from modefront.fem.elements.shapes import (
-    SQUARE_4,
-    TRIANGLE_3,
-    TRIANGLE_6,
-    gauss_box,
-    gauss_simplex,
-)
+from modefront.fem.elements.shapes import TRIANGLE_3, TRIANGLE_6, TRIANGLE_EDGES, gauss_simplex
 
 KAPPA = 5 / 6
 """Shear factor of a plate."""
 
 MIDDLES = TRIANGLE_6.nodes[3:]
 """Midpoints of the sides: with equal weights, a quadrature rule of degree 2."""
-
-SHEARED = {3: (TRIANGLE_3, (MIDDLES, np.full(3, 1 / 6))), 4: (SQUARE_4, gauss_box(2, 2))}
-"""Cells and quadrature of shear, by the number of corners."""
 
 
 def _means() -> tuple[Floats, Floats]:
@@ -88,13 +86,16 @@ Rows = tuple[Floats, Floats]
 
 
 class Side(NamedTuple):
-    """Side of shells: its ends, e, gamma_0 times its length, and phi, (elements, 1 or n) each."""
+    """Side of shells: its ends, e, and gamma_0 times its length, as what bends and what shears.
+
+    Both have columns (elements, n), and n more per tau where the thickness varies.
+    """
 
     i: int
     j: int
     e: Floats
-    gamma: Floats
-    phi: Floats
+    bends: Floats
+    shears: Floats
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ class Elements:
     narrow : 1 / b^2 of each side, from a corner to the next one (elements, corners)
     m : axis 1 of the material (elements, 3), not across the shell
     share : factor on all integrals, one or (elements, 1)
-    bow : bilinear part of d and v, at the third side of a triangle (elements, 3, 1 + n)
+    varied : whether the thickness is a parameter
     """
 
     x: Floats
@@ -121,11 +122,11 @@ class Elements:
     narrow: Floats
     m: Floats
     share: float | Floats
-    bow: Floats | None = None
+    varied: bool
 
     @cached_property
     def J(self) -> Floats:
-        """Jacobian (elements, 1, 2, 2) of triangles in the plane of the first two axes."""
+        """Jacobian (elements, 1, 2, 2) in the plane of the first two axes."""
         return (self.x[:, 1:, :2] - self.x[:, :1, :2])[:, None]
 
     def integrand(self, B: Floats, D: Floats) -> Rows:
@@ -138,9 +139,7 @@ class Elements:
 
     def sides(self) -> Iterator[tuple[int, int, Floats]]:
         """Ends i and j, and e (elements, 1, 3), of each side."""
-        corners = self.x.shape[1]
-        for i in range(corners):
-            j = (i + 1) % corners
+        for i, j in TRIANGLE_EDGES:
             yield i, j, (self.x[:, j] - self.x[:, i])[:, None]
 
     def sheared(self, t: float, material: Ply) -> Iterator[Side]:
@@ -154,59 +153,51 @@ class Elements:
             rise = (self.d[:, i] + self.d[:, j])[:, None] / 2 @ (self.U[:, j] - self.U[:, i])
             gamma = (rise + e @ (self.V[:, i] + self.V[:, j]) / 2)[:, 0]
             phi = t**2 / KAPPA / across * (bend / L2 + twist * self.narrow[:, i, None])
-            yield Side(i, j, e, gamma, phi)
+            bends, rows = gamma / (1 + phi), gamma
+            if self.varied:
+                bends = np.concatenate([(1 + 3 * phi) * bends, -2 * phi * bends], 1) / (1 + phi)
+                rows = np.pad(gamma, ((0, 0), (0, gamma.shape[1])))
+            yield Side(i, j, e, bends, rows - bends)
 
 
-def bending(each: Elements, t: float, material: Ply) -> Rows:
-    """Return rows of the bending of triangles, per thickness cubed."""
+def shear_and_bending(each: Elements, t: float, material: Ply) -> tuple[Rows, Rows]:
+    """Return rows of the shear, per thickness, and of the bending, per thickness cubed.
+
+    Where the thickness varies, their columns are those of 1 and of tau.
+    """
     count = len(each.x)
     inverse = np.linalg.inv(each.J)
-    g = inverse[:, 0] @ TRIANGLE_3.shape(MIDDLES)[1][0].T
+    N, dN = TRIANGLE_3.shape(MIDDLES)
+    g = inverse[:, 0] @ dN[0].T
+    bows = inverse @ np.swapaxes(TRIANGLE_6.shape(MIDDLES)[1][:, 3:], 1, 2)
     grad_u, grad_v = (
         (g @ rows.reshape(count, 3, -1)).reshape(count, 2, 3, -1) for rows in (each.U, each.V)
     )
     H = grad_v[:, :, :2] + (g @ each.d)[:, None] @ grad_u
     kappa = np.stack([H[:, 0, 0], H[:, 1, 1], H[:, 0, 1] + H[:, 1, 0]], 1)[:, None]
-    g_mid = inverse @ np.swapaxes(TRIANGLE_6.shape(MIDDLES)[1][:, 3:], 1, 2)
+    if each.varied:
+        kappa = np.concatenate([kappa, np.zeros_like(kappa)], -1)
+    gamma = np.zeros(())
     for k, side in enumerate(each.sheared(t, material)):
-        scale = -1.5 / (1 + side.phi) / (side.e**2).sum(2)
-        bulge = np.swapaxes(side.e, 1, 2)[:, :2] * (scale * side.gamma)[:, None]
-        if each.bow is not None and k == 2:
-            turned = (each.bow[:, None, None, :, 0] @ grad_u)[:, :, 0]
-            bow = each.bow[:, :2, 1:] + turned
-            bulge = bulge + (side.phi / (1 + side.phi))[:, None] * bow
-        slope = g_mid[:, :, :, k, None]
+        bulge = np.swapaxes(side.e, 1, 2)[:, :2] * (-1.5 * side.bends / (side.e**2).sum(2))[:, None]
+        slope = bows[:, :, :, k, None]
         x, y = slope[:, :, 0] * bulge[:, None, 0], slope[:, :, 1] * bulge[:, None, 1]
         xy = slope[:, :, 0] * bulge[:, None, 1] + slope[:, :, 1] * bulge[:, None, 0]
         kappa = kappa + np.stack([x, y, xy], 2)
-    return each.integrand(kappa, material.turned(each.m[:, :2])[:, None] / 12)
-
-
-def shear(each: Elements, t: float, material: Ply) -> Rows:
-    """Return rows of the covariant shear of triangles or quadrilaterals, per thickness."""
-    cell, (xi, w) = SHEARED[each.x.shape[1]]
-    N, dN = cell.shape(xi)
-    fields, shears = [], []
-    for i, j, _, gamma, phi in each.sheared(t, material):
-        both, slope = N[:, [i, j]].sum(1)[:, None], dN[:, [i, j]].sum(1)
-        field = both * dN[:, j] - N[:, j, None] * slope
-        fields.append(field if cell is TRIANGLE_3 else field / both)
-        shears.append(phi / (1 + phi) * gamma)
-    a = np.swapaxes(dN, 1, 2) @ each.x[:, None]
-    metric = a @ np.swapaxes(a, 2, 3)
-    weight = KAPPA * w * np.sqrt(np.linalg.det(metric))
-    inverse = np.linalg.inv(metric)
-    # G_23 in all directions of the tangent plane, and G_13 - G_23 along the material's axis 1.
-    covariant = a @ each.m[:, None, :, None]
-    axis = inverse @ covariant
-    axis_2 = axis @ np.swapaxes(axis, 2, 3) / (np.swapaxes(axis, 2, 3) @ covariant)
-    G = material.G[1] * inverse + (material.G[0] - material.G[1]) * axis_2
-    B = np.stack(fields, -1) @ np.stack(shears, 1)[:, None]
-    return B, weight[..., None, None] * G
+        field = (
+            N[:, side.i, None] * g[:, None, :, side.j] - N[:, side.j, None] * g[:, None, :, side.i]
+        )
+        gamma = gamma + field[..., None] * side.shears[:, None, None]
+    m = each.m[:, :2, None] / np.linalg.norm(each.m[:, :2], axis=1)[:, None, None]
+    G = material.G[1] * np.eye(2) + (material.G[0] - material.G[1]) * m @ np.swapaxes(m, 1, 2)
+    relief = np.swapaxes(bows - bows.mean(1, keepdims=True), 2, 3) @ G[:, None]
+    q = np.linalg.solve((relief @ bows).sum(1), (relief @ gamma).sum(1))
+    shear = each.integrand(gamma - bows @ q[:, None], KAPPA * G[:, None])
+    return shear, each.integrand(kappa, material.turned(each.m[:, :2])[:, None] / 12)
 
 
 def mass(each: Elements) -> tuple[Rows, Rows]:
-    """Return rows of triangles: u per density and thickness, v per density and thickness cubed."""
+    """Return rows of u per density and thickness, v per density and thickness cubed."""
     bows = [(e @ (each.V[:, j] - each.V[:, i]) / 8)[:, 0] for i, j, e in each.sides()]
     u = np.concatenate([each.U[:, :, 0], each.U[:, :, 1], each.U[:, :, 2], np.stack(bows, 1)], 1)
     v = np.concatenate([each.V[:, :, 0], each.V[:, :, 1], each.V[:, :, 2]], 1)

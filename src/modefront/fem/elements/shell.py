@@ -2,10 +2,13 @@ r"""Thin and thick shells of 3 or 4 nodes with six DOFs a node, curved by direct
 
 Matrices are exact sums of monomials of the thickness t,
 
-    K = t (K_membrane + K_shear) + t^3 K_bending,     M = t M_translation + t^3 M_rotary.
+    K = t (K_membrane + K_shear) + t^3 K_bending,     M = t M_translation + t^3 M_rotary,
+
+and where t varies, K_shear and K_bending are quadratic in it (`modefront.fem.elements.plate`).
 
 A quadrilateral is the mean of its two divisions into triangles, with weights in inverse proportion
-to the squares of their diagonals; it may be warped and skew.
+to the fourth powers of their diagonals: it may be warped, and where it is skew, it is soon that of
+the better angles.
 The director of a node is the mean, by angle, of the normals of the elements there that differ by no
 more than `FOLD` from that of the element itself: across folds, elements have directors of their
 own, and the drilling rotation of one is the bending rotation of the next. Drilling rotations are
@@ -31,14 +34,13 @@ from modefront._typing import Floats, Ints
 from modefront.fem.elements.common import (
     ElementMatrices,
     Part,
-    Ply,
     attachment,
     cross_matrix,
     ply,
     symmetric,
 )
 from modefront.fem.elements.membrane import membrane
-from modefront.fem.elements.plate import Elements, Rows, bending, mass, shear
+from modefront.fem.elements.plate import Elements, Rows, mass, shear_and_bending
 from modefront.fem.section import Material, Orthotropic
 
 FOLD = 20.0
@@ -90,14 +92,14 @@ def areas(X: Floats) -> Floats:
 def narrowness(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
     """1 / b^2 of each side (elements, corners), by block: the mean over the elements there.
 
-    The breadth b of a quadrilateral is its area over the length of the side.
+    The breadth b of an element is its area over the length of the side.
     """
     ends, own = [], []
     for each in cells:
         following = np.roll(each, -1, axis=1)
         length = np.linalg.norm(X[following] - X[each], axis=2)
         ends.append(np.stack([each, following], 2).reshape(-1, 2))
-        own.append(((each.shape[1] == 4) * (length / areas(X[each])[:, None]) ** 2).ravel())
+        own.append(((length / areas(X[each])[:, None]) ** 2).ravel())
     pairs = np.sort(np.concatenate(ends), axis=1)
     _, side = np.unique(pairs @ [len(X), 1], return_inverse=True)
     mean = np.bincount(side, np.concatenate(own)) / np.bincount(side)
@@ -121,7 +123,7 @@ def axes(X: Floats) -> Floats:
     return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
 
 
-# 7 arguments: what elements have, and what they share with others.
+# 8 arguments: what elements have, and what they share with others.
 def shell(
     X: Floats,
     d: Floats,
@@ -130,6 +132,7 @@ def shell(
     material: Material | Orthotropic,
     thickness: float,
     offset: float,
+    varied: bool,
 ) -> ElementMatrices:
     """Matrices of shells, DOFs (u, r) node by node in global axes.
 
@@ -141,67 +144,80 @@ def shell(
     m : vectors (elements, 3) in the shell along axis 1 of the material
     material, thickness : of all elements; thickness in units of length
     offset : distance of the mid-surface from the nodes along the directors
+    varied : whether the thickness is a parameter
     """
-    t, rho = thickness, material.rho
     pieces = [
-        _matrices(X[some], d[some], narrow[some], m[some], ply(material), t, offset)
+        _matrices(X[some], d[some], narrow[some], m[some], material, thickness, offset, varied)
         for some in (slice(first, first + AT_ONCE) for first in range(0, len(X), AT_ONCE))
     ]
-    K1, K3, M1, M3 = (np.concatenate(each) for each in zip(*pieces, strict=True))
-    return ElementMatrices(
-        stiffness=(Part(1, t * K1), Part(3, t**3 * K3)),
-        mass=(Part(1, rho * t * M1), Part(3, rho * t**3 * M3)),
+    K, M = (
+        tuple(Part(power, np.concatenate([piece[power] for piece in each])) for power in each[0])
+        for each in zip(*pieces, strict=True)
     )
+    return ElementMatrices(K, M)
 
 
-# 7 arguments: those of `shell`.
+ByPower = dict[int, Floats]
+"""Matrices (elements, n, n) by the power of the thickness; of 0 where that does not vary."""
+
+
+# 8 arguments: those of `shell`.
 def _matrices(
-    X: Floats, d: Floats, narrow: Floats, m: Floats, material: Ply, t: float, offset: float
-) -> list[Floats]:
-    """Return stiffness and mass by t and t^3, (elements, n, n) each."""
+    X: Floats,
+    d: Floats,
+    narrow: Floats,
+    m: Floats,
+    material: Material | Orthotropic,
+    t: float,
+    offset: float,
+    varied: bool,
+) -> tuple[ByPower, ByPower]:
+    """Return stiffness and mass."""
     r = offset * d
+    x = X + r
     A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
     U, omega = A[:, :, :3], A[:, :, 3:]
-    whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], narrow, m, 1.0)
+    V = -cross_matrix(d) @ omega
     quadrilateral = X.shape[1] == 4
-    area = areas(whole.x)
-    squares = ((whole.x[:, 2:] - whole.x[:, :-2]) ** 2).sum(2)
-    parts: list[list[Rows]] = [[], [], [], []]
+    squares = ((x[:, 2:] - x[:, :-2]) ** 2).sum(2)
+    across = squares / areas(x)[:, None] ** 2
+    shares = squares**2 / (squares**2).sum(1, keepdims=True)
+    parts: list[list[Rows]] = [[], [], [], [], []]
+    own = ply(material)
     for chosen in DIVISIONS[X.shape[1]]:
         corners, odd = list(chosen), chosen[1] % 2
-        x = whole.x[:, corners]
-        R = axes(x)
-        across = np.swapaxes(R, 1, 2)
-        third = squares[:, 1 - odd] / area**2 if quadrilateral else narrow[:, 2]
+        R = axes(x[:, corners])
+        local = np.swapaxes(R, 1, 2)
+        third = across[:, 1 - odd] if quadrilateral else narrow[:, 2]
         each = Elements(
-            x=(x - x[:, :1]) @ across,
-            d=d[:, corners] @ across,
+            x=(x[:, corners] - x[:, corners[:1]]) @ local,
+            d=d[:, corners] @ local,
             U=R[:, None] @ U[:, corners],
-            V=R[:, None] @ whole.V[:, corners],
+            V=R[:, None] @ V[:, corners],
             theta=(R[:, None] @ omega[:, corners])[:, :, 2],
             narrow=np.stack([narrow[:, corners[0]], narrow[:, corners[1]], third], 1),
             m=(R @ m[:, :, None])[..., 0],
-            share=squares[:, [odd]] / squares.sum(1, keepdims=True) if quadrilateral else 1.0,
-            bow=(1 - 2 * odd) * (R @ hourglass(whole, area)) if quadrilateral else None,
+            share=shares[:, [odd]] if quadrilateral else 1.0,
+            varied=varied,
         )
-        found = membrane(each, t, material), bending(each, t, material), *mass(each)
+        found = membrane(each, t, own), *shear_and_bending(each, t, own), *mass(each)
         for part, rows in zip(parts, found, strict=True):
             part.append(rows)
-    stretched, bent, moved, turned = (
+    stretched, sheared, bent, moved, turned = (
         products(*(np.concatenate(each, 1) for each in zip(*part, strict=True))) for part in parts
     )
-    return [stretched + products(*shear(whole, t, material)), bent, moved, turned]
+    K_1, K_3 = t * sheared, t**3 * bent
+    M_1, M_3 = material.rho * t * moved, material.rho * t**3 * turned
+    if not varied:
+        return {0: t * stretched + K_1 + K_3}, {0: M_1 + M_3}
+    n = A.shape[-1]
+    (K1, K2, K3), (more, K4, K5) = _by_order(K_1, n), _by_order(K_3, n)
+    return {1: t * stretched + K1, 2: K2, 3: K3 + more, 4: K4, 5: K5}, {1: M_1, 3: M_3}
 
 
-def hourglass(each: Elements, area: Floats) -> Floats:
-    """Return what is not linear in d and v: the bow of a diagonal (elements, 3, 1 + n).
-
-    That is zero for linear fields, and the coefficient of xi eta in a parallelogram.
-    """
-    opposite = [areas(each.x[:, np.arange(4) != corner]) for corner in range(4)]
-    weights = np.stack(opposite, 1) * [1, -1, 1, -1] / (2 * area[:, None])
-    fields = np.concatenate([each.d[..., None], each.V], 3)
-    return np.asarray((weights[..., None, None] * fields).sum(1))
+def _by_order(K: Floats, n: int) -> tuple[Floats, Floats, Floats]:
+    """Return (elements, n, n) by 1, tau and tau^2, of K whose rows and columns are by 1 and tau."""
+    return K[:, :n, :n], K[:, :n, n:] + K[:, n:, :n], K[:, n:, n:]
 
 
 def products(B: Floats, D: Floats) -> Floats:
