@@ -156,7 +156,7 @@ def _grain(x: Floats, group: Shells) -> Floats:
     if group.direction is None:
         raise FemError(f"{place}: a direction is needed, along which axis 1 of the material is")
     v = unit_vector(tuple(group.direction), f"{place}, direction")[:3]
-    R = centre_axes(x)
+    R = centre_axes(x)[:, :2]
     m = (R @ v)[:, None] @ R
     across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < ALONG)
     if len(across):

@@ -98,7 +98,7 @@ def shell_stresses(X: Floats, r: Floats, m: Floats, material: Ply, t: float) -> 
     material, t : of all elements; thickness
     """
     cell, rule = SURFACES[X.shape[1]]
-    R = centre_axes(X + r)
+    R = centre_axes(X + r)[:, :2]
     identity = np.broadcast_to(np.eye(3), (len(X), 3, 3))
     P = attachment(identity, r).reshape(*X.shape[:2], 6, -1)[:, :, :3]
     x = (X + r) @ np.swapaxes(R, 1, 2)
@@ -108,11 +108,11 @@ def shell_stresses(X: Floats, r: Floats, m: Floats, material: Ply, t: float) -> 
 
 
 def centre_axes(x: Floats) -> Floats:
-    """Return two axes (elements, 2, 3) of the plane at the centre of shells x (.., nodes, 3)."""
+    """Return axes (elements, 3, 3) at the centre of shells x (.., nodes, 3); the third is across."""
     cell, (xi, w) = SURFACES[x.shape[1]]
     a = np.swapaxes(cell.shape((w @ xi / w.sum())[None])[1][0], 0, 1) @ x
     normal = np.cross(a[:, 0], a[:, 1])
-    R = np.stack([a[:, 0], np.cross(normal, a[:, 0])], 1)
+    R = np.stack([a[:, 0], np.cross(normal, a[:, 0]), normal], 1)
     return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
 
 

@@ -39,6 +39,7 @@ from modefront.fem.elements.common import (
     ply,
     symmetric,
 )
+from modefront.fem.elements.internal import centre_axes
 from modefront.fem.elements.membrane import membrane
 from modefront.fem.elements.plate import Elements, Rows, mass, shear_and_bending
 from modefront.fem.section import Material, Orthotropic
@@ -115,14 +116,6 @@ def _by_block(values: Floats, cells: Sequence[Ints]) -> list[Floats]:
     ]
 
 
-def axes(X: Floats) -> Floats:
-    """Local axes R (elements, 3, 3) of triangles X (elements, 3, 3)."""
-    along, other = X[:, 1] - X[:, 0], X[:, 2] - X[:, 0]
-    normal = np.cross(along, other)
-    R = np.stack([along, np.cross(normal, along), normal], 1)
-    return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
-
-
 # 8 arguments: what elements have, and what they share with others.
 def shell(
     X: Floats,
@@ -186,7 +179,7 @@ def _matrices(
     own = ply(material)
     for chosen in DIVISIONS[X.shape[1]]:
         corners, odd = list(chosen), chosen[1] % 2
-        R = axes(x[:, corners])
+        R = centre_axes(x[:, corners])
         local = np.swapaxes(R, 1, 2)
         third = across[:, 1 - odd] if quadrilateral else narrow[:, 2]
         each = Elements(
