@@ -108,7 +108,7 @@ def shell_stresses(X: Floats, r: Floats, m: Floats, material: Ply, t: float) -> 
 
 
 def centre_axes(x: Floats) -> Floats:
-    """Return axes (elements, 3, 3) at the centre of shells x (.., nodes, 3); the third is across."""
+    """Return axes (elements, 3, 3) at the centre of shells x (.., nodes, 3), the third across."""
     cell, (xi, w) = SURFACES[x.shape[1]]
     a = np.swapaxes(cell.shape((w @ xi / w.sum())[None])[1][0], 0, 1) @ x
     normal = np.cross(a[:, 0], a[:, 1])
