@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 from modefront._typing import Floats
 from modefront.models.load_case import LoadCase, Transfer
@@ -48,6 +48,13 @@ class Model(Protocol):
         Raises ModelError where the model has no such modes, KeyError for unknown sensors, outputs
         or directions.
         """
+
+
+def passed_on(inner: str, name: str) -> Any:
+    """Return the property of a class of models that is one of the model that it keeps as inner."""
+    return property(
+        lambda model: getattr(getattr(model, inner), name), doc=getattr(Model, name).__doc__
+    )
 
 
 def full_of(model: Model) -> Model:

@@ -33,7 +33,7 @@ from modefront.programs.changes import (
     write_changes,
 )
 from modefront.programs.condense import condensed
-from modefront.programs.differences import Differences, Run, Term, Terms
+from modefront.programs.differences import Differences, Term, Terms
 from modefront.programs.mesh import write_mesh
 
 QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
@@ -147,14 +147,14 @@ def import_model(
     differences = Differences(nominal, names, terms)
     for _, path, theta in runs:
         progress(f"reading {path}")
-        differences.add(Run(str(path), form.job(path, options), theta))
+        differences.add(str(path), form.job(path, options), theta)
     identified = differences.terms()
     errors = []
     for other, given in checks:
         progress(f"checking with {other}")
         theta = np.array([given.get(name, 1.0) for name in names])
-        run = Run(str(other), form.job(Path(other), options), theta)
-        errors.append(differences.check(identified, run))
+        job = form.job(Path(other), options)
+        errors.append(differences.check(identified, str(other), job, theta))
     notes = list(nominal.notes)
     if form.eliminates:
         identified, gone, stayed = condensed(identified)

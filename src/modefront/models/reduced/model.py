@@ -17,7 +17,7 @@ from modefront.brief import as_html, brief_model
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
 from modefront.linalg.factorisation import Factorisation
-from modefront.models.load_case import LoadCase, Transfer
+from modefront.models.base import passed_on
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.basis import Basis, empty, extended
 from modefront.models.reduced.certificate import LATER, Certifier, level
@@ -28,7 +28,6 @@ from modefront.models.reduced.corrections import (
     with_modes,
 )
 from modefront.modes import dense
-from modefront.modes.derivatives import Spectrum
 from modefront.modes.eigensolvers import FullModes
 from modefront.modes.result import Modes
 from modefront.modes.sparse import lowest
@@ -107,15 +106,6 @@ class SnapshotRequest:
 
 
 @dataclass(frozen=True)
-class _TakenSnapshot:
-    """A snapshot, what it took, and the error that it found."""
-
-    what: SnapshotRequest
-    costs: Costs
-    error: float
-
-
-@dataclass(frozen=True)
 class _Projected:
     """The matrices in the basis of some snapshots, and the basis as the sensors see it."""
 
@@ -154,7 +144,7 @@ class ReducedModel:
     memory: float = MEMORY
     spare: int = 0
     _requested: tuple[SnapshotRequest, ...] = ()
-    _taken: tuple[_TakenSnapshot, ...] = ()
+    _taken: tuple[tuple[SnapshotRequest, Costs, float], ...] = ()
     _basis: Basis | None = None
     _factor: Factorisation | None = None
     _small: _Projected | None = None
@@ -186,39 +176,19 @@ class ReducedModel:
         """Bytes that the projected matrices take; nothing else is needed for modes."""
         return 8.0 * 8 * self._projected().K.size ** 2 if self._is_at_hand else 0.0
 
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """Names of the parameters."""
-        return self.full.parameters
+    parameters = passed_on("full", "parameters")
 
-    @property
-    def sensors(self) -> tuple[str, ...]:
-        """Names of the sensors."""
-        return self.full.sensors
+    sensors = passed_on("full", "sensors")
 
-    @property
-    def size(self) -> int:
-        """Number of degrees of freedom of the full model."""
-        return self.full.size
+    size = passed_on("full", "size")
 
-    @property
-    def places(self) -> tuple[str, ...]:
-        """Names of the sensors and of the other outputs."""
-        return self.full.places
+    places = passed_on("full", "places")
 
-    @property
-    def directions(self) -> tuple[str, ...]:
-        """Names of the directions in which the base can move."""
-        return self.full.directions
+    directions = passed_on("full", "directions")
 
-    def transfer(self, theta: Floats, count: int, load_case: LoadCase) -> Transfer:
-        """Return the full model in a load case; see `modefront.models.base.Model`."""
-        return self.full.transfer(theta, count, load_case)
+    transfer = passed_on("full", "transfer")
 
-    @property
-    def unused(self) -> tuple[str, ...]:
-        """Names of parameters on which neither matrix depends."""
-        return self.full.unused
+    unused = passed_on("full", "unused")
 
     @property
     def capacity(self) -> int:
@@ -261,9 +231,9 @@ class ReducedModel:
         except ModelError:
             self._requested = before
             raise
-        last = self._taken[len(before)]
-        spend(last.costs)
-        return last.error
+        _, costs, error = self._taken[len(before)]
+        spend(costs)
+        return error
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
@@ -284,7 +254,7 @@ class ReducedModel:
             return self.full.full_modes(theta, count)
         basis = self.basis
         started = time.perf_counter()
-        pairs = dense.lowest(basis.K.at(theta), basis.M.at(theta), count)
+        pairs = basis.lowest(theta, count)
         if pairs.lam.size < count:
             raise ModelError(
                 f"{count} modes asked for, but only {pairs.lam.size} have a finite frequency"
@@ -310,15 +280,11 @@ class ReducedModel:
             theta = self.nominal.copy()
             theta[list(pair)] = self.lower[list(pair)]
             with suppress(ModelError):
-                lam = dense.lowest(basis.K.at(theta), basis.M.at(theta), count + LATER).lam
+                lam = basis.lowest(theta, count + LATER).lam
                 if lam.size > count:
                     doubtful.append((-lam[count - 1], pair, theta, lam))
         chosen = sorted(doubtful, key=lambda entry: entry[:2])[:PROBES]
-        return [
-            theta
-            for *_, theta, lam in chosen
-            if level(self.full.pencil, theta, lam, count, basis.sigma) is None
-        ]
+        return [theta for *_, theta, lam in chosen if self._lacks(basis, theta, lam, count)]
 
     @property
     def basis(self) -> Basis:
@@ -355,7 +321,7 @@ class ReducedModel:
                 with counted() as costs:
                     basis, error = self._added(what)
                 self._basis = basis
-                self._taken = (*self._taken, _TakenSnapshot(what, costs, error))
+                self._taken = (*self._taken, (what, costs, error))
 
     def _added(self, what: SnapshotRequest) -> tuple[Basis, float]:
         """Return the basis with a snapshot, and the error that it found.
@@ -405,18 +371,18 @@ class ReducedModel:
 
     def _is_near(self, basis: Basis, theta: Floats, what: SnapshotRequest) -> bool:
         """Return whether the factor at hand is of use for a model, and no mode is missing."""
-        try:
-            lam = dense.lowest(basis.K.at(theta), basis.M.at(theta), what.modes + LATER).lam
-        except ModelError:
-            return False
-        return (
-            lam.size > what.modes
-            and _condition(basis, theta) <= FAR
-            and (
-                what.enough > 0
-                or level(self.full.pencil, theta, lam, what.modes, basis.sigma) is not None
+        with suppress(ModelError):
+            lam = basis.lowest(theta, what.modes + LATER).lam
+            return (
+                lam.size > what.modes
+                and _condition(basis, theta) <= FAR
+                and (what.enough > 0 or not self._lacks(basis, theta, lam, what.modes))
             )
-        )
+        return False
+
+    def _lacks(self, basis: Basis, theta: Floats, lam: Floats, count: int) -> bool:
+        """Return whether a mode is missing among the lowest ones, of the eigenvalues ``lam``."""
+        return level(self.full.pencil, theta, lam, count, basis.sigma) is None
 
     def _corrected(
         self, basis: Basis, near: list[Floats], what: SnapshotRequest
@@ -447,7 +413,12 @@ class ReducedModel:
         """Return the basis with the modes of a full solution and their derivatives."""
         started = time.perf_counter()
         pencil = self.full.pencil
-        spectrum = self._spectrum(theta, modes + SPARE, is_first=known is None)
+        count, spectrum = min(modes + SPARE, self.size), None
+        if known is None:  # as many more as there are
+            count = min(max(count, self.count), self.size)
+            with suppress(ModelError):
+                spectrum = lowest(pencil, theta, min(WIDE * count, self.size))
+        spectrum = spectrum or lowest(pencil, theta, count)
         below = spectrum.factors[0]
         vectors = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
         del spectrum  # the other factor
@@ -463,38 +434,26 @@ class ReducedModel:
         spend(Costs(corrected_time=time.perf_counter() - solved))
         return basis
 
-    def _spectrum(self, theta: Floats, count: int, *, is_first: bool) -> Spectrum:
-        """Return ``count`` modes or more, the first time as many more as there are."""
-        if is_first:
-            count = max(count, self.count)
-            with suppress(ModelError):
-                return lowest(self.full.pencil, theta, min(WIDE * count, self.size))
-        return lowest(self.full.pencil, theta, min(count, self.size))
-
     def _excluding(self, basis: Basis, factor: Factorisation, models: list[Floats]) -> Basis:
         """Return the basis with directions in which the stiffness of some models is negative.
 
         Raises ModelError where none is found.
         """
-        directions = [self._unstable(basis, factor, theta) for theta in models]
-        vectors = np.hstack(directions)
-        if not vectors.shape[1]:
-            raise ModelError("no direction of negative stiffness is found")
-        return extended(self.full.pencil, basis, vectors, self._shortest, self.capacity)
-
-    def _unstable(self, basis: Basis, factor: Factorisation, theta: Floats) -> Floats:
-        """Return directions (N, k) in which K(theta) is negative; none where none is found."""
         pencil = self.full.pencil
         A = pencil.K.at(basis.theta) - basis.sigma * pencil.M.at(basis.theta)
         inverse = scipy.sparse.linalg.LinearOperator(
             A.shape, matvec=lambda x: factor.solve(x.reshape(-1, 1))[:, 0], dtype=float
         )
-        start = np.random.default_rng(0).standard_normal(self.size)
-        nu, X = scipy.sparse.linalg.eigsh(
-            pencil.K.at(theta), UNSTABLE, A, which="SA", v0=start, tol=SHARE**2, Minv=inverse
-        )
-        found: Floats = X[:, nu < -NEGATIVE]
-        return found
+        found = []
+        for theta in models:
+            start = np.random.default_rng(0).standard_normal(self.size)
+            options = {"which": "SA", "v0": start, "tol": SHARE**2, "Minv": inverse}
+            nu, X = scipy.sparse.linalg.eigsh(pencil.K.at(theta), UNSTABLE, A, **options)
+            found.append(X[:, nu < -NEGATIVE])
+        vectors = np.hstack(found)
+        if not vectors.shape[1]:
+            raise ModelError("no direction of negative stiffness is found")
+        return extended(pencil, basis, vectors, self._shortest, self.capacity)
 
     def _with_derivatives(
         self, basis: Basis, factor: Factorisation, theta: Floats, modes: int
@@ -547,7 +506,7 @@ class ReducedModel:
 def _has_modes(basis: Basis, theta: Floats, count: int) -> bool:
     """Return whether a model has modes in the basis."""
     try:
-        return dense.lowest(basis.K.at(theta), basis.M.at(theta), count).lam.size >= count
+        return basis.lowest(theta, count).lam.size >= count
     except ModelError:
         return False
 
@@ -558,8 +517,10 @@ def _condition(basis: Basis, theta: Floats) -> float:
     return float(values[-1] / values[0]) if values[0] > 0 else np.inf
 
 
-def _begins(requests: Sequence[SnapshotRequest], taken: Sequence[_TakenSnapshot]) -> bool:
+def _begins(
+    requests: Sequence[SnapshotRequest], taken: Sequence[tuple[SnapshotRequest, Costs, float]]
+) -> bool:
     """Return whether the requested snapshots begin with those that were taken."""
     return len(taken) <= len(requests) and all(
-        entry.what.same(other) for entry, other in zip(taken, requests, strict=False)
+        entry[0].same(other) for entry, other in zip(taken, requests, strict=False)
     )
