@@ -29,6 +29,7 @@ Source: Ericsson & Ruhe 1980, doi:10.1090/S0025-5718-1980-0583502-2.
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import partial
 
 import numpy as np
 import scipy.linalg
@@ -103,8 +104,12 @@ def modes(
     if not derivatives:
         return Modes(spectrum.lam[:count], phi)
     dlam, dphi, coincident = exact.at_sensors(pencil, sensors, theta, spectrum, count)
-    lam, solver = spectrum.lam[:count], exact.Everywhere(pencil, sensors, theta, spectrum, count)
-    second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solver)
+    lam, solve = (
+        spectrum.lam[:count],
+        partial(exact.everywhere, pencil, sensors, theta, spectrum, count),
+    )
+    # Mode by mode, to bound the memory.
+    second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solve, 1)
     return Modes(lam, phi, ModeDerivatives(dlam, dphi, coincident, second))
 
 
