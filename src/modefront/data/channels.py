@@ -183,7 +183,6 @@ def _check_values(channels: Sequence[Channel]) -> None:
 
 
 def _circular_axis(name: str, frequency: Floats) -> Iterator[str]:
-    """Warn of an axis that looks like circular frequencies."""
     if looks_like_circular(frequency):
         yield (
             f"set {name!r}: the frequency axis looks like rad/s: its lines are "

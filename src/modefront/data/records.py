@@ -175,7 +175,6 @@ def read_arrays(path: Path) -> Read:
 
 
 def _of_array(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, float]:
-    """Return the records of a file that holds an array alone."""
     file = str(path)
     file_size(path, WHAT, MOST_DATA)
     if setup.rate is None or not setup.sensors:

@@ -247,7 +247,6 @@ def _mode(file: str, block: Block, lines: list[str]) -> _Mode:
 
 
 def _values(file: str, block: Block, lines: list[str], size: int) -> tuple[Ints, Floats]:
-    """Return nodes, and ``size`` numbers of each: a line with its number, then those of values."""
     nodes: list[int] = []
     values: list[list[float]] = []
     step = 1 + -(-size // PER_LINE)
@@ -302,15 +301,6 @@ def _systems(file: str, block: Block, lines: list[str]) -> list[tuple[int, tuple
     return out
 
 
-def _axes(points: Sequence[Point], systems: Mapping[int, tuple[int, Floats]]) -> dict[int, Floats]:
-    """Return the axes (3, 3) of nodes with a displacement system; NaN where it is not known.
-
-    Where no dataset 2420 says what the systems are, they are those of the file.
-    """
-    chosen = [(node, label, point) for node, label, point in points if systems and label != 0]
-    return {node: _axes_at(point, systems.get(label)) for node, label, point in chosen}
-
-
 def _axes_at(point: Floats, system: tuple[int, Floats] | None) -> Floats:
     """Return the axes (3, 3) of a coordinate system at a point; NaN where they are not known."""
     if system is None or system[0] not in (CARTESIAN, CYLINDRICAL):
@@ -356,7 +346,12 @@ def _assembled(
         shape[k, r, np.searchsorted(nodes, row.nodes)] = row.shape
     for values in shape:
         values[:, ~(np.nan_to_num(values) != 0).any(axis=0)] = np.nan
-    positions, axes = {node: point for node, _, point in points}, _axes(points, systems)
+    positions = {node: point for node, _, point in points}
+    axes = {  # without a dataset 2420 that says what the systems are, they are those of the file
+        node: _axes_at(point, systems.get(label))
+        for node, label, point in points
+        if systems and label != 0
+    }
     if positions:
         for row in rows:
             _check_nodes(file, row, np.intersect1d(row.nodes, list(positions)))

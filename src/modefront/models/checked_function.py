@@ -139,7 +139,6 @@ class CheckedFunction:
         return _imaginary(K, h), _imaginary(M, h)
 
     def _listed(self, slopes: Any, place: str, size: int) -> tuple[Any, ...]:
-        """Return the derivatives that the function returns."""
         expected = f"a list of {len(self.names)} derivatives, one a parameter"
         if not isinstance(slopes, Sequence | np.ndarray):
             raise wrong(place, expected, type(slopes).__name__)
@@ -166,7 +165,6 @@ class CheckedFunction:
         return returned
 
     def _place(self, theta: Floats) -> str:
-        """Return the call at ``theta`` as messages show it."""
         pairs = zip(self.names[:SHOWN], theta, strict=False)
         shown = [f"{name} = {value:g}" for name, value in pairs]
         more = ["..."] if len(self.names) > SHOWN else []

@@ -21,9 +21,8 @@ from modefront._typing import Floats
 from modefront.brief import as_html, brief_model
 from modefront.errors import refuse, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
-from modefront.models.base import passed_on
+from modefront.models.base import LoadCase, Transfer, passed_on
 from modefront.models.checked_function import CheckedFunction, MatrixFunction, Tangent
-from modefront.models.load_case import LoadCase, Transfer
 from modefront.models.matrices import MatrixModel, SensorSpec, select, weights_of
 from modefront.models.parameters import Parameter
 from modefront.modes.result import Modes
@@ -170,7 +169,6 @@ def function_model(
 
 
 def _affine(known: Tangent, theta: Floats) -> DenseAffine | SparseAffine:
-    """Return the affine matrix with these values and derivatives at ``theta``."""
     matrix, each = known
     slopes = {i: slope for i, slope in enumerate(each) if slope is not None}
     exponents = np.zeros((1 + len(slopes), theta.size))

@@ -18,8 +18,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, ModelError, suggestion, wrong
-from modefront.models.base import Model
-from modefront.models.load_case import LoadCase, NamedWeights, Transfer
+from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
 from modefront.options import Requirement, is_name, is_number, text, whole
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
@@ -48,7 +47,6 @@ def _is_weights(value: object) -> bool:
 
 
 def _named_weights(value: Any) -> dict[str, float]:
-    """Return weights by the name of a sensor or output."""
     return {value: 1.0} if isinstance(value, str) else {k: float(w) for k, w in value.items()}
 
 

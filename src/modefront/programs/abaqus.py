@@ -60,7 +60,6 @@ def read(path: Path, options: JobOptions) -> Listed:
 
 
 def _files(path: Path) -> tuple[Path, Path]:
-    """Return the files of stiffness and mass of a job."""
     match = re.fullmatch(r"(.*)_STIF(\d+)", path.stem, re.IGNORECASE)
     if path.suffix.lower() == ".mtx" and match:
         files = [path]

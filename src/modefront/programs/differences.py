@@ -223,7 +223,6 @@ class Differences:
     def _not_affine(
         self, label: str, values: Floats, terms: Terms, quantity: Quantity, E: Matrix
     ) -> InputError:
-        """Return the error that says which parameter the matrices are not affine in."""
         moved = [name for name, x in zip(self.parameters, values, strict=True) if x != 1]
         shares = {name: _share(E, terms, quantity, self.coefficients, [name]) for name in moved}
         guilty = [name for name, share in shares.items() if share >= COVERED] or moved

@@ -137,7 +137,6 @@ def _labelled(listed: Listed, deck: Bulk, notes: list[str]) -> Listed:
 
 
 def _drawn(deck: Bulk, notes: list[str]) -> ProgramMesh | None:
-    """Return the mesh of a deck, if all of its coordinates are in the basic system."""
     if np.isfinite(deck.mesh.coordinates).all():
         return deck.mesh
     notes.append("nodes in coordinate systems of their own (CP): coordinates are left out")
@@ -163,7 +162,6 @@ def _check_labels(path: Path, deck: Bulk, triangle: Matrix, dofs: DofTable, free
 
 
 def _near_supports(deck: Bulk, dofs: DofTable, free: Bools) -> Bools:
-    """Return which degrees of freedom are at nodes that an element joins with one that is held."""
     moving = set(zip(dofs.node[free].tolist(), dofs.direction[free].tolist(), strict=True))
     held = {n for n in deck.mesh.number.tolist() if any((n, c) not in moving for c in (1, 2, 3))}
     held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)

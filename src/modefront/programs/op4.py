@@ -82,7 +82,6 @@ class _Pieces:
 
 
 def _binary(path: Path, data: bytes, order: str, word: int) -> Iterator[tuple[str, Entries]]:
-    """Yield the matrices of a file of this byte order, with words of so many bytes."""
     position, integer = 0, f"{order}i{word}"
 
     def record() -> bytes:

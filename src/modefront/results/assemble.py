@@ -51,7 +51,6 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
 
 
 def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:
-    """Return the models with their objectives and modes."""
     points, n, modes = front.points, len(problem.objectives), len(problem.data.modes)
     solutions = [point.solution for point in points]
     theta, J = _theta_and_J(problem, solutions)
@@ -113,7 +112,6 @@ def _minima(problem: UpdatingProblem, front: Front) -> Values:
 
 
 def _branches(problem: UpdatingProblem, front: Front) -> Values:
-    """Return the branches of a front of two objectives, and where they end at its gaps."""
     if len(front.edges) != 2 or METHODS[front.method].programme != "boundary":
         return {}
     J = _theta_and_J(problem, [point.solution for point in front.points])[1]

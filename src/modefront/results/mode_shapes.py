@@ -185,7 +185,9 @@ class _Basis:
     def coefficients(self, U: Floats) -> Floats:
         """Return the coefficients (columns so far, modes) of shapes U (size, modes)."""
         missing = U - self.Q @ (self.Q.T @ U)
-        for r in np.flatnonzero(_lengths(missing) > TOLERANCE / 10 * _lengths(U)).tolist():
+        for r in np.flatnonzero(
+            np.linalg.norm(missing, axis=0) > TOLERANCE / 10 * np.linalg.norm(U, axis=0)
+        ).tolist():
             q = U[:, r]
             for _ in range(2):  # twice is enough for orthogonality to rounding
                 q = q - self.Q @ (self.Q.T @ q)
@@ -206,11 +208,6 @@ class _Basis:
         most = np.maximum(np.abs(c).max(axis=1), TINY)
         B: Floats = (self.Q @ W[:, :kept]) * most
         return B, (c / most[:, None]).T.reshape(len(rows), modes, kept)
-
-
-def _lengths(columns: Floats) -> Floats:
-    out: Floats = np.sqrt((columns**2).sum(axis=0))
-    return out
 
 
 def with_mode_shapes(data: xr.Dataset, problem: UpdatingProblem, shapes: ModeShapes) -> xr.Dataset:
@@ -239,10 +236,7 @@ def with_mode_shapes(data: xr.Dataset, problem: UpdatingProblem, shapes: ModeSha
         }
         coordinates["axis"] = list(AXES)
     out = data.assign(described(values)).assign_coords(coordinates)
-    if "node" in values:
-        out.attrs["geometry"] = "chain" if _is_chain(geometry) else "mesh"
+    if geometry is not None and "node" in values:
+        groups = [cells.group for cells in geometry.cells]
+        out.attrs["geometry"] = "chain" if groups == ["chain"] else "mesh"
     return out
-
-
-def _is_chain(geometry: Geometry | None) -> bool:
-    return geometry is not None and [cells.group for cells in geometry.cells] == ["chain"]

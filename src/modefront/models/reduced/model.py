@@ -305,7 +305,6 @@ class ReducedModel:
         return known and _begins(self._requested, self._taken)
 
     def _projected(self) -> _Projected:
-        """Return the matrices in the basis of the requested snapshots."""
         if self._small is None or self._small.snapshots is not self._requested:
             basis = self.basis
             sensed = np.hstack([self.full.selection @ block for block in basis.blocks])
@@ -342,7 +341,6 @@ class ReducedModel:
     def _added_to(
         self, basis: Basis, models: list[Floats], what: SnapshotRequest
     ) -> tuple[Basis, float]:
-        """Return a basis with what some models of a snapshot add, and the error that it had."""
         error, near = 0.0, [theta for theta in models if self._is_near(basis, theta, what)]
         corrected = self._corrected(basis, near, what) if near else None
         if corrected:
@@ -410,7 +408,6 @@ class ReducedModel:
         return basis, float(errors.max())
 
     def _solved(self, known: Basis | None, theta: Floats, modes: int) -> Basis:
-        """Return the basis with the modes of a full solution and their derivatives."""
         started = time.perf_counter()
         pencil = self.full.pencil
         count, spectrum = min(modes + SPARE, self.size), None
@@ -458,7 +455,6 @@ class ReducedModel:
     def _with_derivatives(
         self, basis: Basis, factor: Factorisation, theta: Floats, modes: int
     ) -> Basis:
-        """Return the basis of some modes with their derivatives."""
         count, half = min(modes, basis.columns - 1), (self.upper - self.lower) / 2
         request = CorrectionRequest(SHARE, self._shortest, self.capacity)
         if count < 1:
@@ -466,7 +462,6 @@ class ReducedModel:
         return with_derivatives(self.full.pencil, basis, factor, theta, count, half, request)
 
     def _bounds(self, basis: Basis, theta: Floats) -> list[Floats]:
-        """Return the parameters with one of them at a bound, or nearer to ``theta``."""
         out = []
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
             for end in ends:
@@ -504,7 +499,6 @@ class ReducedModel:
 
 
 def _has_modes(basis: Basis, theta: Floats, count: int) -> bool:
-    """Return whether a model has modes in the basis."""
     try:
         return basis.lowest(theta, count).lam.size >= count
     except ModelError:
@@ -520,7 +514,6 @@ def _condition(basis: Basis, theta: Floats) -> float:
 def _begins(
     requests: Sequence[SnapshotRequest], taken: Sequence[tuple[SnapshotRequest, Costs, float]]
 ) -> bool:
-    """Return whether the requested snapshots begin with those that were taken."""
     return len(taken) <= len(requests) and all(
         entry[0].same(other) for entry, other in zip(taken, requests, strict=False)
     )
