@@ -63,6 +63,9 @@ NAMES = tuple(AXES.values())
 """Directions in the order of the components."""
 
 
+T = TypeVar("T")
+
+
 @dataclass(frozen=True, eq=False)
 class NodalModes:
     """Modes at the nodes of a test.
@@ -155,36 +158,29 @@ def read_uff55(path: Path) -> NodalModes:
     """
     file, content = str(path), read_text_bytes(path, WHAT, MOST_DATA)
     sections = blocks(content, file)
-    shapes = [block for block in sections if block.number == 55]
-    if not shapes:
+    if not any(block.number == 55 for block in sections):
         numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in sections))
         raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
 
     def each(read: Callable[[str, Block, list[str]], T], *numbers: int) -> list[T]:
-        chosen = (block for block in sections if block.number in numbers)
-        return [_read(read, file, block, content) for block in chosen]
+        out = []
+        for block in (block for block in sections if block.number in numbers):
+            lines = text_lines(content, block)
+            while lines and not lines[-1].strip():
+                lines.pop()
+            try:
+                out.append(read(file, block, lines))
+            except InputError:
+                raise
+            except (ValueError, IndexError, OverflowError) as error:
+                expected = f"a dataset {block.number}"
+                raise InputError(Fault(file, block.place, expected, reason(error))) from None
+        return out
 
     points = [point for part in each(_nodes, *GEOMETRY) for point in part]
     once(file, "nodes", "each node", (node for node, _, _ in points))
     systems = dict(pair for part in each(_systems, SYSTEMS) for pair in part)
     return _assembled(file, each(_mode, 55), points, systems)
-
-
-T = TypeVar("T")
-
-
-def _read(read: Callable[[str, Block, list[str]], T], file: str, block: Block, content: bytes) -> T:
-    """Return what a dataset holds; raises InputError where it is not as its kind is."""
-    lines = text_lines(content, block)
-    while lines and not lines[-1].strip():
-        lines.pop()
-    try:
-        return read(file, block, lines)
-    except InputError:
-        raise
-    except (ValueError, IndexError, OverflowError) as error:
-        expected = f"a dataset {block.number}"
-        raise InputError(Fault(file, block.place, expected, reason(error))) from None
 
 
 def _integers(line: str, count: int) -> list[int]:

@@ -184,7 +184,10 @@ def _checked(value: Matrix, place: str, size: int | None) -> Any:
 
     Rounding in its symmetry is taken out. Raises InputError where it is not such a matrix.
     """
-    A: Any = value if scipy.sparse.issparse(value) else _array(value, place)
+    try:
+        A: Any = value if scipy.sparse.issparse(value) else np.asarray(value)
+    except ValueError:  # lists of different lengths
+        raise wrong(place, "a matrix", type(value).__name__) from None
     n = "N" if size is None else size
     square = A.ndim == 2 and A.shape[0] == A.shape[1] > 0
     if not square or (size is not None and A.shape[0] != size):
@@ -210,14 +213,6 @@ def _checked(value: Matrix, place: str, size: int | None) -> Any:
         found = f"{A[i, j]:g} in row {i}, column {j} (from 0), and {A[j, i]:g} across the diagonal"
         raise wrong(place, "a symmetric matrix", found)
     return (A + A.T) / 2
-
-
-def _array(value: Matrix, place: str) -> NDArray[Any]:
-    """Return an array of numbers; raises InputError where there is none."""
-    try:
-        return np.asarray(value)
-    except ValueError:  # lists of different lengths
-        raise wrong(place, "a matrix", type(value).__name__) from None
 
 
 def _imaginary(A: Any, h: float) -> Any:

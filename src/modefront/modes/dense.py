@@ -77,8 +77,7 @@ def modes(
         return Modes(*at_sensors, tridiagonal.derivatives(K, M, sensors, theta, few, count))
     decomposition = decompose(Kt, Mt, count)
     lam, X = decomposition.lam, decomposition.X
-    if lam.size < count:
-        raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
+    refuse_fewer(lam.size, count)
     phi = sensors @ decomposition.Phi[:, :count]
     if not derivatives:
         return Modes(lam[:count], phi)
@@ -90,6 +89,12 @@ def modes(
         dlam[:count], first_axis(seen, S[:, :count]), coincident[:count], second
     )
     return Modes(lam[:count], phi, slopes)
+
+
+def refuse_fewer(known: int, count: int) -> None:
+    """Raise ModelError where there are fewer modes than ``count``."""
+    if known < count:
+        raise ModelError(f"{count} modes asked for, but only {known} have a finite frequency")
 
 
 @dataclass(frozen=True)

@@ -128,9 +128,7 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
         refines = True
         if ritz.complete and (known < count or attempt):
             if known < count and _finite(pencil, K, M, lam) <= known:
-                raise ModelError(
-                    f"{count} modes asked for, but only {known} have a finite frequency"
-                )
+                dense.refuse_fewer(known, count)
             # The basis has lost some, whose mu is too small beside the greatest.
             if pencil.size > ALL_AT_ONCE and not lost:
                 least, lost = RESTART * float(lam[known - 1]), True
@@ -140,10 +138,7 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
             everything = dense.decompose(K.toarray(), M.toarray(), count)
             lam, X = everything.lam, everything.Phi
             known, finite, refines = lam.size, lam.size, False
-            if known < count:
-                raise ModelError(
-                    f"{count} modes asked for, but only {known} have a finite frequency"
-                )
+            dense.refuse_fewer(known, count)
         if lam[0] < 1e-2 * below.sigma:
             raise ModelError("the stiffness matrix is indefinite")
         if (

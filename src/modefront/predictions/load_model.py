@@ -185,7 +185,7 @@ class ModalLoadModel:
         count = transfer.modes.lam.size
         if self.damping != MEASURED:
             return np.broadcast_to(np.asarray(self.damping, dtype=float), count)
-        measured = measured_damping(problem.data)
+        measured = problem.data.mean_damping
         is_known = np.isfinite(measured)
         zeta = np.full(count, measured[is_known].mean())
         # The same candidates as in updating, or other modes might be paired.
@@ -240,7 +240,7 @@ def load_faults(loads: ModalLoadModel, model: Model, data: ModalData) -> Iterato
         expected = f"at most {model.size} ratios, as the model has modes"
         yield Fault("", "damping", expected, f"{len(damping)} of them")
     if damping == MEASURED:
-        ratios = measured_damping(data)
+        ratios = data.mean_damping
         if not np.isfinite(ratios).any():
             yield Fault("", "damping", "a ratio, as the data have none", f"'{MEASURED}'")
         elif (ratios <= 0).any():
@@ -276,15 +276,6 @@ def highest_frequency(data: ModalData) -> float | None:
     """Return the highest measured frequency in Hz, None where there is none."""
     measured = data.mean_frequency[np.isfinite(data.mean_frequency)]
     return float(measured.max()) if measured.size else None
-
-
-def measured_damping(data: ModalData) -> Floats:
-    """Return the mean damping ratio of each measured mode, shape (modes,); NaN where none."""
-    known = np.isfinite(data.damping)
-    total = np.where(known, data.damping, 0.0).sum(axis=0)
-    count = known.sum(axis=0)
-    out: Floats = np.where(count > 0, total / np.maximum(count, 1), np.nan)
-    return out
 
 
 def modes_reaching(model: Model, theta: Floats, frequency: float, count: int) -> int:

@@ -156,15 +156,15 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> Mod
             continue
         index = paired[i].astype(int) - 1
         try:
-            shapes = shapes_at(model, theta, max(count, int(index.max()) + 1))
+            lam, phi, Phi = shapes_at(model, theta, max(count, int(index.max()) + 1))
         except ModelError:
             continue
-        frequency[i] = np.sqrt(np.maximum(shapes.lam[:count], 0)) / (2 * np.pi)
-        mac[i] = mean_mac(data, shapes.phi[:, :count])
+        frequency[i] = np.sqrt(np.maximum(lam[:count], 0)) / (2 * np.pi)
+        mac[i] = mean_mac(data, phi[:, :count])
         u = np.zeros((modes, 0, 3))
-        if geometry is not None and shapes.Phi is not None:
-            u = geometry.displacement(shapes.Phi[:, index])[:, drawn]
-        phi = shapes.phi[:, index].T
+        if geometry is not None and Phi is not None:
+            u = geometry.displacement(Phi[:, index])[:, drawn]
+        phi = phi[:, index].T
         scale = unit_scale(data, phi, u if u.size else None)
         sensed[i] = phi * scale[:, None]
         rows[i] = basis.coefficients((u * scale[:, None, None]).reshape(modes, -1).T)

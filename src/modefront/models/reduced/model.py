@@ -99,10 +99,10 @@ class SnapshotRequest:
         """The parameters of each model."""
         return list(np.atleast_2d(self.theta))
 
-    def same(self, other: SnapshotRequest) -> bool:
-        """Return whether it is the same snapshot."""
-        alike = self.modes == other.modes and self.enough == other.enough
-        return alike and np.array_equal(self.theta, other.theta)
+    @property
+    def key(self) -> tuple[bytes, int, float]:
+        """What tells the snapshot from others."""
+        return self.theta.tobytes(), self.modes, self.enough
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ class ReducedModel:
     @property
     def version(self) -> tuple[tuple[bytes, int, float], ...]:
         """Snapshots in use."""
-        return tuple((x.theta.tobytes(), x.modes, x.enough) for x in self._requested)
+        return tuple(what.key for what in self._requested)
 
     @property
     def parts(self) -> tuple[MatrixModel]:
@@ -255,10 +255,7 @@ class ReducedModel:
         basis = self.basis
         started = time.perf_counter()
         pairs = basis.lowest(theta, count)
-        if pairs.lam.size < count:
-            raise ModelError(
-                f"{count} modes asked for, but only {pairs.lam.size} have a finite frequency"
-            )
+        dense.refuse_fewer(pairs.lam.size, count)
         Phi = basis.combine(np.ascontiguousarray(pairs.Phi[:, :count]))
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return FullModes(pairs.lam[:count], Phi, None)
@@ -301,8 +298,12 @@ class ReducedModel:
         """Whether nothing has to be solved in full for the snapshots in use."""
         if self._small is not None and self._small.snapshots is self._requested:
             return True
-        known = len(self._taken) == len(self._requested) > 0
-        return known and _begins(self._requested, self._taken)
+        return len(self._taken) == len(self._requested) > 0 and self._begins
+
+    @property
+    def _begins(self) -> bool:
+        """Whether the requested snapshots begin with those that were taken."""
+        return self.version[: len(self._taken)] == tuple(what.key for what, *_ in self._taken)
 
     def _projected(self) -> _Projected:
         if self._small is None or self._small.snapshots is not self._requested:
@@ -313,7 +314,7 @@ class ReducedModel:
 
     def _compute(self) -> None:
         """Make the basis that of the requested snapshots; only those not in it are computed."""
-        if not _begins(self._requested, self._taken):
+        if not self._begins:
             self._taken, self._basis, self._factor = (), None, None
         with uncounted():  # `take` counts a snapshot, once
             for what in self._requested[len(self._taken) :]:
@@ -360,7 +361,11 @@ class ReducedModel:
         self, basis: Basis, factor: Factorisation, what: SnapshotRequest
     ) -> tuple[list[Floats], float]:
         """Return the models of a snapshot that the basis knows least, and its error there."""
-        models = [theta for theta in what.models if _has_modes(basis, theta, what.modes)]
+        models = []
+        for theta in what.models:
+            with suppress(ModelError):
+                if basis.lowest(theta, what.modes).lam.size >= what.modes:
+                    models.append(theta)
         if not models:
             return what.models[:WORST], np.inf
         lengths = lacking_lengths(self.full.pencil, basis, factor, models, what.modes)
@@ -427,7 +432,7 @@ class ReducedModel:
         basis = self._with_derivatives(basis, below.factor, theta, modes)
         if known is None:
             self._factor = below.factor
-            basis = self._at_bounds(basis, below.factor, self._bounds(basis, theta))
+            basis = self._at_bounds(basis, below.factor, theta)
         spend(Costs(corrected_time=time.perf_counter() - solved))
         return basis
 
@@ -461,32 +466,28 @@ class ReducedModel:
             return basis
         return with_derivatives(self.full.pencil, basis, factor, theta, count, half, request)
 
-    def _bounds(self, basis: Basis, theta: Floats) -> list[Floats]:
-        out = []
+    def _at_bounds(self, basis: Basis, factor: Factorisation, theta: Floats) -> Basis:
+        """Return the basis with the modes where one parameter is at a bound, or nearer to theta.
+
+        They are for the global search, and take no more than half of what is left of the memory.
+        """
+        bounds = []
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
             for end in ends:
                 for halving in range(HALVINGS + 1):
                     nearby = theta.copy()
                     nearby[i] += (end - theta[i]) / 2**halving
                     if _condition(basis, nearby) <= FAR:
-                        out.append(nearby)
+                        bounds.append(nearby)
                         break
-        return out
-
-    def _at_bounds(self, basis: Basis, factor: Factorisation, bounds: list[Floats]) -> Basis:
-        """Return the basis with the modes at some parameters, for the global search.
-
-        They take no more than half of what is left of the memory.
-        """
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
         request = CorrectionRequest(SHARE, COARSE, (basis.columns + self.capacity) // 2)
-        pencil = self.full.pencil
         for some in (bounds, *([theta] for theta in bounds)):
             # A larger space may see that a matrix is indefinite at one of them: then each alone.
             with suppress(ModelError):
-                known = with_modes(pencil, basis, factor, some, count, request)
+                known = with_modes(self.full.pencil, basis, factor, some, count, request)
                 basis = known[0] if known else basis
                 spend(Costs(corrected=len(some)))
                 if some is bounds:
@@ -498,22 +499,7 @@ class ReducedModel:
         return SHORTEST * float(np.sqrt(self.tolerance))
 
 
-def _has_modes(basis: Basis, theta: Floats, count: int) -> bool:
-    try:
-        return basis.lowest(theta, count).lam.size >= count
-    except ModelError:
-        return False
-
-
 def _condition(basis: Basis, theta: Floats) -> float:
     """Return the condition of K - sigma M over A in the basis; infinite where it is indefinite."""
     values = np.linalg.eigvalsh(basis.K.at(theta) - basis.sigma * basis.M.at(theta))
     return float(values[-1] / values[0]) if values[0] > 0 else np.inf
-
-
-def _begins(
-    requests: Sequence[SnapshotRequest], taken: Sequence[tuple[SnapshotRequest, Costs, float]]
-) -> bool:
-    return len(taken) <= len(requests) and all(
-        entry[0].same(other) for entry, other in zip(taken, requests, strict=False)
-    )
