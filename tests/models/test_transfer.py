@@ -9,7 +9,7 @@ import scipy.sparse
 from modefront import fem
 from modefront._typing import Floats
 from modefront.errors import ModelError
-from modefront.models.load_case import LoadCase, Transfer
+from modefront.models.base import LoadCase, Transfer
 from modefront.models.matrices import MatrixModel, SensorSpec, affine, matrices, select
 from modefront.models.mesh import mesh_model
 from modefront.predictions.load_model import modes_reaching

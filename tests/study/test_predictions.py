@@ -16,7 +16,7 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.cli.main import main
 from modefront.errors import InputError, ModelError, UnfinishedError
-from modefront.models.load_case import Transfer
+from modefront.models.base import Transfer
 from modefront.models.matrices import MatrixModel
 from modefront.plots import write_figures
 from modefront.predictions import Passage, PeakResponse

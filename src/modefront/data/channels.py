@@ -109,9 +109,7 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     H[:, dead] = np.nan
     mean = np.nanmean(H, axis=0) if len(H) > 1 else H[0]
     warnings = [
-        *_circular_axis(name, frequency),
-        *_dead_channels(groups, dead),
-        *_stray_sizes(mean, groups, dead),
+        *_units(name, frequency, mean, groups, dead),
         *_reciprocity(name, mean, references, responses, turned),
         *_driving_points(H, frequency, quantity, groups),
     ]
@@ -182,35 +180,33 @@ def _check_values(channels: Sequence[Channel]) -> None:
         raise InputError(faults[:5])
 
 
-def _circular_axis(name: str, frequency: Floats) -> Iterator[str]:
-    """Warn of an axis that looks like circular frequencies."""
+def _units(
+    name: str, frequency: Floats, mean: Complexes, groups: _Groups, dead: Bools
+) -> Iterator[str]:
+    """Warn of an axis in rad/s, of dead channels, and of functions far from the others in size.
+
+    Dead (references, responses) are those that are zero, or one number at all lines.
+    """
     if looks_like_circular(frequency):
         yield (
             f"set {name!r}: the frequency axis looks like rad/s: its lines are "
             f"{frequency[1] - frequency[0]:.6g} apart, 2π times a round number; expected Hz"
         )
-
-
-def _dead_channels(groups: _Groups, dead: Bools) -> Iterator[str]:
-    """Warn of channels (references, responses) that are zero, or one number at all lines."""
-    for (j, i), group in groups.items():
-        if dead[j, i]:
-            what = "one number at all lines" if group[0].H.any() else "empty or only zeros"
-            yield f"{group[0].file}: {group[0].place}: {what}; the channel is left out"
-
-
-def _stray_sizes(mean: Complexes, groups: _Groups, dead: Bools) -> Iterator[str]:
-    """Warn of functions that are far greater or less than the others."""
     size = np.sqrt(np.mean(np.abs(np.where(np.isfinite(mean), mean, 0)) ** 2, axis=2))
     living = size[~dead & (size > 0)]
     middle = float(np.median(living)) if len(living) else 0.0
-    for (j, i), group in groups.items():
+    stray = []
+    for (j, i), (first, *_) in groups.items():
         ratio = size[j, i] / middle if middle else 1.0
-        if size[j, i] > 0 and not 1 / STRAY < ratio < STRAY:
-            yield (
-                f"{group[0].file}: {group[0].place}: {ratio:.3g} times as great as the other "
+        if dead[j, i]:
+            what = "one number at all lines" if first.H.any() else "empty or only zeros"
+            yield f"{first.file}: {first.place}: {what}; the channel is left out"
+        elif size[j, i] > 0 and not 1 / STRAY < ratio < STRAY:
+            stray.append(
+                f"{first.file}: {first.place}: {ratio:.3g} times as great as the other "
                 "functions are: check its unit"
             )
+    yield from stray
 
 
 def _driving_points(

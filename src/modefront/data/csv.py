@@ -138,7 +138,8 @@ def read_csv(
             for name in columns or {}
             if name not in used
         )
-        rows = _trimmed(rows, len(header))
+        width = len(header)  # fields without a name behind the last one may be empty
+        rows = ((k, row if any(map(str.strip, row[width:])) else row[:width]) for k, row in rows)
         if not header:
             raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
         if len(header) > MOST_COLUMNS:
@@ -215,7 +216,9 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
         reader = csv.reader(stream, delimiter=separator, strict=True, skipinitialspace=True)
         rows = ((before + reader.line_num, row) for row in reader if any(map(str.strip, row)))
         try:
-            yield rows if separator == "," else _with_points(rows)
+            if separator != ",":
+                rows = ((k, [DECIMAL_COMMA.sub(r"\1.\2", x) for x in row]) for k, row in rows)
+            yield rows
         except csv.Error as error:
             place = f"line {before + reader.line_num}"
             raise InputError(Fault(str(path), place, "CSV", reason(error))) from None
@@ -251,20 +254,6 @@ def _find_separator(stream: TextIO) -> tuple[str, int]:
         return declared["separator"], lines
     stream.seek(0)
     return max(SEPARATORS, key=first.count), 0
-
-
-def _trimmed(rows: Iterator[tuple[int, list[str]]], width: int) -> Iterator[tuple[int, list[str]]]:
-    """Yield the rows without empty fields beyond the last column that has a name."""
-    for number, row in rows:
-        if len(row) > width and not any(map(str.strip, row[width:])):
-            row = row[:width]
-        yield number, row
-
-
-def _with_points(rows: Iterator[tuple[int, list[str]]]) -> Iterator[tuple[int, list[str]]]:
-    """Yield the rows with decimal points for decimal commas."""
-    for number, row in rows:
-        yield number, [DECIMAL_COMMA.sub(r"\1.\2", field) for field in row]
 
 
 def _repeated(

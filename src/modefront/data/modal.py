@@ -68,11 +68,12 @@ class ModalData:
     @cached_property
     def mean_frequency(self) -> Floats:
         """Mean of the measured frequencies of each mode in Hz, shape (modes,); NaN where none."""
-        measured = np.isfinite(self.frequency)
-        total = np.where(measured, self.frequency, 0.0).sum(axis=0)
-        count = measured.sum(axis=0)
-        out: Floats = np.where(count > 0, total / np.maximum(count, 1), np.nan)
-        return out
+        return _mean(self.frequency)
+
+    @cached_property
+    def mean_damping(self) -> Floats:
+        """Mean of the measured damping ratios of each mode, shape (modes,); NaN where none."""
+        return _mean(self.damping)
 
     def at(self, sensors: tuple[str, ...]) -> ModalData:
         """Return the data at all of these sensors: what is not among the present ones is NaN.
@@ -105,6 +106,11 @@ class ModalData:
         return MeasuredShapes(
             measured.astype(float), shape, squares, np.where(sets > 0, sets, np.nan)
         )
+
+
+def _mean(values: Floats) -> Floats:
+    count = np.isfinite(values).sum(axis=0)
+    return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)
 
 
 # 7 arguments: the parts of modal data, the optional ones by keyword.

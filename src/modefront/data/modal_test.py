@@ -68,20 +68,6 @@ class _Settings:
     decay: float = 0.0
 
 
-@dataclass(frozen=True)
-class _Set:
-    """A table of a data set: files with a reference each, decay of their window, names of columns.
-
-    The decay is in 1/s.
-    """
-
-    name: str
-    files: list[str]
-    references: list[str]
-    decay: float
-    columns: dict[str, str]
-
-
 def read_test(path: Path) -> ModalTest:
     """Return the test of a test file, a universal file or a CSV file; raises InputError."""
     if path.suffix.lower() == ".toml":
@@ -129,18 +115,18 @@ def _from_toml(path: Path) -> ModalTest:
     if faults:
         raise InputError(faults)
     data_sets = []
-    for each in sets:
+    for label, files, references, decay, columns in sets:
         contents = [
-            _contents(root, path.parent / file, reference, each.columns)
-            for file, reference in zip(each.files, each.references, strict=True)
+            _contents(root, path.parent / file, reference, columns)
+            for file, reference in zip(files, references, strict=True)
         ]
-        for name in sorted(frozenset.intersection(*(x.unused for x in contents))):
+        for unused in sorted(frozenset.intersection(*(x.unused for x in contents))):
             expected = "a column of the CSV files of the set"
-            root.fault(f"[[set]] {each.name!r} columns", expected, repr(name))
+            root.fault(f"[[set]] {label!r} columns", expected, repr(unused))
         if faults:
             raise InputError(faults)
-        its_own = replace(settings, decay=each.decay)
-        data_sets.append(DataSet(each.name, _assembled(contents, each.name, its_own, root)))
+        its_own = replace(settings, decay=decay)
+        data_sets.append(DataSet(label, _assembled(contents, label, its_own, root)))
     return ModalTest(name or path.stem, band, modes, tuple(data_sets))
 
 
@@ -179,7 +165,6 @@ def _ambient(root: Table, name: str, settings: _Settings) -> ModalTest:
 
 
 def _test_table(root: Table) -> tuple[str, bool, _Settings]:
-    """Return the name, whether the test is ambient, and the settings."""
     title, quantity, ambient = "", "", False
     table = root.table("test", "a table [test]")
     if table:
@@ -233,8 +218,13 @@ def _impact_table(root: Table) -> Windows | None:
     return windows
 
 
-def _set_tables(root: Table, folder: Path) -> list[_Set]:
-    """Return the tables of all data sets."""
+def _set_tables(
+    root: Table, folder: Path
+) -> list[tuple[str, list[str], list[str], float, dict[str, str]]]:
+    """Return all data sets: name, files with a reference each, decay in 1/s, names of columns.
+
+    The decay is what the exponential window of functions added to that of their poles.
+    """
     out = []
     for number, table in enumerate(root.tables("set", required=True), start=1):
         name = table.text("name", default=str(number)) or str(number)
@@ -249,25 +239,21 @@ def _set_tables(root: Table, folder: Path) -> list[_Set]:
             found = f"{len(references)} for {len(files)} files"
             table.fault("reference", "one reference a file", found)
             references = [""] * len(files)
-        out.append(_Set(name, files, references, _window(table), table.names("columns")))
+        decay = 0.0
+        if window := table.table("window", "a table { exponential = time constant in s }", None):
+            expected = "a time constant in s above zero"
+            tau = window.number("exponential", expected, lambda x: x > 0)
+            window.close()
+            decay = 1 / tau if tau else 0.0
+        out.append((name, files, references, decay, table.names("columns")))
         table.close()
-    for name in repeated(each.name for each in out):
+    for name in repeated(name for name, *_ in out):
         root.fault("[[set]]", "a name for each data set", f"{name!r} twice")
     return out
 
 
 def _are_names(value: object) -> bool:
     return isinstance(value, list) and bool(value) and all(map(is_name, value))
-
-
-def _window(data_set: Table) -> float:
-    """Return what the exponential window of functions added to the decay of their poles, in 1/s."""
-    window = data_set.table("window", "a table { exponential = time constant in s }", None)
-    if not window:
-        return 0.0
-    tau = window.number("exponential", "a time constant in s above zero", lambda x: x > 0)
-    window.close()
-    return 1 / tau if tau else 0.0
 
 
 def _contents(root: Table, path: Path, reference: str, columns: Mapping[str, str]) -> Contents:
@@ -324,7 +310,6 @@ def _assembled(
 def _functions(
     contents: Sequence[Contents], name: str, settings: _Settings, root: Table | None
 ) -> Averaged:
-    """Return the channels of a set, made of blows where it has any."""
     channels = tuple(channel for content in contents for channel in content.channels)
     blows = [blow for content in contents for blow in content.blows]
     windows, wrong = settings.windows, None

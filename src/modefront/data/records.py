@@ -20,8 +20,7 @@ from modefront.data.csv import renamed
 from modefront.data.frf_csv import read_numbers
 from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import read_functions
-from modefront.errors import Fault, InputError
-from modefront.inputs import MOST_DATA, file_size
+from modefront.inputs import MOST_DATA, file_size, wrong
 from modefront.isolated import IsolatedError, Read, isolated
 from modefront.rounding import LARGEST
 
@@ -107,20 +106,17 @@ def read_records(setup: RecordedFiles, quantity: str) -> Records:
         rates.append(rate)
         if abs(rate / rates[0] - 1) > EVEN or (rows and values.shape[1] != len(rows[0])):
             expected = f"{len(rows[0])} samples at {rates[0]:g} per s, as in {setup.files[0]}"
-            size = f"{values.shape[1]} at {rate:g} per s"
-            raise InputError(Fault(str(path), "records", expected, size))
+            raise wrong(path, expected, f"{values.shape[1]} at {rate:g} per s", "records")
         for name, row in zip(found, values, strict=True):
             if name in names:
-                raise InputError(
-                    Fault(str(path), f"sensor {name!r}", "each sensor once", "another")
-                )
+                raise wrong(path, "each sensor once", "another", f"sensor {name!r}")
             if not (np.abs(row) <= LARGEST).all():
-                raise InputError(Fault(str(path), f"sensor {name!r}", EXPECTED, "others"))
+                raise wrong(path, EXPECTED, "others", f"sensor {name!r}")
             names.append(name)
             rows.append(row)
     moving = [bool(np.ptp(row) > 0) for row in rows]
     if not any(moving):
-        raise InputError(Fault(str(setup.files[0]), "records", "a sensor that moves", "none"))
+        raise wrong(setup.files[0], "a sensor that moves", "none", "records")
     return Records(
         setup.name,
         tuple(name for name, moves in zip(names, moving, strict=True) if moves),
@@ -141,7 +137,7 @@ def _of_file(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, f
         header, _ = renamed(own, setup.columns, ())
         if header.count(TIME) != 1 or len(header) < 2:
             expected = "a column 'time' in s, and one for every sensor"
-            raise InputError(Fault(str(path), "line 1", expected, ", ".join(header[:6])))
+            raise wrong(path, expected, ", ".join(header[:6]), "line 1")
         column = header.index(TIME)
         names = [name for name in header if name != TIME]
         rows = np.nan_to_num(np.delete(values, column, axis=1).T, nan=0.0)  # empty columns
@@ -149,11 +145,10 @@ def _of_file(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, f
     functions = [x for _, x in read_functions(path) if x.kind == OF_TIME]
     if not functions:
         expected = "records in time (functions of type 1) in dataset 58"
-        raise InputError(Fault(str(path), "dataset 58", expected, "none"))
-    lengths = {len(x.data) for x in functions}
-    if len(lengths) > 1:
+        raise wrong(path, expected, "none", "dataset 58")
+    if len(lengths := {len(x.data) for x in functions}) > 1:
         found = ", ".join(map(str, sorted(lengths)))
-        raise InputError(Fault(str(path), "dataset 58", "records of one length", found))
+        raise wrong(path, "records of one length", found, "dataset 58")
     signs = [(x.response[0], x.response[1] * np.asarray(x.data, float)) for x in functions]
     names = []
     for k, (name, row) in enumerate(signs):
@@ -175,22 +170,20 @@ def read_arrays(path: Path) -> Read:
 
 
 def _of_array(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, float]:
-    """Return the records of a file that holds an array alone."""
-    file = str(path)
     file_size(path, WHAT, MOST_DATA)
     if setup.rate is None or not setup.sensors:
         expected = "'rate' and 'sensors' in its [[set]], which the file does not say"
-        raise InputError(Fault(file, "records", expected, "nothing"))
+        raise wrong(path, expected, "nothing", "records")
     try:
         read, _ = isolated(READER, path)
     except IsolatedError as error:
-        raise InputError(Fault(file, "file", "an array of numbers", str(error))) from None
+        raise wrong(path, "an array of numbers", str(error)) from None
     arrays, count = list(read.values()), len(setup.sensors)
     tables = [x for x in arrays if x.ndim == 2 and x.dtype.kind in "fiu" and count in x.shape]
     if len(tables) != 1:
         expected = f"one array of samples by {count} sensors"
         shapes = ", ".join(" x ".join(map(str, x.shape)) for x in arrays) or "none"
-        raise InputError(Fault(file, "file", expected, shapes))
+        raise wrong(path, expected, shapes)
     table = np.asarray(tables[0], float)
     return setup.sensors, table if len(table) == count else table.T, setup.rate
 
@@ -199,9 +192,9 @@ def _rate(path: Path, time: Floats) -> float:
     """Return the samples per second of a time axis that is even but for its digits."""
     count, length = len(time) - 1, float(time[-1] - time[0])
     if count < 2 or length <= 0:
-        raise InputError(Fault(str(path), "time", "ascending times", "others"))
+        raise wrong(path, "ascending times", "others", "time")
     off = np.abs(time - time[0] - np.arange(count + 1) * (length / count)).max()
     if off > UNEVEN * length / count:
         found = f"times off by up to {off:.3g} s, steps of {length / count:.3g} s"
-        raise InputError(Fault(str(path), "time", "a time axis of even steps", found))
+        raise wrong(path, "a time axis of even steps", found, "time")
     return count / length

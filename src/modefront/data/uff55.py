@@ -63,6 +63,9 @@ NAMES = tuple(AXES.values())
 """Directions in the order of the components."""
 
 
+T = TypeVar("T")
+
+
 @dataclass(frozen=True, eq=False)
 class NodalModes:
     """Modes at the nodes of a test.
@@ -155,36 +158,29 @@ def read_uff55(path: Path) -> NodalModes:
     """
     file, content = str(path), read_text_bytes(path, WHAT, MOST_DATA)
     sections = blocks(content, file)
-    shapes = [block for block in sections if block.number == 55]
-    if not shapes:
+    if not any(block.number == 55 for block in sections):
         numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in sections))
         raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
 
     def each(read: Callable[[str, Block, list[str]], T], *numbers: int) -> list[T]:
-        chosen = (block for block in sections if block.number in numbers)
-        return [_read(read, file, block, content) for block in chosen]
+        out = []
+        for block in (block for block in sections if block.number in numbers):
+            lines = text_lines(content, block)
+            while lines and not lines[-1].strip():
+                lines.pop()
+            try:
+                out.append(read(file, block, lines))
+            except InputError:
+                raise
+            except (ValueError, IndexError, OverflowError) as error:
+                expected = f"a dataset {block.number}"
+                raise InputError(Fault(file, block.place, expected, reason(error))) from None
+        return out
 
     points = [point for part in each(_nodes, *GEOMETRY) for point in part]
     once(file, "nodes", "each node", (node for node, _, _ in points))
     systems = dict(pair for part in each(_systems, SYSTEMS) for pair in part)
     return _assembled(file, each(_mode, 55), points, systems)
-
-
-T = TypeVar("T")
-
-
-def _read(read: Callable[[str, Block, list[str]], T], file: str, block: Block, content: bytes) -> T:
-    """Return what a dataset holds; raises InputError where it is not as its kind is."""
-    lines = text_lines(content, block)
-    while lines and not lines[-1].strip():
-        lines.pop()
-    try:
-        return read(file, block, lines)
-    except InputError:
-        raise
-    except (ValueError, IndexError, OverflowError) as error:
-        expected = f"a dataset {block.number}"
-        raise InputError(Fault(file, block.place, expected, reason(error))) from None
 
 
 def _integers(line: str, count: int) -> list[int]:
@@ -247,7 +243,6 @@ def _mode(file: str, block: Block, lines: list[str]) -> _Mode:
 
 
 def _values(file: str, block: Block, lines: list[str], size: int) -> tuple[Ints, Floats]:
-    """Return nodes, and ``size`` numbers of each: a line with its number, then those of values."""
     nodes: list[int] = []
     values: list[list[float]] = []
     step = 1 + -(-size // PER_LINE)
@@ -302,15 +297,6 @@ def _systems(file: str, block: Block, lines: list[str]) -> list[tuple[int, tuple
     return out
 
 
-def _axes(points: Sequence[Point], systems: Mapping[int, tuple[int, Floats]]) -> dict[int, Floats]:
-    """Return the axes (3, 3) of nodes with a displacement system; NaN where it is not known.
-
-    Where no dataset 2420 says what the systems are, they are those of the file.
-    """
-    chosen = [(node, label, point) for node, label, point in points if systems and label != 0]
-    return {node: _axes_at(point, systems.get(label)) for node, label, point in chosen}
-
-
 def _axes_at(point: Floats, system: tuple[int, Floats] | None) -> Floats:
     """Return the axes (3, 3) of a coordinate system at a point; NaN where they are not known."""
     if system is None or system[0] not in (CARTESIAN, CYLINDRICAL):
@@ -356,7 +342,12 @@ def _assembled(
         shape[k, r, np.searchsorted(nodes, row.nodes)] = row.shape
     for values in shape:
         values[:, ~(np.nan_to_num(values) != 0).any(axis=0)] = np.nan
-    positions, axes = {node: point for node, _, point in points}, _axes(points, systems)
+    positions = {node: point for node, _, point in points}
+    axes = {  # without a dataset 2420 that says what the systems are, they are those of the file
+        node: _axes_at(point, systems.get(label))
+        for node, label, point in points
+        if systems and label != 0
+    }
     if positions:
         for row in rows:
             _check_nodes(file, row, np.intersect1d(row.nodes, list(positions)))

@@ -1,12 +1,64 @@
-"""Interface of models."""
+r"""Interface of models: modes at sensors, and from loads to outputs, which predictions need.
+
+Loads and outputs are weighted sums: with the rows :math:`l` of sensors and outputs (named sums of
+degrees of freedom) and their weights,
+
+.. math::
+    f = \sum_p w_p\, l_p^T, \qquad f = -M r \ \text{for a moving base}, \qquad
+    y = \sum_p w_p\, l_p u
+
+where :math:`r` is the motion of all degrees of freedom with the base and u, for a moving base,
+the displacement relative to it. In modes, as `modefront.response.system` has it, these are
+:math:`\Gamma = \Phi^T f`, :math:`Y = l \Phi`, :math:`Y_s = l K^{-1} f` and :math:`Y_b = l r`.
+"""
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 from modefront._typing import Floats
-from modefront.models.load_case import LoadCase, Transfer
 from modefront.modes.result import Modes
+
+NamedWeights = Mapping[str, float]
+"""Weights by the name of a sensor or output: a force of that size, or a term of a sum."""
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """Loads and outputs of a model: either forces, or one motion of the base.
+
+    Attributes
+    ----------
+    outputs : weighted sums of sensors and outputs, such as a storey drift
+    forces : distributions of force, one an input; none where the base moves
+    base : the direction in which the base moves, of the model's directions; None for forces
+    """
+
+    outputs: tuple[NamedWeights, ...]
+    forces: tuple[NamedWeights, ...] = ()
+    base: str | None = None
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """A model at one theta from the loads of a load case to its outputs, in its lowest modes.
+
+    Attributes
+    ----------
+    modes : the modes at the sensors, without derivatives
+    input : (modes, inputs) modal loads
+    output : (outputs, modes) mode shapes at the outputs
+    static : (outputs, inputs) static response; None with rigid-body modes
+    rigid : (outputs, 1) motion of the outputs with the base; None for forces
+    """
+
+    modes: Modes
+    input: Floats
+    output: Floats
+    static: Floats | None
+    rigid: Floats | None
 
 
 class Model(Protocol):
@@ -48,6 +100,13 @@ class Model(Protocol):
         Raises ModelError where the model has no such modes, KeyError for unknown sensors, outputs
         or directions.
         """
+
+
+def passed_on(inner: str, name: str) -> Any:
+    """Return the property of a class of models that is one of the model that it keeps as inner."""
+    return property(
+        lambda model: getattr(getattr(model, inner), name), doc=getattr(Model, name).__doc__
+    )
 
 
 def full_of(model: Model) -> Model:

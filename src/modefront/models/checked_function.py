@@ -38,6 +38,10 @@ MatrixFunction: TypeAlias = Callable[
 ]
 """A function of theta (parameters,) that returns K and M, or K, M and lists of dK and dM."""
 
+Tangent: TypeAlias = tuple[Any, tuple[Any, ...]]
+"""A matrix (N, N) at one theta, an array of a small model, else a sparse one, and its derivatives:
+one a parameter, None for one without effect."""
+
 STEP = 2.0**-70
 """Complex step over the parameter: its square drowns in rounding, and division by it is exact."""
 
@@ -55,20 +59,6 @@ SHOWN = 6
 """Parameters that a message repeats."""
 
 RETURNED = "K and M, or K, M and lists of their derivatives dK and dM"
-
-
-@dataclass(frozen=True)
-class Tangent:
-    """A matrix at one theta with its derivatives.
-
-    Attributes
-    ----------
-    matrix : (N, N), an array of a small model, else a sparse one
-    slopes : derivative with respect to each parameter, likewise; None for one without effect
-    """
-
-    matrix: Any
-    slopes: tuple[Any, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -96,7 +86,7 @@ class CheckedFunction:
         K = _real(returned[0], f"{place}: K", size)
         M = _real(returned[1], f"{place}: M", K.shape[0])
         if not derivatives:
-            return Tangent(K), Tangent(M)
+            return (K, ()), (M, ())
         if len(returned) == 4:
             slopes = [
                 self._listed(each, f"{place}: {what}", K.shape[0])
@@ -105,7 +95,7 @@ class CheckedFunction:
         else:
             steps = [self._complex_step(theta, i, K.shape[0]) for i in range(theta.size)]
             slopes = [tuple(step[0] for step in steps), tuple(step[1] for step in steps)]
-        return Tangent(K, slopes[0]), Tangent(M, slopes[1])
+        return (K, slopes[0]), (M, slopes[1])
 
     def check_derivatives(
         self, theta: Floats, lower: Floats, upper: Floats, known: tuple[Tangent, Tangent]
@@ -119,10 +109,10 @@ class CheckedFunction:
             h = DIFFERENCE * span[i] * (1 if theta[i] + DIFFERENCE * span[i] <= upper[i] else -1)
             ahead = theta.copy()
             ahead[i] += h
-            moved = self.at(ahead, known[0].matrix.shape[0], derivatives=False)
-            for what, shifted, nominal in zip(("K", "M"), moved, known, strict=True):
-                difference = (shifted.matrix - nominal.matrix) / (ahead[i] - theta[i])
-                wrong_entry = _wrong_entry(nominal.matrix, nominal.slopes[i], difference, span[i])
+            moved = self.at(ahead, known[0][0].shape[0], derivatives=False)
+            for what, (shifted, _), (nominal, slopes) in zip("KM", moved, known, strict=True):
+                difference = (shifted - nominal) / (ahead[i] - theta[i])
+                wrong_entry = _wrong_entry(nominal, slopes[i], difference, span[i])
                 if wrong_entry:
                     expected = (
                         f"derivatives of the matrices that {what} has, or, where none are "
@@ -149,7 +139,6 @@ class CheckedFunction:
         return _imaginary(K, h), _imaginary(M, h)
 
     def _listed(self, slopes: Any, place: str, size: int) -> tuple[Any, ...]:
-        """Return the derivatives that the function returns."""
         expected = f"a list of {len(self.names)} derivatives, one a parameter"
         if not isinstance(slopes, Sequence | np.ndarray):
             raise wrong(place, expected, type(slopes).__name__)
@@ -176,7 +165,6 @@ class CheckedFunction:
         return returned
 
     def _place(self, theta: Floats) -> str:
-        """Return the call at ``theta`` as messages show it."""
         pairs = zip(self.names[:SHOWN], theta, strict=False)
         shown = [f"{name} = {value:g}" for name, value in pairs]
         more = ["..."] if len(self.names) > SHOWN else []
@@ -196,7 +184,10 @@ def _checked(value: Matrix, place: str, size: int | None) -> Any:
 
     Rounding in its symmetry is taken out. Raises InputError where it is not such a matrix.
     """
-    A: Any = value if scipy.sparse.issparse(value) else _array(value, place)
+    try:
+        A: Any = value if scipy.sparse.issparse(value) else np.asarray(value)
+    except ValueError:  # lists of different lengths
+        raise wrong(place, "a matrix", type(value).__name__) from None
     n = "N" if size is None else size
     square = A.ndim == 2 and A.shape[0] == A.shape[1] > 0
     if not square or (size is not None and A.shape[0] != size):
@@ -222,14 +213,6 @@ def _checked(value: Matrix, place: str, size: int | None) -> Any:
         found = f"{A[i, j]:g} in row {i}, column {j} (from 0), and {A[j, i]:g} across the diagonal"
         raise wrong(place, "a symmetric matrix", found)
     return (A + A.T) / 2
-
-
-def _array(value: Matrix, place: str) -> NDArray[Any]:
-    """Return an array of numbers; raises InputError where there is none."""
-    try:
-        return np.asarray(value)
-    except ValueError:  # lists of different lengths
-        raise wrong(place, "a matrix", type(value).__name__) from None
 
 
 def _imaginary(A: Any, h: float) -> Any:

@@ -12,9 +12,9 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.errors import Fault, InputError, reason
+from modefront.errors import reason
 from modefront.fem.dofs import DIRECTIONS
-from modefront.inputs import ended_column, file_size
+from modefront.inputs import ended_column, file_size, wrong
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
 
@@ -170,10 +170,11 @@ def read_dofs(path: Path) -> DofTable:
         with path.open(encoding="utf-8-sig", newline="") as stream:
             header, *rows = list(csv.reader(stream))
     except (OSError, ValueError, csv.Error) as error:
-        raise _wrong(path, "file", "CSV in UTF-8", reason(error)) from None
+        raise wrong(path, "CSV in UTF-8", reason(error)) from None
     names = tuple(name.strip() for name in header)
     if names not in (COLUMNS, COLUMNS[:2]):
-        raise _wrong(path, "header", "node,direction or node,direction,weight", ",".join(names))
+        expected = "node,direction or node,direction,weight"
+        raise wrong(path, expected, ",".join(names), "header")
     ended_column(path, (row[-1] for row in rows if row))
     node, direction = np.zeros(len(rows), np.intp), np.zeros(len(rows), np.intp)
     weight = np.ones(len(rows))
@@ -189,7 +190,7 @@ def read_dofs(path: Path) -> DofTable:
         except (ValueError, KeyError, OverflowError):
             expected = f"a node, a direction ({', '.join(DIRECTIONS)})"
             expected += " and a weight" if len(names) > 2 else ""
-            raise _wrong(path, f"line {k + 2}", expected, ",".join(row)) from None
+            raise wrong(path, expected, ",".join(row), f"line {k + 2}") from None
     table = DofTable(node, direction, weight)
     return table if len(names) > 2 else shared(table)
 
@@ -199,7 +200,3 @@ def shared(dofs: DofTable) -> DofTable:
     labels = np.column_stack([dofs.node, dofs.direction])
     _, inverse, counts = np.unique(labels, axis=0, return_inverse=True, return_counts=True)
     return DofTable(dofs.node, dofs.direction, 1.0 / counts[inverse.ravel()])
-
-
-def _wrong(path: Path, place: str, expected: str, found: str) -> InputError:
-    return InputError(Fault(str(path), place, expected, found))

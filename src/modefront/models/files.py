@@ -110,7 +110,6 @@ def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_a
 
 
 def _check_entries(path: Path, A: scipy.sparse.coo_array, refused: Bools, expected: str) -> None:
-    """Refuse a matrix of which some entries are refused, naming the first of them."""
     if refused.any():
         first = int(np.argmax(refused))
         place = f"row {A.row[first]}, column {A.col[first]} (from 0)"
@@ -153,7 +152,6 @@ def _check_shape(path: Path, shape: tuple[int, ...], square: str = "square") -> 
 
 
 def _matrix_market(path: Path, _: str) -> Any:
-    """Return the matrix of a Matrix Market file, whole to its end, with each entry once."""
     with path.open("rb") as stream:
         header = [stream.readline(LONGEST)]
         if not header[0].startswith(b"%%MatrixMarket"):
@@ -187,7 +185,6 @@ def _matrix_market(path: Path, _: str) -> Any:
 
 
 def _numpy_npy(path: Path, _: str) -> Any:
-    """Return the array of a file of NumPy."""
     with path.open("rb") as stream:
         try:
             array = np.lib.format.read_array(stream, allow_pickle=False)

@@ -21,8 +21,8 @@ from modefront._typing import Floats
 from modefront.brief import as_html, brief_model
 from modefront.errors import refuse, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
+from modefront.models.base import LoadCase, Transfer, passed_on
 from modefront.models.checked_function import CheckedFunction, MatrixFunction, Tangent
-from modefront.models.load_case import LoadCase, Transfer
 from modefront.models.matrices import MatrixModel, SensorSpec, select, weights_of
 from modefront.models.parameters import Parameter
 from modefront.modes.result import Modes
@@ -47,20 +47,11 @@ class FunctionModel:
     __repr__ = brief_model
     _repr_html_ = as_html
 
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """Names of the parameters, in the order of theta."""
-        return self.nominal.parameters
+    parameters = passed_on("nominal", "parameters")
 
-    @property
-    def sensors(self) -> tuple[str, ...]:
-        """Names of the sensors."""
-        return self.nominal.sensors
+    sensors = passed_on("nominal", "sensors")
 
-    @property
-    def size(self) -> int:
-        """Number of degrees of freedom N."""
-        return self.nominal.size
+    size = passed_on("nominal", "size")
 
     @property
     def parts(self) -> tuple[MatrixModel]:
@@ -77,15 +68,9 @@ class FunctionModel:
         """No names: on which parameters a function does not depend is not known."""
         return ()
 
-    @property
-    def places(self) -> tuple[str, ...]:
-        """Names of the sensors and of the other outputs."""
-        return self.nominal.places
+    places = passed_on("nominal", "places")
 
-    @property
-    def directions(self) -> tuple[str, ...]:
-        """Names of the directions in which the base can move."""
-        return self.nominal.directions
+    directions = passed_on("nominal", "directions")
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
@@ -170,7 +155,7 @@ def function_model(
     lower, upper = (np.array(ends) for ends in zip(*(x.bounds for x in parameters), strict=True))
     K, M = function.at(theta, None)
     function.check_derivatives(theta, lower, upper, (K, M))
-    size = int(K.matrix.shape[0])
+    size = int(K[0].shape[0])
     nominal = MatrixModel(
         function.names,
         tuple(sensors),
@@ -184,11 +169,11 @@ def function_model(
 
 
 def _affine(known: Tangent, theta: Floats) -> DenseAffine | SparseAffine:
-    """Return the affine matrix with these values and derivatives at ``theta``."""
-    slopes = {i: slope for i, slope in enumerate(known.slopes) if slope is not None}
+    matrix, each = known
+    slopes = {i: slope for i, slope in enumerate(each) if slope is not None}
     exponents = np.zeros((1 + len(slopes), theta.size))
     exponents[1 + np.arange(len(slopes)), list(slopes)] = 1
-    terms, coefficients = [known.matrix, *slopes.values()], Monomials(exponents, theta.copy())
-    if isinstance(known.matrix, np.ndarray):
+    terms, coefficients = [matrix, *slopes.values()], Monomials(exponents, theta.copy())
+    if isinstance(matrix, np.ndarray):
         return DenseAffine(np.array(terms), coefficients)
-    return sparse_affine(terms, coefficients, known.matrix.shape[0])
+    return sparse_affine(terms, coefficients, matrix.shape[0])

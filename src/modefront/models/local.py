@@ -2,30 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from modefront._typing import Floats
 from modefront.models.base import Model, full_of
 from modefront.models.function import FunctionModel
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
-
-
-@dataclass(frozen=True)
-class Shapes:
-    """The lowest modes of a model, without derivatives.
-
-    Attributes
-    ----------
-    lam : (modes,) eigenvalues omega**2 in (rad/s)**2
-    phi : (sensors, modes) mode shapes at the sensors; the sign is arbitrary
-    Phi : (N, modes) mode shapes at all degrees of freedom; None for a model without matrices
-    """
-
-    lam: Floats
-    phi: Floats
-    Phi: Floats | None
 
 
 def matrices_at(model: Model, theta: Floats) -> MatrixModel | None:
@@ -45,15 +27,17 @@ def geometry_of(model: Model) -> Geometry | None:
     return full.geometry if isinstance(full, MatrixModel) else None
 
 
-def shapes_at(model: Model, theta: Floats, count: int) -> Shapes:
+def shapes_at(model: Model, theta: Floats, count: int) -> tuple[Floats, Floats, Floats | None]:
     """Return the ``count`` lowest modes at ``theta``, those of a reduced model in its basis.
 
-    Raises ModelError where the model has no such modes.
+    They are eigenvalues omega**2 in (rad/s)**2, (modes,), and mode shapes of arbitrary sign at the
+    sensors, (sensors, modes), and at all degrees of freedom, (N, modes), None for a model without
+    matrices. Raises ModelError where the model has no such modes.
     """
     known = model.at(theta, derivatives=False) if isinstance(model, FunctionModel) else model
     if isinstance(known, MatrixModel | ReducedModel):
         lowest = known.full_modes(theta, count)
         full = known.full if isinstance(known, ReducedModel) else known
-        return Shapes(lowest.lam, full.selection @ lowest.Phi, lowest.Phi)
+        return lowest.lam, full.selection @ lowest.Phi, lowest.Phi
     modes = model.modes(theta, count, derivatives=False)
-    return Shapes(modes.lam, modes.phi, None)
+    return modes.lam, modes.phi, None

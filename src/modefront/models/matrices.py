@@ -19,9 +19,8 @@ from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse
 from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil
 from modefront.linalg.products import gram
-from modefront.models.base import Model
+from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
 from modefront.models.geometry import Geometry
-from modefront.models.load_case import LoadCase, NamedWeights, Transfer
 from modefront.models.parameters import Parameter
 from modefront.models.terms import BASE, above_zero, exponents_of, form_of, term_exponents
 from modefront.modes.eigensolvers import Eigensolver, FullModes, eigensolver

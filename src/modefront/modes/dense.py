@@ -28,7 +28,7 @@ those of :math:`\Phi_c^T (K' - \lambda M') \Phi_c`, and the quotient is left out
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.linalg
@@ -77,19 +77,24 @@ def modes(
         return Modes(*at_sensors, tridiagonal.derivatives(K, M, sensors, theta, few, count))
     decomposition = decompose(Kt, Mt, count)
     lam, X = decomposition.lam, decomposition.X
-    if lam.size < count:
-        raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
+    refuse_fewer(lam.size, count)
     phi = sensors @ decomposition.Phi[:, :count]
     if not derivatives:
         return Modes(lam[:count], phi)
     dlam, S, coincident, energy = nelson(K, M, theta, decomposition, count)
     seen = sensors @ X
-    solver = _AllModes(decomposition, seen, S, energy)
-    second = SecondDerivatives(K, M, theta, lam[:count], phi, dlam[:count], solver)
+    solve = partial(_with_all, decomposition, seen, S, energy)
+    second = SecondDerivatives(K, M, theta, lam[:count], phi, dlam[:count], solve, count)
     slopes = ModeDerivatives(
         dlam[:count], first_axis(seen, S[:, :count]), coincident[:count], second
     )
     return Modes(lam[:count], phi, slopes)
+
+
+def refuse_fewer(known: int, count: int) -> None:
+    """Raise ModelError where there are fewer modes than ``count``."""
+    if known < count:
+        raise ModelError(f"{count} modes asked for, but only {known} have a finite frequency")
 
 
 @dataclass(frozen=True)
@@ -117,33 +122,18 @@ class Decomposition:
         return out
 
 
-@dataclass(frozen=True, eq=False)
-class _AllModes:
-    r"""All modes, for second derivatives; see `modefront.modes.second_derivatives.Solver`.
+# 7 arguments: all modes, and those of `modefront.modes.second_derivatives.Solve`.
+def _with_all(
+    known: Decomposition, seen: Floats, S: Floats, energy: Floats, r: Ints, b: Floats, owner: Ints
+) -> Solved:
+    """Return modes r with adjoints.
 
-    Attributes
-    ----------
-    decomposition : all solutions x
-    seen : (sensors, N) the x at the sensors
-    S : (N, modes, p) derivatives of the modes in terms of the x
-    energy : (N, modes) :math:`x_j^T (K - \lambda_r M) x_j`; infinite where modes coincide
+    The solutions x are ``seen`` (sensors, N) at the sensors; S (N, modes, p) are derivatives in
+    terms of them, and the energy (N, modes) is x_j^T (K - lam_r M) x_j, infinite where modes
+    coincide.
     """
-
-    decomposition: Decomposition
-    seen: Floats
-    S: Floats
-    energy: Floats
-
-    @property
-    def together(self) -> int:
-        """All modes at once."""
-        return self.energy.shape[1]
-
-    def solve(self, r: Ints, b: Floats, owner: Ints) -> Solved:
-        """Return modes r with adjoints."""
-        X = self.decomposition.X
-        Z = X @ ((self.seen.T @ b) / self.energy[:, r[owner]])
-        return Solved(self.decomposition.Phi[:, r], first_axis(X, self.S[:, r]), Z)
+    Z = known.X @ ((seen.T @ b) / energy[:, r[owner]])
+    return Solved(known.Phi[:, r], first_axis(known.X, S[:, r]), Z)
 
 
 def lowest(K: Floats, M: Floats, count: int) -> LowestModes | Decomposition:

@@ -158,44 +158,32 @@ def _same(spectrum: Spectrum) -> Bools:
     return np.asarray(distance * COINCIDENT <= np.maximum(noise, noise[:, None]))
 
 
-@dataclass(frozen=True, eq=False)
-class Everywhere:
-    """Derivatives at all DOFs, mode by mode; see `modefront.modes.second_derivatives.Solver`.
-
-    Attributes
-    ----------
-    pencil, sensors, theta, spectrum, count : the arguments of `at_sensors`
-    """
-
-    pencil: Pencil
-    sensors: Sensors
-    theta: Floats
-    spectrum: Spectrum
-    count: int
-
-    @property
-    def together(self) -> int:
-        """One mode at once, to bound the memory."""
-        return 1
-
-    def solve(self, r: Ints, b: Floats, owner: Ints) -> Solved:
-        """Return one mode with adjoints; raises ModelError where the iteration fails."""
-        del owner  # of one mode
-        spectrum, k, p = self.spectrum, int(r[0]), self.theta.size
-        phi = spectrum.Phi[:, r]
-        dM_phi = self.pencil.M.derivatives_times(self.theta, phi)[:, 0]
-        force = self.pencil.K.derivatives_times(self.theta, phi)[:, 0] - spectrum.lam[k] * dM_phi
-        right = np.hstack([force, self.sensors.T @ b])
-        gap = np.where(_same(spectrum)[:, k], np.inf, spectrum.lam - spectrum.lam[k])
-        out = combine(spectrum.Phi, gram(spectrum.Phi, right) / gap[:, None])
-        nearest, _ = _nearest(spectrum, self.count, TOLERANCE)
-        shifted, everywhere = spectrum.factors[nearest[k]], scipy.sparse.eye_array(len(phi)).tocsr()
-        tau = np.array([[shifted.sigma - spectrum.lam[k]]])
-        for some in _chunks(right.T):
-            columns = np.ascontiguousarray(right[:, some])
-            out[:, some] += _forms(shifted, spectrum, columns, tau, everywhere, TOLERANCE)[:, 0]
-        dphi = -out[:, :p] - 0.5 * phi * gram(phi, dM_phi)
-        return Solved(phi, dphi[:, None], out[:, p:])
+# 8 arguments: those of `at_sensors`, and those of `modefront.modes.second_derivatives.Solve`.
+def everywhere(
+    pencil: Pencil,
+    sensors: Sensors,
+    theta: Floats,
+    spectrum: Spectrum,
+    count: int,
+    r: Ints,
+    b: Floats,
+    _: Ints,
+) -> Solved:
+    """Return one mode with adjoints at all DOFs; raises ModelError where the iteration fails."""
+    k, p, phi = int(r[0]), theta.size, spectrum.Phi[:, r]
+    dM_phi = pencil.M.derivatives_times(theta, phi)[:, 0]
+    force = pencil.K.derivatives_times(theta, phi)[:, 0] - spectrum.lam[k] * dM_phi
+    right = np.hstack([force, sensors.T @ b])
+    gap = np.where(_same(spectrum)[:, k], np.inf, spectrum.lam - spectrum.lam[k])
+    out = combine(spectrum.Phi, gram(spectrum.Phi, right) / gap[:, None])
+    nearest, _steps = _nearest(spectrum, count, TOLERANCE)
+    shifted, identity = spectrum.factors[nearest[k]], scipy.sparse.eye_array(len(phi)).tocsr()
+    tau = np.array([[shifted.sigma - spectrum.lam[k]]])
+    for some in _chunks(right.T):
+        columns = np.ascontiguousarray(right[:, some])
+        out[:, some] += _forms(shifted, spectrum, columns, tau, identity, TOLERANCE)[:, 0]
+    dphi = -out[:, :p] - 0.5 * phi * gram(phi, dM_phi)
+    return Solved(phi, dphi[:, None], out[:, p:])
 
 
 def outside(
@@ -251,7 +239,6 @@ def _chunks(rows: Sensors) -> list[Ints]:
 
 
 def _columns(rows: Sensors, some: Ints) -> Floats:
-    """Return some rows as dense columns."""
     chosen = rows[some]
     dense = chosen if isinstance(chosen, np.ndarray) else chosen.toarray()
     return np.ascontiguousarray(np.asarray(dense, dtype=float).T)

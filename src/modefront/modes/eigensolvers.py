@@ -116,10 +116,7 @@ class DenseEigensolver:
         Kt = self.K.at(theta)
         decomposition = dense.decompose(Kt, self.M.at(theta), count)
         lam, Phi = decomposition.lam, decomposition.Phi
-        if lam.size < count:
-            raise ModelError(
-                f"{count} modes asked for, but only {lam.size} have a finite frequency"
-            )
+        dense.refuse_fewer(lam.size, count)
         lam = without_rounding(lam, Phi, np.diag(Kt))
         static = None
         if lam[0] > 0:

@@ -44,9 +44,9 @@ Source: the equations of Fox & Kapoor 1968, doi:10.2514/3.5008, differentiated o
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, Protocol
+from typing import TypeAlias
 
 import numpy as np
 
@@ -70,18 +70,9 @@ class Solved:
     Z: Floats
 
 
-class Solver(Protocol):
-    """What an eigensolution gives to second derivatives, when they are requested."""
-
-    @property
-    def together(self) -> int:
-        """Number of modes that are solved for at once, at most."""
-
-    def solve(self, r: Ints, b: Floats, owner: Ints) -> Solved:
-        """Return modes r with the adjoints of weights b (sensors, adjoints).
-
-        Each adjoint is that of the mode at position ``owner`` (adjoints,) in r.
-        """
+Solve: TypeAlias = Callable[[Ints, Floats, Ints], Solved]
+"""Returns modes r with the adjoints of weights b (sensors, adjoints), each that of the mode at
+position ``owner`` (adjoints,) in r, when second derivatives are requested."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +84,8 @@ class SecondDerivatives:
     K, M : stiffness and mass matrix
     theta : (p,) parameters
     lam, phi, dlam : the modes at the sensors as in `modefront.modes.result.Modes`
-    solver : gives the modes at all degrees of freedom, and adjoints
+    solve : gives the modes at all degrees of freedom, and adjoints
+    most : number of modes that are solved for at once, at most
     """
 
     K: DenseAffine | SparseAffine
@@ -102,12 +94,8 @@ class SecondDerivatives:
     lam: Floats
     phi: Floats
     dlam: Floats
-    solver: Solver
-
-    @cached_property
-    def _mass(self) -> Any:
-        """M(theta), dense or sparse."""
-        return self.M.at(self.theta)
+    solve: Solve
+    most: int
 
     def of_sums(self, r: Ints, w: Floats, v: Floats) -> Floats:
         """Return the Hessians of sum_r w_r lam_r + v_r^T phi_r for several w and v, (n, p, p).
@@ -115,8 +103,8 @@ class SecondDerivatives:
         ``r`` are modes, ``w`` has the shape (n, modes) and ``v`` (n, sensors, modes).
         """
         out = np.zeros((len(w), self.theta.size, self.theta.size))
-        for k in range(0, r.size, self.solver.together):
-            some = slice(k, k + self.solver.together)
+        for k in range(0, r.size, self.most):
+            some = slice(k, k + self.most)
             out += self._together(r[some], w[:, some], v[:, :, some])
         return out
 
@@ -129,10 +117,10 @@ class SecondDerivatives:
         of, owner = np.nonzero(v.any(axis=1))
         b = v[of, :, owner]
         s = np.vecdot(b, self.phi[:, r[owner]].T)
-        known = self.solver.solve(r, b.T, owner)
+        known, mass = self.solve(r, b.T, owner), self.M.at(self.theta)
         (N, m, p), mode = known.dPhi.shape, np.append(np.arange(r.size), owner)
         vectors, dlam = np.hstack([known.Phi, -known.Z]), self.dlam[r[mode]]
-        MdPhi = (self._mass @ known.dPhi.reshape(N, -1)).reshape(N, m, p)
+        MdPhi = (mass @ known.dPhi.reshape(N, -1)).reshape(N, m, p)
         left, change = self.K.derivatives_times(self.theta, vectors), MdPhi
         c = np.zeros((mode.size, p))
         if self.M.coefficients.varies:

@@ -29,6 +29,7 @@ Source: Ericsson & Ruhe 1980, doi:10.1090/S0025-5718-1980-0583502-2.
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import partial
 
 import numpy as np
 import scipy.linalg
@@ -103,8 +104,12 @@ def modes(
     if not derivatives:
         return Modes(spectrum.lam[:count], phi)
     dlam, dphi, coincident = exact.at_sensors(pencil, sensors, theta, spectrum, count)
-    lam, solver = spectrum.lam[:count], exact.Everywhere(pencil, sensors, theta, spectrum, count)
-    second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solver)
+    lam, solve = (
+        spectrum.lam[:count],
+        partial(exact.everywhere, pencil, sensors, theta, spectrum, count),
+    )
+    # Mode by mode, to bound the memory.
+    second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solve, 1)
     return Modes(lam, phi, ModeDerivatives(dlam, dphi, coincident, second))
 
 
@@ -123,9 +128,7 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
         refines = True
         if ritz.complete and (known < count or attempt):
             if known < count and _finite(pencil, K, M, lam) <= known:
-                raise ModelError(
-                    f"{count} modes asked for, but only {known} have a finite frequency"
-                )
+                dense.refuse_fewer(known, count)
             # The basis has lost some, whose mu is too small beside the greatest.
             if pencil.size > ALL_AT_ONCE and not lost:
                 least, lost = RESTART * float(lam[known - 1]), True
@@ -135,10 +138,7 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
             everything = dense.decompose(K.toarray(), M.toarray(), count)
             lam, X = everything.lam, everything.Phi
             known, finite, refines = lam.size, lam.size, False
-            if known < count:
-                raise ModelError(
-                    f"{count} modes asked for, but only {known} have a finite frequency"
-                )
+            dense.refuse_fewer(known, count)
         if lam[0] < 1e-2 * below.sigma:
             raise ModelError("the stiffness matrix is indefinite")
         if (

@@ -20,7 +20,7 @@ Source: LAPACK Users' Guide, 1999, sections 2.4.4 and 2.4.5 (dsygst, dsytrd, dst
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import scipy.linalg
@@ -158,43 +158,28 @@ def lowest_modes(K: Floats, M: Floats, count: int) -> LowestModes | None:
     return LowestModes(lam, S, L, Q, tau, diagonal, beside)
 
 
-@dataclass(frozen=True, eq=False)
-class _FewModes:
-    r"""Derivatives of the lowest modes; see `modefront.modes.second_derivatives.Solver`.
-
-    Attributes
-    ----------
-    modes : the modes
-    phi : (sensors, k) those that are known at the sensors
-    seen : (N, sensors) the sensors, transformed
-    gap : (k, modes) :math:`\lambda_r - \lambda_j`; infinite where modes coincide
-    inside : (k, modes, p) derivatives in terms of the known modes
-    beyond : (N, modes, p) the rest of them, transformed
-    """
-
-    modes: LowestModes
-    phi: Floats
-    seen: Floats
-    gap: Floats
-    inside: Floats
-    beyond: Floats
-
-    @property
-    def together(self) -> int:
-        """All modes at once."""
-        return self.gap.shape[1]
-
-    def solve(self, r: Ints, b: Floats, owner: Ints) -> Solved:
-        """Return modes r with adjoints."""
-        Phi, shape = self.modes.Phi, self.beyond[:, r].shape
-        outside = self.modes.beyond((self.seen @ b)[:, :, None], self.modes.lam[r[owner]])
-        rest = np.hstack([self.beyond[:, r].reshape(len(Phi), -1), outside[:, :, 0]])
-        dPhi, Z = np.split(self.modes.transformed_back(rest), [shape[1] * shape[2]], axis=1)
-        return Solved(
-            Phi[:, r],
-            first_axis(Phi, self.inside[:, r]) - dPhi.reshape(shape),
-            Z - Phi @ ((self.phi.T @ b) / self.gap[:, r[owner]]),
-        )
+# 9 arguments: the modes, and those of `modefront.modes.second_derivatives.Solve`.
+def _with_few(
+    modes: LowestModes,
+    phi: Floats,
+    seen: Floats,
+    gap: Floats,
+    inside: Floats,
+    beyond: Floats,
+    r: Ints,
+    b: Floats,
+    owner: Ints,
+) -> Solved:
+    """Return modes r with adjoints; further arguments are those of the same names below."""
+    Phi, shape = modes.Phi, beyond[:, r].shape
+    outside = modes.beyond((seen @ b)[:, :, None], modes.lam[r[owner]])
+    rest = np.hstack([beyond[:, r].reshape(len(Phi), -1), outside[:, :, 0]])
+    dPhi, Z = np.split(modes.transformed_back(rest), [shape[1] * shape[2]], axis=1)
+    return Solved(
+        Phi[:, r],
+        first_axis(Phi, inside[:, r]) - dPhi.reshape(shape),
+        Z - Phi @ ((phi.T @ b) / gap[:, r[owner]]),
+    )
 
 
 def derivatives(
@@ -232,8 +217,8 @@ def derivatives(
     beyond = modes.beyond(right.reshape(len(Phi), count, p), lam[r])
     phi, dlam = sensors @ Phi, dlam[:count]
     dphi = phi @ inside.reshape(known, -1) - seen.T @ beyond.reshape(len(Phi), -1)
-    solver = _FewModes(modes, phi, seen, gap, inside, beyond)
-    second = SecondDerivatives(K, M, theta, lam[:count], phi[:, :count], dlam, solver)
+    solve = partial(_with_few, modes, phi, seen, gap, inside, beyond)
+    second = SecondDerivatives(K, M, theta, lam[:count], phi[:, :count], dlam, solve, count)
     return ModeDerivatives(dlam, dphi.reshape(-1, count, p), coincident[:count], second)
 
 

@@ -32,7 +32,7 @@ PLOTS: Mapping[str, str] = {
     "modes": "modes",
     "predictions": "predictions",
     "uncertainty": "uncertainty",
-    "minima": "minima",
+    "minima": "quantities",
 }
 """Pictures in the order of their files, each a function of this name in a module of the package."""
 

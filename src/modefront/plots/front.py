@@ -10,7 +10,7 @@ from modefront._typing import Floats
 from modefront.front.methods import METHODS
 from modefront.plots.along import key, parallel
 from modefront.plots.canvas import COLOURS, Picture, picture, plain, short
-from modefront.plots.models import branches, is_path, series, shown
+from modefront.plots.models import branches, draw_models, is_path, shown
 
 FAR = 2.5
 """Error over the greatest of the Pareto-optimal models from which a model is beyond the axes."""
@@ -30,12 +30,10 @@ def front(data: xr.Dataset, *, log: bool = False) -> Picture:
 
 
 def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
-    """Draw a line a model."""
     labels = [short(label, 24) for label in data["label"].values]
     figure = picture(4.6, 0.9 + 0.25 * len(labels))
     axes = figure.add_subplot()
-    for each in series(data):
-        axes.plot(error[each.positions, 0], each.positions, **each.marks, label=each.name)
+    draw_models(axes, data, np.column_stack([error[:, 0], np.arange(len(labels))]))
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()
     axes.set_xlabel(f"error of {group}")
@@ -50,7 +48,7 @@ def _two(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Pi
     if is_path(data) and method is not None and method.programme is not None:
         for branch in branches(data):
             axes.plot(*error[branch].T, "-", color=COLOURS[0], lw=1, alpha=0.5)
-    _points(axes, data, error)
+    draw_models(axes, data, error)
     axes.set(xlabel=f"error of {groups[0]}", ylabel=f"error of {groups[1]}")
     if log:
         axes.set(xscale="log", yscale="log")
@@ -93,7 +91,7 @@ def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> P
             if j >= i:
                 axes.remove()
                 continue
-            _points(axes, data, error[:, [j, i]])
+            draw_models(axes, data, error[:, [j, i]])
             if log:
                 axes.set(xscale="log", yscale="log")
             if i == n - 1:
@@ -110,8 +108,3 @@ def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> P
         axes.set_yscale("log")
     key(axes, data)
     return figure
-
-
-def _points(axes: Axes, data: xr.Dataset, error: Floats) -> None:
-    for each in series(data):
-        axes.plot(*error[each.positions].T, **each.marks, label=each.name)

@@ -31,7 +31,6 @@ def figures(
 
 
 def _stabilisation(figure: Figure, identification: Identification) -> None:
-    """Draw the poles of all orders over the mean of the functions."""
     figure.set_size_inches(7.0, 4.0)
     axes = figure.add_subplot()
     diagram = identification.diagram
@@ -90,7 +89,6 @@ def _functions(figure: Figure, identification: Identification) -> None:
 
 
 def _auto_mac(figure: Figure, identification: Identification) -> None:
-    """Draw the MAC between all modes."""
     figure.set_size_inches(3.6, 3.2)
     axes = figure.add_subplot()
     mac = auto_mac(np.array([mode.shape.complex_shape for mode in identification.modes]))

@@ -2,36 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 
-from modefront._typing import Bools, Ints
+from modefront._typing import Bools, Floats, Ints
 from modefront.front.point import REFERENCES, WEIGHTED, Kind, preferred
 from modefront.plots.canvas import COLOURS
 
 
-@dataclass(frozen=True)
-class Series:
-    """Models of one kind.
+def draw_models(axes: Axes, data: xr.Dataset, values: Floats, *without: str) -> None:
+    """Draw values (points, 2) of all models but those of some kinds, with the marks of their kinds.
 
-    Attributes
-    ----------
-    name : of the kind, for the legend
-    positions : (models,) of the points
-    marks : how `matplotlib.axes.Axes.plot` draws them
+    What matters most is drawn last.
     """
-
-    name: str
-    positions: Ints
-    marks: Mapping[str, Any]
-
-
-def series(data: xr.Dataset) -> Iterator[Series]:
-    """Yield all models by their kinds, those that are drawn last at the end."""
     kind, pareto = data["kind"].values, data["pareto"].values.astype(bool)
     reference = data["label"].values == preferred(data.attrs)
     front = kind == Kind.FRONT.value
@@ -40,7 +27,7 @@ def series(data: xr.Dataset) -> Iterator[Series]:
         (each.value for each in REFERENCES if (kind[reference] == each.value).any()), "reference"
     )
     blue, red, *_, yellow = COLOURS
-    for name, chosen, marks in (
+    rows: tuple[tuple[str, Bools, dict[str, Any]], ...] = (
         ("dominated", front & ~pareto, {"marker": "o", "mfc": "w", "mec": blue, "ms": 4.5}),
         ("Pareto optimal", front & pareto, {"marker": "o", "color": blue, "ms": 4.5}),
         (
@@ -55,9 +42,10 @@ def series(data: xr.Dataset) -> Iterator[Series]:
             reference,
             {"marker": "*", "color": red, "mec": "k", "mew": 0.6, "ms": 12},
         ),
-    ):
-        if chosen.any():
-            yield Series(name, np.flatnonzero(chosen), {"ls": "", **marks})
+    )
+    for name, chosen, marks in rows:
+        if chosen.any() and name not in without:
+            axes.plot(*values[chosen].T, ls="", label=name, **marks)
 
 
 def shown(data: xr.Dataset) -> Bools:

@@ -7,7 +7,8 @@ the model's by the modal scale factor.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -26,22 +27,9 @@ NAMES = 14
 """Sensors up to which each is named."""
 
 
-@dataclass(frozen=True)
-class _Shape:
-    """One mode of a model.
-
-    Attributes
-    ----------
-    title : mode, frequency and MAC
-    computed : (sensors,) of the model
-    measured : (sets, sensors) in the scale of ``computed``; NaN for none
-    displacement : (nodes, 3) of the drawn nodes; None without geometry
-    """
-
-    title: str
-    computed: Floats
-    measured: Floats
-    displacement: Floats | None
+_Shape: TypeAlias = tuple[str, Floats, Floats, Floats | None]
+"""One mode of a model: title; (sensors,) of the model; (sets, sensors) as measured, in the same
+scale, NaN for none; and displacements (nodes, 3) of the drawn nodes, None without geometry."""
 
 
 def modes(data: xr.Dataset, *, point: str | int | None = None) -> Picture:
@@ -53,12 +41,12 @@ def modes(data: xr.Dataset, *, point: str | int | None = None) -> Picture:
         figure = _in_space(data, shapes)
     else:
         figure, grid = panels(len(shapes))
-        for axes, shape in zip(grid, shapes, strict=True):
+        for axes, (title, computed, measured, moved) in zip(grid, shapes, strict=True):
             if "node" in data:
-                _from_the_side(axes, data, shape)
+                _from_the_side(axes, data, measured, moved)
             else:
-                _at_sensors(axes, data, shape)
-            axes.set_title(shape.title, loc="left")
+                _at_sensors(axes, data, computed, measured)
+            axes.set_title(title, loc="left")
         handles, labels = grid[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=3)
     figure.suptitle(plain(data["label"].values[i]), x=0.01, ha="left")
@@ -77,59 +65,41 @@ def _shape(data: xr.Dataset, i: int, r: int) -> _Shape:
         moved = np.einsum(
             "b,bnk->nk", data["shape_coefficient"].values[i, r], data["shape_basis"].values
         )
-    return _Shape(title, computed, measured * factor[:, None], moved)
+    return title, computed, measured * factor[:, None], moved
 
 
-def _from_the_side(axes: Axes, data: xr.Dataset, shape: _Shape) -> None:
+def _from_the_side(axes: Axes, data: xr.Dataset, measured: Floats, moved: Floats | None) -> None:
     """Draw displacements of a chain over its heights."""
-    nodes, lines = data["node"].values, data["line_nodes"].values
-    x = np.zeros(len(nodes)) if shape.displacement is None else shape.displacement[:, 0]
-    height = nodes[:, 2]
+    nodes, sensor_nodes = data["node"].values, data["sensor_node"].values
+    x, height = np.zeros(len(nodes)) if moved is None else moved[:, 0], nodes[:, 2]
     axes.axvline(0, color="0.6", lw=0.8)
-    for line in lines:
+    for line in data["line_nodes"].values:
         axes.plot(x[line], height[line], "-", color=COLOURS[0], lw=1.6)
     axes.plot(x, height, "s", color=COLOURS[0], ms=5, label="model")
-    sensor_nodes = data["sensor_node"].values
     sign = data["sensor_direction"].values[:, 0]
-    for k, row in enumerate(shape.measured):
-        axes.plot(
-            row * sign,
-            height[sensor_nodes],
-            "o",
-            mfc="none",
-            mec=COLOURS[1],
-            mew=1.4,
-            ms=8,
-            label=None if k else "measured",
-        )
+    _rings(axes, [(row * sign, height[sensor_nodes]) for row in measured], mew=1.4, ms=8)
     axes.set_xlim(-1.15, 1.15)
     axes.set_yticks(height[sensor_nodes], [short(name) for name in data["sensor"].values])
 
 
-def _at_sensors(axes: Axes, data: xr.Dataset, shape: _Shape) -> None:
-    """Draw components at the sensors beside each other."""
+def _at_sensors(axes: Axes, data: xr.Dataset, computed: Floats, measured: Floats) -> None:
     x = np.arange(data.sizes["sensor"])
     axes.axhline(0, color="0.6", lw=0.8)
-    axes.plot(x, shape.computed, "s-", color=COLOURS[0], ms=4, lw=1.2, label="model")
-    for k, row in enumerate(shape.measured):
-        axes.plot(
-            x,
-            row,
-            "o",
-            mfc="none",
-            mec=COLOURS[1],
-            mew=1.2,
-            ms=7,
-            label=None if k else "measured",
-        )
+    axes.plot(x, computed, "s-", color=COLOURS[0], ms=4, lw=1.2, label="model")
+    _rings(axes, [(x, row) for row in measured], mew=1.2, ms=7)
     if x.size <= NAMES:
         axes.set_xticks(x, [short(name, 12) for name in data["sensor"].values], rotation=60)
     else:
         axes.set_xlabel("sensor")
 
 
+def _rings(axes: Axes, sets: Iterable[tuple[Any, Any]], **size: Any) -> None:
+    for k, (x, y) in enumerate(sets):
+        label = None if k else "measured"
+        axes.plot(x, y, "o", mfc="none", mec=COLOURS[1], label=label, **size)
+
+
 def _in_space(data: xr.Dataset, shapes: list[_Shape]) -> Picture:
-    """Draw a deformed mesh a mode, with arrows along the sensors."""
     nodes = data["node"].values
     lines = _array(data, "line_nodes", 2)
     faces = _array(data, "face_nodes", 4)
@@ -138,20 +108,19 @@ def _in_space(data: xr.Dataset, shapes: list[_Shape]) -> Picture:
     rows = -(-len(shapes) // columns)
     figure = picture(3.1 * columns, 3.3 * rows + 0.4)
     sensor_nodes, directions = data["sensor_node"].values, data["sensor_direction"].values
-    for k, shape in enumerate(shapes):
+    for k, (title, computed, measured, moved) in enumerate(shapes):
         axes = figure.add_subplot(rows, columns, k + 1, projection="3d")
         assert isinstance(axes, Axes3D)
-        u = np.zeros(nodes.shape) if shape.displacement is None else shape.displacement
+        u = np.zeros(nodes.shape) if moved is None else moved
         deformed = nodes + REACH * diagonal * u
         _mesh(axes, nodes, lines, faces, "0.75", 0.0)
         _mesh(axes, deformed, lines, faces, COLOURS[0], 0.25)
-        arrows = ((shape.computed[None], COLOURS[0]), (shape.measured, COLOURS[1]))
-        for values, colour in arrows:
+        for values, colour in ((computed[None], COLOURS[0]), (measured, COLOURS[1])):
             for row in values:
                 length = REACH * diagonal * np.nan_to_num(row)[:, None] * directions
                 axes.quiver(*nodes[sensor_nodes].T, *length.T, color=colour, lw=1.4)
         _same_scale(axes, np.vstack([nodes, deformed]))
-        axes.set_title(shape.title, loc="left")
+        axes.set_title(title, loc="left")
         axes.set_axis_off()
     for colour, name in ((COLOURS[0], "model"), (COLOURS[1], "measured, at the sensors")):
         figure.axes[0].plot([], [], "-", color=colour, label=name)
@@ -175,7 +144,6 @@ def _mesh(axes: Axes3D, X: Floats, lines: Ints, faces: Ints, colour: str, alpha:
 
 
 def _same_scale(axes: Axes3D, X: Floats) -> None:
-    """Give all three axes the same scale."""
     low, high = X.min(axis=0), X.max(axis=0)
     span = np.maximum(high - low, 0.15 * (high - low).max() or 1.0)
     middle = (low + high) / 2

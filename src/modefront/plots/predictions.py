@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats
-from modefront.plots.along import Along, at_reference, key, panels_along, parallel
+from modefront.plots.along import Along, across, at_reference, panels_along
 from modefront.plots.canvas import COLOURS, Picture, picture, plain, short
 from modefront.plots.models import is_path, reference_of, shown
 from modefront.predictions import PredictionKind, ResultVariable
@@ -85,13 +85,9 @@ def _page(data: xr.Dataset, of: RecordedPrediction) -> Picture:
     if variable.logarithmic:
         values = np.where(values > 0, values, np.nan)
     if not is_path(data) or len(positions) > FEW:
-        figure = picture(max(5.2, 0.4 * len(of.places)), 3.4)
-        axes = figure.add_subplot()
-        parallel(axes, data, values, of.places)
-        key(axes, data)
-        axes.set_ylabel(variable.title)
+        figure = across(data, values, of.places, variable.title)
         if variable.logarithmic and np.isfinite(values).any():
-            axes.set_yscale("log")
+            figure.axes[0].set_yscale("log")
     elif variable.logarithmic:
         figure = _levels(data, of, variable, values)
     else:

@@ -10,7 +10,7 @@ from matplotlib.patches import Ellipse
 from modefront._typing import Floats
 from modefront.front.point import preferred
 from modefront.plots.canvas import COLOURS, Picture, legend, picture, plain, short
-from modefront.plots.models import front_of, reference_of, series
+from modefront.plots.models import draw_models, front_of, reference_of
 from modefront.plots.quantities import parameter_std, unit_of
 
 HOW_MANY = 20
@@ -19,11 +19,15 @@ HOW_MANY = 20
 
 def uncertainty(data: xr.Dataset) -> Picture:
     """Return parameters with deviations, their correlation, and the front with its scatter."""
-    p = data.sizes["parameter"]
-    covariance = _covariance(data)
+    covariance = None  # of the parameters at the reference
+    if "posterior_covariance" in data:
+        covariance = np.asarray(data["posterior_covariance"].values)
+    elif "theta_covariance" in data:
+        covariance = np.asarray(data["theta_covariance"].values[reference_of(data)])
+        covariance = covariance if np.isfinite(covariance).all() else None
     scattered = data.sizes["group"] == 2 and "objective_covariance" in data
     parts = 1 + (covariance is not None) + scattered
-    figure = picture(3.6 * parts, max(3.2, 0.26 * p + 1.2))
+    figure = picture(3.6 * parts, max(3.2, 0.26 * data.sizes["parameter"] + 1.2))
     row = list(figure.subplots(1, parts, squeeze=False)[0])
     _parameters(row[0], data)
     legend(figure, row.pop(0), "outside lower left", 3)
@@ -34,18 +38,7 @@ def uncertainty(data: xr.Dataset) -> Picture:
     return figure
 
 
-def _covariance(data: xr.Dataset) -> Floats | None:
-    """Return the covariance of the parameters at the reference; None where there is none."""
-    if "posterior_covariance" in data:
-        return np.asarray(data["posterior_covariance"].values)
-    if "theta_covariance" in data:
-        covariance = np.asarray(data["theta_covariance"].values[reference_of(data)])
-        return covariance if np.isfinite(covariance).all() else None
-    return None
-
-
 def _parameters(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the reference and the edges with one and two standard deviations."""
     unit, title = unit_of(data)
     std, theta = parameter_std(data) / unit, data["theta"].values / unit
     kinds, best = data["kind"].values, reference_of(data)
@@ -102,9 +95,7 @@ def _ellipses(axes: Axes, data: xr.Dataset) -> None:
         axes.add_patch(
             Ellipse(centre, width, height, angle=angle, fc=COLOURS[4], ec=COLOURS[0], alpha=0.25)
         )
-    for each in series(data):
-        if each.name != "nominal":
-            axes.plot(*error[each.positions].T, **each.marks)
+    draw_models(axes, data, error, "nominal")
     first, second = (plain(name) for name in data["group"].values)
     axes.set(xlabel=f"error of {first}", ylabel=f"error of {second}")
     axes.set_title("front with its scatter", loc="left")

@@ -35,7 +35,6 @@ ANY_WORDS = Requirement(
 
 
 def _all_of(record: type, words: str) -> Requirement:
-    """Return the requirement of a sequence of records."""
     return Requirement(
         f"a tuple of {words}",
         lambda value: isinstance(value, list) and all(isinstance(x, record) for x in value),
@@ -190,7 +189,6 @@ class PredictionKind:
                 yield replace(variable, together=f"{self.dimension} of draws")
 
     def _of_points(self) -> Iterator[Variable]:
-        """Yield the variables of the models of the results."""
         dimension = (self.dimension,)
         for x in self.variables:
             yield Variable(x.name, ("point", *dimension), x.meaning, unit=x.unit)
@@ -211,7 +209,6 @@ class PredictionKind:
             yield Variable(self.check.label.name, dimension, self.check.label.meaning, "text")
 
     def _linearised(self, variable: ResultVariable) -> Iterator[Variable]:
-        """Yield the variables of the posterior of one of them, to first order."""
         dimension, both = (self.dimension,), (self.dimension, f"{self.dimension}_other")
         name, unit, by = variable.name, variable.unit, "by the posterior, to first order"
         if variable.logarithmic:
@@ -231,7 +228,6 @@ class PredictionKind:
             yield Variable(f"posterior_{name}_covariance", both, meaning, unit=squared)
 
     def _drawn(self, variable: ResultVariable) -> Iterator[Variable]:
-        """Yield the variables of models drawn from the posterior."""
         dimension, name, unit = (self.dimension,), variable.name, variable.unit
         drawn = f"{name} of each model drawn from the posterior; NaN where there is none"
         yield Variable(f"draw_{name}", ("draw", *dimension), drawn, unit=unit)

@@ -221,17 +221,14 @@ class Passage:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        refuse(self._contradictions())
-
-    def _contradictions(self) -> Iterator[Fault]:
-        yield from contradictions(self.loads)
-        if self.step is not None:
-            steps = self.duration / self.step
-            if steps > MOST_STEPS:
-                yield Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}")
-            elif steps < 0.5 or abs(steps - round(steps)) > WHOLE:
-                expected = f"a whole number of steps of {self.step:g} s in {self.duration:g} s"
-                yield Fault("", "step", expected, f"{steps:.6g} of them")
+        faults = list(contradictions(self.loads))
+        steps = 1.0 if self.step is None else self.duration / self.step
+        if steps > MOST_STEPS:
+            faults.append(Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}"))
+        elif steps < 0.5 or abs(steps - round(steps)) > WHOLE:
+            expected = f"a whole number of steps of {self.step:g} s in {self.duration:g} s"
+            faults.append(Fault("", "step", expected, f"{steps:.6g} of them"))
+        refuse(faults)
 
     @property
     def loads(self) -> ModalLoadModel:
@@ -316,6 +313,7 @@ class Passage:
         Raises InputError where the time step is too long for the highest mode there.
         """
         step, soil = filled(self.step, "step"), self.filter
+        times, factors = zip(*self.modulation or [(0.0, 1.0)], strict=True)
         try:
             return FirstPassage(
                 self.loads.system(problem, theta),
@@ -323,7 +321,7 @@ class Passage:
                 self.duration,
                 step,
                 None if soil is None else KanaiTajimi(soil.omega, soil.damping),
-                self._factors if self.modulation else None,
+                (lambda t: np.interp(t, times, factors)) if self.modulation else None,
             )
         except StepError as error:
             expected = f"at most {error.limit:.4g} s, a quarter of the shortest period"
@@ -361,10 +359,6 @@ class Passage:
             "ratio": np.array([effect.ratio for effect in effects]),
             "error": np.array([effect.standard_error for effect in effects]),
         }
-
-    def _factors(self, t: Floats) -> Floats:
-        times, factors = np.array(self.modulation).T
-        return np.interp(t, times, factors)
 
 
 def _workers() -> int:

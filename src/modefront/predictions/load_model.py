@@ -18,8 +18,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, ModelError, suggestion, wrong
-from modefront.models.base import Model
-from modefront.models.load_case import LoadCase, NamedWeights, Transfer
+from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
 from modefront.options import Requirement, is_name, is_number, text, whole
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
@@ -48,7 +47,6 @@ def _is_weights(value: object) -> bool:
 
 
 def _named_weights(value: Any) -> dict[str, float]:
-    """Return weights by the name of a sensor or output."""
     return {value: 1.0} if isinstance(value, str) else {k: float(w) for k, w in value.items()}
 
 
@@ -187,7 +185,7 @@ class ModalLoadModel:
         count = transfer.modes.lam.size
         if self.damping != MEASURED:
             return np.broadcast_to(np.asarray(self.damping, dtype=float), count)
-        measured = measured_damping(problem.data)
+        measured = problem.data.mean_damping
         is_known = np.isfinite(measured)
         zeta = np.full(count, measured[is_known].mean())
         # The same candidates as in updating, or other modes might be paired.
@@ -242,7 +240,7 @@ def load_faults(loads: ModalLoadModel, model: Model, data: ModalData) -> Iterato
         expected = f"at most {model.size} ratios, as the model has modes"
         yield Fault("", "damping", expected, f"{len(damping)} of them")
     if damping == MEASURED:
-        ratios = measured_damping(data)
+        ratios = data.mean_damping
         if not np.isfinite(ratios).any():
             yield Fault("", "damping", "a ratio, as the data have none", f"'{MEASURED}'")
         elif (ratios <= 0).any():
@@ -278,15 +276,6 @@ def highest_frequency(data: ModalData) -> float | None:
     """Return the highest measured frequency in Hz, None where there is none."""
     measured = data.mean_frequency[np.isfinite(data.mean_frequency)]
     return float(measured.max()) if measured.size else None
-
-
-def measured_damping(data: ModalData) -> Floats:
-    """Return the mean damping ratio of each measured mode, shape (modes,); NaN where none."""
-    known = np.isfinite(data.damping)
-    total = np.where(known, data.damping, 0.0).sum(axis=0)
-    count = known.sum(axis=0)
-    out: Floats = np.where(count > 0, total / np.maximum(count, 1), np.nan)
-    return out
 
 
 def modes_reaching(model: Model, theta: Floats, frequency: float, count: int) -> int:

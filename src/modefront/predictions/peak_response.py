@@ -35,7 +35,7 @@ from modefront.predictions.load_model import (
     nominal_system,
 )
 from modefront.residuals.problem import UpdatingProblem
-from modefront.response import ModalSystem, ResponseQuantity, peaks
+from modefront.response import ResponseQuantity, peaks
 
 QUANTITIES = tuple(quantity.value for quantity in ResponseQuantity)
 
@@ -95,12 +95,12 @@ class PeakResponse:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        refuse(self._contradictions())
-
-    def _contradictions(self) -> Iterator[Fault]:
-        yield from contradictions(self.loads)
+        faults = list(contradictions(self.loads))
         if self.quantity == ResponseQuantity.ABSOLUTE_ACCELERANCE.value and self.base is None:
-            yield Fault("", "quantity", "another one where forces act", f"'{self.quantity}'")
+            faults.append(
+                Fault("", "quantity", "another one where forces act", f"'{self.quantity}'")
+            )
+        refuse(faults)
 
     @property
     def loads(self) -> ModalLoadModel:
@@ -148,33 +148,24 @@ class PeakResponse:
         Raises InputError with what this model cannot predict.
         """
         refuse(self.faults(problem.model, problem.data))
-        band = self.band or (0.0, ABOVE * filled(highest_frequency(problem.data), "band"))
-        out = replace(self, band=band, modes=complete_modes(self.loads, problem, band[1]))
-        system = nominal_system(out.loads, problem)
-        refuse([*out._early_end(system, problem, band[1]), *out._rigid(system, band[0])])
-        return out
-
-    def _early_end(
-        self, system: ModalSystem, problem: UpdatingProblem, top: float
-    ) -> Iterator[Fault]:
-        """Yield modes that end below the band."""
-        count, last = system.omega.size, float(system.omega[-1]) / (2 * math.pi)
-        if last < top:
-            more = modes_reaching(problem.model, problem.start, top, count)
-            if more > count:
-                expected = f"modes that reach the end of the band, {top:g} Hz: {more}"
-                yield Fault("", "modes", expected, f"{count}, up to {last:.4g} Hz")
-
-    def _rigid(self, system: ModalSystem, low: float) -> Iterator[Fault]:
-        """Yield the fault of a band at 0 Hz for a model that can move as a rigid body."""
-        if system.omega[0] > 0:
-            return
-        if self.static:
+        low, top = self.band or (0.0, ABOVE * filled(highest_frequency(problem.data), "band"))
+        out = replace(self, band=(low, top), modes=complete_modes(self.loads, problem, top))
+        omega, faults = nominal_system(out.loads, problem).omega, []
+        last, count = float(omega[-1]) / (2 * math.pi), omega.size
+        if (
+            last < top
+            and (more := modes_reaching(problem.model, problem.start, top, count)) > count
+        ):
+            expected = f"modes that reach the end of the band, {top:g} Hz: {more}"
+            faults.append(Fault("", "modes", expected, f"{count}, up to {last:.4g} Hz"))
+        if omega[0] == 0 and self.static:
             expected = "false, as a model with rigid-body modes has no static response"
-            yield Fault("", "static", expected, "true")
-        if low == 0:
+            faults.append(Fault("", "static", expected, "true"))
+        if omega[0] == 0 and low == 0:
             expected = "a lowest frequency above 0, as rigid-body modes have no bounds there"
-            yield Fault("", "band", expected, "0")
+            faults.append(Fault("", "band", expected, "0"))
+        refuse(faults)
+        return out
 
     def evaluate(
         self, problem: UpdatingProblem, theta: Floats, _: np.random.SeedSequence

@@ -28,7 +28,6 @@ ATTRIBUTE = "prediction_kinds"
 
 
 def _faults(prediction: Any) -> Iterator[Fault]:
-    """Yield what a class lacks to be one of predictions."""
     place = f"prediction class {getattr(prediction, '__qualname__', prediction)!s}"
     if not (isinstance(prediction, type) and is_dataclass(prediction)):
         yield Fault("", place, "a frozen dataclass", clean(repr(prediction), NAME))

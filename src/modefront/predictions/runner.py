@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -73,8 +73,9 @@ class PredictionRunner:
         Raises InputError where an option does not suit one of them, and UnfinishedError where one
         has not the modes that are needed.
         """
+        file = str(self.file)
         tasks = [
-            self._task(prediction, ("point", label), _at_point, (str(self.file), label, theta))
+            self._task(prediction, ("point", label), _labelled, (file, label, theta, "evaluate"))
             for label, theta in points
         ]
         return [predicted.values for predicted in self.work.run(tasks)]
@@ -82,8 +83,8 @@ class PredictionRunner:
     def checked(self, prediction: Prediction, label: str, theta: Floats) -> Arrays:
         """Return the kind's comparison with finer numerics at a labelled model."""
         name = prediction.kind.check.name if prediction.kind.check else ""
-        arguments = (str(self.file), label, theta)
-        (predicted,) = self.work.run([self._task(prediction, (name, label), _checked, arguments)])
+        arguments = (str(self.file), label, theta, "check")
+        (predicted,) = self.work.run([self._task(prediction, (name, label), _labelled, arguments)])
         return predicted.values
 
     def at_models(self, prediction: Prediction, thetas: Floats, name: str) -> list[Predicted]:
@@ -139,36 +140,18 @@ class PredictionRunner:
         )
 
 
-def _at_point(
-    problem: UpdatingProblem,
-    prediction: Prediction,
-    numbers: np.random.SeedSequence,
-    file: str,
-    label: str,
-    theta: Floats,
-) -> Predicted:
-    """Return a prediction at a labelled model."""
-    return _labelled(prediction, file, label, lambda: prediction.evaluate(problem, theta, numbers))
-
-
-def _checked(
-    problem: UpdatingProblem,
-    prediction: Prediction,
-    numbers: np.random.SeedSequence,
-    file: str,
-    label: str,
-    theta: Floats,
-) -> Predicted:
-    """Return the comparison with finer numerics at a labelled model."""
-    return _labelled(prediction, file, label, lambda: prediction.check(problem, theta, numbers))
-
-
+# 7 arguments: the problem and the prediction, and the model with its label.
 def _labelled(
-    prediction: Prediction, file: str, label: str, evaluate: Callable[[], Arrays]
+    problem: UpdatingProblem,
+    prediction: Prediction,
+    numbers: np.random.SeedSequence,
+    file: str,
+    label: str,
+    theta: Floats,
+    method: Literal["evaluate", "check"],
 ) -> Predicted:
-    """Return an evaluation at a labelled model, which its errors name."""
     try:
-        return Predicted(evaluate())
+        return Predicted(getattr(prediction, method)(problem, theta, numbers))
     except InputError as error:
         place = f"[[predict.{prediction.kind.table}]] ({prediction.name!r})"
         raise InputError(

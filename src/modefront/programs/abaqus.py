@@ -40,7 +40,7 @@ ADVICE = "*MATRIX GENERATE, STIFFNESS, MASS with *MATRIX OUTPUT, STIFFNESS, MASS
 def read(path: Path, options: JobOptions) -> Listed:
     """Return the matrices of a job, given by its name or by its file of the stiffness."""
     files = _files(path)
-    rows = [len(_fields(file)) for file in files] == [3, 3]
+    rows = [_first(file)[0] for file in files] == [3, 3]
     dofs, (K, M) = _by_rows(files, options) if rows else _by_labels(files)
     notes: list[str] = []
     job = re.sub(r"_STIF\d+$", "", files[0].stem, flags=re.IGNORECASE)
@@ -48,11 +48,18 @@ def read(path: Path, options: JobOptions) -> Listed:
     if deck is not None and deck.parts:
         notes.append("the deck numbers nodes in parts: coordinates are left out")
     mesh = None if deck is None or deck.parts else deck.mesh
-    return Listed(files, (K, M), dofs, _free, counted=False, mesh=mesh, notes=notes)
+
+    def free(K: Matrix, M: Matrix) -> Bools:
+        off = scipy.sparse.coo_array(K)
+        beside = (off.row != off.col) & (off.data != 0)
+        used: Bools = K.diagonal() + M.diagonal() != 0
+        used[off.row[beside]] = used[off.col[beside]] = True  # those of Lagrange multipliers too
+        return used & (K.diagonal() < HELD)
+
+    return Listed(files, (K, M), dofs, free, counted=False, mesh=mesh, notes=notes)
 
 
 def _files(path: Path) -> tuple[Path, Path]:
-    """Return the files of stiffness and mass of a job."""
     match = re.fullmatch(r"(.*)_STIF(\d+)", path.stem, re.IGNORECASE)
     if path.suffix.lower() == ".mtx" and match:
         files = [path]
@@ -72,30 +79,27 @@ def _files(path: Path) -> tuple[Path, Path]:
     return stiffness, existing(stiffness.with_name(name), "the mass of Abaqus", ADVICE)
 
 
-def _first(path: Path) -> str:
-    """Return the first line of numbers."""
+def _first(path: Path) -> tuple[int, str]:
+    """Return how many numbers the first line of a matrix has, five or three, and what is between.
+
+    Raises InputError where there are none, or others.
+    """
     with path.open(encoding="latin-1") as text:
-        for line in text:
-            if line.strip() and line.lstrip()[0] not in "*%":
-                return line
-    raise wrong(path, "entries of a matrix", "none")
-
-
-def _fields(path: Path) -> list[str]:
-    """Return the numbers of the first line of a matrix: five, or three."""
-    fields = [x for x in re.split(r"[,\s]+", _first(path).strip()) if x]
+        lines = (line for line in text if line.strip() and line.lstrip()[0] not in "*%")
+        if (line := next(lines, None)) is None:
+            raise wrong(path, "entries of a matrix", "none")
+    fields = [x for x in re.split(r"[,\s]+", line.strip()) if x]
     if len(fields) not in (3, 5):
         expected = "lines 'node, direction, node, direction, value' or 'row column value'"
         raise wrong(path, expected, " ".join(fields[:6]))
-    return fields
+    return len(fields), "," if "," in line else r"\s+"
 
 
 def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[Entries]]:
     """Return the table of all labels, nodes made by the program last, and rows and columns."""
     parts = []
     for file in files:
-        commas = "," in _first(file)
-        *labels, value = columns(file, "," if commas else r"\s+", "iiiif", comment="*")
+        *labels, value = columns(file, _first(file)[1], "iiiif", comment="*")
         node, direction, other, its = (x.astype(np.int64) for x in labels)
         parts.append((node * SLOTS + direction, other * SLOTS + its, value))
     used = np.unique(np.concatenate([np.unique(key) for part in parts for key in part[:2]]))
@@ -114,9 +118,8 @@ def _by_rows(files: tuple[Path, Path], options: JobOptions) -> tuple[DofTable, l
     """Return what files in the format COORDINATE list; rows below 0 are nodes of the program."""
     parts = []
     for file in files:
-        commas = "," in _first(file)
-        separator = "," if commas else r"\s+"
-        parts.append(columns(file, separator, "iif", comment="%" if not commas else "*"))
+        separator = _first(file)[1]
+        parts.append(columns(file, separator, "iif", comment="*" if separator == "," else "%"))
     highest = max(int(index.max()) for part in parts for index in part[:2])
     made = -min(0, *(int(index.min()) for part in parts for index in part[:2]))
     own = given_table(options, highest) or unlabelled(highest)
@@ -130,12 +133,3 @@ def _by_rows(files: tuple[Path, Path], options: JobOptions) -> tuple[DofTable, l
         row, column = (np.where(x > 0, x - 1, highest - 1 - x) for x in places)
         entries.append(Entries(row, column, value))
     return dofs, entries
-
-
-def _free(K: Matrix, M: Matrix) -> Bools:
-    """Return which degrees of freedom are not held."""
-    off = scipy.sparse.coo_array(K)
-    beside = (off.row != off.col) & (off.data != 0)
-    used: Bools = K.diagonal() + M.diagonal() != 0
-    used[off.row[beside]] = used[off.col[beside]] = True  # those of Lagrange multipliers too
-    return used & (K.diagonal() < HELD)

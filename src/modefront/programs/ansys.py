@@ -128,7 +128,6 @@ def _from_full(path: Path) -> Listed:
 
 
 def _rows(words: _Words, position: int, terms: int, size: int) -> Entries:
-    """Return the entries of a matrix, ``terms`` in all, from its records of ``size`` rows."""
     columns: list[np.ndarray] = []
     values: list[np.ndarray] = []
     count = 0
@@ -193,7 +192,6 @@ def _labels(path: Path, size: int) -> DofTable:
 
 
 def _mapping(path: Path) -> DofTable:
-    """Return the table of a mapping file: lines of equation, node, name of the direction."""
     rows: list[tuple[int, int, int]] = []
     with path.open(encoding="utf-8", errors="replace", newline="") as stream:
         for row in csv.reader(stream, delimiter=" ", skipinitialspace=True):

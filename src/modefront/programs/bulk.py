@@ -38,6 +38,8 @@ _ELEMENTS = {  # field where nodes begin, number of corners and of nodes, cell, 
 FLAT = 1e-8
 """Stiffness of a direction, over the greatest at its node, below which AUTOSPC holds it."""
 
+EMPTY = [""] * 8
+
 Dof = tuple[int, int]
 
 
@@ -160,7 +162,7 @@ def read_bulk(path: Path) -> Bulk:
     cards = list(_cards(bulk, first))
     for _, card in cards:
         if card[0] == "GRDSET":
-            default = [_at(card, 2), _at(card, 6), _at(card, 7), _at(card, 8)]
+            default = [card[2], card[6], card[7], card[8]]
     for line, card in cards:
         try:
             _take(content, card, default)
@@ -186,7 +188,7 @@ def _chosen(control: str, key: str) -> int | None:
 def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
     """Yield line and fields of every entry, those of lines that continue it behind them.
 
-    The text begins in the line ``first``.
+    The text begins in the line ``first``; empty fields follow on the last one.
     """
     card: list[str] = []
     begins = first
@@ -201,10 +203,10 @@ def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
             card += fields
             continue
         if card:
-            yield begins, card
+            yield begins, card + EMPTY
         begins, card = number, [name.rstrip("*").upper(), *fields]
     if card:
-        yield begins, card
+        yield begins, card + EMPTY
 
 
 def _fields(line: str) -> tuple[str, list[str]]:
@@ -217,10 +219,6 @@ def _fields(line: str) -> tuple[str, list[str]]:
     name = line[:8].strip()
     width = 16 if name.endswith("*") or name.startswith("*") else 8
     return name, [line[k : k + width].strip() for k in range(8, 72, width)]
-
-
-def _at(card: list[str], k: int) -> str:
-    return card[k] if k < len(card) else ""
 
 
 def _whole(text: str) -> int:
@@ -258,7 +256,6 @@ def _pairs(card: list[str], first: int, step: int) -> set[Dof]:
 
 
 def _take(content: Bulk, card: list[str], default: list[str]) -> None:
-    """Take one entry."""
     name = card[0]
     if name.startswith("="):
         raise ValueError("a replication, which is not read: write its entries out")
@@ -283,14 +280,14 @@ def _grid(content: Bulk, card: list[str], default: list[str]) -> None:
     number = int(card[1])
     if number in content.nodes:
         raise ValueError(f"node {number} again")
-    held = _at(card, 8) or default[2]
+    held = card[8] or default[2]
     content.held.update((number, c) for c in _components(held))
-    if _whole(_at(card, 7) or default[1]):
+    if _whole(card[7] or default[1]):
         content.turned.add(number)
-    point = [fortran(x) if x else 0.0 for x in (_at(card, 3), _at(card, 4), _at(card, 5))]
+    point = [fortran(x) if x else 0.0 for x in (card[3], card[4], card[5])]
     if not np.isfinite(point).all():
         raise ValueError(f"coordinates {', '.join(card[3:6])}")
-    system = _whole(_at(card, 2) or default[0])
+    system = _whole(card[2] or default[0])
     content.nodes[number] = np.array(point if system == 0 else [np.nan] * 3)
 
 
@@ -308,10 +305,10 @@ def _element(content: Bulk, card: list[str]) -> None:
 def _spring(content: Bulk, card: list[str]) -> None:
     """Take CELAS1 to CELAS4: ends are a node and a component, or scalar points."""
     if card[0].endswith(("3", "4")):
-        ends = [(_whole(_at(card, k)), 0) for k in (3, 4)]
+        ends = [(_whole(card[k]), 0) for k in (3, 4)]
         content.scalar.update(n for n, _ in ends if n)
     else:
-        ends = [(_whole(_at(card, k)), _whole(_at(card, k + 1))) for k in (3, 5)]
+        ends = [(_whole(card[k]), _whole(card[k + 1])) for k in (3, 5)]
     content.links.append(tuple(n for n, _ in ends if n))
     if not card[0].startswith("CDAMP"):
         content.springs += [(node, component) for node, component in ends if node and component]
@@ -330,9 +327,9 @@ def _rigid(content: Bulk, card: list[str]) -> None:
     elif card[0] == "RBAR":
         ends = int(card[2]), int(card[3])
         content.links.append(ends)
-        dependent = [_components(_at(card, k)) for k in (6, 7)]
+        dependent = [_components(card[k]) for k in (6, 7)]
         if not any(dependent):  # what is not independent, as the manual says
-            independent = [_components(_at(card, k)) for k in (4, 5)]
+            independent = [_components(card[k]) for k in (4, 5)]
             dependent = [[c for c in range(1, 7) if c not in some] for some in independent]
         for node, some in zip(ends, dependent, strict=True):
             content.followers.update((node, c) for c in some)
@@ -347,9 +344,9 @@ def _support(content: Bulk, card: list[str]) -> None:
     elif card[0] == "SPC":
         content.supports.setdefault(number, set()).update(_pairs(card[:8], 2, 3))
     else:
-        dependent = int(card[2]), _whole(_at(card, 3))
+        dependent = int(card[2]), _whole(card[3])
         content.constraints.setdefault(number, set()).add(dependent)
-        nodes = [int(card[k]) for k in range(2, len(card), 3) if _at(card, k).isdigit()]
+        nodes = [int(card[k]) for k in range(2, len(card), 3) if card[k].isdigit()]
         content.links.append(tuple(nodes))
 
 

@@ -156,8 +156,8 @@ def _followers(
         return set()
     single = {n for n in deck.expanded - deck.others - blocks.keys() if most.get(n) == 1}
     behind = set(labels.node[leading:].tolist())
-    out = single & (behind | deck.rigid)
-    return out | deck.references if out else out
+    out = single & (behind | set(deck.nodes_of(deck.bodies)))
+    return out | set(deck.nodes_of(deck.guides)) if out else out
 
 
 def _own_blocks(labels: DofTable, deck: Deck | None) -> tuple[dict[int, tuple[int, int]], int]:

@@ -74,12 +74,13 @@ def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Cha
 
     None are returned where there are no decks, or these have different numbers of lines.
     """
-    name, pairs = _different_lines(nominal, run)
-    return [
-        Change(parameter, name, number, old, spans)
-        for number, old, new in pairs
-        if (spans := _scaled(old, new, factor))
-    ]
+    name, lines = _different_lines(nominal, run)
+    out = []
+    for number, old, new in lines:
+        pairs = _changed(old, new)
+        if pairs and all(x and abs(y / x / factor - 1) <= SAME for _, x, y in pairs):
+            out.append(Change(parameter, name, number, old, tuple(span for span, _, _ in pairs)))
+    return out
 
 
 def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] | None:
@@ -102,7 +103,6 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
 
 
 def _different_lines(nominal: Path, run: Path) -> tuple[str, list[tuple[int, str, str]]]:
-    """Return the name of the nominal deck, and number and texts of the lines that differ."""
     before, after = _deck(nominal), _deck(run)
     if before is None or after is None:
         return "", []
@@ -145,14 +145,6 @@ def _deck(path: Path) -> Path | None:
         if file.suffix.lower() in SUFFIXES and file.is_file() and file.stat().st_size < LARGEST:
             return file
     return None
-
-
-def _scaled(old: str, new: str, factor: float) -> tuple[tuple[int, int], ...]:
-    """Return the numbers of a line that are multiplied, if nothing else in it is different."""
-    pairs = _changed(old, new) or []
-    if any(x == 0 or abs(y / x / factor - 1) > SAME for _, x, y in pairs):
-        return ()
-    return tuple(span for span, _, _ in pairs)
 
 
 def _changed(old: str, new: str) -> list[tuple[tuple[int, int], float, float]] | None:

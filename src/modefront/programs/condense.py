@@ -21,7 +21,7 @@ from scipy.sparse.csgraph import connected_components
 from modefront._typing import Bools, Ints
 from modefront.errors import Fault, InputError
 from modefront.models.dofs import DofTable
-from modefront.programs.base import Matrix, Quantity, whole
+from modefront.programs.base import Matrix, whole
 from modefront.programs.differences import Term, Terms
 
 SINGULAR = 1e-12
@@ -55,7 +55,19 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
             stiffness[name], done = _eliminated(stiffness[name], internal[part], groups[part])
             gone[part] = done
     kept = np.setdiff1d(np.arange(terms.dofs.size), internal[gone])
-    return _restricted(terms, stiffness, kept), int(gone.sum()), int((~gone).sum())
+
+    def restricted(term: Term) -> Term:
+        both = {
+            x: stiffness[term.name] if x == "stiffness" else A for x, A in term.matrices.items()
+        }
+        rows = {x: scipy.sparse.triu(A[kept][:, kept], format="csr") for x, A in both.items()}
+        return replace(term, matrices={x: A for x, A in rows.items() if A.nnz})
+
+    dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
+    reduced = Terms(
+        terms.parameters, restricted(terms.base), tuple(map(restricted, terms.terms)), dofs
+    )
+    return reduced, int(gone.sum()), int((~gone).sum())
 
 
 def _owners(
@@ -104,19 +116,3 @@ def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]
     others[internal[done]] = 0.0
     coupling = A[internal] @ scipy.sparse.diags_array(others)
     return (A - coupling.T @ inverse @ coupling).tocsr(), done
-
-
-def _restricted(terms: Terms, stiffness: Mapping[str, Matrix], kept: Ints) -> Terms:
-    """Return terms with other stiffness matrices (both triangles), and only some rows of all."""
-
-    def part(term: Term) -> Term:
-        matrices: dict[Quantity, Matrix] = {}
-        for quantity, A in term.matrices.items():
-            both = stiffness[term.name] if quantity == "stiffness" else A
-            rows = scipy.sparse.triu(both[kept][:, kept], format="csr")
-            if rows.nnz:
-                matrices[quantity] = rows
-        return replace(term, matrices=matrices)
-
-    dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
-    return Terms(terms.parameters, part(terms.base), tuple(map(part, terms.terms)), dofs)

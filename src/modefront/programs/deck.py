@@ -280,7 +280,6 @@ def printed_frequencies(path: Path) -> Floats:
 
 
 def _compared(computed: Floats | None, printed: Floats) -> list[str]:
-    """Return how far frequencies of the matrices are from those that the program prints."""
     if computed is None or not printed.size:
         return []
     count = min(computed.size, printed.size)

@@ -64,22 +64,6 @@ COVERED = 0.99
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
-    """A job at given values of the parameters.
-
-    Attributes
-    ----------
-    label : as messages name it
-    job : its matrices
-    values : (parameters,) factors of the nominal values
-    """
-
-    label: str
-    job: Job
-    values: Floats
-
-
-@dataclass(frozen=True, eq=False)
 class Term:
     """One term of K and M.
 
@@ -134,25 +118,25 @@ class Differences:
         self.coefficients = Monomials(exponents)
         self._runs: list[tuple[Floats, Mapping[Quantity, Matrix]]] = []
 
-    def add(self, run: Run) -> None:
-        """Take the differences of a run.
+    def add(self, label: str, job: Job, values: Floats) -> None:
+        """Take the differences of a job at factors (parameters,) of the nominal values.
 
         Raises InputError where its degrees of freedom are others, or nothing differs.
         """
-        order = matching(self.nominal, run.job, run.label)
+        order = matching(self.nominal, job, label)
         differences: dict[Quantity, Matrix] = {}
         for quantity, A in self.nominal.matrices.items():
-            D = scipy.sparse.coo_array(reordered(run.job.matrices[quantity], order) - A)
+            D = scipy.sparse.coo_array(reordered(job.matrices[quantity], order) - A)
             size, greatest = np.abs(D.data), np.abs(A.data).max(initial=0.0)
             noise = (size <= DROPPED * greatest) & (size <= LOCAL * _joint(D, A))
             differences[quantity] = _with(D, ~noise & (D.data != 0))
         if not any(D.nnz for D in differences.values()):
-            changed = self._changed(run.values)
+            changed = self._changed(values)
             expected = f"other matrices than those of '{self.nominal.name}', as {changed}"
             found = "the same: did the run fail, or is the change below the digits of the files?"
-            raise wrong(run.label, expected, found)
-        self.precision = max(self.precision, run.job.precision)
-        self._runs.append((run.values, differences))
+            raise wrong(label, expected, found)
+        self.precision = max(self.precision, job.precision)
+        self._runs.append((values, differences))
 
     def _changed(self, values: Floats) -> str:
         return ", ".join(
@@ -173,18 +157,29 @@ class Differences:
         terms: dict[str, dict[Quantity, Matrix]] = {name: {} for name in self.names}
         base: dict[Quantity, Matrix] = {}
         for quantity, A in self.nominal.matrices.items():
-            differences = [each[quantity] for _, each in self._runs]
-            noise = ROUNDING * self.precision
-            rest = A
+            noise, rest = ROUNDING * self.precision, A
             for name, row in zip(self.names, W, strict=True):
-                term = self._combined(row, differences, A, noise * np.abs(row).sum())
+                term = scipy.sparse.csr_array(A.shape)
+                for weight, (_, differences) in zip(row, self._runs, strict=True):
+                    if abs(weight) > CANCELLED * np.abs(row).max():
+                        term = term + weight * differences[quantity]
+                limit = noise * np.abs(row).sum()
+                term = _above(_reduced(_above(term.tocsr(), A, limit), A, limit)[0], A, 0.0)
                 if term.nnz:
                     terms[name][quantity] = term
                     rest = rest - term
             if (rest := _above(rest.tocsr(), A, noise)).nnz:
                 base[quantity] = rest
-        found = tuple(self._term(name, terms[name]) for name in self.names)
-        return Terms(self.parameters, Term(BASE, base), found, self.nominal.dofs)
+        found = []
+        for name, matrices in terms.items():
+            if not matrices:
+                expected = f"a term '{name}' of the stiffness or the mass"
+                place = "--function" if name not in self.parameters else name
+                raise wrong(place, expected, "zeros")
+            first: Quantity = "stiffness" if "stiffness" in matrices else "mass"
+            rank = _reduced(matrices[first], self.nominal.matrices[first], noise)[1]
+            found.append(Term(name, matrices, _support(matrices[first]).size, rank))
+        return Terms(self.parameters, Term(BASE, base), tuple(found), self.nominal.dofs)
 
     def _refuse_undetermined(self, c: Floats) -> None:
         """Refuse terms that no combination of runs can tell apart."""
@@ -200,54 +195,35 @@ class Differences:
         if c.shape[1] == 0 or np.linalg.matrix_rank(c) < c.shape[1]:
             raise wrong("--parameter", f"runs that tell {c.shape[1]} terms apart", f"{len(c)}")
 
-    def _combined(
-        self, weights: Floats, differences: Sequence[Matrix], A: Matrix, noise: float
-    ) -> Matrix:
-        out = scipy.sparse.csr_array(A.shape)
-        for weight, D in zip(weights, differences, strict=True):
-            if abs(weight) > CANCELLED * np.abs(weights).max():
-                out = out + weight * D
-        return _above(_reduced(_above(out.tocsr(), A, noise), A, noise)[0], A, 0.0)
-
-    def _term(self, name: str, matrices: Mapping[Quantity, Matrix]) -> Term:
-        if not matrices:
-            expected = f"a term '{name}' of the stiffness or the mass"
-            raise wrong("--function" if name not in self.parameters else name, expected, "zeros")
-        quantity: Quantity = "stiffness" if "stiffness" in matrices else "mass"
-        term, A = matrices[quantity], self.nominal.matrices[quantity]
-        rank = _reduced(term, A, ROUNDING * self.precision)[1]
-        return Term(name, matrices, _support(term).size, rank)
-
-    def check(self, terms: Terms, run: Run) -> float:
-        """Return the error of the terms at another run, over the greatest entry of the matrices.
+    def check(self, terms: Terms, label: str, job: Job, values: Floats) -> float:
+        """Return the error of the terms at another job, over the greatest entry of the matrices.
 
         Raises InputError, which names the parameter, where the matrices are not affine.
         """
-        order = matching(self.nominal, run.job, run.label)
-        shifts = self.coefficients.values(run.values) - 1.0
+        order = matching(self.nominal, job, label)
+        shifts = self.coefficients.values(values) - 1.0
         worst = 0.0
         for quantity, A in self.nominal.matrices.items():
-            change = (reordered(run.job.matrices[quantity], order) - A).tocsr()
+            change = (reordered(job.matrices[quantity], order) - A).tocsr()
             E = change
             for shift, term in zip(shifts, terms.terms, strict=True):
                 if quantity in term.matrices:
                     E = E - shift * term.matrices[quantity]
-            noise = ROUNDING * max(self.precision, run.job.precision)
+            noise = ROUNDING * max(self.precision, job.precision)
             noise *= max(1.0, float(np.abs(shifts).max(initial=1.0)))
             entries = scipy.sparse.coo_array(E)
             far = _with(entries, np.abs(entries.data) > noise * _joint(entries, A))
             scale = np.abs(change.data).max(initial=0.0)
             if far.nnz and np.abs(far.data).max() > AFFINE * scale:
-                raise self._not_affine(run, terms, quantity, far, scale)
+                raise self._not_affine(label, values, terms, quantity, far / scale)
             greatest = np.abs(A.data).max(initial=0.0) or 1.0
             worst = max(worst, float(np.abs(E.tocsr().data).max(initial=0.0) / greatest))
         return worst
 
     def _not_affine(
-        self, run: Run, terms: Terms, quantity: Quantity, E: Matrix, scale: float
+        self, label: str, values: Floats, terms: Terms, quantity: Quantity, E: Matrix
     ) -> InputError:
-        """Return the error that says which parameter the matrices are not affine in."""
-        moved = [name for name, x in zip(self.parameters, run.values, strict=True) if x != 1]
+        moved = [name for name, x in zip(self.parameters, values, strict=True) if x != 1]
         shares = {name: _share(E, terms, quantity, self.coefficients, [name]) for name in moved}
         guilty = [name for name, share in shares.items() if share >= COVERED] or moved
         if _share(E, terms, quantity, self.coefficients, moved) < COVERED:
@@ -255,18 +231,17 @@ class Differences:
             k = int(np.argmax(np.abs(entries.data)))
             place = terms.dofs.label(int(entries.row[k]))
             expected = f"only {', '.join(moved)} to differ from '{self.nominal.name}'"
-            return wrong(run.label, expected, f"other changes of the {quantity}, at {place}")
+            return wrong(label, expected, f"other changes of the {quantity}, at {place}")
         names = " and ".join(f"'{name}'" for name in guilty)
         functions = f"--function {guilty[0]}={guilty[0]},{guilty[0]}^3"
         if len(guilty) > 1:
             functions = f"--function {guilty[0]}={'*'.join(guilty)}"
-        greatest = float(np.abs(E.data).max() / scale)
+        greatest = float(np.abs(E.data).max())
         return wrong(
-            run.label,
+            label,
             f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that are "
             f"declared, as in {functions}, with as many runs)",
-            f"a {quantity} that differs by {greatest:.2g} of its change at "
-            f"{self._changed(run.values)}",
+            f"a {quantity} that differs by {greatest:.2g} of its change at {self._changed(values)}",
         )
 
 

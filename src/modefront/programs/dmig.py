@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
@@ -23,21 +23,9 @@ COMPLEX = (3, 4)
 """Types of complex numbers in the header."""
 
 
-@dataclass(frozen=True, eq=False)
-class DmigMatrix:
-    """A matrix by nodes and components.
-
-    Attributes
-    ----------
-    row, column : (entries, 2) node and component
-    value : (entries,)
-    precision : relative error of its numbers
-    """
-
-    row: Ints
-    column: Ints
-    value: Floats
-    precision: float
+DmigMatrix: TypeAlias = tuple[Ints, Floats, float]
+"""Labels (entries, 4) of rows and columns, each a node and a component; values (entries,); and the
+relative error of these."""
 
 
 def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
@@ -46,17 +34,14 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
     Raises InputError for a file without any, with complex numbers, or cut off.
     """
     ended(path)
-    rows: dict[str, list[tuple[int, int, int, int]]] = {}
-    texts: dict[str, list[str]] = {}
-    header: str | None = None
-    column: tuple[int, int] | None = None
-    name = ""
+    entries: dict[str, list[tuple[list[int], str]]] = {}
+    header, column, name = None, list[int](), ""
     with path.open(encoding="latin-1") as stream:
         for number, line in enumerate(stream, start=1):
             place = f"line {number}"
             if line.startswith("DMIG "):
-                header, column = line[8:16].strip(), None
-                if header.upper() in rows:
+                header, column = line[8:16].strip(), []
+                if header.upper() in entries:
                     expected = f"the header 'DMIG {header}' once, before its columns"
                     raise wrong(path, expected, "one after them", place)
                 kind = line[32:40].strip()
@@ -68,32 +53,32 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
                     expected = f"a header 'DMIG {name}' before its columns"
                     raise wrong(path, expected, repr(header), place)
                 column = _label(path, place, line[24:40], line[40:56])
-                rows.setdefault(name.upper(), [])
-                texts.setdefault(name.upper(), [])
-            elif line.startswith("*") and line.strip() != "*" and (rows or header is not None):
-                if column is None:
+                entries.setdefault(name.upper(), [])
+            elif line.startswith("*") and line.strip() != "*" and (entries or header is not None):
+                if not column:
                     raise wrong(path, "a column ('DMIG*') before its entries", "none", place)
                 label = _label(path, place, line[8:24], line[24:40])
-                rows[name.upper()].append((*label, *column))
-                texts[name.upper()].append(line[40:56])
-    if not rows:
+                entries[name.upper()].append(([*label, *column], line[40:56]))
+    if not entries:
         raise wrong(path, "DMIG entries in large fields ('DMIG*')", "none")
-    out: dict[str, DmigMatrix] = {}
-    known = (x.strip().lstrip("+-").upper() for each in texts.values() for x in each[: 10**4])
+    known = (text.strip().lstrip("+-").upper() for x in entries.values() for _, text in x[: 10**4])
     behind = (re.split("[DE+-]", text)[0].partition(".")[2] for text in known)
     precision = 10.0 ** -max(map(len, behind), default=15)
-    for each, labels in rows.items():
-        try:
-            values = np.array([fortran(text) for text in texts[each]])
-        except ValueError as error:
-            raise wrong(path, "numbers in the fourth field", reason(error)) from None
-        table = np.array(labels, dtype=np.intp).reshape(-1, 4)
-        out[each] = DmigMatrix(table[:, :2], table[:, 2:], values, precision)
-    return out
-
-
-def _label(path: Path, place: str, node: str, component: str) -> tuple[int, int]:
     try:
-        return int(node), int(component)
+        return {
+            each: (
+                np.array([labels for labels, _ in rows], dtype=np.intp).reshape(-1, 4),
+                np.array([fortran(text) for _, text in rows]),
+                precision,
+            )
+            for each, rows in entries.items()
+        }
+    except ValueError as error:
+        raise wrong(path, "numbers in the fourth field", reason(error)) from None
+
+
+def _label(path: Path, place: str, *fields: str) -> list[int]:
+    try:
+        return [int(field) for field in fields]
     except ValueError as error:
         raise wrong(path, "nodes and components in fields of 16", reason(error), place) from None

@@ -33,7 +33,7 @@ from modefront.programs.changes import (
     write_changes,
 )
 from modefront.programs.condense import condensed
-from modefront.programs.differences import Differences, Run, Term, Terms
+from modefront.programs.differences import Differences, Term, Terms
 from modefront.programs.mesh import write_mesh
 
 QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
@@ -147,14 +147,14 @@ def import_model(
     differences = Differences(nominal, names, terms)
     for _, path, theta in runs:
         progress(f"reading {path}")
-        differences.add(Run(str(path), form.job(path, options), theta))
+        differences.add(str(path), form.job(path, options), theta)
     identified = differences.terms()
     errors = []
     for other, given in checks:
         progress(f"checking with {other}")
         theta = np.array([given.get(name, 1.0) for name in names])
-        run = Run(str(other), form.job(Path(other), options), theta)
-        errors.append(differences.check(identified, run))
+        job = form.job(Path(other), options)
+        errors.append(differences.check(identified, str(other), job, theta))
     notes = list(nominal.notes)
     if form.eliminates:
         identified, gone, stayed = condensed(identified)
@@ -265,7 +265,6 @@ def model_of(terms: Terms, floating: bool = True) -> MatrixModel:
 def _frequencies(
     terms: Terms, modes: int | None, notes: list[str], progress: Callable[[str], None]
 ) -> tuple[Floats | None, bool]:
-    """Return frequencies of the nominal model, and whether it can move as a rigid body."""
     size = terms.dofs.size
     if modes == 0 or (modes is None and size > LARGE):
         notes.append("frequencies are not computed (--modes computes them)")
@@ -340,8 +339,9 @@ def _write_matrices(terms: Terms, folder: Path) -> dict[Quantity, dict[str, str]
 
 
 def _study(imported: Imported, program: str, names: dict[Quantity, dict[str, str]]) -> str:
-    """Return the text of the study file."""
     dofs = imported.terms.dofs
+    nodes = dofs.node[dofs.node > 0]
+    pairs = {x: [f"{_quoted(k)} = {_quoted(v)}" for k, v in y.items()] for x, y in names.items()}
     lines = [
         f"# Imported from {program}: {Path(imported.nominal.name).name}. Parameters are factors of "
         "the nominal values.",
@@ -355,14 +355,14 @@ def _study(imported: Imported, program: str, names: dict[Quantity, dict[str, str
         '# file = "modes.csv"',
         "#",
         "# [model.sensors]",
-        f'# a = {{ node = {_example(imported)}, direction = "z" }}',
+        f'# a = {{ node = {int(nodes[-1]) if nodes.size else 12}, direction = "z" }}',
         "",
         "[model]",
         'kind = "matrices"',
         'dofs = "dofs.csv"',
         *(['mesh = "mesh.npz"'] if imported.nominal.mesh is not None else []),
         *(["floating = true"] if imported.floating else []),
-        *(f"{quantity} = {_inline(files)}" for quantity, files in names.items()),
+        *(f"{quantity} = {{ {', '.join(files)} }}" for quantity, files in pairs.items()),
     ]
     used = [d for d in DIRECTIONS[:3] if ((dofs.direction == number_of(d)) & (dofs.node > 0)).any()]
     if used:
@@ -379,19 +379,6 @@ def _study(imported: Imported, program: str, names: dict[Quantity, dict[str, str
     for group, what in (("frequencies", "frequency"), ("shapes", "shape")):
         lines += ["", "[[group]]", f'name = "{group}"', f'{what} = "all"']
     return "\n".join(lines) + "\n"
-
-
-def _example(imported: Imported) -> int:
-    nodes = imported.terms.dofs.node[imported.terms.dofs.node > 0]
-    return int(nodes[-1]) if nodes.size else 12
-
-
-def _inline(files: Mapping[str, str]) -> str:
-    return (
-        "{ "
-        + ", ".join(f"{_quoted(name)} = {_quoted(file)}" for name, file in files.items())
-        + " }"
-    )
 
 
 def _quoted(text: str) -> str:

@@ -83,21 +83,12 @@ class Deck:
         return {
             (node, direction)
             for name, first, last in self.supports
-            for node in self._nodes_of([name])
+            for node in self.nodes_of([name])
             for direction in range(first, last + 1)
         }
 
-    @cached_property
-    def rigid(self) -> set[int]:
-        """Nodes of rigid bodies, as far as sets of nodes list them."""
-        return set(self._nodes_of(self.bodies))
-
-    @cached_property
-    def references(self) -> set[int]:
-        """Reference nodes of rigid bodies and couplings."""
-        return set(self._nodes_of(self.guides))
-
-    def _nodes_of(self, names: Iterable[str]) -> Iterator[int]:
+    def nodes_of(self, names: Iterable[str]) -> Iterator[int]:
+        """Yield nodes that are named, and those of sets, as far as they are listed."""
         for name in names:
             yield from [int(name)] if name.isdigit() else self.sets.get(name.upper(), [])
 

@@ -13,13 +13,13 @@ from pathlib import Path
 
 import numpy as np
 
-from modefront._typing import Bools, Ints
+from modefront._typing import Bools, Floats, Ints
 from modefront.errors import reason
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.programs.base import JobOptions, Matrix, whole
 from modefront.programs.bulk import Bulk, read_bulk
-from modefront.programs.dmig import DmigMatrix, read_dmig
+from modefront.programs.dmig import read_dmig
 from modefront.programs.mesh import ProgramMesh
 from modefront.programs.op4 import read_op4
 from modefront.programs.reading import (
@@ -47,21 +47,14 @@ def read(path: Path, options: JobOptions) -> Listed:
 
     A file with another suffix that is no deck, such as that of a Fortran unit, is one of OUTPUT4.
     """
-    file = _file(path)
-    if file.suffix.lower() == ".pch":
-        return _from_dmig(file, options)
-    return _from_op4(file, options)
-
-
-def _file(path: Path) -> Path:
     deck = path.suffix.lower() in DECKS
-    if path.suffix.lower() in MATRICES or (path.is_file() and not deck):
-        return existing(path, "matrices of Nastran", ADVICE)
-    job = path.with_suffix("") if deck else path
-    for suffix in MATRICES:
-        if job.with_name(job.name + suffix).is_file():
-            return job.with_name(job.name + suffix)
-    return existing(job.with_name(job.name + ".op4"), "matrices of Nastran", ADVICE)
+    file = path
+    if not (path.suffix.lower() in MATRICES or (path.is_file() and not deck)):
+        job = path.with_suffix("") if deck else path
+        files = [job.with_name(job.name + suffix) for suffix in MATRICES]
+        file = next((each for each in files if each.is_file()), files[0])
+    file = existing(file, "matrices of Nastran", ADVICE)
+    return (_from_dmig if file.suffix.lower() == ".pch" else _from_op4)(file, options)
 
 
 def _pair(path: Path, names: Iterable[str], options: JobOptions) -> tuple[str, str]:
@@ -104,18 +97,14 @@ def _from_op4(path: Path, options: JobOptions) -> Listed:
     names = _pair(path, matrices, options)
     K, M = (matrices[name] for name in names)
     size, _ = K.shape or (0, 0)
-    for name, matrix in zip(names, (K, M), strict=True):
-        if matrix.shape != (size, size):
+    for name in names:
+        if (shape := matrices[name].shape) != (size, size):
             expected = f"'{name}' with {size} rows and columns"
-            raise wrong(path, expected, " x ".join(map(str, matrix.shape or ())))
+            raise wrong(path, expected, " x ".join(map(str, shape or ())))
     notes: list[str] = []
     deck = _deck(path, options, notes)
-    listed = Listed(
-        (path, path),
-        (K, M),
-        given_table(options, size) or unlabelled(size),
-        notes=notes,
-    )
+    dofs = given_table(options, size) or unlabelled(size)
+    listed = Listed((path, path), (K, M), dofs, notes=notes)
     return listed if deck is None or options.dofs else _labelled(listed, deck, notes)
 
 
@@ -148,7 +137,6 @@ def _labelled(listed: Listed, deck: Bulk, notes: list[str]) -> Listed:
 
 
 def _drawn(deck: Bulk, notes: list[str]) -> ProgramMesh | None:
-    """Return the mesh of a deck, if all of its coordinates are in the basic system."""
     if np.isfinite(deck.mesh.coordinates).all():
         return deck.mesh
     notes.append("nodes in coordinate systems of their own (CP): coordinates are left out")
@@ -174,7 +162,6 @@ def _check_labels(path: Path, deck: Bulk, triangle: Matrix, dofs: DofTable, free
 
 
 def _near_supports(deck: Bulk, dofs: DofTable, free: Bools) -> Bools:
-    """Return which degrees of freedom are at nodes that an element joins with one that is held."""
     moving = set(zip(dofs.node[free].tolist(), dofs.direction[free].tolist(), strict=True))
     held = {n for n in deck.mesh.number.tolist() if any((n, c) not in moving for c in (1, 2, 3))}
     held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)
@@ -190,25 +177,21 @@ def _near_supports(deck: Bulk, dofs: DofTable, free: Bools) -> Bools:
 
 def _from_dmig(path: Path, options: JobOptions) -> Listed:
     matrices = read_dmig(path)
-    pair = [matrices[name] for name in _pair(path, matrices, options)]
-    labels = np.concatenate([table for each in pair for table in (each.row, each.column)])
-    table = np.unique(labels, axis=0)
+    K, M = (matrices[name] for name in _pair(path, matrices, options))
+    table = np.unique(np.concatenate([K[0].reshape(-1, 2), M[0].reshape(-1, 2)]), axis=0)
+    keys = table @ [10, 1]
+
+    def numbered(labels: Ints, value: Floats, precision: float) -> Entries:
+        row, column = np.searchsorted(keys, labels.reshape(-1, 2, 2) @ [10, 1]).T
+        return Entries(row, column, value, precision=precision)
+
     notes: list[str] = []
     deck = _deck(path, options, notes)
     return Listed(
         (path, path),
-        (_numbered(pair[0], table), _numbered(pair[1], table)),
+        (numbered(*K), numbered(*M)),
         DofTable(table[:, 0], table[:, 1], np.ones(len(table))),
         counted=False,
         mesh=_drawn(deck, notes) if deck else None,
         notes=notes,
     )
-
-
-def _numbered(matrix: DmigMatrix, table: Ints) -> Entries:
-    """Return the entries of a matrix by the rows of a sorted table of labels."""
-    keys = table[:, 0] * 10 + table[:, 1]
-    row, column = (
-        np.searchsorted(keys, x[:, 0] * 10 + x[:, 1]) for x in (matrix.row, matrix.column)
-    )
-    return Entries(row, column, matrix.value, precision=matrix.precision)

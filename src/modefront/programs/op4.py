@@ -45,20 +45,21 @@ def read_op4(path: Path) -> Mapping[str, Entries]:
         length = int(np.frombuffer(data, order + "i4", 1)[0])
         if length in (24, 48):
             return dict(_binary(path, data, order, length // 6))
-    return dict(_text(path, data))
+    return dict(_text(path, [line.rstrip() for line in data.split(b"\n")]))
 
 
 class _Pieces:
     """Values in consecutive rows of the columns of a matrix, in the order of a file."""
 
-    def __init__(self, path: Path, name: str, kind: int, rows: int, columns: int) -> None:
+    def __init__(self, path: Path, name: str, header: list[int]) -> None:
+        self.columns, rows, _, kind = header
         if kind not in PRECISIONS:
             raise wrong(path, "real numbers", f"numbers of type {kind} (complex) in '{name}'")
         if rows == 0:
             raise wrong(path, "matrices with rows", f"none in '{name}'")
         self.path, self.name, self.precision = path, name, PRECISIONS[kind]
-        self.rows, self.columns, self.big, self.column = abs(rows), columns, rows < 0, 0
-        self._places: list[tuple[int, int, int]] = []
+        self.rows, self.big, self.column = abs(rows), rows < 0, 0
+        self.places: list[tuple[int, int, int]] = []  # column, first row, length
 
     def begin(self, column: int) -> bool:
         """Begin a column; return whether it is not the one beyond the last, which ends all."""
@@ -68,63 +69,58 @@ class _Pieces:
         self.column = column
         return column <= self.columns
 
-    def add(self, first: int, length: int) -> None:
-        """Add so many values from a row on to the column."""
-        self._places.append((self.column, first, length))
-
-    def matrix(self, values: np.ndarray, precision: float = 0.0) -> Entries:
-        """Return the matrix with the values of all pieces, one behind the other."""
-        column, first, length = np.array(self._places, dtype=np.intp).reshape(-1, 3).T
+    def matrix(self, values: np.ndarray, precision: float = 0.0) -> tuple[str, Entries]:
+        """Return name and matrix with the values of all pieces, one behind the other."""
+        column, first, length = np.array(self.places, dtype=np.intp).reshape(-1, 3).T
         start = first - 1 - (np.cumsum(length) - length)
         row = (np.repeat(start, length) + np.arange(values.size)).astype(np.int32)
         column = np.repeat(column - 1, length).astype(np.int32)
         used = values != 0
         shape, precision = (self.rows, self.columns), max(self.precision, precision)
-        return Entries(row[used], column[used], values[used].astype(float), shape, precision)
-
-
-# Binary files
+        entries = Entries(row[used], column[used], values[used].astype(float), shape, precision)
+        return self.name, entries
 
 
 def _binary(path: Path, data: bytes, order: str, word: int) -> Iterator[tuple[str, Entries]]:
-    """Yield the matrices of a file of this byte order, with words of so many bytes."""
     position, integer = 0, f"{order}i{word}"
+
+    def record() -> bytes:
+        """Return the record of Fortran at the position, and move this behind it."""
+        nonlocal position
+        lengths, end = [np.frombuffer(data[position : position + 4], order + "i4")], position
+        if len(data) >= position + 4 and (size := int(lengths[0][0])) >= 0:
+            end = position + 4 + size
+        if end == position or len(data) < end + 4:
+            raise wrong(path, "whole matrices, each with its end", "a file that is cut off")
+        if np.frombuffer(data[end : end + 4], order + "i4")[0] != size:
+            raise wrong(path, f"records of Fortran ({EXPECTED})", "lengths that differ")
+        content, position = data[position + 4 : end], end + 4
+        return content
+
     while position < len(data):
-        head, position = _record(path, data, order, position)
+        head = record()
         if len(head) != 6 * word:
             raise wrong(path, "the header of a matrix", f"a record of {len(head)} bytes")
-        columns, rows, _, kind = np.frombuffer(head, integer, 4).tolist()
         name = head[4 * word :].decode("latin-1").strip().upper()
-        pieces, values = _Pieces(path, name, kind, rows, columns), [np.zeros(0)]
-        real = np.dtype(f"{order}f{8 if word == 8 or kind == 2 else 4}")
+        header = np.frombuffer(head, integer, 4).tolist()
+        pieces, values = _Pieces(path, name, header), [np.zeros(0)]
+        real = np.dtype(f"{order}f{8 if word == 8 or header[3] == 2 else 4}")
         while True:
-            record, position = _record(path, data, order, position)
-            if len(record) < 3 * word:
-                found = f"a record of {len(record)} bytes in '{name}'"
+            content = record()
+            if len(content) < 3 * word:
+                found = f"a record of {len(content)} bytes in '{name}'"
                 raise wrong(path, "columns of a matrix", found)
-            column, row, count = np.frombuffer(record, integer, 3).tolist()
+            column, row, count = np.frombuffer(content, integer, 3).tolist()
             if not pieces.begin(column):
                 break
-            body = record[3 * word :]
+            body = content[3 * word :]
             counted(path, f"column {column} of '{name}'", "words", count, len(body) / word)
             if row > 0:
                 values.append(np.frombuffer(body, real))
-                pieces.add(row, values[-1].size)
+                pieces.places.append((column, row, values[-1].size))
             else:
                 values.append(_strings(pieces, np.frombuffer(body, integer), real))
-        yield name, pieces.matrix(np.concatenate(values))
-
-
-def _record(path: Path, data: bytes, order: str, position: int) -> tuple[bytes, int]:
-    """Return the record of Fortran at a position, and the position of the next one."""
-    ends = [np.frombuffer(data[position : position + 4], order + "i4")]
-    end = position + 4 + (int(ends[0][0]) if ends[0].size else 0)
-    ends.append(np.frombuffer(data[end : end + 4], order + "i4") if end > position else ends[0][:0])
-    if not all(each.size for each in ends) or end < position + 4:
-        raise wrong(path, "whole matrices, each with its end", "a file that is cut off")
-    if ends[0][0] != ends[1][0]:
-        raise wrong(path, f"records of Fortran ({EXPECTED})", "lengths that differ")
-    return data[position + 4 : end], end + 4
+        yield pieces.matrix(np.concatenate(values))
 
 
 def _strings(pieces: _Pieces, body: np.ndarray, real: np.dtype[np.floating]) -> np.ndarray:
@@ -142,46 +138,57 @@ def _strings(pieces: _Pieces, body: np.ndarray, real: np.dtype[np.floating]) -> 
             found = f"others in column {pieces.column} of '{pieces.name}'"
             raise wrong(pieces.path, "strings that fill a column", found)
         keep[position : position + header] = False
-        pieces.add(row, length // per_value)
+        pieces.places.append((pieces.column, row, length // per_value))
         position = after
     return body[keep].view(real)
 
 
-# Text
-
-
-def _text(path: Path, data: bytes) -> Iterator[tuple[str, Entries]]:
+def _text(path: Path, lines: list[bytes]) -> Iterator[tuple[str, Entries]]:
     """Yield the matrices of a text; lines of values are those with a point."""
-    lines = [line.rstrip() for line in data.split(b"\n")]
     position = 0
     while position < len(lines):
-        if not lines[position]:
-            position += 1
-            continue
         text = lines[position].decode("latin-1")
+        position += 1
+        if not text:
+            continue
         try:
-            columns, rows, _, kind = (int(text[k : k + 8]) for k in range(0, 32, 8))
+            header = [int(text[k : k + 8]) for k in range(0, 32, 8)]
         except ValueError:
             raise wrong(path, EXPECTED, repr(text[:60])) from None
         form = re.search(r"\d+[EDG](\d+)\.(\d+)", text[40:].upper())
         if form is None:
             raise wrong(path, f"{EXPECTED} with its format, such as 1P,3E23.16", repr(text[:60]))
-        pieces = _Pieces(path, text[32:40].strip().upper(), kind, rows, columns)
-        values, position = _columns(pieces, lines, position + 1, int(form[1]))
-        yield pieces.name, pieces.matrix(values, 10.0 ** -int(form[2]))
+        pieces, width = _Pieces(path, text[32:40].strip().upper(), header), int(form[1])
+        texts, position = _columns(pieces, lines, position, width)
+        if position >= len(lines) or b"." not in lines[position]:
+            raise wrong(path, f"a value behind the last column of '{pieces.name}'", "none")
+        position += 1
+        try:
+            values = fixed_width(b"".join(texts), width)
+        except ValueError as error:
+            raise wrong(path, f"numbers of {width} characters", reason(error)) from None
+        yield pieces.matrix(values, 10.0 ** -int(form[2]))
 
 
 def _columns(
     pieces: _Pieces, lines: list[bytes], position: int, width: int
-) -> tuple[np.ndarray, int]:
-    """Return the values of all columns from a line on, and the line behind the matrix.
+) -> tuple[list[bytes], int]:
+    """Return the values of all columns from a line on as text, and the line behind the columns.
 
     Headers count words: of a double either two, or one. They count those of headers of strings,
     or not.
     """
     texts: list[bytes] = []
-    sizes = {1, 2}
+    sizes, headers = {1, 2}, {0, 1}
     path, name = pieces.path, pieces.name
+
+    def numbers(*fields: bytes) -> list[int]:
+        """Return the whole numbers in fields of a header."""
+        try:
+            return [int(field) for field in fields]
+        except ValueError:
+            found = repr(b"".join(fields).decode("latin-1")[:40])
+            raise wrong(path, f"headers of columns in '{name}'", found) from None
 
     def take(row: int, words: int) -> None:
         """Take the lines of values from the present one on, so many words in all."""
@@ -195,48 +202,29 @@ def _columns(
         if not sizes:
             expected = f"as many values in every column of '{name}' as its headers say"
             raise wrong(path, expected, f"{count} values in {words} words")
-        pieces.add(row, count)
+        pieces.places.append((pieces.column, row, count))
 
-    headers = {0, 1}
     while True:
         if position >= len(lines) or not lines[position]:
             expected = f"all columns of '{name}', and its end"
             raise wrong(path, expected, "a file that is cut off")
         line = lines[position]
-        column, row, words = _whole(pieces, line[:8], line[8:16], line[16:])
+        column, row, words = numbers(line[:8], line[8:16], line[16:])
         position += 1
         if not pieces.begin(column):
-            break
+            return texts, position
         if row:
             take(row, words)
             continue
         strings = count = 0
         while position < len(lines) and len(lines[position]) <= 16 and lines[position]:
             line, position = lines[position], position + 1
-            if pieces.big:
-                length, first = _whole(pieces, line[:8], line[8:])
-            else:
-                (word,) = _whole(pieces, line)
-                length, first = divmod(word, STRING)
-            length -= 1
-            take(first, length)
-            strings, count = strings + length, count + 1 + pieces.big
+            length, first = (
+                numbers(line[:8], line[8:]) if pieces.big else divmod(numbers(line)[0], STRING)
+            )
+            take(first, length - 1)
+            strings, count = strings + length - 1, count + 1 + pieces.big
         headers.intersection_update(k for k in (0, 1) if strings + k * count == words)
         if not headers:
             expected = f"as many words in column {column} of '{name}' as its header says"
             raise wrong(path, expected, str(words))
-    if position >= len(lines) or b"." not in lines[position]:
-        raise wrong(path, f"a value behind the last column of '{name}'", "none")
-    try:
-        return fixed_width(b"".join(texts), width), position + 1
-    except ValueError as error:
-        raise wrong(path, f"numbers of {width} characters", reason(error)) from None
-
-
-def _whole(pieces: _Pieces, *fields: bytes) -> list[int]:
-    """Return the whole numbers in fields of a header."""
-    try:
-        return [int(field) for field in fields]
-    except ValueError:
-        found = repr(b"".join(fields).decode("latin-1")[:40])
-        raise wrong(pieces.path, f"headers of columns in '{pieces.name}'", found) from None

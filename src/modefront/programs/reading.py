@@ -124,58 +124,41 @@ def read_job(path: Path, module: str, stiffness: str, mass: str, dofs: str, deck
 def upper(path: Path, entries: Entries, dofs: DofTable) -> Matrix:
     """Return the upper triangle of a symmetric matrix of which one triangle or both are listed.
 
-    Raises InputError where an index is beyond the size, a value is no number, an entry is listed
-    again, or both triangles are listed and differ.
+    Entries on both sides of the diagonal are both triangles, or one of them whose entries are
+    turned here and there; in the latter no pair of places is given twice. Raises InputError where
+    an index is beyond the size, a value is no number, an entry is listed again, or both triangles
+    are listed and differ.
     """
     row, column, value, size = entries.row, entries.column, entries.value, dofs.size
+
+    def label(i: int, j: int) -> str:
+        return f"{dofs.label(int(i))} and {dofs.label(int(j))}"
+
     if row.size and (min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= size):
         found = f"row {int(max(row.max(), column.max())) + 1}"
         raise wrong(path, f"rows and columns from 1 to {size}", found)
-    good = np.abs(value) <= LARGEST
-    if not good.all():
+    if not (good := np.abs(value) <= LARGEST).all():
         k = int(np.argmin(good))
-        place = f"{dofs.label(int(row[k]))} and {dofs.label(int(column[k]))}"
-        raise wrong(path, "finite numbers", f"{value[k]:g} at {place}")
+        raise wrong(path, "finite numbers", f"{value[k]:g} at {label(row[k], column[k])}")
     if (again := first_repeated(row, column, size)) is not None:
-        place = f"{dofs.label(int(row[again]))} and {dofs.label(int(column[again]))}"
-        raise wrong(path, "each entry once", f"the one at {place} again")
+        raise wrong(path, "each entry once", f"the one at {label(row[again], column[again])} again")
     below = row > column
-    if below.any() and (row < column).any():
-        return _symmetric(path, entries, below, dofs)
-    if below.any():
-        row, column = column, row
-    return _compressed(size, row, column, value)
-
-
-def _compressed(size: int, row: Ints, column: Ints, value: Floats) -> Matrix:
-    out = scipy.sparse.coo_array((value, (row, column)), shape=(size, size)).tocsr()
-    out.sum_duplicates()
-    return out
-
-
-def _symmetric(path: Path, entries: Entries, below: Bools, dofs: DofTable) -> Matrix:
-    """Return the upper triangle where entries are on both sides of the diagonal.
-
-    These are both triangles, or one of them whose entries are turned here and there; in the latter
-    no pair of places is given twice.
-    """
-    row, column, value, size = entries.row, entries.column, entries.value, dofs.size
-    above = ~below
-    A = _compressed(size, row[above], column[above], value[above])
-    B = _compressed(size, column[below], row[below], value[below])
-    off = A - scipy.sparse.dia_array((A.diagonal()[None], [0]), shape=A.shape)
+    A, B = (
+        scipy.sparse.coo_array((value[part], (i[part], j[part])), shape=(size, size)).tocsr()
+        for part, i, j in ((~below, row, column), (below, column, row))
+    )
+    off = scipy.sparse.triu(A, k=1, format="csr")
     if (abs(off).sign() * abs(B).sign()).nnz == 0:
         return (A + B).tocsr()
     difference = scipy.sparse.coo_array(off - B)
     greatest = max(np.abs(A.data).max(initial=0), np.abs(B.data).max(initial=0))
-    worst = np.abs(difference.data).max(initial=0)
-    if worst > SYMMETRY * greatest:
+    if np.abs(difference.data).max(initial=0) > SYMMETRY * greatest:
         k = int(np.argmax(np.abs(difference.data)))
         i, j = int(difference.row[k]), int(difference.col[k])
         raise wrong(
             path,
             "a symmetric matrix (damping, contact, friction and rotors make it unsymmetric)",
-            f"{A[i, j]:.6g} at {dofs.label(i)} and {dofs.label(j)}, and {B[i, j]:.6g} across",
+            f"{A[i, j]:.6g} at {label(i, j)}, and {B[i, j]:.6g} across",
         )
     half = Matrix(A - difference / 2)
     half.sort_indices()

@@ -23,7 +23,7 @@ from modefront.identifiability.combinations import (
 from modefront.identifiability.scale import Scale, scale_at
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import TINY
-from modefront.uncertainty.prediction import linear
+from modefront.uncertainty.prediction import linear, summary
 from modefront.uncertainty.validity import std
 
 Values = dict[str, object]
@@ -207,19 +207,11 @@ def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis)
             for row in solutions
         ]
     )
+    deviation = summary(both.reshape(len(both), -1))[1].reshape(-1, p + n)
     theta, J = both[..., :p], both[..., p:]
     return {
         "bootstrap_theta": theta,
         "bootstrap_objective": J,
-        "bootstrap_theta_std": _spread(theta),
-        "bootstrap_objective_std": _spread(J),
+        "bootstrap_theta_std": deviation[..., :p],
+        "bootstrap_objective_std": deviation[..., p:],
     }
-
-
-def _spread(values: Floats) -> Floats:
-    """Return the standard deviation over the first dimension of what is there; NaN below two."""
-    known = np.isfinite(values)
-    count = known.sum(axis=0)
-    mean = np.where(known, values, 0.0).sum(axis=0) / np.maximum(count, 1)
-    square = np.where(known, (values - mean) ** 2, 0.0).sum(axis=0)
-    return np.where(count > 1, np.sqrt(square / np.maximum(count - 1, 1)), np.nan)

@@ -30,8 +30,11 @@ ITERATED = "iterated-weights"
 def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> xr.Dataset:
     """Return a front and its analysis as a dataset with names, units and meanings."""
     front = replace(front, points=[*front.points, *analysis.points])
-    values = _points(problem, front, analysis) | _data(problem, front) | _minima(problem, front)
+    values = _points(problem, front, analysis) | _minima(problem, front)
     values |= _branches(problem, front) | lattice_values(front)
+    values["measured_frequency"] = problem.data.mean_frequency
+    values["properties"], values["exact"] = problem.properties, list(front.exact)
+    values["bounds"] = np.column_stack([problem.lower, problem.upper])
     determined = determinations(problem, front)
     values |= analysis_values(problem, front, analysis, determined)
     values |= as_values(findings(problem, front, analysis, determined))
@@ -51,24 +54,31 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
 
 
 def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:
-    """Return the models with their objectives and modes."""
     points, n, modes = front.points, len(problem.objectives), len(problem.data.modes)
     solutions = [point.solution for point in points]
     theta, J = _theta_and_J(problem, solutions)
     a = problem.properties
     known = [x.J for _, manifolds in analysis.manifolds for each in manifolds for x in each.models]
     unknown = np.full(modes, np.nan)
+    on = np.array([x.kind is Kind.FRONT for x in points])
+    dominated = np.zeros(len(J), dtype=bool)
+    if on.any():
+        dominated[on] = ~nondominated(J[on], scale=front.scale)
+    weights = _stack([x.weights for x in solutions], n)  # times the ranges of J, with sum 1
+    weights = weights * (1.0 if front.scale is None else front.scale)
+    total = weights.sum(axis=1, keepdims=True)
+    shares = np.divide(weights, total, out=np.full(weights.shape, np.nan), where=total != 0)
     names = ("frequency", "mac", "paired_mode", "coincident")
     return {
         "label": [point.label for point in points],
         "kind": [point.kind.value for point in points],
         "pareto": _pareto(front, J, _stack(known, n)),
-        "dominated_among_front": _dominated_among_front(front, J),
+        "dominated_among_front": dominated,
         "theta": theta,
         "objective": J,
         "error": np.sqrt(J / a),
         "weight": _weights(front, J, a),
-        "stationary_weight": _shares(_stack([x.weights for x in solutions], n), front.scale),
+        "stationary_weight": shares,
         "converged": [x.converged for x in solutions],
         "status": [x.status.name.lower() for x in solutions],
         "evaluations": [x.evaluations for x in solutions],
@@ -78,16 +88,6 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
             for name in names
         },
         **certificate_values(problem, solutions),
-    }
-
-
-def _data(problem: UpdatingProblem, front: Front) -> Values:
-    """Return the data, bounds and names of the problem that results repeat."""
-    return {
-        "measured_frequency": problem.data.mean_frequency,
-        "properties": problem.properties,
-        "exact": list(front.exact),
-        "bounds": np.column_stack([problem.lower, problem.upper]),
     }
 
 
@@ -113,7 +113,6 @@ def _minima(problem: UpdatingProblem, front: Front) -> Values:
 
 
 def _branches(problem: UpdatingProblem, front: Front) -> Values:
-    """Return the branches of a front of two objectives, and where they end at its gaps."""
     if len(front.edges) != 2 or METHODS[front.method].programme != "boundary":
         return {}
     J = _theta_and_J(problem, [point.solution for point in front.points])[1]
@@ -152,15 +151,6 @@ def _pareto(front: Front, J: Floats, others: Floats) -> Bools:
     return undominated(J, known, front.sizes if front.scale is None else front.scale)
 
 
-def _dominated_among_front(front: Front, J: Floats) -> Bools:
-    """Return which points (points, n) another point of the front dominates; others do not count."""
-    on = np.array([x.kind is Kind.FRONT for x in front.points])
-    out = np.zeros(len(J), dtype=bool)
-    if on.any():
-        out[on] = ~nondominated(J[on], scale=front.scale)
-    return out
-
-
 def _weights(front: Front, J: Floats, a: Floats) -> Floats:
     """Return the weights (points, n) that weighted methods used; NaN at other points."""
     out = np.full(J.shape, np.nan)
@@ -185,10 +175,3 @@ def _theta_and_J(
     theta = [np.full(p, np.nan) if x is None else x.theta for x in solutions]
     J = [np.full(n, np.nan) if x is None else x.J for x in solutions]
     return _stack(theta, p), _stack(J, n)
-
-
-def _shares(weights: Floats, scale: Floats | None) -> Floats:
-    """Return weights times the range of their objective, with sum 1."""
-    scaled = weights * (1.0 if scale is None else scale)
-    total = scaled.sum(axis=1, keepdims=True)
-    return np.divide(scaled, total, out=np.full(scaled.shape, np.nan), where=total != 0)

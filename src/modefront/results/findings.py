@@ -60,7 +60,6 @@ def as_values(findings: Sequence[Finding]) -> Values:
 
 
 def _search(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
-    """Yield what the search has not found, or may not have found."""
     if front.open:
         yield found("budget", enumeration(front.open))
     exact = [name for name, fits in zip(problem.objectives, front.exact, strict=True) if fits]
@@ -89,7 +88,6 @@ def _search(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
 
 
 def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iterator[Finding]:
-    """Yield the determined combinations of parameters at the reference."""
     names, groups = problem.model.parameters, problem.groups
     where = f"at {reference.point.label}: "
     yield from no_effect(reference.idle, names, where)
@@ -104,7 +102,6 @@ def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iter
 
 
 def _flat(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Iterator[Finding]:
-    """Yield at which edges the front is flat."""
     part = analysis.identifiable
     if part is None:
         return

@@ -156,15 +156,15 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> Mod
             continue
         index = paired[i].astype(int) - 1
         try:
-            shapes = shapes_at(model, theta, max(count, int(index.max()) + 1))
+            lam, phi, Phi = shapes_at(model, theta, max(count, int(index.max()) + 1))
         except ModelError:
             continue
-        frequency[i] = np.sqrt(np.maximum(shapes.lam[:count], 0)) / (2 * np.pi)
-        mac[i] = mean_mac(data, shapes.phi[:, :count])
+        frequency[i] = np.sqrt(np.maximum(lam[:count], 0)) / (2 * np.pi)
+        mac[i] = mean_mac(data, phi[:, :count])
         u = np.zeros((modes, 0, 3))
-        if geometry is not None and shapes.Phi is not None:
-            u = geometry.displacement(shapes.Phi[:, index])[:, drawn]
-        phi = shapes.phi[:, index].T
+        if geometry is not None and Phi is not None:
+            u = geometry.displacement(Phi[:, index])[:, drawn]
+        phi = phi[:, index].T
         scale = unit_scale(data, phi, u if u.size else None)
         sensed[i] = phi * scale[:, None]
         rows[i] = basis.coefficients((u * scale[:, None, None]).reshape(modes, -1).T)
@@ -185,7 +185,9 @@ class _Basis:
     def coefficients(self, U: Floats) -> Floats:
         """Return the coefficients (columns so far, modes) of shapes U (size, modes)."""
         missing = U - self.Q @ (self.Q.T @ U)
-        for r in np.flatnonzero(_lengths(missing) > TOLERANCE / 10 * _lengths(U)).tolist():
+        for r in np.flatnonzero(
+            np.linalg.norm(missing, axis=0) > TOLERANCE / 10 * np.linalg.norm(U, axis=0)
+        ).tolist():
             q = U[:, r]
             for _ in range(2):  # twice is enough for orthogonality to rounding
                 q = q - self.Q @ (self.Q.T @ q)
@@ -206,11 +208,6 @@ class _Basis:
         most = np.maximum(np.abs(c).max(axis=1), TINY)
         B: Floats = (self.Q @ W[:, :kept]) * most
         return B, (c / most[:, None]).T.reshape(len(rows), modes, kept)
-
-
-def _lengths(columns: Floats) -> Floats:
-    out: Floats = np.sqrt((columns**2).sum(axis=0))
-    return out
 
 
 def with_mode_shapes(data: xr.Dataset, problem: UpdatingProblem, shapes: ModeShapes) -> xr.Dataset:
@@ -239,10 +236,7 @@ def with_mode_shapes(data: xr.Dataset, problem: UpdatingProblem, shapes: ModeSha
         }
         coordinates["axis"] = list(AXES)
     out = data.assign(described(values)).assign_coords(coordinates)
-    if "node" in values:
-        out.attrs["geometry"] = "chain" if _is_chain(geometry) else "mesh"
+    if geometry is not None and "node" in values:
+        groups = [cells.group for cells in geometry.cells]
+        out.attrs["geometry"] = "chain" if groups == ["chain"] else "mesh"
     return out
-
-
-def _is_chain(geometry: Geometry | None) -> bool:
-    return geometry is not None and [cells.group for cells in geometry.cells] == ["chain"]

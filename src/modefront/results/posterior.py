@@ -1,6 +1,7 @@
-"""Scatter of the predictions by the posterior of the reference.
+"""What the posterior says of the parameters, and the scatter of the predictions by it.
 
-To first order they need two models along each axis of the posterior; with draws, the models drawn.
+To first order predictions need two models along each axis of the posterior; with draws, the models
+drawn.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from modefront._typing import Floats
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found, from_text
 from modefront.front.point import preferred
-from modefront.predictions import Prediction, PredictionKind, ResultVariable
+from modefront.predictions import Prediction
 from modefront.predictions.registry import kinds_in
 from modefront.predictions.runner import Predicted, PredictionRunner
 from modefront.results.analysis import Values, left_open
@@ -23,9 +24,53 @@ from modefront.results.findings import as_values
 from modefront.results.predictions import by_kind
 from modefront.results.schema import described
 from modefront.uncertainty.differences import Stencil, stencil
+from modefront.uncertainty.inference import Inference
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.prediction import SUMMARY, TruncationError, draw, lognormal_std, summary
 from modefront.work.task import seed_sequence
+
+QUANTILES = (0.05, 0.5, 0.95)
+"""Quantiles of the parameters: a 90 % interval and the median."""
+
+DETERMINED, OPEN = 1 / 3, 0.8
+"""Width of the 90 % interval over that of the prior, below which a parameter is determined, and
+above which it is not."""
+
+
+TRUST = ("determined", "partly", "not determined")
+"""What the data say of a parameter."""
+
+
+def with_intervals(data: xr.Dataset, inference: Inference) -> xr.Dataset:
+    """Return results with what the posterior says.
+
+    A quantile is such that the next draw is below it with its probability.
+    """
+    draws, fit, freed = inference.draws, inference.fit, inference.freed
+    interval = np.quantile(draws.theta, QUANTILES, axis=0, method="weibull").T
+    share = (interval[:, 2] - interval[:, 0]) / inference.widths
+    place = np.where(share < DETERMINED, 0, np.where(share > OPEN, 2, 1))
+    p = inference.widths.size
+    values = {
+        "sample_theta": draws.theta,
+        "interval": interval,
+        "trust": np.array(TRUST)[place],
+        "prior_width": inference.widths,
+        "misfit": fit.misfit,
+        "nominal_misfit": fit.nominal,
+        "likely_mode": fit.pairs,
+        "posterior_std": draws.theta.std(axis=0, ddof=1),
+        "posterior_covariance": np.cov(draws.theta, rowvar=False).reshape(p, p),
+        "posterior_frequency_std": summary(draws.frequency)[1],
+        "posterior_mac_std": summary(draws.mac)[1],
+        "candidate_frequency": fit.candidates.frequency,
+        "candidate_sensor": list(fit.candidates.sensor),
+        "candidate_gain": fit.candidates.gain,
+    }
+    if freed is not None:
+        values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
+    out = data.assign(described(values)).assign_coords(quantile=list(QUANTILES))
+    return out.assign_attrs(assumed=inference.assumed)
 
 
 @dataclass(frozen=True)
@@ -152,39 +197,24 @@ def _to_first_order(
     for variable in kind.ranged:
         middle = data[variable.name].values[_reference(data)]
         beside = values[variable.key].reshape(m, 2, -1)
-        C = _covariance(differences, middle, beside, logarithmic=variable.logarithmic)
-        unknown |= np.isfinite(middle) & np.isnan(np.diag(C))
-        out |= _scatter(kind, variable, middle, C)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            change = (np.log(middle), np.log(beside)) if variable.logarithmic else (middle, beside)
+            S = differences.slopes(*change)
+        S[~np.isfinite(S).all(axis=1)] = np.nan
+        C = S @ S.T
+        std, name = np.sqrt(np.diag(C)), f"posterior_{variable.name}"
+        unknown |= np.isfinite(middle) & np.isnan(std)
+        if variable.logarithmic:
+            start = f"posterior_{kind.dimension}_log"
+            out |= {f"{start}_std": std, f"{start}_covariance": C}
+            out[f"{name}_std"] = lognormal_std(middle, std)
+        else:
+            out |= {f"{name}_std": std, f"{name}_covariance": C}
     reference = preferred(data.attrs)
     return out, [
         found("no-deviation", str(name), reference=reference, undefined=kind.undefined)
         for name in data[kind.dimension].values[unknown]
     ]
-
-
-def _covariance(
-    differences: Stencil, middle: Floats, beside: Floats, *, logarithmic: bool
-) -> Floats:
-    """Return the covariance of values (places,), or of their logarithms, by differences."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        change = (np.log(middle), np.log(beside)) if logarithmic else (middle, beside)
-        S = differences.slopes(*change)
-    S[~np.isfinite(S).all(axis=1)] = np.nan
-    out: Floats = S @ S.T
-    return out
-
-
-def _scatter(kind: PredictionKind, variable: ResultVariable, middle: Floats, C: Floats) -> Values:
-    """Return the standard deviation and covariance of a variable, and of its logarithm."""
-    std, name = np.sqrt(np.diag(C)), f"posterior_{variable.name}"
-    if not variable.logarithmic:
-        return {f"{name}_std": std, f"{name}_covariance": C}
-    start = f"posterior_{kind.dimension}_log"
-    return {
-        f"{start}_std": std,
-        f"{start}_covariance": C,
-        f"{name}_std": lognormal_std(middle, std),
-    }
 
 
 def _of_samples(
@@ -193,7 +223,6 @@ def _of_samples(
     samples: Floats,
     predictions: Sequence[Prediction],
 ) -> tuple[Values, list[Finding]]:
-    """Return the predictions of samples of the posterior, each and summed up."""
     kind, n = predictions[0].kind, len(samples)
     rows = [runner.at_models(each, samples, "draw") for each in predictions]
     values = _stacked(predictions, rows)

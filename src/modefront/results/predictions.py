@@ -71,7 +71,6 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
 
 
 def _leaves_open(data: xr.Dataset) -> bool:
-    """Return whether all data leave a parameter or a combination of them open at the reference."""
     together = ALL if data.sizes["group"] > 1 else data["group"].values[0]
     of = data["combination_of"].values == together
     here = of & (data["combination_at"].values == preferred(data.attrs))

@@ -91,7 +91,6 @@ def headlines(data: xr.Dataset) -> list[str]:
 
 
 def _analysed(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield the findings of the analysis, which the file holds."""
     sentences = data["finding"].values.tolist()
     kept = data["finding_record"].values.tolist() if "finding_record" in data else sentences
     for sentence, record in zip(sentences, kept, strict=True):
@@ -225,7 +224,6 @@ def _mac(value: float) -> str:
 
 
 def _weights(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield what is known of the optimal weights: exact fits, and where their iteration arrives."""
     optimal = data["kind"].values == Kind.OPTIMAL.value
     if not optimal.any():
         return

@@ -279,7 +279,6 @@ class Results:
 
     @property
     def _short(self) -> pd.DataFrame:
-        """Errors of the groups of the first models."""
         import pandas as pd
 
         kinds = self["kind"].values.tolist()

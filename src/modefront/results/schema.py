@@ -280,7 +280,6 @@ def _rows(table: str) -> Iterator[list[str]]:
 def _variable(
     name: str, dimensions: str, holds: str, meaning: str, section: str = "", together: str = ""
 ) -> Variable:
-    """Return what a row describes."""
     name, _, since = name.partition("@")
     values: Values = next((x for x in KINDS if x in holds.split()), "number")
     unit = holds.replace(values, "").strip()

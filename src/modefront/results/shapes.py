@@ -22,8 +22,9 @@ from modefront._typing import Floats
 from modefront.brief import as_html, brief
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
+from modefront.models.base import full_of
 from modefront.models.geometry import Geometry
-from modefront.models.local import matrices_at
+from modefront.models.local import geometry_of, shapes_at
 from modefront.residuals.problem import UpdatingProblem
 
 
@@ -68,17 +69,10 @@ def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:
     if not np.isfinite(paired).all():
         raise ModelError(f"{row['label'].values!s} has no modes: its model cannot be solved")
     index = paired.astype(int) - 1
-    model = matrices_at(problem.model, theta)
-    geometry = displacement = None
-    if model is not None:
-        shapes = model.full_modes(theta, int(index.max()) + 1).Phi[:, index]
-        computed = np.asarray(model.selection @ shapes).T
-        geometry = model.geometry
-        if geometry is not None:
-            displacement = geometry.displacement(shapes)
-    else:
-        count = int(index.max()) + 1
-        computed = problem.model.modes(theta, count, derivatives=False).phi[:, index].T
+    _, phi, Phi = shapes_at(full_of(problem.model), theta, int(index.max()) + 1)
+    computed, geometry, displacement = phi[:, index].T, geometry_of(problem.model), None
+    if geometry is not None and Phi is not None:
+        displacement = geometry.displacement(Phi[:, index])
     scale = unit_scale(problem.data, computed, displacement)
     computed = computed * scale[:, None]
     if displacement is not None:

@@ -186,7 +186,6 @@ def _numbers(data: xr.Dataset) -> Iterator[Wrong]:
 
 
 def _geometry(data: xr.Dataset) -> Iterator[Wrong]:
-    """Yield what lines, faces and sensors name that is no node."""
     count = data.sizes.get("drawn_node", 0)
     for name, least in (("line_nodes", 0), ("face_nodes", -1), ("sensor_node", 0)):
         if name in data:
@@ -220,5 +219,4 @@ def _place(data: xr.Dataset, name: object) -> str:
 
 
 def _first(values: np.ndarray, wrong: np.ndarray) -> str:
-    """Return the first value that is wrong."""
     return f"{values[wrong].ravel()[0] if values.ndim else values[()]}"

@@ -12,7 +12,7 @@ from modefront._typing import Floats
 from modefront.findings.knowledge import enumeration
 from modefront.front.point import Kind
 from modefront.predictions.registry import predictions_in
-from modefront.results.intervals import TRUST
+from modefront.results.posterior import TRUST
 from modefront.results.selection import front_points
 
 FAR = 10.0
@@ -92,7 +92,6 @@ def _use(data: xr.Dataset) -> str:
 
 
 def _at_bounds(data: xr.Dataset) -> Iterator[str]:
-    """Yield which bounds hold parameters of the reference, and what it gains without them."""
     best = _row(data, Kind.MOST_PROBABLE)
     sides, values = best["at_bound"].values, best["theta"].values
     names = data["parameter"].values
@@ -124,13 +123,11 @@ def _at_bounds(data: xr.Dataset) -> Iterator[str]:
 
 
 def _assumed(data: xr.Dataset) -> Iterator[str]:
-    """Yield which errors are assumed."""
     if data.attrs.get("assumed"):
         yield f"Assumed: {data.attrs['assumed']}; say yours in [noise]."
 
 
 def _pairs(data: xr.Dataset) -> Iterator[str]:
-    """Yield which modes the sensors do not tell apart."""
     unlike = data["likely_mode"].values != _row(data, Kind.MOST_PROBABLE)["paired_mode"].values
     if unlike.any():
         modes = enumeration([str(r) for r in data["mode"].values[unlike]])
@@ -256,5 +253,4 @@ def _closed(names: Sequence[str], samples: Floats, trust: Sequence[str]) -> list
 
 
 def _row(data: xr.Dataset, kind: Kind) -> xr.Dataset:
-    """Return the first model of a kind."""
     return data.isel(point=data["kind"].values.tolist().index(kind.value))

@@ -258,8 +258,7 @@ class _Session:
 
     def _results(self) -> xr.Dataset:
         from modefront.results.assemble import dataset
-        from modefront.results.intervals import with_intervals
-        from modefront.results.posterior import posterior_models, with_posterior
+        from modefront.results.posterior import posterior_models, with_intervals, with_posterior
         from modefront.results.predictions import extent, with_predictions
         from modefront.results.verdict import with_verdict
 

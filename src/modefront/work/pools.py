@@ -22,8 +22,7 @@ from enum import Enum
 from functools import cache
 from multiprocessing import resource_tracker
 from multiprocessing.connection import wait
-from multiprocessing.context import SpawnContext, SpawnProcess
-from typing import Any, ClassVar, Protocol
+from typing import Any, Protocol
 
 from threadpoolctl import threadpool_limits
 
@@ -73,30 +72,6 @@ class Pool(Protocol):
         """End all processes, whatever they do."""
 
 
-class _Process(SpawnProcess):
-    """A process with one thread that is remembered, so that it can be ended."""
-
-    started: ClassVar[list[SpawnProcess]] = []
-
-    def start(self) -> None:
-        """Start the process, which takes the environment that it finds."""
-        before = dict(os.environ)
-        os.environ.update(ONE_THREAD)
-        try:
-            super().start()
-        finally:
-            for name in ONE_THREAD.keys() - before.keys():
-                del os.environ[name]
-            os.environ.update(before)
-        self.started.append(self)
-
-
-class _Context(SpawnContext):
-    """The context in which such processes are spawned."""
-
-    Process = _Process
-
-
 @dataclass
 class LocalPool:
     """Processes of this machine, spawned, with one thread each.
@@ -106,9 +81,8 @@ class LocalPool:
 
     count: int
     warm: Sequence[str] = ()
-    _before: Sequence[SpawnProcess] = ()
     _executor: ProcessPoolExecutor = field(init=False)
-    _first: Future[None] = field(init=False)
+    _first: Future[int] = field(init=False)
 
     def __post_init__(self) -> None:
         self.restart()
@@ -120,7 +94,7 @@ class LocalPool:
 
     def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
         """Compute a message in one of the processes."""
-        with _interrupts_held():  # the executor may start a process that it has not needed yet
+        with _starting():  # the executor may start a process that it has not needed yet
             return self._executor.submit(work, message, objects)
 
     def lost(self, error: Exception, /) -> Loss | None:
@@ -129,29 +103,24 @@ class LocalPool:
 
     def restart(self) -> None:
         """Start the processes, or others in their place."""
-        self._before = list(_Process.started)
+        spawn = multiprocessing.get_context("spawn")
         try:
-            with _interrupts_held():  # what is started now never sees any
-                self._executor = ProcessPoolExecutor(self.count, _Context(), _prepare, (self.warm,))
+            with _starting():
+                self._executor = ProcessPoolExecutor(self.count, spawn, _prepare, (self.warm,))
                 # The executor starts a process a task, as long as none of them is idle.
-                self._first, *_ = [self._executor.submit(_started) for _ in range(self.count)]
+                self._first, *_ = [self._executor.submit(int) for _ in range(self.count)]
         except BaseException:  # an interrupt that was held back
             self.close()
             raise
 
     def close(self) -> None:
         """End all processes, whatever they do."""
-        processes = [x for x in _Process.started if x not in self._before]
+        processes = list((self._executor._processes or {}).values())
         for process in processes:  # first, so that none of them misses what it starts with
             process.kill()
         self._executor.shutdown(wait=False, cancel_futures=True)
         for process in processes:
             process.join()
-            _Process.started.remove(process)
-
-
-def _started() -> None:
-    """Show that a process works."""
 
 
 def _prepare(warm: Sequence[str]) -> None:
@@ -181,23 +150,27 @@ def _end_with_parent() -> None:
 
 
 @contextmanager
-def _interrupts_held() -> Iterator[None]:
-    """Hold interrupts back until the context ends; processes started in it hold them for good.
+def _starting() -> Iterator[None]:
+    """Start processes with one thread, which hold interrupts back for good, until the context ends.
 
     Among these is the one in which `multiprocessing` keeps account of semaphores. It is started
     first, since `multiprocessing` lets interrupts pass once it has started it.
     """
-    if not hasattr(signal, "pthread_sigmask"):  # Windows, where the initializer ignores them
-        yield
-        return
-    held = {signal.SIGINT, signal.SIGHUP, signal.SIGTERM}
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, held)
+    environment, signals = dict(os.environ), None
+    os.environ.update(ONE_THREAD)
     try:
-        resource_tracker.ensure_running()
-        signal.pthread_sigmask(signal.SIG_BLOCK, held)
+        if hasattr(signal, "pthread_sigmask"):  # on Windows the initializer ignores them
+            held = {signal.SIGINT, signal.SIGHUP, signal.SIGTERM}
+            signals = signal.pthread_sigmask(signal.SIG_BLOCK, held)
+            resource_tracker.ensure_running()
+            signal.pthread_sigmask(signal.SIG_BLOCK, held)
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for name in ONE_THREAD:
+            os.environ.pop(name)
+            os.environ.update({name: environment[name]} if name in environment else {})
+        if signals is not None:
+            signal.pthread_sigmask(signal.SIG_SETMASK, signals)
 
 
 @dataclass
@@ -273,6 +246,5 @@ class Cluster:
 
 
 def _work_of_one_thread(message: Message, objects: dict[str, bytes]) -> Reply:
-    """Compute a message with one thread."""
     _take_one_thread()
     return work(message, objects)

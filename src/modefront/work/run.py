@@ -70,7 +70,6 @@ class Run:
         return total(costs for key, costs in self.costs.items() if chosen(str(key[0])))
 
     def _ended(self, task: Task[R], done: Done) -> R:
-        """Keep the result of a task, and return it."""
         self.costs[*task.key, *task.turn] = done.costs
         self.progress.spent.add(done.costs)
         if self.store:

@@ -80,7 +80,6 @@ class Store:
 
 
 def _checksum(task: Task[Any], content: bytes) -> bytes:
-    """Return a hash of what is kept of a task, and of which task that is."""
     return hashlib.blake2b(repr(task.identity).encode() + content, digest_size=CHECKSUM).digest()
 
 
@@ -136,7 +135,6 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def _holding(holder: Path) -> str:
-    """Return which run holds a lock."""
     with suppress(OSError):
         if holder.is_file():  # a pipe in its place would be waited for
             with holder.open("rb") as stream:

@@ -13,7 +13,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import ceil
 from pickle import PicklingError
 from typing import Any
@@ -44,22 +44,6 @@ MOST = 61
 """Processes of this machine at most; Windows waits for no more."""
 
 
-@dataclass(frozen=True)
-class _Sent:
-    """Tasks that are being computed elsewhere.
-
-    Attributes
-    ----------
-    positions : of the tasks sent together, within their call
-    message : of these tasks
-    lacked : names of the shared objects that came with it, as some process did not know them
-    """
-
-    positions: Sequence[int]
-    message: Message
-    lacked: frozenset[str] = frozenset()
-
-
 @dataclass
 class _Call:
     """Tasks of one call.
@@ -70,7 +54,8 @@ class _Call:
     begun : is called with the position of each task that is sent or computed
     pending : positions of tasks to be sent
     alone : positions of tasks that are sent one at a time, since a process was lost with them
-    flying : tasks that were sent, by what will come back
+    flying : positions of tasks that were sent, their message, and the names of shared objects that
+        came with it, as some process did not know them; by what will come back
     errors : of tasks, by their position
     """
 
@@ -78,7 +63,9 @@ class _Call:
     begun: Callable[[int], None]
     pending: deque[int]
     alone: deque[int] = field(default_factory=deque)
-    flying: dict[Future[Reply], _Sent] = field(default_factory=dict)
+    flying: dict[Future[Reply], tuple[Sequence[int], Message, frozenset[str]]] = field(
+        default_factory=dict
+    )
     errors: dict[int, Exception] = field(default_factory=dict)
 
 
@@ -171,16 +158,18 @@ class Workers:
         except (PicklingError, AttributeError, TypeError) as error:
             expected = "a model that other processes can import: functions of a module"
             raise InputError(Fault("", "workers", expected, str(error))) from None
-        taken = sum(sent.message.memory for sent in call.flying.values())
+        taken = sum(sent.memory for _, sent, _ in call.flying.values())
         if call.flying and taken + message.memory > self.memory:
             return False
-        self._fly(call, _Sent(positions, message))
+        self._fly(call, positions, message, frozenset())
         return True
 
-    def _fly(self, call: _Call, sent: _Sent) -> None:
+    def _fly(
+        self, call: _Call, positions: Sequence[int], message: Message, lacked: frozenset[str]
+    ) -> None:
         """Send tasks with the shared objects that a process has lacked."""
-        message, names = sent.message, sent.message.names
-        objects = self._sender.objects([name for name in names if name in sent.lacked])
+        objects = self._sender.objects([name for name in message.names if name in lacked])
+        sent = positions, message, lacked
         try:
             call.flying[self.pool.submit(message, objects)] = sent
         except Exception as error:
@@ -193,7 +182,6 @@ class Workers:
             call.flying[self.pool.submit(message, objects)] = sent
 
     def _received(self, call: _Call, future: Future[Reply]) -> Iterator[tuple[int, Done]]:
-        """Yield what has come back with one message."""
         try:
             reply = future.result()
         except Exception as error:
@@ -202,17 +190,17 @@ class Workers:
                 raise
             self._lose(call, future, loss)
             return
-        sent = call.flying.pop(future)
+        positions, message, lacked = call.flying.pop(future)
         if reply.lacking:
-            self._fly(call, replace(sent, lacked=sent.lacked.union(reply.lacking)))
+            self._fly(call, positions, message, lacked.union(reply.lacking))
             return
-        for k, done in zip(sent.positions, reply.done, strict=False):
+        for k, done in zip(positions, reply.done, strict=False):
             self._learn(call.tasks[k], done.seconds)
             spend(done.costs)
             yield k, done
         if reply.error is None:
             return
-        failed, *others = sent.positions[len(reply.done) :]
+        failed, *others = positions[len(reply.done) :]
         if isinstance(reply.error, MemoryError):
             self._lost_one(call, failed, "its memory does not suffice")
         else:
@@ -229,8 +217,8 @@ class Workers:
             self.pool.restart()
         else:
             del call.flying[future]
-        for sent in lost:
-            for k in sent.positions:
+        for positions, *_ in lost:
+            for k in positions:
                 self._lost_one(call, k, "the process that computed it ended")
 
     def _lost_one(self, call: _Call, position: int, reason: str) -> None:
@@ -244,13 +232,11 @@ class Workers:
         call.errors[position] = UnfinishedError(text)
 
     def _learn(self, task: Task[Any], seconds: float) -> None:
-        """Note the time of tasks of this kind."""
         kind = _kind(task)
         self._seconds[kind] = (self._seconds.get(kind, seconds) + seconds) / 2
 
 
 def _kind(task: Task[Any]) -> str:
-    """Return the kind of a task: tasks of one kind take about as long."""
     functions = [task.function, *(x for x in task.arguments[:1] if callable(x))]
     return " ".join([task.stage, *(function.__qualname__ for function in functions)])
 

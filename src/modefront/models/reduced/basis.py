@@ -32,6 +32,8 @@ from modefront._typing import Floats
 from modefront.linalg.affine import DenseAffine
 from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, combine_all, gram
+from modefront.modes.dense import Decomposition, lowest
+from modefront.modes.tridiagonal import LowestModes
 
 UNSOUND = 0.3
 """Length of a direction that should have the length 1, below which it is rounding."""
@@ -62,6 +64,10 @@ class Basis:
     def combine(self, C: Floats) -> Floats:
         """Return V C for C of shape (n, m)."""
         return combine_all(self.blocks, C)
+
+    def lowest(self, theta: Floats, count: int) -> LowestModes | Decomposition:
+        """Return all Ritz values and the ``count`` lowest modes; see `modefront.modes.dense`."""
+        return lowest(self.K.at(theta), self.M.at(theta), count)
 
 
 def empty(pencil: Pencil, theta: Floats, sigma: float) -> Basis:

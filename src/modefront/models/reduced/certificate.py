@@ -44,7 +44,6 @@ from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, gram, times
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.basis import Basis
-from modefront.modes import dense
 from modefront.modes.derivatives import Shifted
 from modefront.work.costs import Costs, spend
 from modefront.work.transfer import shared
@@ -146,7 +145,7 @@ class Certifier:
         """Return the errors of the ``count`` lowest modes or more; None where nothing is known."""
         basis, pencil = self.basis, self.full.pencil
         try:
-            ritz = dense.lowest(basis.K.at(theta), basis.M.at(theta), count + LATER)
+            ritz = basis.lowest(theta, count + LATER)
         except ModelError:
             return None
         above = level(pencil, theta, ritz.lam, count, basis.sigma)

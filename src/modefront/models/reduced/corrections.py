@@ -69,34 +69,20 @@ class CorrectionRequest:
     enough: float = 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class _Columns:
-    """Modes or derivatives of them as a space has them, of unit energy, in columns.
-
-    Attributes
-    ----------
-    Y : (n, m) their coordinates
-    lam : (m,) the eigenvalue of the mode of each
-    residuals : returns those of some columns, (N, some)
-    """
-
-    Y: Floats
-    lam: Floats
-    residuals: Callable[[Ints], Floats]
-
-
-_Sought: TypeAlias = Callable[[Basis], _Columns]
+_Sought: TypeAlias = Callable[[Basis], tuple[Floats, Floats, Callable[[Ints], Floats]]]
+"""Finds modes or derivatives of them in a space, of unit energy, in columns: their coordinates
+(n, m), the eigenvalue of the mode of each (m,), and what returns residuals (N, some) of some."""
 
 
 def _modes(pencil: Pencil, models: Sequence[Floats], count: int) -> _Sought:
     """Return what finds the lowest modes of several models, those of the first one first."""
     thetas = np.repeat(models, count, axis=0)
 
-    def within(space: Basis) -> _Columns:
-        found = [dense.lowest(space.K.at(theta), space.M.at(theta), count) for theta in models]
+    def within(space: Basis) -> tuple[Floats, Floats, Callable[[Ints], Floats]]:
+        found = [space.lowest(theta, count) for theta in models]
         lam = np.concatenate([modes.lam[:count] for modes in found])
         Y = np.hstack([modes.Phi[:, :count] for modes in found]) / np.sqrt(lam - space.sigma)
-        return _Columns(
+        return (
             Y,
             lam,
             lambda some: residuals(pencil, thetas[some], lam[some], space.combine(Y[:, some])),
@@ -109,7 +95,7 @@ def _derivatives(pencil: Pencil, theta: Floats, count: int, half_range: Floats) 
     """Return what finds the derivatives of some modes by each parameter, over half its range."""
     p = theta.size
 
-    def within(space: Basis) -> _Columns:
+    def within(space: Basis) -> tuple[Floats, Floats, Callable[[Ints], Floats]]:
         ritz = dense.decompose(space.K.at(theta), space.M.at(theta))
         slopes, S, *_ = dense.nelson(space.K, space.M, theta, ritz, count)
         lam, dlam = np.repeat(ritz.lam[:count], p), slopes[:count].ravel()
@@ -128,7 +114,7 @@ def _derivatives(pencil: Pencil, theta: Floats, count: int, half_range: Floats) 
                     R += forces[:, of * p + some % p] * factor
             return R
 
-        return _Columns(Y, lam, residuals_of)
+        return Y, lam, residuals_of
 
     return within
 
@@ -142,8 +128,8 @@ def lacking_lengths(
     """
     worth = []
     for some in _shares(pencil, thetas, count):
-        modes = _modes(pencil, some, count)(basis)
-        R = modes.residuals(np.arange(modes.lam.size))
+        _, lam, residuals_of = _modes(pencil, some, count)(basis)
+        R = residuals_of(np.arange(lam.size))
         worth.append(np.einsum("nc,nc->c", R, factor.solve(R)).reshape(-1, count).max(axis=1))
     return np.concatenate(worth)
 
@@ -165,11 +151,10 @@ def with_modes(
     for some in _shares(pencil, thetas, count):
         columns = np.arange(len(some) * count).reshape(-1, count)
         sought = _modes(pencil, some, count)
-        corrected = _with(pencil, basis, factor, sought, columns, request)
-        if not (corrected.settled or request.share):
+        basis, before, settled = _with(pencil, basis, factor, sought, columns, request)
+        if not (settled or request.share):
             return None
-        basis = corrected.basis
-        errors.append(corrected.errors)
+        errors.append(before)
     return basis, np.concatenate(errors)
 
 
@@ -192,24 +177,8 @@ def with_derivatives(
     columns, width = count * theta.size, _together(pencil)
     for first in range(0, columns, width):
         some = np.arange(first, min(first + width, columns))
-        basis = _with(pencil, basis, factor, sought, some[None], request).basis
+        basis, *_ = _with(pencil, basis, factor, sought, some[None], request)
     return basis
-
-
-@dataclass(frozen=True, eq=False)
-class _Known:
-    """A basis that knows more of some models.
-
-    Attributes
-    ----------
-    basis : the basis
-    errors : (models,) relative errors of their eigenvalues before
-    settled : whether nothing is left that matters
-    """
-
-    basis: Basis
-    errors: Floats
-    settled: bool
 
 
 def _with(
@@ -219,22 +188,22 @@ def _with(
     sought: _Sought,
     columns: Ints,
     request: CorrectionRequest,
-) -> _Known:
-    """Return the basis with some of what is sought.
+) -> tuple[Basis, Floats, bool]:
+    """Return the basis with some of what is sought; each row of ``columns`` is of one model.
 
-    Each row of ``columns`` (models, some) is of one model.
+    Further the relative errors of the models' eigenvalues before, and whether all is settled.
     """
     space, active, errors = basis, columns.ravel(), np.zeros(0)
-    current = sought(space)
-    total, last = np.zeros((2, current.lam.size))
+    Y, lam, residuals_of = sought(space)
+    total, last = np.zeros((2, lam.size))
     for step in range(STEPS):
-        R = current.residuals(active)
+        R = residuals_of(active)
         Z = factor.solve(R)
         worth = np.einsum("nc,nc->c", R, Z)
         space = extended(pencil, space, Z, request.shortest, pencil.size)
-        before, current = current, sought(space)
+        before, (Y, lam, residuals_of) = lam, sought(space)
         if step == 0:
-            gain = (before.lam - current.lam) / (current.lam - space.sigma)
+            gain = (before - lam) / (lam - space.sigma)
             errors = np.maximum(gain[columns].max(axis=1), 0.0)
             columns = columns[errors >= request.enough]
         total[active] += worth
@@ -246,10 +215,9 @@ def _with(
         active = active[np.isin(active, columns)]
         if not active.size:
             break
-    Y = current.Y[:, columns.ravel()]
-    if Y.size:
+    if (Y := Y[:, columns.ravel()]).size:
         basis = extended(pencil, basis, space.combine(Y), request.shortest, request.capacity)
-    return _Known(basis, errors, not active.size)
+    return basis, errors, not active.size
 
 
 def _shares(pencil: Pencil, thetas: Sequence[Floats], count: int) -> list[Sequence[Floats]]:

@@ -17,7 +17,7 @@ from modefront.brief import as_html, brief_model
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
 from modefront.linalg.factorisation import Factorisation
-from modefront.models.load_case import LoadCase, Transfer
+from modefront.models.base import passed_on
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.basis import Basis, empty, extended
 from modefront.models.reduced.certificate import LATER, Certifier, level
@@ -28,7 +28,6 @@ from modefront.models.reduced.corrections import (
     with_modes,
 )
 from modefront.modes import dense
-from modefront.modes.derivatives import Spectrum
 from modefront.modes.eigensolvers import FullModes
 from modefront.modes.result import Modes
 from modefront.modes.sparse import lowest
@@ -100,19 +99,10 @@ class SnapshotRequest:
         """The parameters of each model."""
         return list(np.atleast_2d(self.theta))
 
-    def same(self, other: SnapshotRequest) -> bool:
-        """Return whether it is the same snapshot."""
-        alike = self.modes == other.modes and self.enough == other.enough
-        return alike and np.array_equal(self.theta, other.theta)
-
-
-@dataclass(frozen=True)
-class _TakenSnapshot:
-    """A snapshot, what it took, and the error that it found."""
-
-    what: SnapshotRequest
-    costs: Costs
-    error: float
+    @property
+    def key(self) -> tuple[bytes, int, float]:
+        """What tells the snapshot from others."""
+        return self.theta.tobytes(), self.modes, self.enough
 
 
 @dataclass(frozen=True)
@@ -154,7 +144,7 @@ class ReducedModel:
     memory: float = MEMORY
     spare: int = 0
     _requested: tuple[SnapshotRequest, ...] = ()
-    _taken: tuple[_TakenSnapshot, ...] = ()
+    _taken: tuple[tuple[SnapshotRequest, Costs, float], ...] = ()
     _basis: Basis | None = None
     _factor: Factorisation | None = None
     _small: _Projected | None = None
@@ -174,7 +164,7 @@ class ReducedModel:
     @property
     def version(self) -> tuple[tuple[bytes, int, float], ...]:
         """Snapshots in use."""
-        return tuple((x.theta.tobytes(), x.modes, x.enough) for x in self._requested)
+        return tuple(what.key for what in self._requested)
 
     @property
     def parts(self) -> tuple[MatrixModel]:
@@ -186,39 +176,19 @@ class ReducedModel:
         """Bytes that the projected matrices take; nothing else is needed for modes."""
         return 8.0 * 8 * self._projected().K.size ** 2 if self._is_at_hand else 0.0
 
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """Names of the parameters."""
-        return self.full.parameters
+    parameters = passed_on("full", "parameters")
 
-    @property
-    def sensors(self) -> tuple[str, ...]:
-        """Names of the sensors."""
-        return self.full.sensors
+    sensors = passed_on("full", "sensors")
 
-    @property
-    def size(self) -> int:
-        """Number of degrees of freedom of the full model."""
-        return self.full.size
+    size = passed_on("full", "size")
 
-    @property
-    def places(self) -> tuple[str, ...]:
-        """Names of the sensors and of the other outputs."""
-        return self.full.places
+    places = passed_on("full", "places")
 
-    @property
-    def directions(self) -> tuple[str, ...]:
-        """Names of the directions in which the base can move."""
-        return self.full.directions
+    directions = passed_on("full", "directions")
 
-    def transfer(self, theta: Floats, count: int, load_case: LoadCase) -> Transfer:
-        """Return the full model in a load case; see `modefront.models.base.Model`."""
-        return self.full.transfer(theta, count, load_case)
+    transfer = passed_on("full", "transfer")
 
-    @property
-    def unused(self) -> tuple[str, ...]:
-        """Names of parameters on which neither matrix depends."""
-        return self.full.unused
+    unused = passed_on("full", "unused")
 
     @property
     def capacity(self) -> int:
@@ -261,9 +231,9 @@ class ReducedModel:
         except ModelError:
             self._requested = before
             raise
-        last = self._taken[len(before)]
-        spend(last.costs)
-        return last.error
+        _, costs, error = self._taken[len(before)]
+        spend(costs)
+        return error
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
@@ -284,11 +254,8 @@ class ReducedModel:
             return self.full.full_modes(theta, count)
         basis = self.basis
         started = time.perf_counter()
-        pairs = dense.lowest(basis.K.at(theta), basis.M.at(theta), count)
-        if pairs.lam.size < count:
-            raise ModelError(
-                f"{count} modes asked for, but only {pairs.lam.size} have a finite frequency"
-            )
+        pairs = basis.lowest(theta, count)
+        dense.refuse_fewer(pairs.lam.size, count)
         Phi = basis.combine(np.ascontiguousarray(pairs.Phi[:, :count]))
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return FullModes(pairs.lam[:count], Phi, None)
@@ -310,15 +277,11 @@ class ReducedModel:
             theta = self.nominal.copy()
             theta[list(pair)] = self.lower[list(pair)]
             with suppress(ModelError):
-                lam = dense.lowest(basis.K.at(theta), basis.M.at(theta), count + LATER).lam
+                lam = basis.lowest(theta, count + LATER).lam
                 if lam.size > count:
                     doubtful.append((-lam[count - 1], pair, theta, lam))
         chosen = sorted(doubtful, key=lambda entry: entry[:2])[:PROBES]
-        return [
-            theta
-            for *_, theta, lam in chosen
-            if level(self.full.pencil, theta, lam, count, basis.sigma) is None
-        ]
+        return [theta for *_, theta, lam in chosen if self._lacks(basis, theta, lam, count)]
 
     @property
     def basis(self) -> Basis:
@@ -335,11 +298,14 @@ class ReducedModel:
         """Whether nothing has to be solved in full for the snapshots in use."""
         if self._small is not None and self._small.snapshots is self._requested:
             return True
-        known = len(self._taken) == len(self._requested) > 0
-        return known and _begins(self._requested, self._taken)
+        return len(self._taken) == len(self._requested) > 0 and self._begins
+
+    @property
+    def _begins(self) -> bool:
+        """Whether the requested snapshots begin with those that were taken."""
+        return self.version[: len(self._taken)] == tuple(what.key for what, *_ in self._taken)
 
     def _projected(self) -> _Projected:
-        """Return the matrices in the basis of the requested snapshots."""
         if self._small is None or self._small.snapshots is not self._requested:
             basis = self.basis
             sensed = np.hstack([self.full.selection @ block for block in basis.blocks])
@@ -348,14 +314,14 @@ class ReducedModel:
 
     def _compute(self) -> None:
         """Make the basis that of the requested snapshots; only those not in it are computed."""
-        if not _begins(self._requested, self._taken):
+        if not self._begins:
             self._taken, self._basis, self._factor = (), None, None
         with uncounted():  # `take` counts a snapshot, once
             for what in self._requested[len(self._taken) :]:
                 with counted() as costs:
                     basis, error = self._added(what)
                 self._basis = basis
-                self._taken = (*self._taken, _TakenSnapshot(what, costs, error))
+                self._taken = (*self._taken, (what, costs, error))
 
     def _added(self, what: SnapshotRequest) -> tuple[Basis, float]:
         """Return the basis with a snapshot, and the error that it found.
@@ -376,7 +342,6 @@ class ReducedModel:
     def _added_to(
         self, basis: Basis, models: list[Floats], what: SnapshotRequest
     ) -> tuple[Basis, float]:
-        """Return a basis with what some models of a snapshot add, and the error that it had."""
         error, near = 0.0, [theta for theta in models if self._is_near(basis, theta, what)]
         corrected = self._corrected(basis, near, what) if near else None
         if corrected:
@@ -396,7 +361,11 @@ class ReducedModel:
         self, basis: Basis, factor: Factorisation, what: SnapshotRequest
     ) -> tuple[list[Floats], float]:
         """Return the models of a snapshot that the basis knows least, and its error there."""
-        models = [theta for theta in what.models if _has_modes(basis, theta, what.modes)]
+        models = []
+        for theta in what.models:
+            with suppress(ModelError):
+                if basis.lowest(theta, what.modes).lam.size >= what.modes:
+                    models.append(theta)
         if not models:
             return what.models[:WORST], np.inf
         lengths = lacking_lengths(self.full.pencil, basis, factor, models, what.modes)
@@ -405,18 +374,18 @@ class ReducedModel:
 
     def _is_near(self, basis: Basis, theta: Floats, what: SnapshotRequest) -> bool:
         """Return whether the factor at hand is of use for a model, and no mode is missing."""
-        try:
-            lam = dense.lowest(basis.K.at(theta), basis.M.at(theta), what.modes + LATER).lam
-        except ModelError:
-            return False
-        return (
-            lam.size > what.modes
-            and _condition(basis, theta) <= FAR
-            and (
-                what.enough > 0
-                or level(self.full.pencil, theta, lam, what.modes, basis.sigma) is not None
+        with suppress(ModelError):
+            lam = basis.lowest(theta, what.modes + LATER).lam
+            return (
+                lam.size > what.modes
+                and _condition(basis, theta) <= FAR
+                and (what.enough > 0 or not self._lacks(basis, theta, lam, what.modes))
             )
-        )
+        return False
+
+    def _lacks(self, basis: Basis, theta: Floats, lam: Floats, count: int) -> bool:
+        """Return whether a mode is missing among the lowest ones, of the eigenvalues ``lam``."""
+        return level(self.full.pencil, theta, lam, count, basis.sigma) is None
 
     def _corrected(
         self, basis: Basis, near: list[Floats], what: SnapshotRequest
@@ -444,10 +413,14 @@ class ReducedModel:
         return basis, float(errors.max())
 
     def _solved(self, known: Basis | None, theta: Floats, modes: int) -> Basis:
-        """Return the basis with the modes of a full solution and their derivatives."""
         started = time.perf_counter()
         pencil = self.full.pencil
-        spectrum = self._spectrum(theta, modes + SPARE, is_first=known is None)
+        count, spectrum = min(modes + SPARE, self.size), None
+        if known is None:  # as many more as there are
+            count = min(max(count, self.count), self.size)
+            with suppress(ModelError):
+                spectrum = lowest(pencil, theta, min(WIDE * count, self.size))
+        spectrum = spectrum or lowest(pencil, theta, count)
         below = spectrum.factors[0]
         vectors = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
         del spectrum  # the other factor
@@ -459,80 +432,62 @@ class ReducedModel:
         basis = self._with_derivatives(basis, below.factor, theta, modes)
         if known is None:
             self._factor = below.factor
-            basis = self._at_bounds(basis, below.factor, self._bounds(basis, theta))
+            basis = self._at_bounds(basis, below.factor, theta)
         spend(Costs(corrected_time=time.perf_counter() - solved))
         return basis
-
-    def _spectrum(self, theta: Floats, count: int, *, is_first: bool) -> Spectrum:
-        """Return ``count`` modes or more, the first time as many more as there are."""
-        if is_first:
-            count = max(count, self.count)
-            with suppress(ModelError):
-                return lowest(self.full.pencil, theta, min(WIDE * count, self.size))
-        return lowest(self.full.pencil, theta, min(count, self.size))
 
     def _excluding(self, basis: Basis, factor: Factorisation, models: list[Floats]) -> Basis:
         """Return the basis with directions in which the stiffness of some models is negative.
 
         Raises ModelError where none is found.
         """
-        directions = [self._unstable(basis, factor, theta) for theta in models]
-        vectors = np.hstack(directions)
-        if not vectors.shape[1]:
-            raise ModelError("no direction of negative stiffness is found")
-        return extended(self.full.pencil, basis, vectors, self._shortest, self.capacity)
-
-    def _unstable(self, basis: Basis, factor: Factorisation, theta: Floats) -> Floats:
-        """Return directions (N, k) in which K(theta) is negative; none where none is found."""
         pencil = self.full.pencil
         A = pencil.K.at(basis.theta) - basis.sigma * pencil.M.at(basis.theta)
         inverse = scipy.sparse.linalg.LinearOperator(
             A.shape, matvec=lambda x: factor.solve(x.reshape(-1, 1))[:, 0], dtype=float
         )
-        start = np.random.default_rng(0).standard_normal(self.size)
-        nu, X = scipy.sparse.linalg.eigsh(
-            pencil.K.at(theta), UNSTABLE, A, which="SA", v0=start, tol=SHARE**2, Minv=inverse
-        )
-        found: Floats = X[:, nu < -NEGATIVE]
-        return found
+        found = []
+        for theta in models:
+            start = np.random.default_rng(0).standard_normal(self.size)
+            options = {"which": "SA", "v0": start, "tol": SHARE**2, "Minv": inverse}
+            nu, X = scipy.sparse.linalg.eigsh(pencil.K.at(theta), UNSTABLE, A, **options)
+            found.append(X[:, nu < -NEGATIVE])
+        vectors = np.hstack(found)
+        if not vectors.shape[1]:
+            raise ModelError("no direction of negative stiffness is found")
+        return extended(pencil, basis, vectors, self._shortest, self.capacity)
 
     def _with_derivatives(
         self, basis: Basis, factor: Factorisation, theta: Floats, modes: int
     ) -> Basis:
-        """Return the basis of some modes with their derivatives."""
         count, half = min(modes, basis.columns - 1), (self.upper - self.lower) / 2
         request = CorrectionRequest(SHARE, self._shortest, self.capacity)
         if count < 1:
             return basis
         return with_derivatives(self.full.pencil, basis, factor, theta, count, half, request)
 
-    def _bounds(self, basis: Basis, theta: Floats) -> list[Floats]:
-        """Return the parameters with one of them at a bound, or nearer to ``theta``."""
-        out = []
+    def _at_bounds(self, basis: Basis, factor: Factorisation, theta: Floats) -> Basis:
+        """Return the basis with the modes where one parameter is at a bound, or nearer to theta.
+
+        They are for the global search, and take no more than half of what is left of the memory.
+        """
+        bounds = []
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
             for end in ends:
                 for halving in range(HALVINGS + 1):
                     nearby = theta.copy()
                     nearby[i] += (end - theta[i]) / 2**halving
                     if _condition(basis, nearby) <= FAR:
-                        out.append(nearby)
+                        bounds.append(nearby)
                         break
-        return out
-
-    def _at_bounds(self, basis: Basis, factor: Factorisation, bounds: list[Floats]) -> Basis:
-        """Return the basis with the modes at some parameters, for the global search.
-
-        They take no more than half of what is left of the memory.
-        """
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
         request = CorrectionRequest(SHARE, COARSE, (basis.columns + self.capacity) // 2)
-        pencil = self.full.pencil
         for some in (bounds, *([theta] for theta in bounds)):
             # A larger space may see that a matrix is indefinite at one of them: then each alone.
             with suppress(ModelError):
-                known = with_modes(pencil, basis, factor, some, count, request)
+                known = with_modes(self.full.pencil, basis, factor, some, count, request)
                 basis = known[0] if known else basis
                 spend(Costs(corrected=len(some)))
                 if some is bounds:
@@ -544,22 +499,7 @@ class ReducedModel:
         return SHORTEST * float(np.sqrt(self.tolerance))
 
 
-def _has_modes(basis: Basis, theta: Floats, count: int) -> bool:
-    """Return whether a model has modes in the basis."""
-    try:
-        return dense.lowest(basis.K.at(theta), basis.M.at(theta), count).lam.size >= count
-    except ModelError:
-        return False
-
-
 def _condition(basis: Basis, theta: Floats) -> float:
     """Return the condition of K - sigma M over A in the basis; infinite where it is indefinite."""
     values = np.linalg.eigvalsh(basis.K.at(theta) - basis.sigma * basis.M.at(theta))
     return float(values[-1] / values[0]) if values[0] > 0 else np.inf
-
-
-def _begins(requests: Sequence[SnapshotRequest], taken: Sequence[_TakenSnapshot]) -> bool:
-    """Return whether the requested snapshots begin with those that were taken."""
-    return len(taken) <= len(requests) and all(
-        entry.what.same(other) for entry, other in zip(taken, requests, strict=False)
-    )
