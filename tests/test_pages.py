@@ -29,10 +29,16 @@ def script(name: str) -> ModuleType:
 
 def test_the_page_of_results_is_what_the_schema_makes() -> None:
     text = (DOCS / "results.md").read_text(encoding="utf-8")
-    assert script("make_results").page(text) == text, "run: python docs/make_results.py"
+    assert script("make_tables").page("results.md", text) == text, "run: python docs/make_tables.py"
     assert f"format <!-- format -->{FORMAT};" in text
     for name in (*variables_of((PeakResponse.kind, Passage.kind)), *ATTRIBUTES):
         assert f"| `{name}`" in text
+
+
+def test_the_page_of_the_study_file_is_what_its_reader_makes() -> None:
+    text = (DOCS / "study-file.md").read_text(encoding="utf-8")
+    made = script("make_tables").page("study-file.md", text)
+    assert made == text, "run: python docs/make_tables.py"
 
 
 def test_the_page_of_results_lists_every_kind_of_models() -> None:
@@ -45,16 +51,16 @@ def test_the_page_of_results_lists_every_kind_of_models() -> None:
 
 def test_a_page_without_a_table_of_the_schema_is_refused() -> None:
     with pytest.raises(ValueError, match="expected one table each"):
-        script("make_results").page("<!-- table: Models -->\n<!-- end -->\n")
+        script("make_tables").page("results.md", "<!-- table: Models -->\n<!-- end -->\n")
 
 
 def test_what_is_between_the_comments_is_replaced_and_nothing_else() -> None:
-    make = script("make_results")
+    make = script("make_tables")
     text = (DOCS / "results.md").read_text(encoding="utf-8")
     spoiled = text.replace("| `theta` *", "| `theta_0` *")
     assert spoiled != text
-    assert make.page(spoiled) == text
-    assert make.page("by hand\n" + text) == "by hand\n" + text
+    assert make.page("results.md", spoiled) == text
+    assert make.page("results.md", "by hand\n" + text) == "by hand\n" + text
 
 
 def blocks(page: Path) -> list[tuple[str, str]]:

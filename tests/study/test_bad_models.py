@@ -11,7 +11,11 @@ SENSOR = "expected a degree of freedom from 0, or a list [[degree of freedom, we
 CONTRADICTIONS = [
     # the chain
     ("[2.0, 1.0]", "[2.0, 1e308]", "masses: ... found [2.0, a number beyond 1e+100]"),
-    ("[2.0, 1.0]", "[2.0, 1.0, 1.0]", "[model] added_masses: expected a list of 3 masses"),
+    (
+        "[2.0, 1.0]",
+        "[2.0, 1.0, 1.0]",
+        "[model] added_masses: ... , as many as masses, found [0.5, 0.0]",
+    ),
     ('["k1", "k2"]', '["k1", "k3"]', "stiffness_parameters: ... found 'k3' (did you mean 'k2'?)"),
     ('["k1", "k2"]', '["k1", "base"]', "stiffness_parameters: ... found 'base'"),
     ('["", ""]', '["m", ""]', "mass_parameters: expected names of parameters, found 'm'"),
