@@ -22,7 +22,6 @@ import elements
 import nafems
 import numpy as np
 import rugged
-import verdicts
 
 from identification import F, eight, noisy, three_story
 from modefront._typing import Floats
@@ -121,15 +120,6 @@ def diagnosis(count: int = 10) -> Iterator[Row]:
             yield Row(what, "95 % named", f"{named} of {count}", named >= 0.95 * count)
 
 
-def said(count: int = 3) -> Iterator[Row]:
-    """Yield how often the first lines of results say what was planted."""
-    for case in verdicts.CASES:
-        seeds = range(JUDGED, JUDGED + count)
-        solved = [verdicts.solved(case, seed) for seed in seeds]
-        right = sum(verdicts.is_right(case, *each) for each in solved)
-        yield Row(f"planted: {case}", "said, nothing else", f"{right} of {count}", right == count)
-
-
 def identification(runs: int = 5) -> Iterator[Row]:
     """Yield errors of identified modes beside those of sdypy-EMA, which knows the frequencies."""
     try:
@@ -197,11 +187,6 @@ PARTS = (
         "Mistakes that `check` names",
         "Random studies with planted mistakes, [as described](check.md).",
         diagnosis,
-    ),
-    Part(
-        "The verdict",
-        "Simulated tests with a planted state of model or data: what the first lines say.",
-        said,
     ),
     Part(
         "Identification",
