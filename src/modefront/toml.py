@@ -12,6 +12,7 @@ from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.options import (
     Requirement,
+    is_name,
     number,
     one_of,
     options,
@@ -143,10 +144,11 @@ class Table:
         place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
         return replace(self, place=place, values=value, requested=[])
 
-    def content(self, name: str | None, read: Callable[[Path], R]) -> R | None:
-        """Return what is read from a file, None without one; note what is wrong with it."""
+    def content(self, key: str, read: Callable[[Path], R]) -> R | None:
+        """Return what is read from a file, None without its name; note what is wrong with it."""
+        name: Any = self.values.get(key)
         try:
-            return None if name is None else read(self.path(name))
+            return read(self.path(name)) if is_name(name) else None
         except InputError as error:
             self.faults.extend(error.faults)
             return None

@@ -62,6 +62,13 @@ CONTRADICTIONS = [
 ]
 
 
+def test_an_unknown_key_hides_no_other_fault(folder: Path, refused: Check) -> None:
+    study = folder / "wrong.toml"
+    study.write_text(edited(STUDY, ("[model]\n", "[model]\nmases = [1]\n"), ("low = 0", "low = 2")))
+    known = "[model]: expected a known key, found 'mases' (did you mean 'masses'?)"
+    refused(study, known, "[model] sensors low: expected degrees of freedom from 0 to 1")
+
+
 @pytest.mark.parametrize(("old", "new", "says"), CONTRADICTIONS)
 def test_contradictions_of_models(
     old: str, new: str, says: str, folder: Path, refused: Check

@@ -76,8 +76,8 @@ class Chain:
 def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:
     """Return the chain that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
-    read = table.record(Chain)
-    n = len(read.masses) if read else None
+    read, masses = table.record(Chain), table.values.get("masses")
+    n = len(masses) if isinstance(masses, list) and MASSES.holds(masses) else None
     stiffness_names = _scales(table, "stiffness_parameters", read, parameters)
     mass_names = _scales(table, "mass_parameters", read, parameters)
     sensors = read_sensors(table, n, default=None)

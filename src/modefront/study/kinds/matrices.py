@@ -103,12 +103,12 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     size = _common_size(table, terms)
     if size is not None:
         _check_entries(table, terms, size)
-    dofs = table.content(read.dofs, read_dofs) if read else None
+    dofs = table.content("dofs", read_dofs)
     if dofs is not None and size not in (None, dofs.size):
         expected = f"{size} rows, one a degree of freedom"
         table.fault("dofs", expected, f"{dofs.size} in '{table.values['dofs']}'")
         dofs = None
-    mesh = table.content(read.mesh, read_mesh) if read else None
+    mesh = table.content("mesh", read_mesh)
     sensors = read_sensors(table, size, dofs=dofs)
     outputs = read_outputs(table, size, sensors, dofs)
     base = read_base(table, size, dofs)

@@ -20,6 +20,7 @@ from modefront.options import (
     Requirement,
     check_fields,
     entries,
+    is_name,
     number,
     numbers,
     one_of,
@@ -138,17 +139,17 @@ class MeshModel:
 def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
     """Return the model that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
-    read = table.record(MeshModel)
-    if read is None:
+    read, name = table.record(MeshModel), table.values.get("file")
+    if not is_name(name):
         return None
     try:
-        mesh = read_mesh(table.path(read.file))
+        mesh = read_mesh(table.path(str(name)))
     except fem.FemError as error:  # what the tables say cannot be judged without the mesh
         table.fault("file", "a mesh that can be read", str(error))
         return None
     structure, outputs = _structure(table, parameters, mesh), _outputs(table)
     table.notes += unused_groups(mesh, (g.name for g in structure.groups), _named_nodes(table))
-    if len(table.faults) > before:
+    if len(table.faults) > before or read is None:
         _look_further(table, structure, mesh)
         return None
     try:
