@@ -162,13 +162,14 @@ PARTS = (
     Part(
         "The published fronts",
         "Christodoulou, Ntotsios, Papadimitriou & Panetsos (2008), doi:10.1016/j.cma.2008.04.010: "
-        "20 points of each front. Printed numbers are compared within 0.15 % and 0.0015.",
+        "20 points of each front. Printed numbers are compared within 0.15 % and 0.0015. "
+        "[Why two rows differ](three-story.md).",
         paper,
     ),
     Part(
         "Natural frequencies",
         "The Standard NAFEMS Benchmarks, revision 3 (1990); [what decides where targets "
-        "differ](nafems.md). All modes on coarse meshes.",
+        "differ](nafems.md). All modes on coarse meshes, within what other programs reach there.",
         natural_frequencies,
     ),
     Part(
