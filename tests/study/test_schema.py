@@ -156,6 +156,16 @@ def test_a_key_has_its_meaning_requirement_and_default() -> None:
     assert study_schema()["properties"]["search"]["properties"]["doubt"]["default"] == 0.05
 
 
+@pytest.mark.parametrize("name", ["modes.uff", "MODES.UNV", "a.b/c.UfF"])
+def test_only_universal_files_have_sensors_and_only_others_columns(name: str) -> None:
+    validator = jsonschema.Draft7Validator(study_schema()["properties"]["data"])
+    sensors, columns = {"sensors": {"top": "12Z"}}, {"columns": {"acc": "top"}}
+    assert validator.is_valid({"file": name} | sensors)
+    assert not validator.is_valid({"file": name} | columns)
+    assert validator.is_valid({"file": f"{name}.csv"} | columns)
+    assert not validator.is_valid({"file": f"{name}.csv"} | sensors)
+
+
 def test_what_is_registered_is_in_the_schema(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(KINDS.added, "mine", mf.ModelKind("mine", lambda _table, _names: None))
     model = study_schema()["properties"]["model"]

@@ -106,8 +106,8 @@ def _data() -> Schema:
         },
         ["file"],
     )
-    ending = "|".join(SUFFIXES).replace(".", r"\.")
-    universal = {"properties": {"file": {"pattern": f"({ending})$"}}}
+    endings = ["".join(f"[{x}{x.upper()}]" for x in each) for each in SUFFIXES]
+    universal = {"properties": {"file": {"pattern": f"({'|'.join(endings)})$"}}}
     without: dict[str, Schema] = {
         "then": {"properties": {"columns": False}},
         "else": {"properties": {"sensors": False}},
@@ -117,12 +117,12 @@ def _data() -> Schema:
 
 def _model(name: str) -> Schema:
     """Return the schema of ``[model]`` of one kind."""
-    kind, chosen = KINDS[name], {"enum": [name]}
+    kind, own = KINDS[name], {"enum": [name]}
     if kind.table is None:
-        return {"type": "object", "properties": {"kind": chosen}, "required": ["kind"]}
+        return {"type": "object", "properties": {"kind": own}, "required": ["kind"]}
     known = schema_of(kind.table)
     more = {each.name: each.schema for each in options(Reduction) if each.name == "reduction"}
-    keys = {"kind": chosen, **known["properties"], **(more if kind.is_reducible else {})}
+    keys = {"kind": own, **known["properties"], **(more if kind.is_reducible else {})}
     return closed(keys, ["kind", *known["required"]])
 
 
