@@ -4,6 +4,7 @@ python3 tasks.py demo    the three-story study, both configurations, beside the 
 python3 tasks.py test    the tests
 python3 tasks.py lint    formatting, lint and types
 python3 tasks.py docs    the pages, as docs/_build/html/index.html
+python3 tasks.py verify  docs/verification.md: what is compared with others (a quarter of an hour)
 python3 tasks.py trials  inputs that are spoilt by chance and runs that are killed (hours)
 
 Needs Python 3.11 or newer and nothing else. Packages are those pinned in requirements.txt for the
@@ -31,6 +32,7 @@ NEEDS = {"demo": RUNTIME, "docs": PAGES}
 TASKS = {
     "demo": [["examples/three_story.py", "demo"]],
     "test": [["-m", "pytest", "-q", "-n", "auto", "--dist", "worksteal"]],
+    "verify": [["benchmarks/verify.py"]],
     "trials": [["tests/trials/trials.py"]],
     "docs": [["-m", "sphinx", "-q", "-W", "--keep-going", "docs", "docs/_build/html"]],
     "lint": [

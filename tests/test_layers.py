@@ -14,7 +14,7 @@ import modefront
 LAYERS = (
     ("_lazy", "_typing", "_version", "brief", "outputs", "rounding", "text"),
     ("errors", "variables"),
-    ("complete", "families", "inputs", "hdf5"),
+    ("complete", "families", "inputs", "hdf5", "json_schema"),
     ("isolated", "options"),
     ("toml", "linalg", "response", "work"),
     ("data", "fem", "modes", "optim", "reliability"),

@@ -29,10 +29,16 @@ def script(name: str) -> ModuleType:
 
 def test_the_page_of_results_is_what_the_schema_makes() -> None:
     text = (DOCS / "results.md").read_text(encoding="utf-8")
-    assert script("make_results").page(text) == text, "run: python docs/make_results.py"
+    assert script("make_tables").page("results.md", text) == text, "run: python docs/make_tables.py"
     assert f"format <!-- format -->{FORMAT};" in text
     for name in (*variables_of((PeakResponse.kind, Passage.kind)), *ATTRIBUTES):
         assert f"| `{name}`" in text
+
+
+def test_the_page_of_the_study_file_is_what_its_reader_makes() -> None:
+    text = (DOCS / "study-file.md").read_text(encoding="utf-8")
+    made = script("make_tables").page("study-file.md", text)
+    assert made == text, "run: python docs/make_tables.py"
 
 
 def test_the_page_of_results_lists_every_kind_of_models() -> None:
@@ -45,16 +51,16 @@ def test_the_page_of_results_lists_every_kind_of_models() -> None:
 
 def test_a_page_without_a_table_of_the_schema_is_refused() -> None:
     with pytest.raises(ValueError, match="expected one table each"):
-        script("make_results").page("<!-- table: Models -->\n<!-- end -->\n")
+        script("make_tables").page("results.md", "<!-- table: Models -->\n<!-- end -->\n")
 
 
 def test_what_is_between_the_comments_is_replaced_and_nothing_else() -> None:
-    make = script("make_results")
+    make = script("make_tables")
     text = (DOCS / "results.md").read_text(encoding="utf-8")
     spoiled = text.replace("| `theta` *", "| `theta_0` *")
     assert spoiled != text
-    assert make.page(spoiled) == text
-    assert make.page("by hand\n" + text) == "by hand\n" + text
+    assert make.page("results.md", spoiled) == text
+    assert make.page("results.md", "by hand\n" + text) == "by hand\n" + text
 
 
 def blocks(page: Path) -> list[tuple[str, str]]:
@@ -81,13 +87,23 @@ def test_the_prediction_of_the_page_can_be_made() -> None:
 
 
 @pytest.mark.slow
-def test_the_page_of_python_runs_and_prints_what_it_says(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(("page", "count"), [("python.md", 12), ("extend.md", 3)])
+def test_the_cells_of_pages_in_python_run(
+    page: str, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    result = blocks(DOCS / "python.md")
-    assert len(result) >= 12
-    names: dict[str, object] = {}
-    for code, output in result:
-        exec(compile(code, "docs/python.md", "exec"), names)
-        assert capsys.readouterr().out == output, code
+    text = (DOCS / page).read_text(encoding="utf-8")
+    cells = re.findall(r"```{code-cell}\n((?!:tags:).*?)```\n", text, re.DOTALL)
+    assert len(cells) == count
+    names: dict[str, Any] = {}
+    for code in cells:
+        exec(compile(code, f"docs/{page}", "exec"), names)
+
+
+def test_no_page_that_teaches_is_long() -> None:
+    index = (DOCS / "index.md").read_text(encoding="utf-8")
+    for caption in ("Tutorials", "How to"):
+        (listed,) = re.findall(rf":caption: {caption}\n:maxdepth: 1\n(.*?)```", index, re.DOTALL)
+        for name in listed.split():
+            words = len((DOCS / f"{name}.md").read_text(encoding="utf-8").split())
+            assert words <= 1500, f"{name}: {words} words"

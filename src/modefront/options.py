@@ -9,87 +9,128 @@ from TOML (`modefront.toml.Table`), from literals and from numpy scalars.
 
 from __future__ import annotations
 
+import inspect
 import math
+import re
 import types
 import typing
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, dataclass, field, fields
 from enum import Enum
+from itertools import pairwise
 from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from modefront.errors import Fault, refuse
+from modefront.json_schema import NAME, NUMBER, TABLE, Schema, array, closed, fits, whole_number
 from modefront.rounding import LARGEST
+
+WITHOUT = "Without it: "
+"""What a description says before the default of a key, where that is no single value."""
 
 SHORT = 6
 """Longest list that a message shows item by item."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Requirement:
     """Requirement on the value of an option.
 
     Attributes
     ----------
     expected : the same in words
-    holds : whether a value in plain Python is so
+    schema : of such a value; empty where `entries` are read by a reader of their own
     convert : brings such a value into the form that is kept
+    further : whether a value of this schema meets what no schema says
     record : the class of a nested record, read from a table within the table; None for a value
+    entries : schema of a table with its entries, where these are read one by one and what is wrong
+        is said of each; empty where ``schema`` says all
     """
 
     expected: str
-    holds: Callable[[Any], bool]
+    schema: Schema
     convert: Callable[[Any], Any] = lambda value: value
+    further: Callable[[Any], bool] = lambda _: True
     record: type | None = None
+    entries: Schema = field(default_factory=dict)
+
+    def holds(self, value: Any) -> bool:
+        """Return whether a value in plain Python is so."""
+        if self.record:
+            return isinstance(value, self.record)
+        return fits(value, self.schema) and self.further(value)
 
     def fault(self, place: str, value: object) -> Fault | None:
         """Return the fault of a value, None where it has none."""
         return None if self.holds(plain(value)) else Fault("", place, self.expected, shown(value))
 
+    @property
+    def described(self) -> Schema:
+        """Schema of a value in a file, with all that is within it, and its requirement in words."""
+        schema = schema_of(self.record) if self.record else self.entries or self.schema
+        return {"description": self.expected, **schema}
+
 
 def one_of(*choices: str) -> Requirement:
     """Return the requirement of one of several texts."""
     expected = "one of " + ", ".join(f"'{choice}'" for choice in choices)
-    return Requirement(expected, lambda value: isinstance(value, str) and value in choices)
+    return Requirement(expected, {"enum": list(choices)})
 
 
 def whole(least: int, most: int) -> Requirement:
     """Return the requirement of a whole number within limits."""
-    return Requirement(
-        f"a whole number from {least} to {most}",
-        lambda value: (
-            isinstance(value, int) and not isinstance(value, bool) and least <= value <= most
-        ),
-    )
+    return Requirement(f"a whole number from {least} to {most}", whole_number(least, most))
 
 
-def number(expected: str, holds: Callable[[float], bool] = math.isfinite) -> Requirement:
-    """Return the requirement of a finite number that passes a test."""
-    return Requirement(expected, lambda value: is_number(value) and holds(value), float)
+def number(
+    expected: str,
+    *,
+    least: float = -LARGEST,
+    most: float = LARGEST,
+    above: float | None = None,
+    below: float | None = None,
+) -> Requirement:
+    """Return the requirement of a finite number within limits."""
+    open_ends = {"exclusiveMinimum": above, "exclusiveMaximum": below}
+    limits = {key: end for key, end in open_ends.items() if end is not None}
+    schema = {"type": "number", "minimum": least, "maximum": most} | limits
+    return Requirement(expected, schema, float)
 
 
-def numbers(expected: str, holds: Callable[[list[float]], bool]) -> Requirement:
-    """Return the requirement of a list of finite numbers that passes a test."""
-    return Requirement(
-        expected,
-        lambda value: isinstance(value, list) and all(map(is_number, value)) and holds(value),
-        lambda value: tuple(map(float, value)),
-    )
+def numbers(
+    expected: str, schema: Schema, further: Callable[[list[float]], bool] = lambda _: True
+) -> Requirement:
+    """Return the requirement of a list of finite numbers."""
+    return Requirement(expected, schema, lambda value: tuple(map(float, value)), further)
 
 
 def text(expected: str) -> Requirement:
     """Return the requirement of a text of printable characters that is not blank."""
-    return Requirement(expected, is_name)
+    return Requirement(expected, NAME, further=is_name)
 
 
 def nested(expected: str, record: type) -> Requirement:
     """Return the requirement of another record of options."""
-    return Requirement(expected, lambda value: isinstance(value, record), record=record)
+    return Requirement(expected, TABLE, record=record)
 
 
-TRUE_OR_FALSE = Requirement("true or false", lambda value: isinstance(value, bool))
+def entries(expected: str, schema: Schema) -> Requirement:
+    """Return the requirement of a table which a reader of its own reads, entry by entry."""
+    return Requirement(expected, {}, entries=schema)
+
+
+PAIR = array(NUMBER, 2, 2)
+"""Schema of two numbers."""
+
+
+def rising(values: Sequence[float]) -> bool:
+    """Return whether each number is greater than the one before it."""
+    return all(a < b for a, b in pairwise(values))
+
+
+TRUE_OR_FALSE = Requirement("true or false", {"type": "boolean"})
 
 
 @dataclass(frozen=True)
@@ -102,25 +143,62 @@ class Option:
     requirement : what its value has to be
     optional : whether None is right as well
     required : whether it has no default
+    default : the default in plain Python; None where it has none, or follows from other values
+    meaning : of the field, from the docstring of the record
     """
 
     name: str
     requirement: Requirement
     optional: bool
     required: bool
+    default: Any = None
+    meaning: str = ""
+
+    @property
+    def schema(self) -> Schema:
+        """Schema of the key: lines say its meaning, its requirement and what holds without it."""
+        meaning, _, without = self.meaning.partition("; None for ")
+        lines = [meaning, self.requirement.expected, without and WITHOUT + without]
+        said = {"description": "\n".join(filter(None, lines))}
+        known = {} if self.default is None else {"default": self.default}
+        return {**self.requirement.described, **said, **known}
 
 
 def options(record: type) -> tuple[Option, ...]:
     """Return the fields of a class of records that have requirements."""
     hints = get_type_hints(record, include_extras=True)
+    meanings = _meanings(inspect.getdoc(record) or "")
     out = []
-    for field in fields(record):
-        requirement = _requirement(hints[field.name])
+    for each in fields(record):
+        requirement = _requirement(hints[each.name])
         if requirement is not None:
-            required = field.default is MISSING and field.default_factory is MISSING
-            optional = types.NoneType in get_args(hints[field.name])
-            out.append(Option(field.name, requirement, optional, required))
+            required = each.default is MISSING and each.default_factory is MISSING
+            optional = types.NoneType in get_args(hints[each.name])
+            default = None if required else plain(each.default)
+            if default in ("", []) or not fits(default, requirement.schema):
+                default = None
+            meaning = meanings.get(each.name, "")
+            out.append(Option(each.name, requirement, optional, required, default, meaning))
     return tuple(out)
+
+
+def _meanings(docstring: str) -> dict[str, str]:
+    """Return what a docstring says of each attribute."""
+    _, _, section = docstring.partition("Attributes\n----------\n")
+    found = re.findall(r"^(\w+) : (.*(?:\n    .*)*)", section, re.MULTILINE)
+    return {name: " ".join(meaning.split()).replace("``", "`") for name, meaning in found}
+
+
+def schema_of(record: type) -> Schema:
+    """Return the schema of a table whose keys are the fields of a record."""
+    return of_options(options(record))
+
+
+def of_options(known: Iterable[Option]) -> Schema:
+    """Return the schema of a table whose keys are options."""
+    known = tuple(known)
+    required = [each.name for each in known if each.required]
+    return closed({each.name: each.schema for each in known}, required)
 
 
 def _requirement(hint: Any) -> Requirement | None:

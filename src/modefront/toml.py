@@ -12,8 +12,8 @@ from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.options import (
     Requirement,
+    is_name,
     number,
-    numbers,
     one_of,
     options,
     shown,
@@ -89,7 +89,7 @@ class Table:
 
     def take(self, key: str, expected: str, test: Callable[[Any], bool], default: Any) -> Any:
         """Return a value that passes a test."""
-        return self.value(key, Requirement(expected, test), default)
+        return self.value(key, Requirement(expected, {}, further=test), default)
 
     def text(self, key: str, expected: str = "a text", default: Any = ...) -> Any:
         """Return a text of printable characters that is not empty."""
@@ -99,21 +99,13 @@ class Table:
         """Return one of some texts."""
         return self.value(key, one_of(*choices), default)
 
-    def number(
-        self, key: str, expected: str, test: Callable[[float], bool], default: Any = ...
-    ) -> Any:
-        """Return a finite number that passes a test."""
-        return self.value(key, number(expected, test), default)
+    def number(self, key: str, expected: str, default: Any = ..., **limits: float) -> Any:
+        """Return a finite number within limits, those of `modefront.options.number`."""
+        return self.value(key, number(expected, **limits), default)
 
     def integer(self, key: str, least: int, most: int, default: Any = ...) -> Any:
         """Return a whole number within limits."""
         return self.value(key, whole(least, most), default)
-
-    def numbers(
-        self, key: str, expected: str, test: Callable[[list[float]], bool], default: Any = ...
-    ) -> Any:
-        """Return finite numbers that pass a test."""
-        return self.value(key, numbers(expected, test), default)
 
     def record(self, record: type[T]) -> T | None:
         """Return the record of options that the table describes, None where something is wrong.
@@ -130,6 +122,9 @@ class Table:
             elif option.requirement.record and isinstance(given, dict):
                 inner = self.table(name)
                 values[name] = inner and inner.record(option.requirement.record)
+            elif not option.requirement.schema:
+                self.requested.append(name)  # a reader of its own says what is wrong with it
+                values[name] = given
             else:
                 values[name] = self.value(name, option.requirement)
         self.close()
@@ -149,11 +144,11 @@ class Table:
         place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
         return replace(self, place=place, values=value, requested=[])
 
-    def content(self, key: str, expected: str, read: Callable[[Path], R]) -> R | None:
-        """Return what is read from a file, None without one; note what is wrong with it."""
-        name = self.text(key, expected, None)
+    def content(self, key: str, read: Callable[[Path], R]) -> R | None:
+        """Return what is read from a file, None without its name; note what is wrong with it."""
+        name: Any = self.values.get(key)
         try:
-            return None if name is None else read(self.path(name))
+            return read(self.path(name)) if is_name(name) else None
         except InputError as error:
             self.faults.extend(error.faults)
             return None
@@ -181,11 +176,12 @@ class Table:
         return out
 
     def close(self) -> None:
-        """Note every unknown key."""
+        """Note every unknown key, once."""
         known = set(self.requested)
         for k, key in enumerate(key for key in self.values if key not in known):
             found = suggestion(key, self.requested) if k < SUGGESTED else repr(clean(key, NAME))
             self.fault("", "a known key", found)
+        self.requested += self.values
 
 
 def read_toml(path: Path, expected: str) -> tuple[Table, bytes]:

@@ -158,7 +158,8 @@ def test_from_nothing_to_results(modefront_: Run, tmp_path: Path) -> None:
     assert "at most 20,000 evaluations of the search" in out
     assert "derivatives agree with finite differences" in out
     assert "no warnings" in out
-    assert sorted(path.name for path in folder.iterdir()) == ["modes.csv", "study.toml"]
+    found = sorted(path.name for path in folder.iterdir())
+    assert found == ["modes.csv", "study.schema.json", "study.toml"]
 
 
 def test_alone_the_command_prints_its_help_once(modefront_: Run) -> None:

@@ -275,7 +275,7 @@ def write_ansys(
 
 
 def write_opensees(job: Path, K: Array, M: Array, names: Sequence[tuple[int, int]]) -> None:
-    """Write what the snippet of docs/import.md writes."""
+    """Write what the snippet of docs/programs.md writes."""
     for letter, A in (("K", K), ("M", M)):
         scipy.sparse.save_npz(f"{job}_{letter}.npz", scipy.sparse.csr_array(A))
     rows = [f"{node},{'xyz'[d - 1]}" for node, d in names]

@@ -1,4 +1,4 @@
-"""The snippet of docs/import.md, run by OpenSees where its package is installed."""
+"""The snippet of docs/programs.md, run by OpenSees where its package is installed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 
 from modefront.programs.importing import import_model
 
-PAGE = Path(__file__).parents[2] / "docs" / "import.md"
+PAGE = Path(__file__).parents[2] / "docs" / "programs.md"
 
 MODEL = """
 import openseespy.opensees as ops

@@ -86,28 +86,28 @@ KEYS = [
     Key(
         "stiffnesses = [3000.0, 2000.0]",
         "[model] stiffnesses",
-        "a list of 2 spring stiffnesses of 0 or more",
+        "a list of spring stiffnesses of 0 or more, as many as masses",
         True,
         NO_MASSES + " [1.0,1.0,1.0,1.0]",
     ),
     Key(
         "added_masses = [0.5, 0.0]",
         "[model] added_masses",
-        "a list of 2 masses of 0 or more",
+        "a list of masses of 0 or more, as many as masses",
         False,
         NO_MASSES + " [1.0,1.0,1.0]",
     ),
     Key(
         'stiffness_parameters = ["k1", "k2"]',
         "[model] stiffness_parameters",
-        "a list of 2 names of parameters",
+        "a list of names of parameters, as many as springs",
         False,
         NO_NAMES,
     ),
     Key(
         'mass_parameters = ["", ""]',
         "[model] mass_parameters",
-        "a list of 2 names of parameters",
+        "a list of names of parameters, as many as masses",
         False,
         NO_NAMES,
     ),
@@ -337,7 +337,7 @@ def test_a_misspelt_key_is_answered_with_the_known_one(
             fault_text(key.table, "a known key", f"'{misspelt}' (did you mean '{key.name}'?)")
         )
     if key.required:
-        says.append(fault_text(key.place, key.expected.replace("a list of 2", ""), "nothing"))
+        says.append(fault_text(key.place, key.expected, "nothing"))
     refused(study, *says)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from itertools import combinations
 from pathlib import Path
+from textwrap import wrap
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from two_masses import STUDY
 import modefront as mf
 from modefront.cli.show import as_json
 from modefront.pairing.mac import mac
+from modefront.results.verdict import with_verdict
 from modefront.study.examples import write_example
 from modefront.uncertainty.freed import wider
 
@@ -87,6 +89,18 @@ def test_points_and_seed_change_nothing(whole: tuple[Path, xr.Dataset]) -> None:
         assert other["theta"].values[other["label"].values == reference] == pytest.approx(
             theta, abs=1e-6
         )
+
+
+@pytest.mark.parametrize("letters", [8, 60, 200])
+def test_the_verdict_has_a_dozen_lines_with_its_title(
+    letters: int, whole: tuple[Path, xr.Dataset]
+) -> None:
+    _, data = whole
+    long = [f"{name:x<{letters}}" for name in data["parameter"].values]
+    result = with_verdict(data.assign_coords(parameter=long)).attrs["verdict"].splitlines()
+    lines = [line for sentence in result for line in wrap(sentence, 80)]
+    assert 3 <= len(lines) <= 11
+    assert result[0] == data.attrs["verdict"].splitlines()[0]
 
 
 def test_the_verdict_is_first_everywhere(

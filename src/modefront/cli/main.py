@@ -85,10 +85,21 @@ def cli(context: click.Context) -> None:
 def init(directory: Path, example: str) -> None:
     """Write a study that runs at once into DIRECTORY."""
     from modefront.study.examples import write_example
+    from modefront.study.schema import add_schema
 
-    for path in write_example(example, directory):
+    files = write_example(example, directory)
+    studies = [path for path in files if path.name.startswith("study") and path.suffix == ".toml"]
+    for path in (*files, add_schema(studies)):
         say(f"wrote {path}")
     say_next("check", directory / "study.toml")
+
+
+@cli.command()
+def schema() -> None:
+    """Print the JSON Schema of study files, with which editors complete and check them."""
+    from modefront.study.schema import as_text
+
+    click.echo(as_text(), nl=False)
 
 
 @cli.command()

@@ -21,7 +21,8 @@ from modefront.data.records import RecordedFiles, Records, read_records
 from modefront.data.responses import ORDERS, joined
 from modefront.data.uff import read_uff
 from modefront.errors import Fault, InputError, suggestion
-from modefront.options import is_name, repeated
+from modefront.json_schema import NOT_NEGATIVE, array
+from modefront.options import is_name, numbers, repeated, rising
 from modefront.toml import Table, read_toml
 
 KINDS = ("hammer", "ambient")
@@ -139,7 +140,7 @@ def _ambient(root: Table, name: str, settings: _Settings) -> ModalTest:
         setup = RecordedFiles(
             table.text("name", default=str(number)) or str(number),
             tuple(folder / file for file in files),
-            table.number("rate", "samples per s, above zero", lambda x: x > 0, None),
+            table.number("rate", "samples per s, above zero", None, above=0),
             tuple(table.take("sensors", "a list of names", _are_names, [])),
             table.names("columns"),
             settings.sensors,
@@ -188,7 +189,7 @@ def _identify_table(root: Table) -> tuple[tuple[float, float] | None, int | None
     if not table:
         return None, None
     expected = "a band [low, high] in Hz, 0 <= low < high"
-    limits = table.numbers("band", expected, lambda x: len(x) == 2 and 0 <= x[0] < x[1], None)
+    limits = table.value("band", numbers(expected, array(NOT_NEGATIVE, 2, 2), rising), None)
     modes = table.take(
         "modes",
         f"'auto' or a number of modes from 1 to {MOST_MODES}",
@@ -206,13 +207,13 @@ def _impact_table(root: Table) -> Windows | None:
         return None
     seconds = "a time in s above zero"
     estimator = table.choice("estimator", ESTIMATORS, "H1")
-    force_window = table.number("force_window", seconds, lambda x: x > 0, None)
+    force_window = table.number("force_window", seconds, None, above=0)
     if table.values.get("exponential") == "none":
         table.requested.append("exponential")
         exponential = math.inf
     else:
         seconds = "a time constant in s above zero, or 'none'"
-        exponential = table.number("exponential", seconds, lambda x: x > 0, None)
+        exponential = table.number("exponential", seconds, None, above=0)
     windows = Windows(estimator, force_window, exponential)
     table.close()
     return windows
@@ -242,7 +243,7 @@ def _set_tables(
         decay = 0.0
         if window := table.table("window", "a table { exponential = time constant in s }", None):
             expected = "a time constant in s above zero"
-            tau = window.number("exponential", expected, lambda x: x > 0)
+            tau = window.number("exponential", expected, above=0)
             window.close()
             decay = 1 / tau if tau else 0.0
         out.append((name, files, references, decay, table.names("columns")))

@@ -10,12 +10,13 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, suggestion
+from modefront.json_schema import ABOVE_ZERO, TABLE, table_of
 from modefront.options import Requirement, check_fields, number, shown, text
 
-WEIGHT = number("a weight above 0", lambda x: x > 0)
+WEIGHT = number("a weight above 0", above=0)
 
 WEIGHTS = Requirement(
-    "a table of weights, group = weight above 0", lambda value: isinstance(value, dict)
+    "a table of weights, group = weight above 0", TABLE, entries=table_of(ABOVE_ZERO)
 )
 
 

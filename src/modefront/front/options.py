@@ -43,12 +43,12 @@ class Pareto:
     method: Annotated[str, _one_of_the_methods] = "nbi"
     points: Annotated[int, whole(2, MOST)] | None = None
     programme: Annotated[str, one_of("bounds", "equations")] = "bounds"
-    tolerance: Annotated[float, number("a share from 0 to 1", lambda x: 0 <= x <= 1)] = 0.0
+    tolerance: Annotated[float, number("a share from 0 to 1", least=0, most=1)] = 0.0
     population: Annotated[int, whole(4, 10**6)] = 100
     evaluations: Annotated[int, whole(4, 10**9)] = 10_000
-    refined: (
-        Annotated[float, number("a distance from 0.001 to 1", lambda x: 1e-3 <= x <= 1)] | None
-    ) = None
+    refined: Annotated[float, number("a distance from 0.001 to 1", least=1e-3, most=1)] | None = (
+        None
+    )
 
     def __post_init__(self) -> None:
         check_fields(self)

@@ -25,7 +25,7 @@ BATCH = 6
 MOST = 10**9
 """Evaluations that may be asked for."""
 
-SHARE = number("a share above 0 and below 1", lambda x: 0 < x < 1)
+SHARE = number("a share above 0 and below 1", above=0, below=1)
 
 USUAL = 10
 """Evaluations that a search is expected to take before any is known."""

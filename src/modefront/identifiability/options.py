@@ -7,8 +7,8 @@ from typing import Annotated
 
 from modefront.options import check_fields, number, whole
 
-SHARE = number("a share from 0 to 1", lambda x: 0 <= x <= 1)
-STEP = number("a share of the ranges from 0.001 to 0.5", lambda x: 1e-3 <= x <= 0.5)
+SHARE = number("a share from 0 to 1", least=0, most=1)
+STEP = number("a share of the ranges from 0.001 to 0.5", least=1e-3, most=0.5)
 
 
 @dataclass(frozen=True)

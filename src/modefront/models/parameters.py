@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from modefront.errors import Fault, InputError, refuse, wrong
 from modefront.options import (
+    PAIR,
     TRUE_OR_FALSE,
     Requirement,
     check_fields,
@@ -15,12 +16,14 @@ from modefront.options import (
     nested,
     number,
     numbers,
+    rising,
     text,
 )
 
 BOUNDS = numbers(
     "[lower, upper], two finite numbers with lower < upper",
-    lambda x: len(x) == 2 and x[0] < x[1],
+    PAIR,
+    rising,
 )
 
 
@@ -35,7 +38,7 @@ class Prior:
     """
 
     kind: Literal["normal", "lognormal"] = "normal"
-    std: Annotated[float, number("a number above 0", lambda x: x > 0)] = 0.2
+    std: Annotated[float, number("a number above 0", above=0)] = 0.2
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -62,7 +65,7 @@ class Parameter:
     bounds: Annotated[tuple[float, float], BOUNDS]
     prior: Annotated[Prior, nested("a table of kind and std", Prior)] | None = None
     fixed: Annotated[bool, TRUE_OR_FALSE] = False
-    tie: Annotated[str, Requirement("the name of a parameter", lambda x: isinstance(x, str))] = ""
+    tie: Annotated[str, Requirement("the name of a parameter", {"type": "string"})] = ""
 
     def __post_init__(self) -> None:
         check_fields(self)

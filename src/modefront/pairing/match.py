@@ -24,7 +24,7 @@ OUTSIDE = 1e3
 UNSEEN = 1e-6
 """Greatest component of a mode at the sensors, over that of all modes, below which it is noise."""
 
-WINDOW = number("a ratio of frequencies above 1", lambda x: x > 1)
+WINDOW = number("a ratio of frequencies above 1", above=1)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ class from anywhere known to study files.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
@@ -25,20 +24,22 @@ from modefront.variables import Variable
 
 IDENTIFIER = Requirement(
     "a name of small letters, digits and _, a letter first",
-    lambda value: isinstance(value, str) and bool(re.fullmatch("[a-z][a-z0-9_]*", value)),
+    {"type": "string", "pattern": "^[a-z][a-z0-9_]*$"},
 )
 WORDS = text("words in one line")
 ANY_WORDS = Requirement(
     "words in one line, or none",
-    lambda value: isinstance(value, str) and (not value or value.isprintable()),
+    {"type": "string"},
+    further=lambda value: not value or value.isprintable(),
 )
 
 
 def _all_of(record: type, words: str) -> Requirement:
     return Requirement(
         f"a tuple of {words}",
-        lambda value: isinstance(value, list) and all(isinstance(x, record) for x in value),
+        {"type": "array"},
         tuple,
+        lambda value: all(isinstance(x, record) for x in value),
     )
 
 

@@ -6,7 +6,6 @@ import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -14,15 +13,16 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
+from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, NUMBER, array, pair
 from modefront.models.base import Model
 from modefront.options import (
     Requirement,
     check_fields,
-    is_number,
     nested,
     number,
     numbers,
     one_of,
+    rising,
     whole,
 )
 from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVariable, Setting
@@ -70,31 +70,26 @@ MOST_STEPS = 10**6
 SIDES = {"one": Sided.ONE, "two": Sided.TWO}
 
 
-def _is_modulation(value: object) -> bool:
-    return (
-        isinstance(value, list)
-        and all(isinstance(x, list) and len(x) == 2 and all(map(is_number, x)) for x in value)
-        and all(x[0] >= 0 for x in value)
-        and all(a[0] < b[0] for a, b in pairwise(value))
-        and any(factor != 0 for _, factor in value)
-    )
+def _is_modulation(value: list[list[float]]) -> bool:
+    return rising([t for t, _ in value]) and any(factor != 0 for _, factor in value)
 
 
-SOIL_FREQUENCY = number("a frequency of the soil above 0 Hz", lambda x: x > 0)
-SOIL_DAMPING = number("a damping ratio of the soil above 0", lambda x: x > 0)
-DENSITY = number("a spectral density above 0", lambda x: x > 0)
-DURATION = number("a duration above 0 s", lambda x: x > 0)
-STEP = number("a time step above 0 s", lambda x: x > 0)
+SOIL_FREQUENCY = number("a frequency of the soil above 0 Hz", above=0)
+SOIL_DAMPING = number("a damping ratio of the soil above 0", above=0)
+DENSITY = number("a spectral density above 0", above=0)
+DURATION = number("a duration above 0 s", above=0)
+STEP = number("a time step above 0 s", above=0)
 
 LEVELS = numbers(
     "a list of different levels above 0",
-    lambda x: bool(x) and min(x) > 0 and len(set(x)) == len(x),
+    array(ABOVE_ZERO, 1, once=True),
 )
 
 MODULATION = Requirement(
     "a list of [time in s, factor], times rising from 0 or more, one factor not zero",
-    _is_modulation,
+    array(pair(NOT_NEGATIVE, NUMBER), 1),
     lambda value: tuple((float(t), float(q)) for t, q in value),
+    _is_modulation,
 )
 
 

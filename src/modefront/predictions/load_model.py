@@ -18,8 +18,9 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, ModelError, suggestion, wrong
+from modefront.json_schema import NAME, NUMBER, Schema, any_of, array, table_of
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
-from modefront.options import Requirement, is_name, is_number, text, whole
+from modefront.options import Requirement, is_name, text, whole
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 from modefront.response.system import ModalSystem
@@ -38,48 +39,27 @@ ABOVE = 1.1
 NAMED = "the name of a sensor or output, or a table of them with weights that are not zero"
 
 
-def _is_weights(value: object) -> bool:
-    return is_name(value) or (
-        isinstance(value, dict)
-        and bool(value)
-        and all(is_number(weight) and weight != 0 for weight in value.values())
-    )
+WEIGHTS = any_of(NAME, table_of(NUMBER, 1))
+RATIO: Schema = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+
+
+def _has_no_zero(value: Any) -> bool:
+    """Return whether names can be printed, and no weight is zero."""
+    if isinstance(value, dict):
+        return all(map(_has_no_zero, value.values()))
+    if isinstance(value, list):
+        return all(map(_has_no_zero, value))
+    return is_name(value) if isinstance(value, str) else value != 0
 
 
 def _named_weights(value: Any) -> dict[str, float]:
     return {value: 1.0} if isinstance(value, str) else {k: float(w) for k, w in value.items()}
 
 
-def _is_list_of_names(value: object) -> bool:
-    return (
-        isinstance(value, list)
-        and bool(value)
-        and all(map(is_name, value))
-        and len(set(value)) == len(value)
-    )
-
-
-def _is_table_of_weights(value: object) -> bool:
-    return (
-        isinstance(value, dict)
-        and bool(value)
-        and all(is_name(key) and _is_weights(x) for key, x in value.items())
-    )
-
-
 def _responses(value: Any) -> dict[str, dict[str, float]]:
     names = [value] if isinstance(value, str) else value
     named = names if isinstance(names, dict) else {name: name for name in names}
     return {name: _named_weights(each) for name, each in named.items()}
-
-
-def _is_ratio(value: object) -> bool:
-    return isinstance(value, float | int) and is_number(value) and 0 < value < 1
-
-
-def _is_damping(value: object) -> bool:
-    ratios = isinstance(value, list) and bool(value) and all(map(_is_ratio, value))
-    return value == MEASURED or _is_ratio(value) or ratios
 
 
 def _damping(value: Any) -> str | float | tuple[float, ...]:
@@ -90,18 +70,18 @@ def _damping(value: Any) -> str | float | tuple[float, ...]:
 
 Name = Annotated[str, text("what the prediction is called")]
 
-Force = Annotated[str | Mapping[str, float], Requirement(NAMED, _is_weights, _named_weights)]
+Force = Annotated[
+    str | Mapping[str, float], Requirement(NAMED, WEIGHTS, _named_weights, _has_no_zero)
+]
 """One force; kept as weights by the name of a sensor or output."""
 
 Forces = Annotated[
     str | Mapping[str, float] | Sequence[str | Mapping[str, float]],
     Requirement(
         f"{NAMED}; or a list of these",
-        lambda value: (
-            _is_weights(value)
-            or (isinstance(value, list) and bool(value) and all(map(_is_weights, value)))
-        ),
+        any_of(WEIGHTS, array(WEIGHTS, 1)),
         lambda value: tuple(map(_named_weights, value if isinstance(value, list) else [value])),
+        _has_no_zero,
     ),
 ]
 """Forces that are independent of one another; kept as such weights of each."""
@@ -112,8 +92,9 @@ Response = Annotated[
     str | Sequence[str] | Mapping[str, str | Mapping[str, float]],
     Requirement(
         f"a list of sensors or outputs, or a table, name = {NAMED}",
-        lambda value: is_name(value) or _is_list_of_names(value) or _is_table_of_weights(value),
+        any_of(NAME, array(NAME, 1, once=True), table_of(WEIGHTS, 1)),
         _responses,
+        lambda value: _has_no_zero(value) and all(map(is_name, value)),
     ),
 ]
 """Responses; kept as weights of sensors and outputs by the name of each."""
@@ -124,7 +105,7 @@ Damping = Annotated[
     str | float | Sequence[float],
     Requirement(
         f"'{MEASURED}', or a ratio above 0 and below 1, or a list of them, one a mode",
-        _is_damping,
+        any_of({"enum": [MEASURED]}, RATIO, array(RATIO, 1)),
         _damping,
     ),
 ]

@@ -12,8 +12,9 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse
+from modefront.json_schema import NOT_NEGATIVE, array
 from modefront.models.base import Model
-from modefront.options import TRUE_OR_FALSE, check_fields, numbers, one_of
+from modefront.options import TRUE_OR_FALSE, check_fields, numbers, one_of, rising
 from modefront.predictions.base import PredictionKind, ResultVariable, Setting
 from modefront.predictions.load_model import (
     ABOVE,
@@ -41,7 +42,8 @@ QUANTITIES = tuple(quantity.value for quantity in ResponseQuantity)
 
 BAND = numbers(
     "[lowest, highest] frequency in Hz, 0 <= lowest < highest",
-    lambda x: len(x) == 2 and 0 <= x[0] < x[1],
+    array(NOT_NEGATIVE, 2, 2),
+    rising,
 )
 
 

@@ -45,7 +45,7 @@ FACTORS = (1e1, 1e2, 1e3, 1e4)
 _ENOUGH = Options(step=1e-5, constraint=1e-6, reduction=1e-8, iterations=40)
 """A range needs a thousandth of itself, and no more."""
 
-SLACK = number("a share of 0 or more", lambda x: x >= 0)
+SLACK = number("a share of 0 or more", least=0)
 
 Values = Callable[[Floats], float]
 """Returns the prediction of a model (p,); NaN where it has none."""

@@ -8,14 +8,19 @@ from typing import Literal, get_args
 
 from modefront.data.modal import ModalData
 from modefront.errors import suggestion
+from modefront.json_schema import any_of, array
+from modefront.options import Requirement, plain
 from modefront.residuals.base import Member, ResidualKind, Scale, Stack
 from modefront.residuals.kinds import KINDS
 
 ModeNumbers = Sequence[int] | Literal["all"]
 """Numbers of measured modes, counted from 1, or all that were measured."""
 
-MODE_NUMBERS = "'all' or a list of measured modes, counted from 1"
-"""Description of `ModeNumbers` for messages."""
+MODE_NUMBERS = Requirement(
+    "'all' or a list of measured modes, counted from 1",
+    any_of({"enum": ["all"]}, array({"type": "integer", "minimum": 1})),
+)
+"""Requirement of `ModeNumbers`."""
 
 
 @dataclass(frozen=True, init=False)
@@ -59,9 +64,9 @@ class Group:
                 expected = ", ".join(known)
                 found = suggestion(kind, known)
                 raise ValueError(f"group '{name}': expected one of {expected}, found {found}")
-            if not are_mode_numbers(modes[kind]):
-                found = repr(modes[kind])
-                raise ValueError(f"group '{name}': {kind}: expected {MODE_NUMBERS}, found {found}")
+            if not MODE_NUMBERS.holds(plain(modes[kind])):
+                expected, found = MODE_NUMBERS.expected, repr(modes[kind])
+                raise ValueError(f"group '{name}': {kind}: expected {expected}, found {found}")
         if scale not in get_args(Scale):
             expected = " or ".join(map(repr, get_args(Scale)))
             raise ValueError(f"group '{name}': scale: expected {expected}, found {scale!r}")
@@ -103,13 +108,6 @@ class Group:
             for kind, positions in self.positions(data)
             if positions
         ]
-
-
-def are_mode_numbers(value: object) -> bool:
-    """Return whether a value is ``"all"`` or a list of positive whole numbers."""
-    if isinstance(value, str) or not isinstance(value, Sequence):
-        return value == "all"
-    return all(isinstance(x, int) and not isinstance(x, bool) and x > 0 for x in value)
 
 
 def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str]]:

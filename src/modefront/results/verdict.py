@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import chain
+from textwrap import wrap
 
 import numpy as np
 import xarray as xr
@@ -31,7 +32,10 @@ GAIN = 0.1
 """Share of its errors that a group loses without bounds, from which these are worth widening."""
 
 NAMED = 3
-"""Parameters of a kind that are named."""
+"""Parameters and groups of a kind that are named."""
+
+LINES, COLUMNS = 11, 78
+"""Lines of the first answer, of which each has so many columns: a dozen with the title."""
 
 FORETOLD = 2
 """Predictions that are named."""
@@ -43,8 +47,9 @@ TWINS = 0.9
 def with_verdict(data: xr.Dataset) -> xr.Dataset:
     """Return results with the first answer, and without a reference where no model is to be used.
 
-    It has twelve sentences at most, and none where nothing is expected of the errors. Where no
-    model is to be used, nothing is said of parameters, the front and predictions.
+    It has `LINES` lines at most, and none where nothing is expected of the errors. What has no room
+    is left to the tables below it. Where no model is to be used, nothing is said of parameters, the
+    front and predictions.
     """
     if "misfit" not in data:
         return data.assign_attrs(verdict="")
@@ -52,12 +57,20 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     refused = refusals(groups, data["misfit"].values, data["nominal_misfit"].values)
     said = [*_at_bounds(data), *_assumed(data), *_pairs(data)]
     if refused:
-        said.insert(0, f"Do not use any of these models: {enumeration(refused)}.")
+        more = [f"{len(refused) - NAMED} more"] * (len(refused) > NAMED)
+        why = enumeration([*refused[:NAMED], *more])
+        said.insert(0, f"Do not use any of these models: {why}.")
         data = data.assign_attrs(reference="")
     else:
-        more = (_parameters(data), _front(data), _predictions(data), _next(data))
-        said = [_use(data), *said, *chain.from_iterable(more)]
-    return data.assign_attrs(verdict="\n".join(said))
+        further = (_parameters(data), _front(data), _next(data), _predictions(data))
+        said = [_use(data), *said, *chain.from_iterable(further)]
+    return data.assign_attrs(verdict="\n".join(_with_room(said)))
+
+
+def _with_room(sentences: Sequence[str]) -> list[str]:
+    """Return the first sentences for which there is room, and the first one in any case."""
+    ends = np.cumsum([len(wrap(sentence, COLUMNS)) for sentence in sentences])
+    return list(sentences[: max(1, int(np.searchsorted(ends, LINES, side="right")))])
 
 
 def refusals(groups: Sequence[str], misfit: Floats, nominal: Floats) -> list[str]:
@@ -81,9 +94,9 @@ def refusals(groups: Sequence[str], misfit: Floats, nominal: Floats) -> list[str
 
 def _use(data: xr.Dataset) -> str:
     """Return that the reference can be used, and how well it fits."""
-    misfit = data["misfit"].values
-    parts = zip(misfit, data["group"].values, strict=True)
-    size = ", ".join(f"{x:.2g} ({name})" for x, name in parts)
+    misfit, groups = data["misfit"].values, data["group"].values
+    worst = np.argsort(-misfit)[:NAMED] if misfit.size > NAMED else np.arange(misfit.size)
+    size = _some([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], misfit.size)
     larger = " They are larger than noise: the model lacks something."
     return (
         f"Use {data.attrs['reference']}: its errors over those expected are {size}."

@@ -25,6 +25,9 @@ from modefront.study.labels import labels_of
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 
+NAME = text("a text of printable characters")
+SEED = whole(0, 2**63 - 1)
+
 
 @dataclass(frozen=True)
 class Origin:
@@ -72,8 +75,8 @@ class Study:
     """
 
     problem: UpdatingProblem
-    name: Annotated[str, text("a text of printable characters")] = "study"
-    seed: Annotated[int, whole(0, 2**63 - 1)] = 0
+    name: Annotated[str, NAME] = "study"
+    seed: Annotated[int, SEED] = 0
     pareto: Pareto = field(default_factory=Pareto)
     weighted: Sequence[Weighted] = ()
     search: Search = field(default_factory=Search)

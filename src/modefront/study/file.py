@@ -66,7 +66,7 @@ def load(path: Path | str) -> Study:
     identifiability = read_options(root, "identifiability", Identifiability)
     uncertainty = read_options(root, "uncertainty", Uncertainty)
     drawn = replace(root, place="[uncertainty]")
-    drawn.note(undrawn(uncertainty, len(root.values.get("predict") or ())))
+    drawn.note(undrawn(uncertainty, bool(root.values.get("predict"))))
     drawn.note(uncertainty.faults(data) if data is not None else ())
     noise = read_options(root, "noise", NoisePrior)
     pairing = read_options(root, "pairing", Pairing)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -19,10 +18,11 @@ from modefront.families import Family
 from modefront.fem.check import unit_vector
 from modefront.fem.section import FemError
 from modefront.inputs import file_size, wrong
+from modefront.json_schema import NAME, any_of, closed
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
-from modefront.options import shown
+from modefront.options import Requirement, shown, text, whole
 from modefront.toml import Table
 
 NEAR = 0.01
@@ -30,6 +30,16 @@ NEAR = 0.01
 
 ASKEW = 0.5
 """Cosine between the directions of a sensor in model and data below which these disagree."""
+
+
+FILE = text("the name of a file of modal data")
+NODE = whole(0, 10**9)
+DIRECTION = Requirement(
+    "x, y, z, rx, ry, rz or a vector", any_of({"type": "string"}, {"type": "array"})
+)
+PLACE = any_of(
+    NAME, closed({"node": NODE.schema, "direction": DIRECTION.schema}, ["node", "direction"])
+)
 
 
 @dataclass(frozen=True)
@@ -61,7 +71,7 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
     table = root.table("data", "a table [data]")
     if table is None:
         return None
-    name = table.text("file", "the name of a file of modal data")
+    name = table.value("file", FILE)
     is_uff = name is not None and is_universal(name)
     places = (
         table.table("sensors", "a table, sensor = node and direction", None) if is_uff else None
@@ -167,10 +177,7 @@ def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | 
     inner = places.table(name)
     if inner is None:
         return None
-    node = inner.integer("node", 0, 10**9)
-    direction: Any = inner.take(
-        "direction", "x, y, z, rx, ry, rz or a vector", lambda x: isinstance(x, str | list), ...
-    )
+    node, direction = inner.value("node", NODE), inner.value("direction", DIRECTION)
     inner.close()
     if node is None or direction is None:
         return None

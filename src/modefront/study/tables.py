@@ -16,18 +16,22 @@ from modefront.front.given import Weighted, label_faults
 from modefront.models.base import Model
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.options import Reduction
-from modefront.options import each_once, options
+from modefront.options import each_once, one_of, options, text
 from modefront.predictions import CLASSES, Prediction
 from modefront.predictions.ranges import SLACK
 from modefront.residuals.base import Scale
-from modefront.residuals.groups import MODE_NUMBERS, Group, are_mode_numbers, faults
+from modefront.residuals.groups import MODE_NUMBERS, Group, faults
 from modefront.residuals.kinds import KINDS as RESIDUALS
 from modefront.residuals.problem import UpdatingProblem
+from modefront.study.definition import NAME, SEED
 from modefront.study.kinds import KINDS
 from modefront.study.labels import labels_of
 from modefront.toml import Table, names_of
 
 T = TypeVar("T")
+
+GROUP_NAME = text("the name of the group")
+SCALE = one_of(*get_args(Scale))
 
 Drafts = Sequence[tuple[Table, Prediction]]
 """Predictions as in their tables, without the defaults that follow from the nominal model."""
@@ -43,8 +47,8 @@ def read_header(header: Table | None) -> tuple[str, int]:
     """Return name and seed of the table ``[study]``; its memory is read elsewhere."""
     if header is None:
         return "", 0
-    name = header.text("name", "a text of printable characters") or ""
-    seed: int = header.integer("seed", 0, 2**63 - 1, default=0)
+    name = header.value("name", NAME) or ""
+    seed: int = header.value("seed", SEED, 0)
     header.close()
     return name, seed
 
@@ -101,11 +105,11 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
     held: dict[frozenset[tuple[str, int]], str] = {}
     equal = []
     for table in tables:
-        name = table.text("name", "the name of the group") or ""
+        name = table.value("name", GROUP_NAME) or ""
         before = len(root.faults)
-        modes = {name: table.take(name, MODE_NUMBERS, are_mode_numbers, []) for name in RESIDUALS}
+        modes = {name: table.value(name, MODE_NUMBERS, []) for name in RESIDUALS}
         are_read = len(root.faults) == before
-        group = Group(name, scale=table.choice("scale", get_args(Scale), "measured"), **modes)
+        group = Group(name, scale=table.value("scale", SCALE, "measured"), **modes)
         table.close()
         wrong = list(faults(group, data))
         if group.chosen or are_read:

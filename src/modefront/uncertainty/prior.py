@@ -67,9 +67,9 @@ class NoisePrior:
     weight : how many data this expectation is worth; 0 for none, and optimal weights
     """
 
-    frequency: Annotated[float, number("a number above 0", lambda x: x > 0)] = 0.005
-    shape: Annotated[float, number("a number above 0", lambda x: x > 0)] = 0.03
-    weight: Annotated[float, number("a number of 0 or more", lambda x: x >= 0)] = 4.0
+    frequency: Annotated[float, number("a number above 0", above=0)] = 0.005
+    shape: Annotated[float, number("a number above 0", above=0)] = 0.03
+    weight: Annotated[float, number("a number of 0 or more", least=0)] = 4.0
 
     def __post_init__(self) -> None:
         check_fields(self)

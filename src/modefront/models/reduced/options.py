@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from modefront.data.modal import ModalData
+from modefront.json_schema import any_of
 from modefront.models.base import Model, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter
@@ -23,15 +24,13 @@ SMALLEST = 100
 LEAST, MOST = 1e-12, 1e-2
 """Tolerances that may be asked for."""
 
-_TOLERANCE = number("", lambda x: LEAST <= x <= MOST)
-
 REDUCTION = Requirement(
     f"'auto', 'off' or a relative error of eigenvalues from {LEAST:g} to {MOST:g}",
-    lambda value: value in ("auto", "off") if isinstance(value, str) else _TOLERANCE.holds(value),
+    any_of({"enum": ["auto", "off"]}, {"type": "number", "minimum": LEAST, "maximum": MOST}),
     lambda value: value if isinstance(value, str) else float(value),
 )
 
-GIB = number("GiB for a reduced basis, above 0", lambda x: x > 0)
+GIB = number("GiB for a reduced basis, above 0", above=0)
 
 
 @dataclass(frozen=True)

@@ -2,44 +2,93 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any
 
-from modefront.errors import suggestion
+from modefront.errors import Fault, refuse, suggestion
+from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, array, table_of
 from modefront.models.base import Model
 from modefront.models.chain import chain
-from modefront.study.kinds.sensors import ModelKind, read_outputs, read_sensors
+from modefront.options import Requirement, check_fields, entries, numbers, shown
+from modefront.study.kinds.sensors import WEIGHTED, ModelKind, read_outputs, read_sensors
 from modefront.toml import Table
+
+MASSES = numbers("a list of masses above 0", array(ABOVE_ZERO, 1))
+STIFFNESSES = numbers(
+    "a list of spring stiffnesses of 0 or more, as many as masses, or one more for a spring from "
+    "the top to the ground",
+    array(NOT_NEGATIVE, 1),
+)
+ADDED = numbers("a list of masses of 0 or more, as many as masses", array(NOT_NEGATIVE))
+_NAMES = array({"type": "string"})
+OF_SPRINGS = Requirement(
+    "a list of names of parameters, as many as springs, '' where none scales", _NAMES, tuple
+)
+OF_MASSES = Requirement(
+    "a list of names of parameters, as many as masses, '' where none scales", _NAMES, tuple
+)
+PLACES = entries("a table, name = degree of freedom", table_of(WEIGHTED))
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Lumped masses joined by springs, the first one to the ground; SI or any consistent units.
+
+    Attributes
+    ----------
+    masses : from the ground up
+    stiffnesses : of the springs: ground to mass 1, mass 1 to mass 2, ...; one more joins the last
+        mass to the ground
+    added_masses : masses that are added to these and never scaled; None for none
+    stiffness_parameters : for each spring the parameter that scales it; None for none
+    mass_parameters : likewise for each mass; None for none
+    sensors : degrees of freedom, counted from 0, or weights of them, `[[dof, weight], ...]`; None
+        for every mass, `floor1`, `floor2`, ...
+    outputs : likewise, places besides the sensors for predictions; None for none
+    """
+
+    masses: Annotated[Sequence[float], MASSES]
+    stiffnesses: Annotated[Sequence[float], STIFFNESSES]
+    added_masses: Annotated[Sequence[float], ADDED] | None = None
+    stiffness_parameters: Annotated[Sequence[str], OF_SPRINGS] | None = None
+    mass_parameters: Annotated[Sequence[str], OF_MASSES] | None = None
+    sensors: Annotated[Mapping[str, Any], PLACES] | None = None
+    outputs: Annotated[Mapping[str, Any], PLACES] | None = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        refuse(self._of_other_length())
+
+    def _of_other_length(self) -> Iterator[Fault]:
+        n, springs = len(self.masses), len(self.stiffnesses)
+        for key, counts, requirement in (
+            ("stiffnesses", (n, n + 1), STIFFNESSES),
+            ("added_masses", (n,), ADDED),
+            ("stiffness_parameters", (springs,), OF_SPRINGS),
+            ("mass_parameters", (n,), OF_MASSES),
+        ):
+            values = getattr(self, key)
+            if values is not None and len(values) not in counts:
+                yield Fault("", key, requirement.expected, shown(values))
 
 
 def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:
     """Return the chain that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
-    masses = table.numbers("masses", "a list of masses above 0", lambda x: bool(x) and min(x) > 0)
-    n = len(masses) if masses else 0
-    stiffnesses = table.numbers(
-        "stiffnesses",
-        f"a list of {n or 'as many'} spring stiffnesses of 0 or more, or one more for a spring "
-        "from the top to the ground",
-        lambda x: (len(x) in (n, n + 1) if n else bool(x)) and min(x) >= 0,
-    )
-    added = table.numbers(
-        "added_masses",
-        f"a list of {n or 'as many'} masses of 0 or more",
-        lambda x: (len(x) == n if n else True) and all(m >= 0 for m in x),
-        default=[0.0] * n,
-    )
-    springs = len(stiffnesses) if stiffnesses else 0
-    stiffness_names = _scales(table, "stiffness_parameters", springs, parameters)
-    mass_names = _scales(table, "mass_parameters", n, parameters)
-    sensors = read_sensors(table, n or None, default=None)
-    outputs = read_outputs(table, n or None, sensors or [f"floor{i + 1}" for i in range(n)])
-    if len(table.faults) > before or masses is None or stiffnesses is None:
+    read, masses = table.record(Chain), table.values.get("masses")
+    n = len(masses) if isinstance(masses, list) and MASSES.holds(masses) else None
+    stiffness_names = _scales(table, "stiffness_parameters", read, parameters)
+    mass_names = _scales(table, "mass_parameters", read, parameters)
+    sensors = read_sensors(table, n, default=None)
+    outputs = read_outputs(table, n, sensors or [f"floor{i + 1}" for i in range(n or 0)])
+    if len(table.faults) > before or read is None:
         return None
     return chain(
         parameters,
-        masses,
-        stiffnesses,
-        added_masses=added,
+        read.masses,
+        read.stiffnesses,
+        added_masses=read.added_masses or [0.0] * len(read.masses),
         stiffness_parameters=stiffness_names,
         mass_parameters=mass_names,
         sensors=sensors,
@@ -48,23 +97,14 @@ def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:
 
 
 def _scales(
-    table: Table, key: str, count: int, parameters: Sequence[str]
+    table: Table, key: str, read: Chain | None, parameters: Sequence[str]
 ) -> list[str | None] | None:
     """Return the parameter that scales each member; an empty text means that none does."""
-    names = table.take(
-        key,
-        f"a list of {count or 'as many'} names of parameters, '' where none scales",
-        lambda x: (
-            isinstance(x, list)
-            and (len(x) == count or not count)
-            and all(isinstance(name, str) for name in x)
-        ),
-        [],
-    )
+    names = (getattr(read, key) if read else None) or ()
     for name in names:
         if name and name not in parameters:
             table.fault(key, "names of parameters", suggestion(name, parameters))
     return [name or None for name in names] or None
 
 
-CHAIN = ModelKind("chain", read_chain, is_reducible=False)
+CHAIN = ModelKind("chain", read_chain, is_reducible=False, table=Chain)

@@ -3,44 +3,119 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
 import numpy as np
 import scipy.sparse
 
 from modefront.errors import InputError, suggestion
+from modefront.fem.dofs import DIRECTIONS
+from modefront.json_schema import any_of, array, closed, table_of
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
 from modefront.models.files import read_matrix
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import matrices
 from modefront.models.terms import BASE, exponents_of, form_of
+from modefront.options import TRUE_OR_FALSE, check_fields, entries, schema_of, text
 from modefront.programs.mesh import ProgramMesh, read_mesh
-from modefront.study.kinds.sensors import ModelKind, read_base, read_outputs, read_sensors
+from modefront.study.kinds.sensors import (
+    BY_NODE,
+    DOF,
+    WEIGHTED,
+    ModelKind,
+    read_base,
+    read_outputs,
+    read_sensors,
+)
 from modefront.toml import Table
+
+FILE = text("the name of a file")
+
+
+@dataclass(frozen=True)
+class MatrixFile:
+    """One of the matrices in a file.
+
+    Attributes
+    ----------
+    file : its name
+    name : of the matrix in it; empty for the only one
+    """
+
+    file: Annotated[str, FILE]
+    name: Annotated[str, text("the name of a matrix in the file")] | None = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+TERMS = entries("a table of files", table_of(any_of(FILE.schema, schema_of(MatrixFile)), 1))
+PLACES = entries("a table, name = place", table_of(any_of(WEIGHTED, BY_NODE), 1))
+OUTPUTS = entries("a table, name = place", table_of(any_of(WEIGHTED, BY_NODE)))
+MOVING = any_of(
+    WEIGHTED, array(DOF, 1), BY_NODE, closed({"direction": {"enum": [*DIRECTIONS]}}, ["direction"])
+)
+
+
+@dataclass(frozen=True)
+class Matrices:
+    """Matrices from files: K = base + sum_j c_j K_j, M likewise; c_j is a parameter or a product.
+
+    Attributes
+    ----------
+    stiffness : file of `base`, and of each parameter or product of powers of parameters, such as
+        `"t^3"`, `"1/L"` or `"E*t"`; `{ file, name }` where it holds several matrices
+    mass : likewise
+    sensors : degrees of freedom, counted from 0, or weights of them, `[[dof, weight], ...]`; with
+        `dofs` also `{ node, direction }`, of which the direction is `x`, `y`, `z`, `rx`, `ry`,
+        `rz`, with or without a minus sign, a list of these for as many sensors, or a vector
+    dofs : CSV `node,direction,weight`, one row a degree of freedom; a node moves with the weighted
+        sum of its rows
+    mesh : nodes and elements for pictures, as `modefront import` writes them
+    floating : whether the structure may move as a rigid body
+    outputs : places besides the sensors for predictions, given as these are
+    base : for each direction of the base the degrees of freedom that move with it, or
+        `[[dof, motion], ...]`; with `dofs` also `{ direction = "x" }`, all of a direction
+    """
+
+    stiffness: Annotated[Mapping[str, Any], TERMS]
+    mass: Annotated[Mapping[str, Any], TERMS]
+    sensors: Annotated[Mapping[str, Any], PLACES]
+    dofs: Annotated[str, text("the name of a table of degrees of freedom")] | None = None
+    mesh: Annotated[str, text("the name of a file of nodes and elements")] | None = None
+    floating: Annotated[bool, TRUE_OR_FALSE] = False
+    outputs: Annotated[Mapping[str, Any], OUTPUTS] | None = None
+    base: (
+        Annotated[Mapping[str, Any], entries("a table of directions", table_of(MOVING))] | None
+    ) = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
 
 def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     """Return the model that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
+    read = table.record(Matrices)
     terms = {key: _terms(table, key, parameters) for key in ("stiffness", "mass")}
     size = _common_size(table, terms)
     if size is not None:
         _check_entries(table, terms, size)
-    dofs = table.content("dofs", "the name of a table of degrees of freedom", read_dofs)
+    dofs = table.content("dofs", read_dofs)
     if dofs is not None and size not in (None, dofs.size):
         expected = f"{size} rows, one a degree of freedom"
         table.fault("dofs", expected, f"{dofs.size} in '{table.values['dofs']}'")
         dofs = None
-    mesh = table.content("mesh", "the name of a file of nodes and elements", read_mesh)
+    mesh = table.content("mesh", read_mesh)
     sensors = read_sensors(table, size, dofs=dofs)
-    floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
     outputs = read_outputs(table, size, sensors, dofs)
     base = read_base(table, size, dofs)
-    if len(table.faults) > before or sensors is None:
+    if len(table.faults) > before or read is None or sensors is None:
         return None
     model = matrices(
-        parameters, **terms, sensors=sensors, floating=floating, outputs=outputs, base=base
+        parameters, **terms, sensors=sensors, floating=read.floating, outputs=outputs, base=base
     )
     if dofs is None or mesh is None:
         return model
@@ -99,14 +174,11 @@ def _file(table: Table, key: str) -> tuple[str, str | None] | None:
     if not isinstance(table.values[key], dict):
         name = table.text(key, "the name of a file")
         return None if name is None else (name, None)
-    before = len(table.faults)
     inner = table.table(key)
     if inner is None:
         return None
-    file = inner.text("file", "the name of a file")
-    variable = inner.text("name", "the name of a matrix in the file", None)
-    inner.close()
-    return None if file is None or len(table.faults) > before else (file, variable)
+    read = inner.record(MatrixFile)
+    return None if read is None else (read.file, read.name or None)
 
 
 def _common_size(
@@ -143,4 +215,4 @@ def _check_entries(
             model.fault("", expected, f"neither at {int(np.argmin(stiff))} (from 0)")
 
 
-MATRICES = ModelKind("matrices", read_matrices)
+MATRICES = ModelKind("matrices", read_matrices, table=Matrices)

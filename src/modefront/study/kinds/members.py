@@ -2,26 +2,67 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from modefront import fem
 from modefront.fem.mesh import Kind, Mesh
-from modefront.options import is_number
-from modefront.study.kinds.sensors import is_dof, read_axes, read_direction
+from modefront.json_schema import (
+    ABOVE_ZERO,
+    NOT_NEGATIVE,
+    NUMBER,
+    TABLE,
+    Schema,
+    any_of,
+    array,
+    chosen,
+    closed,
+    table_of,
+)
+from modefront.options import PAIR, Requirement, number, numbers, text
+from modefront.study.kinds.sensors import AXES, DIRECTION, DOF, VECTOR, read_axes
 from modefront.toml import Table
 
-Reader = Callable[[Table, str, Mesh], Any]
-"""Reads a key of a table; None where it is not given, or has a fault, which is noted."""
+Finish = Callable[[Any, Table, str, Mesh], Any]
+"""Returns what a value of a key of a table becomes on a mesh; None with a fault, which is noted."""
 
-Keys = Mapping[str, Reader]
+
+@dataclass(frozen=True)
+class Key:
+    """Key of a table of members.
+
+    Attributes
+    ----------
+    requirement : on its value
+    required : whether it has to be given
+    finish : makes the argument of the class of it
+    """
+
+    requirement: Requirement
+    required: bool = False
+    finish: Finish = lambda value, *_: value
+
+
+Keys = Mapping[str, Key]
 
 
 def read_keys(table: Table, keys: Keys, mesh: Mesh) -> dict[str, Any]:
     """Return the values of the keys that are given."""
-    values = {key: read(table, key, mesh) for key, read in keys.items()}
-    return {key: value for key, value in values.items() if value is not None}
+    out = {}
+    for name, key in keys.items():
+        value = table.value(name, key.requirement, ... if key.required else None)
+        value = None if value is None else key.finish(value, table, name, mesh)
+        if value is not None:
+            out[name] = value
+    return out
+
+
+def of_keys(keys: Keys, **single: str) -> Schema:
+    """Return the schema of a table of keys, of which ``single`` ones have one text as value."""
+    known: dict[str, Schema] = {name: {"enum": [value]} for name, value in single.items()}
+    known |= {name: key.requirement.described for name, key in keys.items()}
+    return closed(known, [*single, *(name for name, key in keys.items() if key.required)])
 
 
 def read_members(model: Table, kind: str, mesh: Mesh) -> list[Any]:
@@ -37,48 +78,8 @@ def read_members(model: Table, kind: str, mesh: Mesh) -> list[Any]:
     return out
 
 
-def _name(what: str) -> Reader:
-    return lambda table, key, _: table.text(key, f"the name of the {what}")
-
-
-def _number(
-    expected: str, test: Callable[[float], bool] = math.isfinite, default: Any = None
-) -> Reader:
-    return lambda table, key, _: table.number(key, expected, test, default)
-
-
-def _value(expected: str, test: Callable[[Any], bool]) -> Reader:
-    return lambda table, key, _: table.take(key, expected, test, None)
-
-
-def _numbers(expected: str, test: Callable[[list[float]], bool]) -> Reader:
-    return lambda table, key, _: table.numbers(key, expected, test, default=None)
-
-
-def _one_or(count: int, expected: str, test: Callable[[float], bool]) -> Reader:
-    """Return a reader of a number that passes a test, or of a list of as many, of 0 or more."""
-
-    def is_right(value: Any) -> bool:
-        if isinstance(value, list):
-            return len(value) == count and all(map(is_number, value)) and min(value) >= 0
-        return is_number(value) and test(value)
-
-    return lambda table, key, _: table.take(key, expected, is_right, ...)
-
-
-_vector = _numbers("a vector of 3 numbers", lambda x: len(x) == 3)
-
-
-def _nodes(table: Table, key: str, mesh: Mesh, default: Any = ...) -> list[int] | None:
-    """Return nodes: one, or a list of nodes and of groups or node sets of the mesh."""
-    value = table.take(
-        key,
-        "a node counted from 0, the name of a group or node set, or a list of these",
-        lambda x: _is_place(x) or (isinstance(x, list) and bool(x) and all(map(_is_place, x))),
-        default,
-    )
-    if value is None:
-        return None
+def _nodes(value: Any, table: Table, key: str, mesh: Mesh) -> list[int] | None:
+    """Return nodes: one, or those of a list of nodes and of groups or node sets of the mesh."""
     nodes: list[int] = []
     before = len(table.faults)
     for place in listed(value):
@@ -95,16 +96,17 @@ def _nodes(table: Table, key: str, mesh: Mesh, default: Any = ...) -> list[int] 
     return list(dict.fromkeys(nodes)) if len(table.faults) == before else None
 
 
-def _some_nodes(table: Table, key: str, mesh: Mesh) -> list[int] | None:
-    return _nodes(table, key, mesh, None)
-
-
-def _node(table: Table, key: str, mesh: Mesh) -> int | None:
-    nodes = _nodes(table, key, mesh)
+def _node(value: Any, table: Table, key: str, mesh: Mesh) -> int | None:
+    nodes = _nodes(value, table, key, mesh)
     if nodes is None or len(nodes) == 1:
         return nodes[0] if nodes else None
     table.fault(key, "one node", f"{len(nodes)} nodes")
     return None
+
+
+def _axes(_value: Any, table: Table, _key: str, _: Mesh) -> Any:
+    axes = read_axes(table)
+    return None if axes is None else axes[:2].tolist()
 
 
 def listed(value: object) -> list[Any]:
@@ -112,39 +114,29 @@ def listed(value: object) -> list[Any]:
     return value if isinstance(value, list) else [value]
 
 
-def _is_place(value: object) -> bool:
-    return isinstance(value, str) or is_dof(value)
+def _name(what: str) -> Key:
+    return Key(text(f"the name of the {what}"), required=True)
 
 
-def _are_directions(value: Any) -> bool:
-    return isinstance(value, list) and all(x in fem.DIRECTIONS for x in value)
+def _above_zero(expected: str) -> Key:
+    return Key(number(expected, above=0), required=True)
 
 
-def _is_vector(value: Any) -> bool:
-    return isinstance(value, list) and len(value) == 3 and all(map(is_number, value))
-
-
-def _of_both(test: Callable[[Any], bool]) -> Callable[[Any], bool]:
-    return lambda ends: isinstance(ends, list) and len(ends) == 2 and all(map(test, ends))
-
-
+_PLACE = any_of(DOF, {"type": "string"})
+_PLACES = Requirement(
+    "a node counted from 0, the name of a group or node set, or a list of these",
+    any_of(_PLACE, array(_PLACE, 1)),
+)
 _NAMES = ", ".join(fem.DIRECTIONS)
-_directions = _value(f"a list of {_NAMES}", lambda x: bool(x) and _are_directions(x))
-_releases = _value(f"a list for either end, of {_NAMES}", _of_both(_are_directions))
-_offsets = _value("a vector of 3 numbers for either end", _of_both(_is_vector))
+_NAMED: Schema = {"enum": [*fem.DIRECTIONS]}
 
-
-def _axes(table: Table, _key: str, _: Mesh) -> Any:
-    axes = read_axes(table)
-    return None if axes is None else axes[:2].tolist()
-
-
-def _strains(table: Table, key: str, _: Mesh) -> dict[str, float] | None:
-    strains = table.table(key, "a table, group = free strain", default=None)
-    if strains is None:
-        return None
-    return {name: strains.number(name, "a strain", math.isfinite) for name in strains.values}
-
+NODES = Key(_PLACES, required=True, finish=_nodes)
+NODE = Key(_PLACES, required=True, finish=_node)
+SOME_NODES = Key(_PLACES, finish=_nodes)
+OF_AXES = Key(AXES, finish=_axes)
+OF_VECTOR = Key(numbers("a vector of 3 numbers", VECTOR))
+DIRECTIONS = Key(Requirement(f"a list of {_NAMES}", array(_NAMED, 1)))
+FORCE = Key(number("an axial force"))
 
 _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
     "rectangle": (fem.rectangle, ("b_y", "b_z")),
@@ -155,106 +147,137 @@ _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
 }
 
 _OF_CONSTANTS: Keys = {
-    "kappa_y": _number("a shear factor above 0", lambda x: x > 0),
-    "kappa_z": _number("a shear factor above 0", lambda x: x > 0),
-    "shear_centre": _numbers("its y and z", lambda x: len(x) == 2),
+    "kappa_y": Key(number("a shear factor above 0", above=0)),
+    "kappa_z": Key(number("a shear factor above 0", above=0)),
+    "shear_centre": Key(numbers("its y and z", PAIR)),
 }
 
 
-def _section(group: Table, key: str, mesh: Mesh) -> fem.Section | None:
-    table = group.table(key, "a table with shape = " + ", ".join(_SHAPES))
+def _of_shape(shape: str) -> Keys:
+    """Return the keys of a section of a shape."""
+    make, names = _SHAPES[shape]
+    above = _above_zero("a number above 0")
+    return {**dict.fromkeys(names, above), **(_OF_CONSTANTS if make is fem.Section else {})}
+
+
+def _section(_value: Any, group: Table, key: str, mesh: Mesh) -> fem.Section | None:
+    table = group.table(key)
     shape = table.choice("shape", tuple(_SHAPES)) if table else None
     if table is None or shape is None:
         return None
-    make, names = _SHAPES[shape]
     before = len(table.faults)
-    above = _number("a number above 0", lambda x: x > 0, ...)
-    keys = {**dict.fromkeys(names, above), **(_OF_CONSTANTS if make is fem.Section else {})}
-    values = read_keys(table, keys, mesh)
+    values = read_keys(table, _of_shape(shape), mesh)
     table.close()
     try:
-        return make(**values) if len(table.faults) == before else None
+        return _SHAPES[shape][0](**values) if len(table.faults) == before else None
     except fem.FemError as error:
         table.fault("", "a section that is possible", str(error))
         return None
 
 
-_FORCE = _number("an axial force")
+_SECTION = Requirement(
+    "a table with shape = " + ", ".join(_SHAPES),
+    TABLE,
+    entries=chosen("shape", {shape: of_keys(_of_shape(shape), shape=shape) for shape in _SHAPES}),
+)
+_STRAINS = Requirement("a table, group = free strain", TABLE, entries=table_of(NUMBER))
+
+
+def _strains(_value: Any, table: Table, key: str, _: Mesh) -> dict[str, float] | None:
+    strains = table.table(key)
+    return {x: strains.number(x, "a strain") for x in strains.values} if strains else None
+
 
 ELEMENTS: Mapping[Kind, tuple[Callable[..., Any], Keys]] = {
     "beam": (
         fem.Beams,
         {
-            "section": _section,
-            "orientation": _vector,
-            "offsets": _offsets,
-            "releases": _releases,
-            "force": _FORCE,
+            "section": Key(_SECTION, required=True, finish=_section),
+            "orientation": OF_VECTOR,
+            "offsets": Key(
+                Requirement("a vector of 3 numbers for either end", array(VECTOR, 2, 2))
+            ),
+            "releases": Key(
+                Requirement(f"a list for either end, of {_NAMES}", array(array(_NAMED), 2, 2))
+            ),
+            "force": FORCE,
         },
     ),
     "truss": (
         fem.Trusses,
-        {"area": _number("an area above 0", lambda x: x > 0, ...), "force": _FORCE},
+        {"area": _above_zero("an area above 0"), "force": FORCE},
     ),
     "shell": (
         fem.Shells,
         {
-            "thickness": _number("a thickness above 0", lambda x: x > 0, ...),
-            "offset": _number("a distance"),
-            "direction": _vector,
+            "thickness": _above_zero("a thickness above 0"),
+            "offset": Key(number("a distance")),
+            "direction": OF_VECTOR,
         },
     ),
-    "solid": (fem.Solids, {"axes": _axes}),
+    "solid": (fem.Solids, {"axes": OF_AXES}),
 }
 """Kinds of elements of a group, with their keys beside name, elements and material."""
 
 MEMBERS: Mapping[str, tuple[Callable[..., Any], Keys]] = {
-    "support": (fem.Support, {"nodes": _nodes, "directions": _directions, "axes": _axes}),
+    "support": (fem.Support, {"nodes": NODES, "directions": DIRECTIONS, "axes": OF_AXES}),
     "spring": (
         fem.Spring,
         {
             "name": _name("springs"),
-            "nodes": _nodes,
-            "to": _some_nodes,
-            "stiffness": _one_or(6, "a stiffness above 0, or 6 of 0 or more", lambda x: x > 0),
-            "direction": lambda table, _key, _: read_direction(table, default=None),
-            "axes": _axes,
+            "nodes": NODES,
+            "to": SOME_NODES,
+            "stiffness": Key(
+                Requirement(
+                    "a stiffness above 0, or 6 of 0 or more",
+                    any_of(ABOVE_ZERO, array(NOT_NEGATIVE, 6, 6)),
+                ),
+                required=True,
+            ),
+            "direction": Key(DIRECTION),
+            "axes": OF_AXES,
         },
     ),
     "mass": (
         fem.Mass,
         {
             "name": _name("masses"),
-            "nodes": _nodes,
-            "mass": _one_or(3, "a mass of 0 or more, or 3 for x, y and z", lambda x: x >= 0),
-            "inertia": _numbers(
-                "3 moments of inertia of 0 or more", lambda x: len(x) == 3 and min(x) >= 0
+            "nodes": NODES,
+            "mass": Key(
+                Requirement(
+                    "a mass of 0 or more, or 3 for x, y and z",
+                    any_of(NOT_NEGATIVE, array(NOT_NEGATIVE, 3, 3)),
+                ),
+                required=True,
             ),
-            "offset": _vector,
+            "inertia": Key(numbers("3 moments of inertia of 0 or more", array(NOT_NEGATIVE, 3, 3))),
+            "offset": OF_VECTOR,
         },
     ),
-    "link": (fem.Link, {"master": _node, "slaves": _nodes, "directions": _directions}),
+    "link": (fem.Link, {"master": NODE, "slaves": NODES, "directions": DIRECTIONS}),
     "coupling": (
         fem.Coupling,
         {
-            "node": _node,
-            "of": _nodes,
-            "weights": _numbers("numbers above 0", lambda x: bool(x) and min(x) > 0),
-            "directions": _directions,
+            "node": NODE,
+            "of": NODES,
+            "weights": Key(numbers("numbers above 0", array(ABOVE_ZERO, 1))),
+            "directions": DIRECTIONS,
         },
     ),
     "load": (
         fem.Load,
         {
             "name": _name("load"),
-            "nodes": _some_nodes,
-            "force": _numbers("3 components, or 6 with moments", lambda x: len(x) in (3, 6)),
-            "acceleration": _vector,
-            "strains": _strains,
+            "nodes": SOME_NODES,
+            "force": Key(
+                numbers("3 components, or 6 with moments", any_of(VECTOR, array(NUMBER, 6, 6)))
+            ),
+            "acceleration": OF_VECTOR,
+            "strains": Key(_STRAINS, finish=_strains),
         },
     ),
 }
 """Tables of members at nodes, with their keys."""
 
-NODES = {"nodes", "to", "master", "slaves", "node", "of"}
+NAMING_NODES = {"nodes", "to", "master", "slaves", "node", "of"}
 """Keys of members that name nodes."""

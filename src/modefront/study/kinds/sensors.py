@@ -11,10 +11,11 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.csv import is_reserved
 from modefront.fem.dofs import DIRECTIONS
+from modefront.json_schema import NUMBER, Schema, any_of, array, closed, fits, pair
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
-from modefront.options import is_name, is_number, shown
+from modefront.options import Requirement, is_name, shown, whole
 from modefront.toml import Table
 
 
@@ -28,52 +29,62 @@ class ModelKind:
     read : returns the model of that table, given the names of the parameters, or None where the
         table has faults; files are opened by `modefront.toml.Table.path`, so that they are known
     is_reducible : whether a model may be large enough for a reduced basis
+    table : record of options whose fields are the keys of that table (`modefront.options`), for
+        the schema of study files; None where they are not known
     """
 
     name: str
     read: Callable[[Table, Sequence[str]], Model | None]
     is_reducible: bool = True
+    table: type | None = None
 
 
 PARALLEL = 1e-9
 """Sine of the angle of two axes below which they are one."""
 
 
+NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
+"""Directions by their names."""
+
+DOF: Schema = {"type": "integer", "minimum": 0}
+WEIGHTED = any_of(DOF, array(pair(DOF, NUMBER), 1))
+"""A degree of freedom, or weights of several."""
+
+VECTOR = array(NUMBER, 3, 3)
+
+AXES = Requirement(
+    "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane",
+    array(VECTOR, 2, 2),
+    further=lambda x: (
+        float(np.linalg.norm(np.cross(*x))) > PARALLEL * float(np.prod(np.linalg.norm(x, axis=1)))
+    ),
+)
+DIRECTION = Requirement(
+    "one of " + ", ".join(NAMED) + ", or a vector of 3 numbers",
+    any_of({"enum": NAMED}, VECTOR),
+    further=is_direction,
+)
+SEVERAL = Requirement(
+    "a list of different ones of " + ", ".join(NAMED),
+    array({"enum": NAMED}, 1, once=True),
+    further=lambda x: len({y.removeprefix("-") for y in x}) == len(x),
+)
+ORIENTED = {"direction": any_of(DIRECTION.schema, SEVERAL.schema), "axes": AXES.schema}
+"""Keys that say along which directions sensors measure at a node."""
+
+NODE = whole(1, 2**62)
+BY_NODE = closed({"node": NODE.schema} | ORIENTED, ["node", "direction"])
+
+
 def read_axes(place: Table) -> Floats | None:
     """Return local axes (3, 3), x, y and z in rows; None for those of the model."""
-    expected = "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane"
-    rows = place.take(
-        "axes",
-        expected,
-        lambda x: (
-            isinstance(x, list)
-            and len(x) == 2
-            and all(isinstance(v, list) and len(v) == 3 and all(map(is_number, v)) for v in x)
-            and float(np.linalg.norm(np.cross(*x)))
-            > PARALLEL * float(np.prod(np.linalg.norm(x, axis=1)))
-        ),
-        None,
-    )
+    rows = place.value("axes", AXES, None)
     if rows is None:
         return None
     first, second = np.asarray(rows, dtype=float)
     x, z = first / np.linalg.norm(first), np.cross(first, second)
     z /= np.linalg.norm(z)
     return np.stack([x, np.cross(z, x), z])
-
-
-NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
-"""Directions by their names."""
-
-
-def read_direction(place: Table, default: Any = ...) -> Any:
-    """Return a direction: its name, or a vector."""
-    return place.take(
-        "direction",
-        "one of " + ", ".join(NAMED) + ", or a vector of 3 numbers",
-        lambda x: x in NAMED if isinstance(x, str) else is_direction(x),
-        default,
-    )
 
 
 def read_directions(place: Table) -> list[tuple[str, Any]]:
@@ -84,17 +95,10 @@ def read_directions(place: Table) -> list[tuple[str, Any]]:
     """
     value = place.values.get("direction")
     if isinstance(value, list) and any(isinstance(x, str) for x in value):
-        several = place.take(
-            "direction",
-            "a list of different ones of " + ", ".join(NAMED),
-            lambda x: (
-                all(y in NAMED for y in x) and len({y.removeprefix("-") for y in x}) == len(x)
-            ),
-            ...,
-        )
+        several = place.value("direction", SEVERAL)
         found = [(direction.removeprefix("-"), direction) for direction in several or ()]
     else:
-        direction = read_direction(place)
+        direction = place.value("direction", DIRECTION)
         found = [] if direction is None else [("", direction)]
     axes = read_axes(place)
     turned = [(ending, in_axes(place, direction, axes)) for ending, direction in found]
@@ -181,7 +185,7 @@ def _read(
                     table.fault(name, "a name that a column of the data can have", repr(sensor))
             continue
         pairs = [[value, 1.0]] if is_dof(value) else value
-        if not _is_weighted(pairs):
+        if not fits(pairs, WEIGHTED):
             expected = "a degree of freedom from 0, or a list [[degree of freedom, weight], ...]"
             table.fault(name, expected, shown(value))
             continue
@@ -209,7 +213,7 @@ def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, Sensor
     place = table.table(name)
     if place is None:
         return {}
-    node = place.integer("node", 1, 2**62)
+    node = place.value("node", NODE)
     directions = read_directions(place)
     place.close()
     if node is None:
@@ -233,15 +237,4 @@ def _selects(pairs: Iterable[Any]) -> bool:
 
 def is_dof(value: object) -> bool:
     """Return whether a value is a whole number from 0."""
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
-
-
-def _is_weighted(value: object) -> bool:
-    return (
-        isinstance(value, list)
-        and bool(value)
-        and all(
-            isinstance(pair, list) and len(pair) == 2 and is_dof(pair[0]) and is_number(pair[1])
-            for pair in value
-        )
-    )
+    return fits(value, DOF)

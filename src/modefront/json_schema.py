@@ -1,0 +1,121 @@
+"""JSON Schema of single values, and the test whether a value in plain Python meets it.
+
+Only the words that the package itself uses are known, those of draft 7. A number is finite, and a
+whole number is none that has a decimal point.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from modefront.rounding import LARGEST
+
+Schema = Mapping[str, Any]
+
+NUMBER: Schema = {"type": "number", "minimum": -LARGEST, "maximum": LARGEST}
+ABOVE_ZERO: Schema = {"type": "number", "exclusiveMinimum": 0, "maximum": LARGEST}
+NOT_NEGATIVE: Schema = {"type": "number", "minimum": 0, "maximum": LARGEST}
+NAME: Schema = {"type": "string", "pattern": r"\S"}
+TABLE: Schema = {"type": "object"}
+
+TYPES: Mapping[str, Any] = {
+    "string": str,
+    "boolean": bool,
+    "integer": int,
+    "number": (int, float),
+    "array": list,
+    "object": dict,
+}
+
+
+def whole_number(least: int, most: int) -> Schema:
+    """Return the schema of a whole number within limits."""
+    return {"type": "integer", "minimum": least, "maximum": most}
+
+
+def array(items: Schema, least: int = 0, most: int | None = None, *, once: bool = False) -> Schema:
+    """Return the schema of a list of a number of items from ``least`` to ``most``."""
+    ends = {"minItems": least} | ({} if most is None else {"maxItems": most})
+    return {"type": "array", "items": items} | ends | ({"uniqueItems": True} if once else {})
+
+
+def pair(first: Schema, second: Schema) -> Schema:
+    """Return the schema of a list of two."""
+    return {"type": "array", "items": [first, second], "minItems": 2, "maxItems": 2}
+
+
+def table_of(entries: Schema, least: int = 0) -> Schema:
+    """Return the schema of a table of any names with entries that are alike."""
+    return {"type": "object", "additionalProperties": entries, "minProperties": least}
+
+
+def any_of(*schemas: Schema) -> Schema:
+    """Return the schema of what meets one of several."""
+    return {"anyOf": list(schemas)}
+
+
+def closed(properties: Mapping[str, Schema], required: list[str]) -> Schema:
+    """Return the schema of a table that has no other keys."""
+    known = {"type": "object", "properties": dict(properties), "additionalProperties": False}
+    return known | ({"required": required} if required else {})
+
+
+def chosen(key: str, schemas: Mapping[str, Schema]) -> Schema:
+    """Return the schema of a table of which one key says which schema it meets.
+
+    The keys of all of them are listed, for editors, and what is wrong is said of single keys.
+    """
+    known: dict[str, Schema] = {}
+    for schema in schemas.values():
+        said = {
+            name: each.get("description") for name, each in schema.get("properties", {}).items()
+        }
+        known |= {name: {"description": text} for name, text in said.items() if text}
+    cases = [
+        {"if": {"properties": {key: {"enum": [name]}}, "required": [key]}, "then": schema}
+        for name, schema in schemas.items()
+    ]
+    properties = {key: {"enum": [*schemas]}, **known}
+    return {"type": "object", "properties": properties, "required": [key], "allOf": cases}
+
+
+def fits(value: Any, schema: Schema) -> bool:
+    """Return whether a value in plain Python meets a schema."""
+    if "anyOf" in schema:
+        return any(fits(value, each) for each in schema["anyOf"])
+    if "enum" in schema:
+        return isinstance(value, str) and value in schema["enum"]
+    kind = schema.get("type")
+    if kind and (
+        not isinstance(value, TYPES[kind]) or isinstance(value, bool) != (kind == "boolean")
+    ):
+        return False
+    if kind == "string":
+        return bool(re.search(schema.get("pattern", ""), value))
+    if kind in ("integer", "number"):
+        return (
+            schema.get("minimum", value) <= value <= schema.get("maximum", value)
+            and ("exclusiveMinimum" not in schema or value > schema["exclusiveMinimum"])
+            and ("exclusiveMaximum" not in schema or value < schema["exclusiveMaximum"])
+        )
+    if kind == "array":
+        return _is_array(value, schema)
+    if kind == "object" and "additionalProperties" in schema:
+        entries = schema["additionalProperties"]
+        return len(value) >= schema["minProperties"] and all(
+            fits(x, entries) for x in value.values()
+        )
+    return True
+
+
+def _is_array(value: list[Any], schema: Schema) -> bool:
+    """Return whether number and items of a list are those of a schema; ``items`` may be a list."""
+    items = schema.get("items", {})
+    each = items if isinstance(items, list) else [items] * len(value)
+    return (
+        schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", len(value))
+        and all(map(fits, value, each))
+        and not (schema.get("uniqueItems") and any(x in value[:i] for i, x in enumerate(value)))
+    )
