@@ -65,9 +65,6 @@ FULL, WHOLE = 0.9, 0.99
 """Step over the radius above which the region has held it back: a good one is followed by a longer
 one, or it is no measure of the distance from the solution."""
 
-COLLAPSED = 1e-3
-"""Radius over the tolerance of steps, below which no step is better than the point."""
-
 SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again."""
 
@@ -99,6 +96,10 @@ class Status(Enum):
     STALLED = (
         "no step improves it further: the constraints cannot be met from there, the objectives are "
         "not smooth, or bounds conflict"
+    )
+    JUMP = (
+        "no step improves it, however short: the objectives or their slopes jump there, or end, as "
+        "where a measured mode is paired with another mode of the model"
     )
     UNBOUNDED = "what is minimised falls without bound: an objective vanishes"
     EXHAUSTED = "the limit of iterations was reached: more iterations, or another start"
@@ -183,11 +184,37 @@ def solve(
     """Solve a programme from the point at which ``start`` ended.
 
     The start itself is not evaluated again where its second derivatives are known. Steps to points
-    at which the objectives are not defined are shortened.
+    at which the objectives are not defined are shortened. Where a solution ends at a jump of the
+    objectives, another one is sought from the other side of it, as long as these become better and
+    iterations are left.
     """
     options = options or Options()
+    best, beyond = _within(problem, programme, start, options)
+    spent = best.evaluations
+    while beyond is not None and spent < options.iterations:
+        other, beyond = _within(problem, programme, begin(beyond), options)
+        spent += other.evaluations
+        if not _total(programme, other.J) < _total(programme, best.J):
+            break
+        best = other
+    return replace(best, evaluations=spent)
+
+
+def _total(programme: Scalarisation, J: Floats) -> float:
+    """Return what is minimised, at objectives (n,)."""
+    y = programme.maximised.at(J)
+    return programme.value(J) + (float(y.max()) if y.size else 0.0)
+
+
+def _within(
+    problem: Problem, programme: Scalarisation, start: Solution, options: Options
+) -> tuple[Solution, Evaluation | None]:
+    """Return the solution within the piece of a start, and the model behind the jump it ends at.
+
+    The objectives are smooth within a piece; None where the solution is not at the end of one.
+    """
     if not start.feasible:
-        return replace(start, status=Status.INFEASIBLE, evaluations=0)
+        return replace(start, status=Status.INFEASIBLE, evaluations=0), None
     evaluation, count = start.evaluation, -1
     if evaluation.derivatives is None:
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
@@ -195,37 +222,41 @@ def solve(
     trusted, escaped = evaluation.exact, False
     radius, penalty = options.radius, PENALTY
     multipliers: Multipliers | None = None
+    rejected: Evaluation | None = None
+    error, fall = np.inf, 4.0
     progress = _Progress(options, length(programme.constraints.at(evaluation.J)))
     while True:
         count += 1
         note_iteration(count + 1)
         local = linearised(problem, programme, evaluation)
         if local.f == -np.inf:
-            return Solution(evaluation, local.df, 0.0, Status.UNBOUNDED, count)
+            return Solution(evaluation, local.df, 0.0, Status.UNBOUNDED, count), None
         if local.free and local.f <= options.negligible:
-            return Solution(evaluation, local.df, 0.0, Status.CONVERGED, count)
+            return Solution(evaluation, local.df, 0.0, Status.CONVERGED, count), None
         H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
         qp, step, multipliers = local.step(H, radius, multipliers)
         s, w = step.s, multipliers.weights(programme, evaluation.J)
         violation, far = length(local.c), length(s)
-        progress.proposed(far, radius)
+        held = not progress.proposed(far, radius)
         still = far <= options.step or local.unchanging(s, options.reduction)
+        still = still and not (held and rejected)  # a radius that has fallen shortens any step
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
             still, far = not s.any(), length(s)
         status = progress.outcome(count, violation, still, far, radius)
         if status or count >= options.iterations:
-            return Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
+            end = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
+            return end, rejected if status is Status.JUMP else None
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         noise = local.noise(multipliers)
         here = Solution(evaluation, w, violation, Status.CONVERGED, count)
         calm = progress.resting(here, far, predicted <= noise)
         if calm and calm.violation <= options.constraint:
-            return replace(calm, evaluations=count)
+            return replace(calm, evaluations=count), None
         new = problem.evaluate(local.end(problem, s), second=True)
         if not new.feasible or length(programme.constraints.at(new.J)) > progress.farthest:
-            radius = far / 4
+            radius, rejected = far / 4, new
             continue
         merit = Merit(programme, multipliers, penalty)
         actual = merit.at(evaluation) - merit.at(new)
@@ -237,9 +268,14 @@ def solve(
             S = learned_from(S, evaluation, new, local.span)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > TAKEN:
-            evaluation = new
+            evaluation, rejected, error, fall = new, None, np.inf, 4.0
             S = evaluation.H - evaluation.gauss_newton if evaluation.exact else S
-        radius = _next_radius(radius, far, ratio)
+            radius = _next_radius(radius, far, ratio)
+        else:
+            # of smooth objectives, the error of a prediction falls faster than the step
+            before, error = error, abs(actual - predicted) / far
+            fall = fall**2 if error > before and predicted > noise else 4.0
+            radius, rejected = far / fall, new
 
 
 @dataclass
@@ -270,10 +306,11 @@ class _Progress:
         """Violation of the constraints up to which a step is judged."""
         return max(1.0, FUNNEL * self.start)
 
-    def proposed(self, step: float, radius: float) -> None:
-        """Remember the length of a step that the trust region does not hold back."""
+    def proposed(self, step: float, radius: float) -> bool:
+        """Return whether the trust region does not hold a step back; its length is remembered."""
         if step < WHOLE * radius:
             self.proposal = step
+        return step < WHOLE * radius
 
     def outcome(
         self, count: int, violation: float, still: bool, step: float, radius: float
@@ -289,11 +326,12 @@ class _Progress:
             self.worst = violation
         if still and violation <= self.options.constraint:
             return Status.CONVERGED
-        if step > np.finfo(float).eps and radius > self.options.step * COLLAPSED:
+        if step > np.finfo(float).eps and radius > self.options.step:
             return None
+        met = violation <= 10 * self.options.constraint
         # Steps that were not held back were below the tolerance: rounding of J stops it here.
-        near = self.proposal <= self.options.step and violation <= 10 * self.options.constraint
-        return Status.CONVERGED if near else Status.STALLED
+        near = self.proposal <= self.options.step and met
+        return Status.CONVERGED if near else Status.JUMP if met else Status.STALLED
 
     def resting(self, here: Solution, step: float, negligible: bool) -> Solution | None:
         """Return the point from which the step was the shortest, where rounding decides on steps.
@@ -313,7 +351,7 @@ class _Progress:
 def _next_radius(radius: float, step: float, ratio: float) -> float:
     """Return the radius after a step of this length, with its actual over predicted reduction."""
     if ratio < POOR:
-        return step / (4 if ratio < TAKEN else 2)
+        return step / 2
     return min(2 * radius, 1.0) if ratio > GOOD and step > FULL * radius else radius
 
 
