@@ -100,7 +100,7 @@ class Payoff:
         """The normal towards greater objectives, (n,), in units of the ranges."""
         return np.asarray(self.Phi.sum(axis=1))
 
-    @property
+    @cached_property
     def unit(self) -> Floats:
         """The normal towards greater objectives, (n,)."""
         return self.scale * self.r

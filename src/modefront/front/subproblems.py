@@ -31,6 +31,7 @@ r         (n,)     normal towards greater objectives, Phi e
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -85,8 +86,8 @@ class Subproblem(Protocol):
     def weights(self, known: Solution) -> Floats:
         """Return the slope (n,) of what is minimised at a known solution."""
 
-    def is_near(self, J: Floats, /) -> bool:
-        """Return whether a model with objectives (n,) may lead to a solution by a few steps."""
+    def is_near(self, J: Floats, /) -> Bools:
+        """Return which models of objectives (models, n) may lead to a solution by a few steps."""
 
     @property
     def programme(self) -> Scalarisation:
@@ -128,9 +129,9 @@ class Least:
         others = self.order.others
         return float(others @ (before - J)) / max(float(others @ before), EXACT)
 
-    def is_near(self, _: Floats) -> bool:
-        """Return True: any model may."""
-        return True
+    def is_near(self, J: Floats) -> Bools:
+        """Return True of each: any model may."""
+        return np.ones(len(J), dtype=np.bool_)
 
     def weights(self, _: Solution) -> Floats:
         """Return the slope of J_i."""
@@ -170,9 +171,9 @@ class Weights:
         before = float(self.w @ known.J)
         return float(before - self.w @ J) / max(before, self.negligible)
 
-    def is_near(self, _: Floats) -> bool:
-        """Return True: any model may."""
-        return True
+    def is_near(self, J: Floats) -> Bools:
+        """Return True of each: any model may."""
+        return np.ones(len(J), dtype=np.bool_)
 
     def weights(self, _: Solution) -> Floats:
         """Return w."""
@@ -211,14 +212,22 @@ class Point:
         """Whether it is no solution of equations."""
         return not self.equations
 
+    def excess(self, J: Floats) -> Floats:
+        """Return the excess c (..., n) of objectives."""
+        return np.asarray(J / self.target.unit - self._offset)
+
+    @cached_property
+    def _offset(self) -> Floats:
+        return self.target.offset(self.beta)
+
     def spread(self, J: Floats) -> float:
         """Return how far objectives (n,) lie from the normal, over the ranges."""
-        c = self.target.excess(self.beta, J) * self.target.r
+        c = self.excess(J) * self.target.r
         return float(np.ptp(c))
 
     def value(self, J: Floats) -> Floats:
         """Return the greatest excess with its share of all."""
-        c = self.target.excess(self.beta, J)
+        c = self.excess(J)
         return np.asarray(c.max(axis=-1) + RHO * c.sum(axis=-1))
 
     def gain(self, J: Floats, known: Solution) -> float:
@@ -226,16 +235,16 @@ class Point:
         w = self.weights(known)
         return float(self.value(known.J) - self.value(J)) / min(max(float(w @ known.J), EXACT), 1.0)
 
-    def is_near(self, J: Floats) -> bool:
-        """Return whether a model lies few steps of the lattice from the normal."""
+    def is_near(self, J: Floats) -> Bools:
+        """Return which models lie few steps of the lattice from the normal."""
         steps = np.abs(self.target.place(J) - self.beta) * abs(sum(self.place))
-        return bool(steps.max() <= NEAR)
+        return np.asarray(steps.max(axis=-1) <= NEAR)
 
     def weights(self, known: Solution) -> Floats:
         """Return the multipliers of the excess at a solution, or of the greatest one at others."""
         if known.weights.any():
             return known.weights
-        c = self.target.excess(self.beta, known.J)
+        c = self.excess(known.J)
         return np.asarray(((c == c.max()) + RHO) / self.target.unit)
 
     def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:
@@ -248,7 +257,7 @@ class Point:
         if self.equations:
             return self.target.boundary(self.beta)
         unit = self.target.unit
-        return achievement(RHO / unit, np.diag(1 / unit), self.target.offset(self.beta))
+        return achievement(RHO / unit, np.diag(1 / unit), self._offset)
 
 
 def is_along(subproblem: Subproblem) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.subproblems import Subproblem
+from modefront.linalg.small import lstsq
 from modefront.optim.linearised import linearised
 from modefront.optim.problem import Evaluation, Problem
 
@@ -33,7 +34,12 @@ def promised(problem: Problem, subproblem: Subproblem, evaluation: Evaluation) -
     return J if subproblem.value(J) < subproblem.value(evaluation.J) else evaluation.J
 
 
-def is_hopeless(problem: Problem, evaluation: Evaluation, w: Floats, level: float) -> bool:
-    """Return whether no step in the trust region makes up for what w^T J is above a level."""
-    slopes = np.abs(w @ evaluation.dJ) * (problem.upper - problem.lower)
-    return bool(w @ evaluation.J - 1.5 * REACH * slopes.sum() > level)
+def is_hopeless(evaluation: Evaluation, w: Floats, level: float) -> bool:
+    """Return whether w^T J of residuals that change linearly is above a level wherever it goes."""
+    if not evaluation.residuals or (w < 0).any():
+        return False
+    roots = np.sqrt(w)
+    r = np.concatenate([root * x.r for root, x in zip(roots, evaluation.residuals, strict=True)])
+    dr = np.vstack([root * x.dr for root, x in zip(roots, evaluation.residuals, strict=True)])
+    least = r - dr @ lstsq(dr, r)
+    return bool(least @ least > level)

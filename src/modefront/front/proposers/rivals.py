@@ -38,9 +38,9 @@ class Rivals:
         for k, place in enumerate(state.places):
             if not place.closed:
                 continue
-            for m in range(place.compared, len(state.models)):
-                if not place.subproblem.is_near(state.models[m].J):
-                    continue
+            new = np.array([x.J for x in state.models[place.compared :]])
+            near = place.subproblem.is_near(new) if len(new) else np.zeros(0, dtype=np.bool_)
+            for m in (place.compared + np.flatnonzero(near)).tolist():
                 gain = predicted_gain(state, k, state.models[m])
                 if gain > state.tolerance:
                     self.found[k, m] = gain
@@ -74,7 +74,7 @@ def predicted_gain(state: State, k: int, model: Solution) -> float:
     if np.abs((model.theta - place.incumbent.theta) / state.span).max() <= DISTINCT:
         return 0.0
     w = place.subproblem.weights(place.incumbent)
-    if is_hopeless(state.problem, model.evaluation, w, float(w @ place.incumbent.J)):
+    if is_hopeless(model.evaluation, w, float(w @ place.incumbent.J)):
         return 0.0
     J = promised(state.problem, place.subproblem, model.evaluation)
     return place.subproblem.gain(J, place.incumbent)
