@@ -56,17 +56,18 @@ from modefront.optim.secant import learned_from
 from modefront.work.codec import record
 from modefront.work.progress import note_iteration
 
-TAKEN, POOR, GOOD = 1e-4, 0.25, 0.7
-"""Actual over predicted reduction from which a step is taken, below which the next one is shorter,
-and above which it may be longer: the usual values (Nocedal & Wright, *Numerical Optimization*,
-2006, algorithm 4.1), but that any reduction is taken, as a derivative costs as much."""
+POOR, GOOD = 0.25, 0.7
+"""Actual over predicted reduction below which the next step is shorter, and above which it may be
+longer: the usual values (Nocedal & Wright, *Numerical Optimization*, 2006, algorithm 4.1). Any
+reduction is taken, as a derivative costs as much."""
 
-FULL, WHOLE = 0.9, 0.99
+HELD = 0.99
 """Step over the radius above which the region has held it back: a good one is followed by a longer
-one, or it is no measure of the distance from the solution."""
+one, and it is no measure of the distance from the solution."""
 
 SADDLE = 1e-3
-"""Negative curvature, over the greatest one, above which a stationary point is left again."""
+"""Negative curvature, over the greatest one, above which a stationary point is left again, and
+slope, over that, up to which a bound does not hold a variable on the way."""
 
 FUNNEL = 10.0
 """Growth of the violation of the start, up to which a step is judged; 1 is always allowed, the
@@ -76,16 +77,9 @@ SWITCH = 0.5
 """Share of the error of a prediction, below which the other model is the better one: with 1, the
 models would take turns near a solution, where both are right."""
 
-FREE = 1e-4
-"""Gradient, over the greatest curvature, below which a bound does not hold a variable."""
-
-PATIENCE = 30
-"""Iterations in which the violation of the constraints is to be halved, from the worst of these, or
-there is no way."""
-
-REST, SHORTER = 6, 0.9
-"""Steps one after another that promise no more than rounding, none of them shorter than this share
-of the shortest one before, after which the objectives tell no more."""
+REST = 6
+"""Steps one after another that promise no more than rounding, and are no shorter than the shortest
+one before, after which the objectives tell no more."""
 
 
 @record
@@ -243,7 +237,7 @@ def _within(
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
             still, far = not s.any(), length(s)
-        status = progress.outcome(count, violation, still, far, radius)
+        status = progress.outcome(violation, still, far, radius)
         if status or count >= options.iterations:
             end = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
             return end, rejected if status is Status.JUMP else None
@@ -267,7 +261,7 @@ def _within(
         if not evaluation.exact:
             S = learned_from(S, evaluation, new, local.span)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
-        if ratio > TAKEN:
+        if ratio > 0:
             evaluation, rejected, error, fall = new, None, np.inf, 4.0
             S = evaluation.H - evaluation.gauss_newton if evaluation.exact else S
             radius = _next_radius(radius, far, ratio)
@@ -286,16 +280,14 @@ class _Progress:
     ----------
     options : tolerances
     start : first violation of the constraints
-    worst : greatest violation since patience was last counted
     proposal : length of the last step that the trust region did not hold back
     shortest : length of the shortest of the last steps, if all of these promise only rounding
     calm : the point from which it led
-    idle : how many of these steps, one after another, were not clearly shorter than all before
+    idle : how many of these steps, one after another, were not shorter than all before
     """
 
     options: Options
     start: float
-    worst: float = np.inf
     proposal: float = np.inf
     shortest: float = np.inf
     idle: int = 0
@@ -308,22 +300,15 @@ class _Progress:
 
     def proposed(self, step: float, radius: float) -> bool:
         """Return whether the trust region does not hold a step back; its length is remembered."""
-        if step < WHOLE * radius:
+        if step < HELD * radius:
             self.proposal = step
-        return step < WHOLE * radius
+        return step < HELD * radius
 
-    def outcome(
-        self, count: int, violation: float, still: bool, step: float, radius: float
-    ) -> Status | None:
+    def outcome(self, violation: float, still: bool, step: float, radius: float) -> Status | None:
         """Return how the solution ends at a point; None where it goes on.
 
         ``still`` says whether no step is worth making, ``step`` is the length of the next one.
         """
-        self.worst = max(self.worst, violation)
-        if count % PATIENCE == 0:
-            if violation > max(self.options.constraint, 0.5 * self.worst) and count > 0:
-                return Status.STALLED
-            self.worst = violation
         if still and violation <= self.options.constraint:
             return Status.CONVERGED
         if step > np.finfo(float).eps and radius > self.options.step:
@@ -342,7 +327,7 @@ class _Progress:
         if not negligible:
             self.shortest, self.idle = np.inf, 0
             return None
-        self.idle = 0 if step < SHORTER * self.shortest else self.idle + 1
+        self.idle = 0 if step < self.shortest else self.idle + 1
         if step < self.shortest:
             self.shortest, self.calm = step, here
         return self.calm if self.idle >= REST else None
@@ -352,7 +337,7 @@ def _next_radius(radius: float, step: float, ratio: float) -> float:
     """Return the radius after a step of this length, with its actual over predicted reduction."""
     if ratio < POOR:
         return step / 2
-    return min(2 * radius, 1.0) if ratio > GOOD and step > FULL * radius else radius
+    return min(2 * radius, 1.0) if ratio > GOOD and step > HELD * radius else radius
 
 
 def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:
@@ -363,7 +348,7 @@ def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) ->
     """
     lo, hi, E = qp.lo, qp.hi, qp.ties(active)
     s = np.zeros(slope.size)
-    flat = np.abs(slope) <= FREE * np.abs(qp.B).max()
+    flat = np.abs(slope) <= SADDLE * np.abs(qp.B).max()
     free = ((lo < 0) & (hi > 0)) | (flat & (lo < hi))
     Z = scipy.linalg.null_space(E[:, free]) if E.size else np.eye(int(free.sum()))
     if Z.shape[1] == 0:
@@ -371,7 +356,7 @@ def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) ->
     curvature, V = np.linalg.eigh(Z.T @ qp.B[np.ix_(free, free)] @ Z)
     if curvature[0] < -SADDLE * np.abs(curvature).max():
         v = Z @ V[:, 0]
-        v[np.abs(v) < FREE] = 0.0
+        v[np.abs(v) < SADDLE] = 0.0
         v *= -1.0 if slope[free] @ v > 0 else 1.0
         ahead, behind = _longest(v, lo[free], hi[free]), _longest(-v, lo[free], hi[free])
         s[free] = 0.5 * (ahead if ahead.any() else behind)
