@@ -69,10 +69,6 @@ SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again, and
 slope, over that, up to which a bound does not hold a variable on the way."""
 
-FUNNEL = 10.0
-"""Growth of the violation of the start, up to which a step is judged; 1 is always allowed, the
-range of the objectives where constraints are in units of these."""
-
 SWITCH = 0.5
 """Share of the error of a prediction, below which the other model is the better one: with 1, the
 models would take turns near a solution, where both are right."""
@@ -218,7 +214,7 @@ def _within(
     multipliers: Multipliers | None = None
     rejected: Evaluation | None = None
     error, fall = np.inf, 4.0
-    progress = _Progress(options, length(programme.constraints.at(evaluation.J)))
+    progress = _Progress(options)
     while True:
         count += 1
         note_iteration(count + 1)
@@ -249,7 +245,7 @@ def _within(
         if calm and calm.violation <= options.constraint:
             return replace(calm, evaluations=count), None
         new = problem.evaluate(local.end(problem, s), second=True)
-        if not new.feasible or length(programme.constraints.at(new.J)) > progress.farthest:
+        if not new.feasible:
             radius, rejected = far / 4, new
             continue
         merit = Merit(programme, multipliers, penalty)
@@ -279,7 +275,6 @@ class _Progress:
     Attributes
     ----------
     options : tolerances
-    start : first violation of the constraints
     proposal : length of the last step that the trust region did not hold back
     shortest : length of the shortest of the last steps, if all of these promise only rounding
     calm : the point from which it led
@@ -287,16 +282,10 @@ class _Progress:
     """
 
     options: Options
-    start: float
     proposal: float = np.inf
     shortest: float = np.inf
     idle: int = 0
     calm: Solution | None = None
-
-    @property
-    def farthest(self) -> float:
-        """Violation of the constraints up to which a step is judged."""
-        return max(1.0, FUNNEL * self.start)
 
     def proposed(self, step: float, radius: float) -> bool:
         """Return whether the trust region does not hold a step back; its length is remembered."""
