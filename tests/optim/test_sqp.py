@@ -13,7 +13,7 @@ from modefront._typing import Floats
 from modefront.optim.merit import Merit, Multipliers, projected, surplus
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives
 from modefront.optim.scalarisation import Scalarisation, achievement, level, weighted
-from modefront.optim.secant import learned_from
+from modefront.optim.second import learned_from
 from modefront.optim.sqp import Options, Solution, Status, begin, solve
 
 SEEDS = st.integers(0, 2**31)

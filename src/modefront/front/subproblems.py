@@ -30,6 +30,7 @@ r         (n,)     normal towards greater objectives, Phi e
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
@@ -38,9 +39,9 @@ import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.front.simplex import Payoff
-from modefront.optim.lexicographic import EXACT, Lexicographic
+from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
 from modefront.optim.problem import Problem
-from modefront.optim.scalarisation import Scalarisation, achievement, weighted
+from modefront.optim.scalarisation import Scalarisation, achievement, constrained, weighted
 from modefront.optim.sqp import Options, Solution, solve
 from modefront.work.task import Key
 
@@ -60,10 +61,15 @@ def active_bounds(shares: Floats) -> Bools:
     return np.asarray(shares > 2 * RHO)
 
 
-NEGLIGIBLE = 1e-16
-"""Objective over its typical size at which a search ends: residuals of the tolerance of steps."""
+_TIGHT = Options(step=1e-8, reduction=1e-24, negligible=1e-16)
+"""Of an edge, over its typical size: residuals of the tolerance of steps end a search."""
 
-_TIGHT = Options(step=1e-8, reduction=1e-24, negligible=NEGLIGIBLE)
+
+SAMPLE = 16
+"""Random models of which typical sizes are medians."""
+
+ATTEMPTS = 4
+"""Starts from which the end of a flat valley is sought, at most."""
 
 
 class Subproblem(Protocol):
@@ -118,7 +124,7 @@ class Least:
 
     def value(self, J: Floats) -> Floats:
         """Return nearly what orders models; among equals in J_i, the others decide."""
-        return np.asarray(J @ self._slope(1e-6))
+        return np.asarray(J @ self._slope(TIE))
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the share by which J_i falls, or where that is tied, the others."""
@@ -186,7 +192,7 @@ class Weights:
 
     def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:
         """Return the minimum below a start."""
-        options = Options(negligible=NEGLIGIBLE / EXACT * self.negligible)
+        options = Options(negligible=_TIGHT.negligible / EXACT * self.negligible)
         return solve(problem, self.programme, start, options)
 
 
@@ -263,3 +269,41 @@ class Point:
 def is_along(subproblem: Subproblem) -> bool:
     """Return whether a subproblem is one of many along the front."""
     return subproblem.key[0] in ("point", "sweep")
+
+
+def sample(problem: Problem, *, rng: np.random.Generator) -> Floats:
+    """Return the typical size of each objective, of random models; empty without any."""
+    span = problem.upper - problem.lower
+    thetas = problem.lower + span * rng.uniform(size=(SAMPLE, span.size))
+    J = np.array([problem.evaluate(theta, derivatives=False).J for theta in thetas])
+    J = J[np.isfinite(J).all(axis=1)]
+    return np.maximum(np.median(J, axis=0), np.finfo(float).tiny) if len(J) else np.zeros(0)
+
+
+def near_best(
+    problem: Problem,
+    best: Solution,
+    objective: int,
+    tolerance: float,
+    sizes: Floats,
+    known: Sequence[Solution],
+) -> Solution:
+    """Return, of the models within a tolerance of the best in an objective, the best in the others.
+
+    Where an objective hardly changes along a valley, the end of the valley says nothing, and the
+    front there is flat; this is the point from which it is not. It is solved from those of the
+    ``known`` solutions that are closest in the objective, one after another. An objective that is
+    fitted exactly keeps its edge, and so does one for which the programme does not converge.
+    """
+    least = best.J[objective]
+    if least <= EXACT * sizes[objective]:
+        return best
+    value = (1 + tolerance) * least
+    others = np.where(np.arange(sizes.size) != objective, 1 / sizes, 0.0)
+    unit = np.eye(sizes.size)[[objective]] / value
+    closest = sorted(known, key=lambda solution: abs(np.log(solution.J[objective] / value)))
+    for start in closest[:ATTEMPTS]:
+        solved = solve(problem, constrained(others, unit, np.ones(1)), start)
+        if solved.converged:
+            return solved
+    return best

@@ -13,7 +13,7 @@ of the objectives, the Hessian of the Lagrangian is
 
 with the second derivatives :math:`H_i` of the objectives. Where a problem does not know these, such
 as a model that is a function of the user's, :math:`H_i` is the part that it knows (Gauss-Newton's),
-and the rest :math:`S_i` is learned from differences of gradients (`modefront.optim.secant`). Where
+and the rest :math:`S_i` is learned from differences of gradients (`modefront.optim.second`). Where
 residuals vanish, S is a burden: B is taken with it or without it, whichever predicted the last step
 better (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965).
 
@@ -52,7 +52,7 @@ from modefront.optim.merit import PENALTY, Merit, Multipliers
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
-from modefront.optim.secant import learned_from
+from modefront.optim.second import learned_from
 from modefront.work.codec import record
 from modefront.work.progress import note_iteration
 
