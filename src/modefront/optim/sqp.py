@@ -69,10 +69,6 @@ SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again, and
 slope, over that, up to which a bound does not hold a variable on the way."""
 
-SWITCH = 0.5
-"""Share of the error of a prediction, below which the other model is the better one: with 1, the
-models would take turns near a solution, where both are right."""
-
 REST = 6
 """Steps one after another that promise no more than rounding, and are no shorter than the shortest
 one before, after which the objectives tell no more."""
@@ -210,62 +206,57 @@ def _within(
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
     S = evaluation.H - evaluation.gauss_newton
     trusted, escaped = evaluation.exact, False
-    radius, penalty = options.radius, PENALTY
+    region, penalty = _Region(options.radius), PENALTY
     multipliers: Multipliers | None = None
     rejected: Evaluation | None = None
-    error, fall = np.inf, 4.0
     progress = _Progress(options)
     while True:
         count += 1
         note_iteration(count + 1)
         local = linearised(problem, programme, evaluation)
-        if local.f == -np.inf:
-            return Solution(evaluation, local.df, 0.0, Status.UNBOUNDED, count), None
         if local.free and local.f <= options.negligible:
-            return Solution(evaluation, local.df, 0.0, Status.CONVERGED, count), None
+            ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
+            return Solution(evaluation, local.df, 0.0, ended, count), None
         H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
-        qp, step, multipliers = local.step(H, radius, multipliers)
+        qp, step, multipliers = local.step(H, region.radius, multipliers)
         s, w = step.s, multipliers.weights(programme, evaluation.J)
         violation, far = length(local.c), length(s)
-        held = not progress.proposed(far, radius)
+        held = not progress.proposed(far, region.radius)
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
             still, far = not s.any(), length(s)
-        status = progress.outcome(violation, still, far, radius)
+        status = progress.outcome(violation, still, far, region.radius)
+        here = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
         if status or count >= options.iterations:
-            end = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
-            return end, rejected if status is Status.JUMP else None
+            return here, rejected if status is Status.JUMP else None
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         noise = local.noise(multipliers)
-        here = Solution(evaluation, w, violation, Status.CONVERGED, count)
         calm = progress.resting(here, far, predicted <= noise)
         if calm and calm.violation <= options.constraint:
-            return replace(calm, evaluations=count), None
+            return replace(calm, status=Status.CONVERGED, evaluations=count), None
         new = problem.evaluate(local.end(problem, s), second=True)
         if not new.feasible:
-            radius, rejected = far / 4, new
+            region.refused(far, 0.0)
+            rejected = new
             continue
         merit = Merit(programme, multipliers, penalty)
         actual = merit.at(evaluation) - merit.at(new)
-        change = s * local.span
+        miss, change = actual - predicted, s * local.span
         rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)
-        if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
-            trusted = not trusted
+        trusted ^= bool(abs(miss - rest) < abs(miss))
         if not evaluation.exact:
             S = learned_from(S, evaluation, new, local.span)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
-            evaluation, rejected, error, fall = new, None, np.inf, 4.0
+            evaluation, rejected = new, None
             S = evaluation.H - evaluation.gauss_newton if evaluation.exact else S
-            radius = _next_radius(radius, far, ratio)
+            region.taken(far, ratio)
         else:
-            # of smooth objectives, the error of a prediction falls faster than the step
-            before, error = error, abs(actual - predicted) / far
-            fall = fall**2 if error > before and predicted > noise else 4.0
-            radius, rejected = far / fall, new
+            region.refused(far, abs(miss) if predicted > noise else 0.0)
+            rejected = new
 
 
 @dataclass
@@ -322,11 +313,31 @@ class _Progress:
         return self.calm if self.idle >= REST else None
 
 
-def _next_radius(radius: float, step: float, ratio: float) -> float:
-    """Return the radius after a step of this length, with its actual over predicted reduction."""
-    if ratio < POOR:
-        return step / 2
-    return min(2 * radius, 1.0) if ratio > GOOD and step > HELD * radius else radius
+@dataclass
+class _Region:
+    """The trust region, of which ``radius`` is the half width.
+
+    Of smooth objectives, the ``error`` of a prediction falls faster than the step. Where it does
+    not, the radius falls ever faster, by a quarter, a sixteenth and so on: to a jump.
+    """
+
+    radius: float
+    error: float = np.inf
+    fall: float = 4.0
+
+    def taken(self, step: float, ratio: float) -> None:
+        """Adapt it to a step that is taken, with its actual over predicted reduction."""
+        self.error, self.fall = np.inf, 4.0
+        if ratio < POOR:
+            self.radius = step / 2
+        elif ratio > GOOD and step > HELD * self.radius:
+            self.radius = min(2 * self.radius, 1.0)
+
+    def refused(self, step: float, miss: float) -> None:
+        """Shorten the next step after one that is not taken, by which its prediction is missed."""
+        before, self.error = self.error, miss / step
+        self.fall = self.fall**2 if self.error > before else 4.0
+        self.radius = step / self.fall
 
 
 def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:
