@@ -61,7 +61,7 @@ NEAR = 0.7
 """Distance over the length of a step, below which a point counts as one that is known: below 1, as
 corrected steps do not end where they were to, and above 1/2, or points lie twice as dense."""
 
-SHORT = 0.3
+SHORT = 1 - NEAR
 """Step over h, below which it is not worth making to a bound, but at the ends of a curve: an
 evaluation or more for a model like the last one."""
 

@@ -26,10 +26,8 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.front.subproblems import RHO
 from modefront.optim.problem import Problem
 from modefront.optim.scalarisation import level, weighted
-from modefront.optim.sqp import Options, Solution, solve
+from modefront.optim.sqp import TIGHT, Solution, solve
 from modefront.work.task import IMMEDIATE, Executor, Task
-
-_TIGHT = Options(reduction=1e-17)
 
 
 @dataclass(frozen=True)
@@ -111,14 +109,14 @@ def _ends(
 
     def own(i: int, of: Solution) -> Solution | None:
         """Return where an objective is least within the branch of a point."""
-        return _converged(solve(problem, weighted(np.eye(2)[i] / scale), of, _TIGHT))
+        return _converged(solve(problem, weighted(np.eye(2)[i] / scale), of, TIGHT))
 
     def at_level(i: int, of: Solution, other: Solution | None) -> Solution | None:
         """Return where the branch of a point has as much of an objective as the other end."""
         if other is None:
             return None
         goal = level(1 - i, i, float(other.J[i]), scale)
-        return _converged(solve(problem, goal, of, _TIGHT))
+        return _converged(solve(problem, goal, of, TIGHT))
 
     a = before[-1]
     ends_itself, starts_itself = slack

@@ -10,6 +10,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.archive import Archive, Outcome, limited
+from modefront.front.dominance import SAME
 from modefront.front.subproblems import Subproblem
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, begin
@@ -18,7 +19,7 @@ from modefront.work.task import Executor, Task
 DISTINCT = 1e-3
 """Distance of two models, over the ranges of the parameters, above which they are two."""
 
-COPY = 1e-5
+COPY = 10 * SAME
 """Distance of two points, over the ranges of the objectives, below which they are copies."""
 
 

@@ -68,9 +68,6 @@ _TIGHT = Options(step=1e-8, reduction=1e-24, negligible=1e-16)
 SAMPLE = 16
 """Random models of which typical sizes are medians."""
 
-ATTEMPTS = 4
-"""Starts from which the end of a flat valley is sought, at most."""
-
 
 class Subproblem(Protocol):
     """An order on J, and a programme that leads to a model that is best in it."""
@@ -302,7 +299,7 @@ def near_best(
     others = np.where(np.arange(sizes.size) != objective, 1 / sizes, 0.0)
     unit = np.eye(sizes.size)[[objective]] / value
     closest = sorted(known, key=lambda solution: abs(np.log(solution.J[objective] / value)))
-    for start in closest[:ATTEMPTS]:
+    for start in closest[: sizes.size]:
         solved = solve(problem, constrained(others, unit, np.ones(1)), start)
         if solved.converged:
             return solved

@@ -32,16 +32,13 @@ from modefront._typing import Floats
 from modefront.optim.lexicographic import EXACT
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem
 from modefront.optim.scalarisation import LogSum, weighted
-from modefront.optim.sqp import Options, Solution, Status, solve
+from modefront.optim.sqp import TIGHT, Options, Solution, Status, solve
 
 WITHIN = 0.1
 """Tolerance of a model of the iteration of weights, over the length of the step before it."""
 
 UNCHANGED = 1e-12
 """Eigenvalue over the greatest one below which a direction changes no residual."""
-
-_TIGHT = Options(reduction=1e-17)
-"""Steps end at the tolerance of the parameters, whatever f: a sum of logarithms has any size."""
 
 
 def regular(J: Floats, sizes: Floats) -> bool:
@@ -55,7 +52,7 @@ def optimal_minimum(problem: Problem, a: Floats, sizes: Floats, start: Solution)
     ``a`` (n,) counts the measured properties of each group, ``sizes`` (n,) are typical sizes of
     the objectives.
     """
-    return solve(problem, LogSum(a, vanishing=EXACT * sizes), start, _TIGHT)
+    return solve(problem, LogSum(a, vanishing=EXACT * sizes), start, TIGHT)
 
 
 def accepted(

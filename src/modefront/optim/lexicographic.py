@@ -43,10 +43,10 @@ RANK = Options().step
 """Singular value of the residuals' derivatives, over the greatest, that counts as none: the
 tolerance of the parameters."""
 
-FIRST, RATIO = 1e-1, 10
-"""Value of epsilon at which the path begins; ratio of one to the next. It ends at `EXACT`."""
+RATIO = 10
+"""Ratio of epsilon, which begins at 1 / RATIO and ends at `EXACT`, to the next one."""
 
-SHARE = 1e-8
+SHARE = 0.01 * TIE
 """Change of the others, over themselves, below which a minimiser on the path is exact enough."""
 
 
@@ -99,7 +99,7 @@ class Lexicographic:
         if above or alone or not self.is_open(problem, best.evaluation):
             return best
         spent = best.evaluations
-        for epsilon, begins in ((FIRST, start), (FIRST / 1000, best)):
+        for epsilon, begins in ((1 / RATIO, start), (1 / RATIO**4, best)):
             end = self._end(problem, epsilon, begins, options)
             spent += end.evaluations
             if end.feasible and (end.J[i] <= best.J[i] or self.ties(end.J, best.J)):

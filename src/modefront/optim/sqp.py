@@ -61,10 +61,6 @@ POOR, GOOD = 0.25, 0.7
 longer: the usual values (Nocedal & Wright, *Numerical Optimization*, 2006, algorithm 4.1). Any
 reduction is taken, as a derivative costs as much."""
 
-HELD = 0.99
-"""Step over the radius above which the region has held it back: a good one is followed by a longer
-one, and it is no measure of the distance from the solution."""
-
 SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again, and
 slope, over that, up to which a bound does not hold a variable on the way."""
@@ -107,6 +103,10 @@ class Options:
     iterations: int = 100
     radius: float = 0.15
     negligible: float = -np.inf
+
+
+TIGHT = Options(reduction=1e-17)
+"""Steps end at the tolerance of the parameters, whatever f: a sum of logarithms has any size."""
 
 
 @record
@@ -280,9 +280,9 @@ class _Progress:
 
     def proposed(self, step: float, radius: float) -> bool:
         """Return whether the trust region does not hold a step back; its length is remembered."""
-        if step < HELD * radius:
+        if step < radius:
             self.proposal = step
-        return step < HELD * radius
+        return step < radius
 
     def outcome(self, violation: float, still: bool, step: float, radius: float) -> Status | None:
         """Return how the solution ends at a point; None where it goes on.
@@ -330,7 +330,7 @@ class _Region:
         self.error, self.fall = np.inf, 4.0
         if ratio < POOR:
             self.radius = step / 2
-        elif ratio > GOOD and step > HELD * self.radius:
+        elif ratio > GOOD and step >= self.radius:
             self.radius = min(2 * self.radius, 1.0)
 
     def refused(self, step: float, miss: float) -> None:

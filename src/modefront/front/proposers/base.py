@@ -20,7 +20,7 @@ USUAL = 10
 """Evaluations that a search is expected to take before any is known, models of a generation, and
 random starts that cover the box together."""
 
-_ROUGH = Options(step=3e-4, constraint=3e-4, iterations=4)
+_ROUGH = Options(iterations=4)
 """A few steps, after which the model that is reached is compared with all others."""
 
 
