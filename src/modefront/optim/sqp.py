@@ -19,10 +19,10 @@ better (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965).
 
 Steps solve a quadratic programme within a box, the trust region; they are judged by the augmented
 Lagrangian (`modefront.optim.merit`) which, unlike an exact penalty, does not reject good steps
-near the solution. Far from it, multipliers may be absurd: they are bounded, and a step that leaves
-the constraints by much more than the start did is shortened. One attempt is made to leave a
-stationary point with clearly negative curvature. Where the objectives are known no better than the
-steps promise, a solution ends before its tolerances are met.
+near the solution. Far from it, multipliers may be absurd: they are bounded. One attempt is made to
+leave a stationary point with clearly negative curvature. Where the objectives are known no better
+than the steps promise, a solution ends before its tolerances are met. Where they jump, it ends with
+a status of its own, and another one is sought from the other side.
 
 =========  =========  ==================================================================
 symbol     shape      meaning
