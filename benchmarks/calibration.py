@@ -29,8 +29,8 @@ import numpy as np
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.analysis.curvature import with_second_order
 from modefront.front.weights import accepted, optimal_minimum
+from modefront.optim.second import with_second_order
 from modefront.optim.sqp import begin
 from modefront.results.posterior import DETERMINED
 from modefront.results.verdict import refusals

@@ -7,8 +7,8 @@ from problems import Derivatives, Known, box, concave, disconnected
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.analysis.curvature import with_second_order
 from modefront.analysis.front import _local
+from modefront.optim.second import with_second_order
 from modefront.work.costs import Costs
 
 K = ("k1", "k2", "k3")

@@ -181,6 +181,15 @@ def wide(groups: int, parameters: int, modes: int) -> xr.Dataset:
     )
 
 
+def test_a_model_at_a_jump_is_one_to_beware_of_and_no_failure() -> None:
+    data = wide(2, 3, 3)
+    status = ["given", "converged", "converged", "jump"]
+    data = data.assign(status=("point", status), converged=("point", [x != "jump" for x in status]))
+    (jump,) = [line for line in headlines(data) if "jump" in line]
+    assert "jump next to edge-group 1 of 2" in jump
+    assert not any("not converged" in line for line in headlines(data))
+
+
 @pytest.mark.parametrize(
     ("groups", "parameters", "modes"),
     [(2, 3, 3), (3, 3, 3), (2, 17, 12), (3, 17, 12), (4, 30, 12), (7, 30, 20), (1, 60, 40)],

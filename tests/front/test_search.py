@@ -27,20 +27,19 @@ from modefront._typing import Bools, Floats
 from modefront.errors import InputError
 from modefront.front.archive import Archive, Outcome, recorded
 from modefront.front.dominance import undominated
-from modefront.front.edges import SAMPLE
 from modefront.front.front import Front
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind
-from modefront.front.proposers.base import Offer, Proposer, Rate, at, evaluate_all
-from modefront.front.proposers.evolution import CHILDREN, Evolution
+from modefront.front.proposers.base import USUAL, Offer, Proposer, Rate, at, evaluate_all
+from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.rivals import Rivals
-from modefront.front.proposers.starts import BLOCK, SURE, Minima, Starts, unseen
+from modefront.front.proposers.starts import SURE, Minima, Starts, unseen
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import lattice, spanned
 from modefront.front.state import Place, State
-from modefront.front.subproblems import Least, Subproblem, Weights
+from modefront.front.subproblems import SAMPLE, Least, Subproblem, Weights
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution, Status, begin
@@ -417,13 +416,13 @@ def test_starts_begin_at_the_problem_s_own_and_cover_each_range_evenly() -> None
     problem = box(many_minima, [-4, -4], [4, 4])
     state = state_of(problem, anchors(problem)[:1], [[0.0, 0.0]])
     thetas = [
-        offer.start.theta for offer in Starts(np.random.default_rng(0)).offers(state, BLOCK + 1)
+        offer.start.theta for offer in Starts(np.random.default_rng(0)).offers(state, USUAL + 1)
     ]
     assert thetas[0].tolist() == problem.start.tolist()
     block = np.array(thetas[1:])
-    assert block.shape == (BLOCK, 2)
-    cells = np.floor((block + 4) / 8 * BLOCK).astype(int)
-    assert (np.sort(cells, axis=0) == np.arange(BLOCK)[:, None]).all()
+    assert block.shape == (USUAL, 2)
+    cells = np.floor((block + 4) / 8 * USUAL).astype(int)
+    assert (np.sort(cells, axis=0) == np.arange(USUAL)[:, None]).all()
 
 
 def test_starts_find_all_minima_and_then_stop() -> None:
@@ -481,13 +480,13 @@ def test_children_lie_within_the_bounds(seed: int) -> None:
         place.closed = True
     (offer,) = evolution.offers(state, 6)
     (children,) = offer.arguments
-    assert children.shape == (CHILDREN, 2)
+    assert children.shape == (USUAL, 2)
     assert (children >= problem.lower).all()
     assert (children <= problem.upper).all()
     assert offer.place == -1
     assert not offer.final
     outcome = recorded(offer.function, None, problem, *offer.arguments)
-    assert outcome.evaluations == CHILDREN
+    assert outcome.evaluations == USUAL
 
 
 def test_evolution_alone_comes_close_to_an_edge() -> None:

@@ -13,7 +13,7 @@ from modefront._typing import Floats
 from modefront.optim.merit import Merit, Multipliers, projected, surplus
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives
 from modefront.optim.scalarisation import Scalarisation, achievement, level, weighted
-from modefront.optim.secant import learned_from
+from modefront.optim.second import learned_from
 from modefront.optim.sqp import Options, Solution, Status, begin, solve
 
 SEEDS = st.integers(0, 2**31)
@@ -62,6 +62,24 @@ def test_points_without_a_model_are_stepped_back_from() -> None:
     assert result.theta == pytest.approx([0.5, 0], abs=1e-6)
     nowhere = begin(problem.evaluate(np.ones(2)))
     assert solve(problem, weighted(np.ones(2)), nowhere).status is Status.INFEASIBLE
+
+
+@pytest.mark.parametrize(("step", "status"), [(0.2, Status.CONVERGED), (3.0, Status.JUMP)])
+def test_a_jump_is_told_from_a_minimum_and_its_other_side_is_tried(
+    step: float, status: Status
+) -> None:
+    """(x - 1)**2 + y**2 falls up to x = 0.3, where it jumps up by a step."""
+
+    def jumping(theta: Floats) -> Derivatives:
+        behind = step * (theta[0] > 0.3)
+        J = np.array([(theta[0] - 1) ** 2 + theta[1] ** 2 + behind])
+        return J, 2 * (theta - [1.0, 0.0])[None], 2 * np.eye(2)[None]
+
+    problem = box(jumping, [-2, -2], [2, 2], 1)
+    result = solve(problem, weighted(np.ones(1)), begin(problem.evaluate(-np.ones(2))))
+    assert result.status is status
+    assert result.J[0] == pytest.approx(step if result.converged else 0.49, abs=1e-2)
+    assert result.evaluations < 50
 
 
 def test_an_exhausted_search_says_so() -> None:

@@ -9,9 +9,9 @@ import scipy.stats
 from exact import Residuals, Squares, squares
 
 from modefront._typing import Floats
-from modefront.analysis.curvature import with_second_order
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum
+from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Options, begin, solve
 from modefront.uncertainty.laplace import Posterior, laplace
 from modefront.uncertainty.prediction import draw, linear

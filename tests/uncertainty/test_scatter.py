@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from modefront._typing import Floats
-from modefront.analysis.curvature import with_second_order
 from modefront.front.simplex import spanned
 from modefront.front.subproblems import Point, active_bounds
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum, Scalarisation, constrained, weighted
+from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.uncertainty.conditions import (
     between,

@@ -9,13 +9,13 @@ import pytest
 from problems import Derivatives, Known, box, many_minima
 
 from modefront._typing import Floats
-from modefront.analysis.curvature import with_second_order
 from modefront.front.front import Edge, Front
 from modefront.front.point import Kind, Point
 from modefront.front.simplex import spanned
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import weighted
+from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Status, begin, solve
 from modefront.uncertainty.conditions import (
     between,

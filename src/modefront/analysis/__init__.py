@@ -1,1 +1,1 @@
-"""Analysis of a front: flat parts, equivalent models, uncertainty, coverage."""
+"""Analysis of a front: flat parts, equivalent models, uncertainty."""

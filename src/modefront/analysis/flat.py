@@ -6,9 +6,9 @@ are: the data do not say which of them it is. Such a part of the front is flat: 
 .. math:: J_i \le (1 + \epsilon) \min J_i
 
 spread over much of the range of another objective. The identifiable part of the front begins where
-the best of the others at that level lies (`modefront.front.edges.near_best`), and is covered by
-points of its own. Of three and more objectives the flat part is a patch, and that point is one of
-its border: points of the new simplex that come to lie in the patch are left out.
+the best of the others at that level lies (`modefront.front.subproblems.near_best`), and is covered
+by points of its own. Of three and more objectives the flat part is a patch, and that point is one
+of its border: points of the new simplex that come to lie in the patch are left out.
 """
 
 from __future__ import annotations
@@ -20,13 +20,12 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.front.archive import Archive
-from modefront.front.edges import near_best
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.rivals import Rivals
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import Payoff, lattice, payoff
 from modefront.front.state import State, distinct_points
-from modefront.front.subproblems import Point
+from modefront.front.subproblems import Point, near_best
 from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution

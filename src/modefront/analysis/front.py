@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.analysis.curvature import with_second_order
 from modefront.analysis.flat import Identifiable, identifiable_part, same
 from modefront.analysis.manifold import Manifold, equivalent_models
 from modefront.front.front import Front
@@ -22,6 +21,7 @@ from modefront.identifiability.scale import scale_at
 from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
+from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.bootstrap import redraw

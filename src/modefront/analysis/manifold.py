@@ -53,6 +53,7 @@ from modefront._typing import Bools, Floats
 from modefront.analysis.tangents import ARRIVED, Context, TangentPoint, context_of
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem, SpentError, Wrapped
 from modefront.optim.scalarisation import Scalarisation
+from modefront.optim.sqp import GOOD
 from modefront.work.codec import record
 from modefront.work.progress import note
 
@@ -60,13 +61,13 @@ NEAR = 0.7
 """Distance over the length of a step, below which a point counts as one that is known: below 1, as
 corrected steps do not end where they were to, and above 1/2, or points lie twice as dense."""
 
-SHORT = 0.3
+SHORT = 1 - NEAR
 """Step over h, below which it is not worth making to a bound, but at the ends of a curve: an
 evaluation or more for a model like the last one."""
 
-SAME_MINIMUM = 1e-5
-"""Distance in u below which two isolated minima are the same: a hundred times the tolerance of a
-step (`modefront.optim.sqp.Options`), which minima that are nearly flat miss by as much."""
+SAME_MINIMUM = 100 * ARRIVED
+"""Distance in u below which two isolated minima are the same: those that are nearly flat miss the
+tolerance of a step by as much."""
 
 HALVINGS = 4
 """Halvings of a step that finds no point, at most."""
@@ -82,10 +83,7 @@ GAIN = 1e-2
 """Share of its range by which a parameter has to go on, lest it counts as at its end: what is
 reported of a range has two digits."""
 
-FAITHFUL = 0.8
-"""Gain of a step over that along the tangents, above which the next one is longer."""
-
-WALK = 16
+WALK = int(4 / FAR)
 """Steps of a walk at most: of the longest ones, four times across the range of a parameter."""
 
 SPEND = 10
@@ -362,7 +360,7 @@ def _walk(context: Context, walk: list[TangentPoint], j: int, sign: int) -> None
         share = 0.0 if landed is None else float(sign * (landed.u[j] - point.u[j])) / gain
         if landed is not None and share >= SHORT:
             walk.append(landed)
-            length = min(2 * length, FAR) if share > FAITHFUL else length
+            length = min(2 * length, FAR) if share > GOOD else length
         elif length > FAR / 2**HALVINGS:
             length /= 2
         else:

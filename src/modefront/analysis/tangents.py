@@ -37,21 +37,22 @@ import scipy.linalg
 from scipy.linalg import null_space
 
 from modefront._typing import Bools, Floats
+from modefront.front.weights import UNCHANGED
 from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem
 from modefront.optim.scalarisation import Scalarisation
+from modefront.optim.sqp import Options
 
 FLAT = 1e-5
 """Eigenvalue of B over the greatest one, below which a direction may be flat: more than what the
 distance from the manifold leaves."""
 
-UNCHANGED, TURNING = 1e-12, 1e-3
-"""Eigenvalue of G over the greatest one of B, up to which no residual changes in a direction of the
-null space of B, and from which residuals turn there; slopes of residuals are its roots."""
+TURNING = 1e-3
+"""Eigenvalue of G over the greatest one of B, from which residuals turn in a direction of the null
+space of B; up to `UNCHANGED` none changes there. Slopes of residuals are its roots."""
 
-ARRIVED = 1e-7
-"""Correction in u below which a point lies on the manifold: the tolerance of a step
-(`modefront.optim.sqp.Options`)."""
+ARRIVED = Options().step
+"""Correction in u below which a point lies on the manifold."""
 
 CORRECTIONS = 12
 """Corrections after which a step is given up; quadratic ones take two to four."""

@@ -49,6 +49,11 @@ CATALOGUE: Mapping[str, tuple[Severity, str]] = {
         "point between them was found",
     ),
     "not-optimal": (CAUTION, "{subject}: no local Pareto optimum (a weight is negative)"),
+    "jump": (
+        CAUTION,
+        "the objectives jump next to {subject}, as where measured modes are paired with other "
+        "modes of the model: no step from there improves the model",
+    ),
     "poor-pair": (
         CAUTION,
         "measured mode{|s} {subject} {resembles its|resemble their} model mode{|s} poorly (MAC "

@@ -13,9 +13,6 @@ from modefront.optim.problem import Evaluation, Problem, SpentError, Wrapped
 from modefront.work.codec import record
 from modefront.work.task import Task
 
-ROOM = 64
-"""Models for which there is room at first; it doubles when it is full."""
-
 
 @dataclass
 class Archive:
@@ -28,8 +25,8 @@ class Archive:
     _count: int = 0
 
     def __post_init__(self) -> None:
-        self._theta = np.zeros((ROOM, self.parameters))
-        self._J = np.zeros((ROOM, self.objectives))
+        self._theta = np.zeros((1, self.parameters))  # the room doubles when it is full
+        self._J = np.zeros((1, self.objectives))
 
     @property
     def theta(self) -> Floats:

@@ -23,7 +23,7 @@ from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, Status
 from modefront.work.task import IMMEDIATE, Executor, Task
 
-UNDEFINED = 1e20
+UNDEFINED = float(np.finfo(np.float32).max)
 """Value of an objective where the model cannot be evaluated; pymoo takes no infinity."""
 
 

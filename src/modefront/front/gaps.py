@@ -23,16 +23,11 @@ from itertools import pairwise
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.front.subproblems import RHO
 from modefront.optim.problem import Problem
 from modefront.optim.scalarisation import level, weighted
-from modefront.optim.sqp import Options, Solution, solve
+from modefront.optim.sqp import TIGHT, Solution, solve
 from modefront.work.task import IMMEDIATE, Executor, Task
-
-_TIGHT = Options(reduction=1e-17)
-
-NARROW = 1e-4
-"""Width of a gap, over the range of an objective, below which it is none: what the share of all
-objectives in those of the lattice leaves."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +85,7 @@ def gaps(
         end, start = ends or (None, None)
         if end and start and not _lies_between(end, start, scale):
             own, beyond = (end, first) if known[0] else (start, last)
-            if not any(known) or np.abs((own.J - beyond.J) / scale).max() <= NARROW:
+            if not any(known) or np.abs((own.J - beyond.J) / scale).max() <= RHO:
                 continue  # the branch goes on to the other side
             end, start = (end, None) if known[0] else (None, start)
         out.append(Gap(last, first, end, start))
@@ -100,7 +95,7 @@ def gaps(
 def _lies_between(end: Solution, start: Solution, scale: Floats) -> bool:
     """Return whether a start lies to the right of an end and below it, apart from it."""
     width = (start.J - end.J) / scale
-    return bool(width[0] >= -NARROW and width[1] <= NARROW and np.ptp(width) > NARROW)
+    return bool(width[0] >= -RHO and width[1] <= RHO and np.ptp(width) > RHO)
 
 
 def _ends(
@@ -114,14 +109,14 @@ def _ends(
 
     def own(i: int, of: Solution) -> Solution | None:
         """Return where an objective is least within the branch of a point."""
-        return _converged(solve(problem, weighted(np.eye(2)[i] / scale), of, _TIGHT))
+        return _converged(solve(problem, weighted(np.eye(2)[i] / scale), of, TIGHT))
 
     def at_level(i: int, of: Solution, other: Solution | None) -> Solution | None:
         """Return where the branch of a point has as much of an objective as the other end."""
         if other is None:
             return None
         goal = level(1 - i, i, float(other.J[i]), scale)
-        return _converged(solve(problem, goal, of, _TIGHT))
+        return _converged(solve(problem, goal, of, TIGHT))
 
     a = before[-1]
     ends_itself, starts_itself = slack

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import count, pairwise
 
 import numpy as np
 
@@ -12,12 +12,11 @@ from modefront._typing import Floats
 from modefront.errors import UnfinishedError
 from modefront.front.archive import Archive
 from modefront.front.dominance import nondominated
-from modefront.front.edges import near_best, sample
 from modefront.front.evolutionary import evolve_front
 from modefront.front.front import Edge, Front
-from modefront.front.gaps import NARROW, Gap, gaps
+from modefront.front.gaps import Gap, gaps
 from modefront.front.methods import METHODS
-from modefront.front.options import Pareto
+from modefront.front.options import MOST, Pareto
 from modefront.front.point import Kind, Point, label, of_kind
 from modefront.front.proposers.base import Proposer, Rate, at, evaluated
 from modefront.front.proposers.evolution import Evolution
@@ -35,7 +34,16 @@ from modefront.front.simplex import (
     payoff,
 )
 from modefront.front.state import DISTINCT, Counted, Place, State, distinct_points
-from modefront.front.subproblems import RHO, Least, Subproblem, Weights, active_bounds, is_along
+from modefront.front.subproblems import (
+    RHO,
+    Least,
+    Subproblem,
+    Weights,
+    active_bounds,
+    is_along,
+    near_best,
+    sample,
+)
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.front.weights import (
     accepted,
@@ -43,7 +51,7 @@ from modefront.front.weights import (
     least_along,
     optimal_minimum,
 )
-from modefront.optim.lexicographic import EXACT
+from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
@@ -51,18 +59,6 @@ from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
 LOOSE = 10 * RHO
 """Distance of a point from its normal, over the ranges, above which the front ends there: the share
 of all objectives in what it minimises moves it by less."""
-
-LEAST = 1e-6
-"""Least weight of a sweep: without any, the minimum of the others would not be unique."""
-
-FINEST = 7
-"""Halvings of the distance between neighbours at most, where a front is refined."""
-
-FINE = 10_000
-"""Divisions of the lattice on which points are added at known models."""
-
-TURNS = 4
-"""Fronts that are searched at most, each between edges that the search of the one before moved."""
 
 
 # 8 arguments: the problem, and each group of options of a search.
@@ -132,7 +128,7 @@ class _Run:
             Point(kind, self.place("weights", kind.value, name).incumbent, name)
             for kind, name, _ in self._weights()
         ]
-        bests = self._reported(sizes, TURNS)
+        bests = self._reported(sizes, "last")
         points, places, beta = self._points(target, bests)
         if METHODS[self.options.method].programme is None and target is not None:
             points = self._evolved()
@@ -226,7 +222,7 @@ class _Run:
         divisions = (self.options.points or default_points(self.n)) - 1
         counts = [tuple(map(int, row)) for row in lattice(self.n, divisions)]
         target: Payoff | None = None
-        for turn in range(TURNS):
+        for turn in count():
             bests = self._reported(sizes, turn)
             new = payoff(bests, sizes, self._others(bests, sizes))
             if new is None:
@@ -256,7 +252,7 @@ class _Run:
         if not any(x.subproblem.key == keys[0] for x in self.places):
             new = []
             for i, key in enumerate(keys):
-                w = np.where(np.arange(self.n) == i, LEAST, 1.0) / sizes
+                w = np.where(np.arange(self.n) == i, TIE, 1.0) / sizes
                 new.append(Weights(w, key, EXACT * self.n))
             self.state.add(new)
             self.loop.run("ranges")
@@ -273,7 +269,7 @@ class _Run:
         for row in counts:
             beta = np.array(row) / sum(row)
             if self.options.method == "weights":
-                w = np.maximum(beta, LEAST)
+                w = np.maximum(beta, TIE)
                 new.append(Weights(w, ("sweep", *row), EXACT * float(w @ target.scale)))
                 self._swept[new[-1].key] = beta
             else:
@@ -331,7 +327,7 @@ class _Run:
             added: set[tuple[int, ...]] = set()
             while len(points) + len(added) < asked and behind.max() > LOOSE:
                 k = int(behind.argmax())
-                added.add(nearest(target.place(J[k] * target.scale), FINE))
+                added.add(nearest(target.place(J[k] * target.scale), MOST))
                 behind = np.minimum(behind, (J[k] - J).max(axis=1))
             self._add_points(target, sorted(added))
             self._run_front()
@@ -339,13 +335,13 @@ class _Run:
     def _refine(self, target: Payoff) -> None:
         """Add points half-way between neighbours of two objectives that are too far apart."""
         size = self.options.refined
-        for _ in range(FINEST if size is not None else 0):
+        for _ in range(int(np.ceil(-np.log2(size))) if size else 0):
             here = sorted(self._lattice(), key=lambda pair: -float(pair[1].beta[0]))
             new = []
             for (x, one), (y, other) in pairwise(here):
                 apart = np.linalg.norm((x.incumbent.J - y.incumbent.J) / target.scale)
                 loose = max(one.spread(x.incumbent.J), other.spread(y.incumbent.J)) > LOOSE
-                if apart > (size or 0.0) and not loose:
+                if size and apart > size and not loose:
                     middle = np.array(one.place) * sum(other.place)
                     middle += np.array(other.place) * sum(one.place)
                     new.append(tuple((middle // np.gcd.reduce(middle)).tolist()))
@@ -404,7 +400,7 @@ class _Run:
         apart = [(np.abs(J - x.J) / target.scale).max(axis=1) for x in solutions]
         return kept, np.array([each.argmin() for each in apart], dtype=np.intp), np.array(beta)
 
-    def _reported(self, sizes: Floats, turn: int) -> list[Solution]:
+    def _reported(self, sizes: Floats, turn: int | str) -> list[Solution]:
         """Return the edges, those within the tolerance that are best in the others if wanted."""
         names = self.problem.objectives
         bests = [self.place("edge", name).incumbent for name in names]
@@ -441,7 +437,7 @@ class _Run:
         for k, x in enumerate(points):
             if x.converged and x.beta is not None and self.options.programme == "bounds":
                 c = target.r * target.excess(x.beta, x.J)
-                slack[k] = (c.max() - c > NARROW) & ~active_bounds(x.weights * target.unit)
+                slack[k] = (c.max() - c > RHO) & ~active_bounds(x.weights * target.unit)
         return gaps(self.problem, points, optimal, target.scale, self.work, slack)
 
     def _optimal(

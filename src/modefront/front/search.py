@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from modefront.front.archive import limited
-from modefront.front.proposers.base import Offer, Proposer
+from modefront.front.proposers.base import USUAL, Offer, Proposer
 from modefront.front.state import State
 from modefront.options import check_fields, number, whole
 from modefront.work.task import Executor, Key, Task
@@ -22,13 +22,7 @@ from modefront.work.task import Executor, Key, Task
 BATCH = 6
 """Offers that are solved at the same time."""
 
-MOST = 10**9
-"""Evaluations that may be asked for."""
-
 SHARE = number("a share above 0 and below 1", above=0, below=1)
-
-USUAL = 10
-"""Evaluations that a search is expected to take before any is known."""
 
 CONFIRMING = 0.5
 """Share of the budget up to which offers are made for the sake of what is unseen alone; the rest is
@@ -52,7 +46,7 @@ class Search:
     doubt : chance of such a gain below which a search is not worth making; between 0 and 1
     """
 
-    evaluations: Annotated[int, whole(1, MOST)] = 20_000
+    evaluations: Annotated[int, whole(1, 10**9)] = 20_000
     tolerance: Annotated[float, SHARE] = 1e-3
     doubt: Annotated[float, SHARE] = 0.05
 

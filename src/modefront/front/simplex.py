@@ -12,11 +12,9 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Floats, Ints
+from modefront.optim.lexicographic import EXACT
 from modefront.optim.scalarisation import Linear, constrained
 from modefront.optim.sqp import Solution
-
-POINT = 1e-10
-"""Range of an objective over the edges, over its typical size, below which it is no range."""
 
 FLAT = 1e-2
 """Least singular value of Phi, over the greatest one, below which the simplex is flat."""
@@ -100,7 +98,7 @@ class Payoff:
         """The normal towards greater objectives, (n,), in units of the ranges."""
         return np.asarray(self.Phi.sum(axis=1))
 
-    @property
+    @cached_property
     def unit(self) -> Floats:
         """The normal towards greater objectives, (n,)."""
         return self.scale * self.r
@@ -141,7 +139,7 @@ def is_flat(edges: Sequence[Solution], sizes: Floats) -> bool:
     if len(edges) == 2:
         return False
     P = simplex(edges)
-    sigma = np.linalg.svd(P / np.maximum(P.max(axis=1), POINT * sizes)[:, None], compute_uv=False)
+    sigma = np.linalg.svd(P / np.maximum(P.max(axis=1), EXACT * sizes)[:, None], compute_uv=False)
     return bool(sigma[-1] <= FLAT * sigma[0])
 
 
@@ -155,7 +153,7 @@ def payoff(
     each: where the simplex between the edges is flat, its place takes that of the ranges over the
     edges and these, whose corners need not be attained.
     """
-    if (POINT * sizes[:, None] >= simplex([*edges])).all():
+    if (EXACT * sizes[:, None] >= simplex([*edges])).all():
         return None
     everything = [*edges, *others]
     worst = [max(everything, key=lambda x: float(x.J[i])) for i in range(len(edges))]
@@ -171,7 +169,7 @@ def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats)
     if worst:
         P = np.diag([solution.J[i] for i, solution in enumerate(worst)] - utopia)
     scale = P.max(axis=1)
-    if (scale <= POINT * sizes).any():
+    if (scale <= EXACT * sizes).any():
         return None
     return Payoff(utopia, scale, P / scale[:, None], worst)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.archive import Archive, Outcome, limited
+from modefront.front.dominance import SAME
 from modefront.front.subproblems import Subproblem
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, begin
@@ -18,7 +19,7 @@ from modefront.work.task import Executor, Task
 DISTINCT = 1e-3
 """Distance of two models, over the ranges of the parameters, above which they are two."""
 
-COPY = 1e-5
+COPY = 10 * SAME
 """Distance of two points, over the ranges of the objectives, below which they are copies."""
 
 
@@ -100,7 +101,7 @@ class State:
             if solution.feasible:
                 own = place.subproblem.gain(solution.J, place.incumbent)
                 gain = max(gain, own)
-                if self._replaces(solution, own, place):
+                if self._replaces(solution, own, place, is_incumbent):
                     place.incumbent, is_incumbent = solution, True
             place.closed = place.closed or is_incumbent
         for place in self.places:
@@ -110,10 +111,10 @@ class State:
             self.models.append(solution)
         return gain
 
-    def _replaces(self, solution: Solution, gain: float, place: Place) -> bool:
-        """Return whether a solution of a place takes that of its incumbent."""
+    def _replaces(self, solution: Solution, gain: float, place: Place, is_incumbent: bool) -> bool:
+        """Return whether a solution of a place, from its incumbent or not, takes that place."""
         if place.subproblem.competes:
-            first = solution.converged and not place.closed
+            first = (solution.converged or is_incumbent) and not place.closed
             return gain > 0 or (gain > -self.tolerance and first)
         return not place.closed or (solution.converged and not place.incumbent.converged)
 

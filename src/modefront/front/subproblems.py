@@ -30,16 +30,18 @@ r         (n,)     normal towards greater objectives, Phi e
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.front.simplex import Payoff
-from modefront.optim.lexicographic import EXACT, Lexicographic
+from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
 from modefront.optim.problem import Problem
-from modefront.optim.scalarisation import Scalarisation, achievement, weighted
+from modefront.optim.scalarisation import Scalarisation, achievement, constrained, weighted
 from modefront.optim.sqp import Options, Solution, solve
 from modefront.work.task import Key
 
@@ -59,10 +61,12 @@ def active_bounds(shares: Floats) -> Bools:
     return np.asarray(shares > 2 * RHO)
 
 
-NEGLIGIBLE = 1e-16
-"""Objective over its typical size at which a search ends: residuals of the tolerance of steps."""
+_TIGHT = Options(step=1e-8, reduction=1e-24, negligible=1e-16)
+"""Of an edge, over its typical size: residuals of the tolerance of steps end a search."""
 
-_TIGHT = Options(step=1e-8, reduction=1e-24, negligible=NEGLIGIBLE)
+
+SAMPLE = 16
+"""Random models of which typical sizes are medians."""
 
 
 class Subproblem(Protocol):
@@ -85,8 +89,8 @@ class Subproblem(Protocol):
     def weights(self, known: Solution) -> Floats:
         """Return the slope (n,) of what is minimised at a known solution."""
 
-    def is_near(self, J: Floats, /) -> bool:
-        """Return whether a model with objectives (n,) may lead to a solution by a few steps."""
+    def is_near(self, J: Floats, /) -> Bools:
+        """Return which models of objectives (models, n) may lead to a solution by a few steps."""
 
     @property
     def programme(self) -> Scalarisation:
@@ -117,7 +121,7 @@ class Least:
 
     def value(self, J: Floats) -> Floats:
         """Return nearly what orders models; among equals in J_i, the others decide."""
-        return np.asarray(J @ self._slope(1e-6))
+        return np.asarray(J @ self._slope(TIE))
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the share by which J_i falls, or where that is tied, the others."""
@@ -128,9 +132,9 @@ class Least:
         others = self.order.others
         return float(others @ (before - J)) / max(float(others @ before), EXACT)
 
-    def is_near(self, _: Floats) -> bool:
-        """Return True: any model may."""
-        return True
+    def is_near(self, J: Floats) -> Bools:
+        """Return True of each: any model may."""
+        return np.ones(len(J), dtype=np.bool_)
 
     def weights(self, _: Solution) -> Floats:
         """Return the slope of J_i."""
@@ -170,9 +174,9 @@ class Weights:
         before = float(self.w @ known.J)
         return float(before - self.w @ J) / max(before, self.negligible)
 
-    def is_near(self, _: Floats) -> bool:
-        """Return True: any model may."""
-        return True
+    def is_near(self, J: Floats) -> Bools:
+        """Return True of each: any model may."""
+        return np.ones(len(J), dtype=np.bool_)
 
     def weights(self, _: Solution) -> Floats:
         """Return w."""
@@ -185,7 +189,7 @@ class Weights:
 
     def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:
         """Return the minimum below a start."""
-        options = Options(negligible=NEGLIGIBLE / EXACT * self.negligible)
+        options = Options(negligible=_TIGHT.negligible / EXACT * self.negligible)
         return solve(problem, self.programme, start, options)
 
 
@@ -211,14 +215,22 @@ class Point:
         """Whether it is no solution of equations."""
         return not self.equations
 
+    def excess(self, J: Floats) -> Floats:
+        """Return the excess c (..., n) of objectives."""
+        return np.asarray(J / self.target.unit - self._offset)
+
+    @cached_property
+    def _offset(self) -> Floats:
+        return self.target.offset(self.beta)
+
     def spread(self, J: Floats) -> float:
         """Return how far objectives (n,) lie from the normal, over the ranges."""
-        c = self.target.excess(self.beta, J) * self.target.r
+        c = self.excess(J) * self.target.r
         return float(np.ptp(c))
 
     def value(self, J: Floats) -> Floats:
         """Return the greatest excess with its share of all."""
-        c = self.target.excess(self.beta, J)
+        c = self.excess(J)
         return np.asarray(c.max(axis=-1) + RHO * c.sum(axis=-1))
 
     def gain(self, J: Floats, known: Solution) -> float:
@@ -226,16 +238,16 @@ class Point:
         w = self.weights(known)
         return float(self.value(known.J) - self.value(J)) / min(max(float(w @ known.J), EXACT), 1.0)
 
-    def is_near(self, J: Floats) -> bool:
-        """Return whether a model lies few steps of the lattice from the normal."""
+    def is_near(self, J: Floats) -> Bools:
+        """Return which models lie few steps of the lattice from the normal."""
         steps = np.abs(self.target.place(J) - self.beta) * abs(sum(self.place))
-        return bool(steps.max() <= NEAR)
+        return np.asarray(steps.max(axis=-1) <= NEAR)
 
     def weights(self, known: Solution) -> Floats:
         """Return the multipliers of the excess at a solution, or of the greatest one at others."""
         if known.weights.any():
             return known.weights
-        c = self.target.excess(self.beta, known.J)
+        c = self.excess(known.J)
         return np.asarray(((c == c.max()) + RHO) / self.target.unit)
 
     def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:
@@ -248,9 +260,47 @@ class Point:
         if self.equations:
             return self.target.boundary(self.beta)
         unit = self.target.unit
-        return achievement(RHO / unit, np.diag(1 / unit), self.target.offset(self.beta))
+        return achievement(RHO / unit, np.diag(1 / unit), self._offset)
 
 
 def is_along(subproblem: Subproblem) -> bool:
     """Return whether a subproblem is one of many along the front."""
     return subproblem.key[0] in ("point", "sweep")
+
+
+def sample(problem: Problem, *, rng: np.random.Generator) -> Floats:
+    """Return the typical size of each objective, of random models; empty without any."""
+    span = problem.upper - problem.lower
+    thetas = problem.lower + span * rng.uniform(size=(SAMPLE, span.size))
+    J = np.array([problem.evaluate(theta, derivatives=False).J for theta in thetas])
+    J = J[np.isfinite(J).all(axis=1)]
+    return np.maximum(np.median(J, axis=0), np.finfo(float).tiny) if len(J) else np.zeros(0)
+
+
+def near_best(
+    problem: Problem,
+    best: Solution,
+    objective: int,
+    tolerance: float,
+    sizes: Floats,
+    known: Sequence[Solution],
+) -> Solution:
+    """Return, of the models within a tolerance of the best in an objective, the best in the others.
+
+    Where an objective hardly changes along a valley, the end of the valley says nothing, and the
+    front there is flat; this is the point from which it is not. It is solved from those of the
+    ``known`` solutions that are closest in the objective, one after another. An objective that is
+    fitted exactly keeps its edge, and so does one for which the programme does not converge.
+    """
+    least = best.J[objective]
+    if least <= EXACT * sizes[objective]:
+        return best
+    value = (1 + tolerance) * least
+    others = np.where(np.arange(sizes.size) != objective, 1 / sizes, 0.0)
+    unit = np.eye(sizes.size)[[objective]] / value
+    closest = sorted(known, key=lambda solution: abs(np.log(solution.J[objective] / value)))
+    for start in closest[: sizes.size]:
+        solved = solve(problem, constrained(others, unit, np.ones(1)), start)
+        if solved.converged:
+            return solved
+    return best

@@ -32,16 +32,13 @@ from modefront._typing import Floats
 from modefront.optim.lexicographic import EXACT
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem
 from modefront.optim.scalarisation import LogSum, weighted
-from modefront.optim.sqp import Options, Solution, Status, solve
+from modefront.optim.sqp import TIGHT, Options, Solution, Status, solve
 
 WITHIN = 0.1
 """Tolerance of a model of the iteration of weights, over the length of the step before it."""
 
-FLAT = 1e-12
+UNCHANGED = 1e-12
 """Eigenvalue over the greatest one below which a direction changes no residual."""
-
-_TIGHT = Options(reduction=1e-17)
-"""Steps end at the tolerance of the parameters, whatever f: a sum of logarithms has any size."""
 
 
 def regular(J: Floats, sizes: Floats) -> bool:
@@ -55,7 +52,7 @@ def optimal_minimum(problem: Problem, a: Floats, sizes: Floats, start: Solution)
     ``a`` (n,) counts the measured properties of each group, ``sizes`` (n,) are typical sizes of
     the objectives.
     """
-    return solve(problem, LogSum(a, vanishing=EXACT * sizes), start, _TIGHT)
+    return solve(problem, LogSum(a, vanishing=EXACT * sizes), start, TIGHT)
 
 
 def accepted(
@@ -78,7 +75,7 @@ def is_minimum(problem: Problem, evaluation: Evaluation, a: Floats) -> bool:
     within = np.diag(span)[:, (u > AT_BOUND) & (u < 1 - AT_BOUND)]
     w = a / evaluation.J
     lam, V = np.linalg.eigh(within.T @ np.tensordot(w, evaluation.gauss_newton, axes=1) @ within)
-    Q = within @ V[:, lam > FLAT * lam.max(initial=0.0)]
+    Q = within @ V[:, lam > UNCHANGED * lam.max(initial=0.0)]
     second = np.tensordot(w, evaluation.H, axes=1) - evaluation.dJ.T @ (
         (a / evaluation.J**2)[:, None] * evaluation.dJ
     )

@@ -39,15 +39,14 @@ TIE = 1e-6
 """Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal.
 What solutions leave is less: steps of 1e-7 to 1e-8 change a smooth objective by the square."""
 
-RANK = 1e-7
+RANK = Options().step
 """Singular value of the residuals' derivatives, over the greatest, that counts as none: the
 tolerance of the parameters."""
 
-FIRST, LAST, RATIO = 1e-1, 1e-10, 10
-"""Values of epsilon at which the path begins, and beyond which it is not followed; ratio of one to
-the next."""
+RATIO = 10
+"""Ratio of epsilon, which begins at 1 / RATIO and ends at `EXACT`, to the next one."""
 
-SHARE = 1e-8
+SHARE = 0.01 * TIE
 """Change of the others, over themselves, below which a minimiser on the path is exact enough."""
 
 
@@ -100,7 +99,7 @@ class Lexicographic:
         if above or alone or not self.is_open(problem, best.evaluation):
             return best
         spent = best.evaluations
-        for epsilon, begins in ((FIRST, start), (FIRST / 1000, best)):
+        for epsilon, begins in ((1 / RATIO, start), (1 / RATIO**4, best)):
             end = self._end(problem, epsilon, begins, options)
             spent += end.evaluations
             if end.feasible and (end.J[i] <= best.J[i] or self.ties(end.J, best.J)):
@@ -122,7 +121,7 @@ class Lexicographic:
             theta = fine.theta + (fine.theta - coarse.theta) / (RATIO - 1)
             limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper), second=True)
             fine = replace(fine, evaluations=fine.evaluations + 1)
-            if not limit.feasible or epsilon <= LAST or self._equal(limit.J, ahead.J):
+            if not limit.feasible or epsilon <= EXACT or self._equal(limit.J, ahead.J):
                 closer = limit.feasible and limit.J[self.objective] <= fine.J[self.objective]
                 return replace(fine, evaluation=limit if closer else fine.evaluation)
             coarse, ahead = fine, replace(fine, evaluation=limit)

@@ -48,8 +48,8 @@ from modefront._typing import Bools, Floats
 from modefront.linalg.small import eigh, lstsq, svd
 
 FLAT = 1e-10
-"""Curvature, singular value or slope, over the greatest one, below which it counts as none: well
-above rounding, 1e-16 times the condition of matrices of some thousands."""
+"""Curvature, singular value, slope or multiplier, over the greatest one, below which it counts as
+none: well above rounding, 1e-16 times the condition of matrices of some thousands."""
 
 FAR = 1e-4
 """Inverse of the greatest step aimed at, in widths of the box: bounds what a flat B leads to."""
@@ -58,15 +58,9 @@ NORMAL = 0.8
 """Share of the box that the normal step may use, so that something is left to descend (Nocedal &
 Wright, equation 18.46)."""
 
-WRONG = 1e-9
-"""Multiplier of the wrong sign, over the greatest gradient, below which it is rounding."""
-
-MANY, FACES, HALVINGS = 48, 30, 8
-"""Variables from which on many are held and let go at once; such changes at most; halvings at most
-of a step until its projection falls."""
-
-RETURNS = 4
-"""Times that variables move back to the equalities, after others were held, and meet the box."""
+MANY, HALVINGS = 48, 8
+"""Variables from which on many are held and let go at once; halvings at most of a step until its
+projection falls, and times that variables move back to the equalities after others were held."""
 
 _LEAST = float(np.finfo(float).tiny ** 0.5)
 """Curvature at least: a slope over it does not overflow."""
@@ -177,7 +171,7 @@ def _many_at_once(
     qp: QuadraticProgramme, s: Floats, free: Bools, active: list[int], width: float
 ) -> tuple[Floats, Bools, list[int], bool]:
     """Return a step, its free variables and active functions, and whether it is the solution."""
-    for _ in range(FACES):
+    for _ in range(s.size):
         d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
         joining, met = _met(qp, s, d, active)
         end = s + min(met, 1.0) * d
@@ -201,7 +195,7 @@ def _many_at_once(
             active = kept
             continue
         gain = _gain(slope, free, s <= qp.lo, s >= qp.hi)
-        wrong = gain > WRONG * scale
+        wrong = gain > FLAT * scale
         if not wrong.any():
             return s, free, active, True
         free = free | wrong
@@ -216,7 +210,7 @@ def _stationarity(
     The function of the most negative multiplier is not kept.
     """
     mu, kappa = qp.multipliers(s, active, free)
-    wrong = int(np.argmin(kappa)) if kappa.min(initial=0.0) < -WRONG else -1
+    wrong = int(np.argmin(kappa)) if kappa.min(initial=0.0) < -FLAT else -1
     slope = qp.g + qp.B @ s + qp.C.T @ kappa
     scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
     return [i for i in active if i != wrong], slope + qp.A.T @ mu, scale
@@ -249,7 +243,7 @@ def _returned(
     """
     if not len(E):
         return new
-    for _ in range(RETURNS):
+    for _ in range(HALVINGS):
         inside = free & (new > qp.lo) & (new < qp.hi)
         new = new.copy()
         new[inside] -= np.linalg.lstsq(E[:, inside], E @ (new - s), rcond=FLAT)[0]
@@ -307,7 +301,7 @@ def _wrong(left: Floats, scale: float, free: Bools, low: Bools, high: Bools) -> 
     """
     gain = _gain(left, free, low, high)
     best = int(np.argmax(gain))
-    return best if gain[best] > WRONG * scale else None
+    return best if gain[best] > FLAT * scale else None
 
 
 def _gain(left: Floats, free: Bools, low: Bools, high: Bools) -> Floats:

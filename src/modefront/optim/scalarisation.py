@@ -26,9 +26,9 @@ import numpy as np
 
 from modefront._typing import Floats
 
-LEAST = 1e-100
-"""An objective below which its logarithm and the derivatives change no more: the second ones, of
-size 1e200, do not overflow."""
+LEAST = float(np.finfo(float).tiny ** (1 / 3))
+"""An objective below which its logarithm and the derivatives change no more: the second ones do not
+overflow."""
 
 
 @dataclass(frozen=True)

@@ -13,16 +13,16 @@ of the objectives, the Hessian of the Lagrangian is
 
 with the second derivatives :math:`H_i` of the objectives. Where a problem does not know these, such
 as a model that is a function of the user's, :math:`H_i` is the part that it knows (Gauss-Newton's),
-and the rest :math:`S_i` is learned from differences of gradients (`modefront.optim.secant`). Where
+and the rest :math:`S_i` is learned from differences of gradients (`modefront.optim.second`). Where
 residuals vanish, S is a burden: B is taken with it or without it, whichever predicted the last step
 better (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965).
 
 Steps solve a quadratic programme within a box, the trust region; they are judged by the augmented
 Lagrangian (`modefront.optim.merit`) which, unlike an exact penalty, does not reject good steps
-near the solution. Far from it, multipliers may be absurd: they are bounded, and a step that leaves
-the constraints by much more than the start did is shortened. One attempt is made to leave a
-stationary point with clearly negative curvature. Where the objectives are known no better than the
-steps promise, a solution ends before its tolerances are met.
+near the solution. Far from it, multipliers may be absurd: they are bounded. One attempt is made to
+leave a stationary point with clearly negative curvature. Where the objectives are known no better
+than the steps promise, a solution ends before its tolerances are met. Where they jump, it ends with
+a status of its own, and another one is sought from the other side.
 
 =========  =========  ==================================================================
 symbol     shape      meaning
@@ -52,43 +52,22 @@ from modefront.optim.merit import PENALTY, Merit, Multipliers
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
-from modefront.optim.secant import learned_from
+from modefront.optim.second import learned_from
 from modefront.work.codec import record
 from modefront.work.progress import note_iteration
 
-TAKEN, POOR, GOOD = 1e-4, 0.25, 0.7
-"""Actual over predicted reduction from which a step is taken, below which the next one is shorter,
-and above which it may be longer: the usual values (Nocedal & Wright, *Numerical Optimization*,
-2006, algorithm 4.1), but that any reduction is taken, as a derivative costs as much."""
-
-FULL, WHOLE = 0.9, 0.99
-"""Step over the radius above which the region has held it back: a good one is followed by a longer
-one, or it is no measure of the distance from the solution."""
-
-COLLAPSED = 1e-3
-"""Radius over the tolerance of steps, below which no step is better than the point."""
+POOR, GOOD = 0.25, 0.7
+"""Actual over predicted reduction below which the next step is shorter, and above which it may be
+longer: the usual values (Nocedal & Wright, *Numerical Optimization*, 2006, algorithm 4.1). Any
+reduction is taken, as a derivative costs as much."""
 
 SADDLE = 1e-3
-"""Negative curvature, over the greatest one, above which a stationary point is left again."""
+"""Negative curvature, over the greatest one, above which a stationary point is left again, and
+slope, over that, up to which a bound does not hold a variable on the way."""
 
-FUNNEL = 10.0
-"""Growth of the violation of the start, up to which a step is judged; 1 is always allowed, the
-range of the objectives where constraints are in units of these."""
-
-SWITCH = 0.5
-"""Share of the error of a prediction, below which the other model is the better one: with 1, the
-models would take turns near a solution, where both are right."""
-
-FREE = 1e-4
-"""Gradient, over the greatest curvature, below which a bound does not hold a variable."""
-
-PATIENCE = 30
-"""Iterations in which the violation of the constraints is to be halved, from the worst of these, or
-there is no way."""
-
-REST, SHORTER = 6, 0.9
-"""Steps one after another that promise no more than rounding, none of them shorter than this share
-of the shortest one before, after which the objectives tell no more."""
+REST = 6
+"""Steps one after another that promise no more than rounding, and are no shorter than the shortest
+one before, after which the objectives tell no more."""
 
 
 @record
@@ -99,6 +78,10 @@ class Status(Enum):
     STALLED = (
         "no step improves it further: the constraints cannot be met from there, the objectives are "
         "not smooth, or bounds conflict"
+    )
+    JUMP = (
+        "no step improves it, however short: the objectives or their slopes jump there, or end, as "
+        "where a measured mode is paired with another mode of the model"
     )
     UNBOUNDED = "what is minimised falls without bound: an objective vanishes"
     EXHAUSTED = "the limit of iterations was reached: more iterations, or another start"
@@ -120,6 +103,10 @@ class Options:
     iterations: int = 100
     radius: float = 0.15
     negligible: float = -np.inf
+
+
+TIGHT = Options(reduction=1e-17)
+"""Steps end at the tolerance of the parameters, whatever f: a sum of logarithms has any size."""
 
 
 @record
@@ -183,63 +170,93 @@ def solve(
     """Solve a programme from the point at which ``start`` ended.
 
     The start itself is not evaluated again where its second derivatives are known. Steps to points
-    at which the objectives are not defined are shortened.
+    at which the objectives are not defined are shortened. Where a solution ends at a jump of the
+    objectives, another one is sought from the other side of it, as long as these become better and
+    iterations are left.
     """
     options = options or Options()
+    best, beyond = _within(problem, programme, start, options)
+    spent = best.evaluations
+    while beyond is not None and spent < options.iterations:
+        other, beyond = _within(problem, programme, begin(beyond), options)
+        spent += other.evaluations
+        if not _total(programme, other.J) < _total(programme, best.J):
+            break
+        best = other
+    return replace(best, evaluations=spent)
+
+
+def _total(programme: Scalarisation, J: Floats) -> float:
+    """Return what is minimised, at objectives (n,)."""
+    y = programme.maximised.at(J)
+    return programme.value(J) + (float(y.max()) if y.size else 0.0)
+
+
+def _within(
+    problem: Problem, programme: Scalarisation, start: Solution, options: Options
+) -> tuple[Solution, Evaluation | None]:
+    """Return the solution within the piece of a start, and the model behind the jump it ends at.
+
+    The objectives are smooth within a piece; None where the solution is not at the end of one.
+    """
     if not start.feasible:
-        return replace(start, status=Status.INFEASIBLE, evaluations=0)
+        return replace(start, status=Status.INFEASIBLE, evaluations=0), None
     evaluation, count = start.evaluation, -1
     if evaluation.derivatives is None:
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
     S = evaluation.H - evaluation.gauss_newton
     trusted, escaped = evaluation.exact, False
-    radius, penalty = options.radius, PENALTY
+    region, penalty = _Region(options.radius), PENALTY
     multipliers: Multipliers | None = None
-    progress = _Progress(options, length(programme.constraints.at(evaluation.J)))
+    rejected: Evaluation | None = None
+    progress = _Progress(options)
     while True:
         count += 1
         note_iteration(count + 1)
         local = linearised(problem, programme, evaluation)
-        if local.f == -np.inf:
-            return Solution(evaluation, local.df, 0.0, Status.UNBOUNDED, count)
         if local.free and local.f <= options.negligible:
-            return Solution(evaluation, local.df, 0.0, Status.CONVERGED, count)
+            ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
+            return Solution(evaluation, local.df, 0.0, ended, count), None
         H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
-        qp, step, multipliers = local.step(H, radius, multipliers)
+        qp, step, multipliers = local.step(H, region.radius, multipliers)
         s, w = step.s, multipliers.weights(programme, evaluation.J)
         violation, far = length(local.c), length(s)
-        progress.proposed(far, radius)
+        held = not progress.proposed(far, region.radius)
         still = far <= options.step or local.unchanging(s, options.reduction)
+        still = still and not (held and rejected)  # a radius that has fallen shortens any step
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
             still, far = not s.any(), length(s)
-        status = progress.outcome(count, violation, still, far, radius)
+        status = progress.outcome(violation, still, far, region.radius)
+        here = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
         if status or count >= options.iterations:
-            return Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
+            return here, rejected if status is Status.JUMP else None
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         noise = local.noise(multipliers)
-        here = Solution(evaluation, w, violation, Status.CONVERGED, count)
         calm = progress.resting(here, far, predicted <= noise)
         if calm and calm.violation <= options.constraint:
-            return replace(calm, evaluations=count)
+            return replace(calm, status=Status.CONVERGED, evaluations=count), None
         new = problem.evaluate(local.end(problem, s), second=True)
-        if not new.feasible or length(programme.constraints.at(new.J)) > progress.farthest:
-            radius = far / 4
+        if not new.feasible:
+            region.refused(far, 0.0)
+            rejected = new
             continue
         merit = Merit(programme, multipliers, penalty)
         actual = merit.at(evaluation) - merit.at(new)
-        change = s * local.span
+        miss, change = actual - predicted, s * local.span
         rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)
-        if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
-            trusted = not trusted
+        trusted ^= bool(abs(miss - rest) < abs(miss))
         if not evaluation.exact:
             S = learned_from(S, evaluation, new, local.span)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
-        if ratio > TAKEN:
-            evaluation = new
+        if ratio > 0:
+            evaluation, rejected = new, None
             S = evaluation.H - evaluation.gauss_newton if evaluation.exact else S
-        radius = _next_radius(radius, far, ratio)
+            region.taken(far, ratio)
+        else:
+            region.refused(far, abs(miss) if predicted > noise else 0.0)
+            rejected = new
 
 
 @dataclass
@@ -249,51 +266,37 @@ class _Progress:
     Attributes
     ----------
     options : tolerances
-    start : first violation of the constraints
-    worst : greatest violation since patience was last counted
     proposal : length of the last step that the trust region did not hold back
     shortest : length of the shortest of the last steps, if all of these promise only rounding
     calm : the point from which it led
-    idle : how many of these steps, one after another, were not clearly shorter than all before
+    idle : how many of these steps, one after another, were not shorter than all before
     """
 
     options: Options
-    start: float
-    worst: float = np.inf
     proposal: float = np.inf
     shortest: float = np.inf
     idle: int = 0
     calm: Solution | None = None
 
-    @property
-    def farthest(self) -> float:
-        """Violation of the constraints up to which a step is judged."""
-        return max(1.0, FUNNEL * self.start)
-
-    def proposed(self, step: float, radius: float) -> None:
-        """Remember the length of a step that the trust region does not hold back."""
-        if step < WHOLE * radius:
+    def proposed(self, step: float, radius: float) -> bool:
+        """Return whether the trust region does not hold a step back; its length is remembered."""
+        if step < radius:
             self.proposal = step
+        return step < radius
 
-    def outcome(
-        self, count: int, violation: float, still: bool, step: float, radius: float
-    ) -> Status | None:
+    def outcome(self, violation: float, still: bool, step: float, radius: float) -> Status | None:
         """Return how the solution ends at a point; None where it goes on.
 
         ``still`` says whether no step is worth making, ``step`` is the length of the next one.
         """
-        self.worst = max(self.worst, violation)
-        if count % PATIENCE == 0:
-            if violation > max(self.options.constraint, 0.5 * self.worst) and count > 0:
-                return Status.STALLED
-            self.worst = violation
         if still and violation <= self.options.constraint:
             return Status.CONVERGED
-        if step > np.finfo(float).eps and radius > self.options.step * COLLAPSED:
+        if step > np.finfo(float).eps and radius > self.options.step:
             return None
+        met = violation <= 10 * self.options.constraint
         # Steps that were not held back were below the tolerance: rounding of J stops it here.
-        near = self.proposal <= self.options.step and violation <= 10 * self.options.constraint
-        return Status.CONVERGED if near else Status.STALLED
+        near = self.proposal <= self.options.step and met
+        return Status.CONVERGED if near else Status.JUMP if met else Status.STALLED
 
     def resting(self, here: Solution, step: float, negligible: bool) -> Solution | None:
         """Return the point from which the step was the shortest, where rounding decides on steps.
@@ -304,17 +307,37 @@ class _Progress:
         if not negligible:
             self.shortest, self.idle = np.inf, 0
             return None
-        self.idle = 0 if step < SHORTER * self.shortest else self.idle + 1
+        self.idle = 0 if step < self.shortest else self.idle + 1
         if step < self.shortest:
             self.shortest, self.calm = step, here
         return self.calm if self.idle >= REST else None
 
 
-def _next_radius(radius: float, step: float, ratio: float) -> float:
-    """Return the radius after a step of this length, with its actual over predicted reduction."""
-    if ratio < POOR:
-        return step / (4 if ratio < TAKEN else 2)
-    return min(2 * radius, 1.0) if ratio > GOOD and step > FULL * radius else radius
+@dataclass
+class _Region:
+    """The trust region, of which ``radius`` is the half width.
+
+    Of smooth objectives, the ``error`` of a prediction falls faster than the step. Where it does
+    not, the radius falls ever faster, by a quarter, a sixteenth and so on: to a jump.
+    """
+
+    radius: float
+    error: float = np.inf
+    fall: float = 4.0
+
+    def taken(self, step: float, ratio: float) -> None:
+        """Adapt it to a step that is taken, with its actual over predicted reduction."""
+        self.error, self.fall = np.inf, 4.0
+        if ratio < POOR:
+            self.radius = step / 2
+        elif ratio > GOOD and step >= self.radius:
+            self.radius = min(2 * self.radius, 1.0)
+
+    def refused(self, step: float, miss: float) -> None:
+        """Shorten the next step after one that is not taken, by which its prediction is missed."""
+        before, self.error = self.error, miss / step
+        self.fall = self.fall**2 if self.error > before else 4.0
+        self.radius = step / self.fall
 
 
 def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:
@@ -325,7 +348,7 @@ def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) ->
     """
     lo, hi, E = qp.lo, qp.hi, qp.ties(active)
     s = np.zeros(slope.size)
-    flat = np.abs(slope) <= FREE * np.abs(qp.B).max()
+    flat = np.abs(slope) <= SADDLE * np.abs(qp.B).max()
     free = ((lo < 0) & (hi > 0)) | (flat & (lo < hi))
     Z = scipy.linalg.null_space(E[:, free]) if E.size else np.eye(int(free.sum()))
     if Z.shape[1] == 0:
@@ -333,7 +356,7 @@ def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) ->
     curvature, V = np.linalg.eigh(Z.T @ qp.B[np.ix_(free, free)] @ Z)
     if curvature[0] < -SADDLE * np.abs(curvature).max():
         v = Z @ V[:, 0]
-        v[np.abs(v) < FREE] = 0.0
+        v[np.abs(v) < SADDLE] = 0.0
         v *= -1.0 if slope[free] @ v > 0 else 1.0
         ahead, behind = _longest(v, lo[free], hi[free]), _longest(-v, lo[free], hi[free])
         s[free] = 0.5 * (ahead if ahead.any() else behind)

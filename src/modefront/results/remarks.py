@@ -140,6 +140,9 @@ def _front(data: xr.Dataset) -> Iterator[Finding]:
         negative = (weight < -NEGATIVE).any(axis=1) & ~np.isnan(weight).any(axis=1)
         if negative.any():
             yield found("not-optimal", places(data, negative))
+    jump = data["status"].values == "jump"
+    if jump.any():
+        yield found("jump", places(data, jump))
 
 
 def places(data: xr.Dataset, chosen: Bools) -> str:

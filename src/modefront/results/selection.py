@@ -16,7 +16,7 @@ def front_points(data: xr.Dataset) -> Ints:
 
 def not_converged(data: xr.Dataset) -> list[str]:
     """Return the labels of points that should have converged and did not."""
-    solved = data["status"].values != "sampled"
+    solved = ~np.isin(data["status"].values, ["sampled", "jump"])
     return data["label"].values[~data["converged"].values & solved].tolist()
 
 

@@ -18,11 +18,11 @@ from modefront.analysis.certified import (
     certified_front,
     certified_points,
 )
-from modefront.analysis.coverage import coverage
 from modefront.analysis.front import AnalysisOptions, analyse_front
 from modefront.errors import Fault, InputError, reason
 from modefront.front.front import Front
 from modefront.front.given import Weighted
+from modefront.front.indicators import coverage
 from modefront.front.options import Pareto, ParetoOptions
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, Point

@@ -9,9 +9,8 @@ from typing import Literal, get_args
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.front.edges import near_best
 from modefront.front.simplex import spanned
-from modefront.front.subproblems import Point
+from modefront.front.subproblems import Point, near_best
 from modefront.optim.problem import Problem
 from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
 from modefront.optim.sqp import Solution, begin, solve

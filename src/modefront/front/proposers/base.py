@@ -16,7 +16,11 @@ from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.scalarisation import Scalarisation
 from modefront.optim.sqp import Options, Solution, begin, solve
 
-_ROUGH = Options(step=3e-4, constraint=3e-4, iterations=4)
+USUAL = 10
+"""Evaluations that a search is expected to take before any is known, models of a generation, and
+random starts that cover the box together."""
+
+_ROUGH = Options(iterations=4)
 """A few steps, after which the model that is reached is compared with all others."""
 
 

@@ -16,12 +16,9 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.archive import Outcome
-from modefront.front.proposers.base import Offer, Rate, evaluate_all
+from modefront.front.proposers.base import USUAL, Offer, Rate, evaluate_all
 from modefront.front.proposers.starts import Starts
 from modefront.front.state import State
-
-CHILDREN = 10
-"""Models of a generation, which take as many evaluations as a local search."""
 
 INDEX = 20.0
 """Distribution index of mutations: the usual value."""
@@ -58,7 +55,7 @@ class Evolution:
         lower, upper, span = state.problem.lower, state.problem.upper, state.span
         known = np.array([*(x.incumbent.theta for x in state.places), *state.archive.theta])
         out = []
-        for _ in range(CHILDREN):
+        for _ in range(USUAL):
             base = state.places[int(self.rng.integers(len(state.places)))].incumbent.theta
             one, two = known[self.rng.integers(len(known), size=2)]
             crossed = self.rng.uniform(size=base.size) < self.rng.uniform()

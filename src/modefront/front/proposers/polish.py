@@ -11,9 +11,6 @@ from modefront.front.proposers.base import Offer, solve_from
 from modefront.front.state import Place, State
 from modefront.work.task import Key
 
-SIDES = 2
-"""Neighbours from which equations are solved that their own start has not met."""
-
 
 @dataclass
 class Polish:
@@ -42,7 +39,8 @@ class Polish:
         for k, place in equations:
             if place.closed and not place.incumbent.converged:
                 key = place.subproblem.key
-                for start in sorted(met, key=lambda x: lag(place, x.J))[:SIDES]:
+                nearest = sorted(met, key=lambda x: lag(place, x.J))
+                for start in nearest[: len(state.problem.objectives)]:
                     if (key, start.theta.tobytes()) not in self._tried:
                         yield solve_from(k, place, start, 1.0)
 

@@ -1,6 +1,11 @@
-"""Rivals: known models from which another subproblem may be better solved.
+r"""Rivals: known models from which another subproblem may be better solved.
 
-What a model may lead to is told by its own derivatives (`modefront.front.proposers.prediction`).
+What a model may lead to is told by its own derivatives. A step of the local solver, which minimises
+the quadratic model of the subproblem's programme within a trust region, leads to
+
+.. math:: J + \partial J\, s + \tfrac12 s^T H s ,
+
+and residuals change to :math:`r + \partial r\, s`. The greater of both is what the model promises.
 Where that is better than the incumbent, the model is a rival, and a few steps are taken from it:
 the model that they lead to is compared in its turn.
 """
@@ -12,11 +17,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from modefront._typing import Floats
 from modefront.front.archive import Outcome
 from modefront.front.proposers.base import Offer, Rate, approach_from
-from modefront.front.proposers.prediction import is_hopeless, promised
 from modefront.front.state import DISTINCT, State
+from modefront.front.subproblems import Subproblem
+from modefront.linalg.small import lstsq
+from modefront.optim.linearised import linearised
+from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution
+
+REACH = 0.3
+"""Trust region of a prediction, over the ranges of the parameters."""
 
 
 @dataclass
@@ -38,9 +50,9 @@ class Rivals:
         for k, place in enumerate(state.places):
             if not place.closed:
                 continue
-            for m in range(place.compared, len(state.models)):
-                if not place.subproblem.is_near(state.models[m].J):
-                    continue
+            new = np.array([x.J for x in state.models[place.compared :]])
+            near = place.subproblem.is_near(new) if len(new) else np.zeros(0, dtype=np.bool_)
+            for m in (place.compared + np.flatnonzero(near)).tolist():
                 gain = predicted_gain(state, k, state.models[m])
                 if gain > state.tolerance:
                     self.found[k, m] = gain
@@ -74,7 +86,29 @@ def predicted_gain(state: State, k: int, model: Solution) -> float:
     if np.abs((model.theta - place.incumbent.theta) / state.span).max() <= DISTINCT:
         return 0.0
     w = place.subproblem.weights(place.incumbent)
-    if is_hopeless(state.problem, model.evaluation, w, float(w @ place.incumbent.J)):
+    if is_hopeless(model.evaluation, w, float(w @ place.incumbent.J)):
         return 0.0
     J = promised(state.problem, place.subproblem, model.evaluation)
     return place.subproblem.gain(J, place.incumbent)
+
+
+def promised(problem: Problem, subproblem: Subproblem, evaluation: Evaluation) -> Floats:
+    """Return the objectives (n,) that one step from a model leads to, or its own if better."""
+    local = linearised(problem, subproblem.programme, evaluation)
+    _, step, _ = local.step(evaluation.H, REACH, None)
+    change = step.s * local.span
+    J = evaluation.J + evaluation.dJ @ change + 0.5 * (evaluation.H @ change @ change)
+    squares = [np.sum((each.r + each.dr @ change) ** 2) for each in evaluation.residuals]
+    J = np.maximum(J, squares or 0.0)
+    return J if subproblem.value(J) < subproblem.value(evaluation.J) else evaluation.J
+
+
+def is_hopeless(evaluation: Evaluation, w: Floats, level: float) -> bool:
+    """Return whether w^T J of residuals that change linearly is above a level wherever it goes."""
+    if not evaluation.residuals or (w < 0).any():
+        return False
+    roots = np.sqrt(w)
+    r = np.concatenate([root * x.r for root, x in zip(roots, evaluation.residuals, strict=True)])
+    dr = np.vstack([root * x.dr for root, x in zip(roots, evaluation.residuals, strict=True)])
+    least = r - dr @ lstsq(dr, r)
+    return bool(least @ least > level)

@@ -23,14 +23,11 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.archive import Outcome
-from modefront.front.proposers.base import Offer, Rate, approach_from, at, solve_from
+from modefront.front.proposers.base import USUAL, Offer, Rate, approach_from, at, solve_from
 from modefront.front.state import Place, State
 from modefront.front.subproblems import is_along
 from modefront.optim.sqp import Solution
 from modefront.work.task import Key
-
-BLOCK = 10
-"""Starts that are spread evenly over each range together."""
 
 SURE = 2
 """Starts that lead to a minimum, from which on it is hardly a matter of chance."""
@@ -144,8 +141,8 @@ class Starts:
         """Return random parameters, spread evenly over each range block by block."""
         if not self._queue:
             p = state.span.size
-            cells = self.rng.permuted(np.tile(np.arange(BLOCK), (p, 1)), axis=1).T
-            u = (cells + self.rng.uniform(size=cells.shape)) / BLOCK
+            cells = self.rng.permuted(np.tile(np.arange(USUAL), (p, 1)), axis=1).T
+            u = (cells + self.rng.uniform(size=cells.shape)) / USUAL
             self._queue = list(state.problem.lower + state.span * u)
         return self._queue.pop()
 
