@@ -48,7 +48,7 @@ from modefront.identification.stabilisation import (
     support,
 )
 
-REACH = 8.0
+REACH = 6.0
 """Half bandwidths on either side of a mode that its band has: they hold nearly all that is known
 of it (Au, Mech. Syst. Signal Process. 48 (2014) 15-33, doi:10.1016/j.ymssp.2013.07.004)."""
 
@@ -183,8 +183,7 @@ def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float])
     }
     modes = [replace(mode, held=k in seeded) for k, mode in enumerate(modes)]
     least = needed(len(lines.omega), len(records.sensors))
-    for _ in range(2):
-        modes = _fitted(setup, modes, least)
+    modes = _fitted(setup, _fitted(setup, modes, least), least, last=True)
     return replace(setup, modes=tuple(modes))
 
 
@@ -223,14 +222,19 @@ def _seeded(lines: Transforms, omega: float, phi: Floats | None = None) -> Local
     return Local(omega, half / omega, shape / np.linalg.norm(shape))
 
 
-def _fitted(setup: _Setup, modes: Sequence[Local], least: float) -> list[Local]:
-    """Return the modes that data need, each fitted with those that it overlaps."""
+def _fitted(
+    setup: _Setup, modes: Sequence[Local], least: float, *, last: bool = False
+) -> list[Local]:
+    """Return the modes that data need, each fitted with those that it overlaps.
+
+    The ``last`` fit has the background that their forces move; no mode is judged by it.
+    """
     found = []
     for group in _overlapping(modes):
         chosen = [modes[k] for k in group]
         band = _band_of(setup.lines, chosen)
         beside = [modes[k] for k in _beside(band, modes, group)]
-        found += _of_group(setup, band, chosen, beside, least)
+        found += _of_group(setup, band, chosen, beside, least, last)
     return found
 
 
@@ -266,7 +270,12 @@ def _beside(band: Band, modes: Sequence[Local], group: Sequence[int]) -> list[in
 
 
 def _of_group(
-    setup: _Setup, band: Band, modes: Sequence[Local], beside: Sequence[Local], least: float
+    setup: _Setup,
+    band: Band,
+    modes: Sequence[Local],
+    beside: Sequence[Local],
+    least: float,
+    last: bool,
 ) -> list[Local]:
     """Return the modes of a band without those that gain less, the weakest first."""
     fit = spectral_density.maximise(band, _first(band, [*modes, *beside], len(modes)), TRIAL_STEPS)
@@ -293,6 +302,8 @@ def _of_group(
             fit = spectral_density.maximise(band, model, TRIAL_STEPS)
     else:
         return []
+    if last:
+        fit = spectral_density.maximise(band, fit.model.with_coherent())
     model, out = fit.model, []
     visible = _shares(band, model)
     for r in range(model.free):
@@ -320,6 +331,7 @@ def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
         np.eye(len(modes), dtype=complex),
         np.diag(np.maximum(np.quantile(own, QUIET, axis=0), band.floor)),
         free,
+        np.zeros((len(phi), 0)),
     )
     h2 = np.abs(model.response(band.omega, band.order)) ** 2
     inverse = np.linalg.pinv(phi, rcond=0.1)
@@ -422,7 +434,7 @@ def _completed(
             tried = [_tried(setup, setups, groups[r]) for r in lacking]
             known = [row for row in rows if row is not None]
             least = float(chi2.isf(FALSE, len(setup.records.sensors)))
-            found = _fitted(setup, [*known, *tried], least)
+            found = _fitted(setup, [*known, *tried], least, last=True)
             for r, start in zip(lacking, tried, strict=True):
                 near = [
                     m for m in found if abs(m.omega - start.omega) < 2 * max(m.half, start.half)
