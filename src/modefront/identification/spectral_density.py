@@ -265,11 +265,7 @@ def _matrices(band: Band, model: Density) -> _Matrices:
 
 def evaluate(band: Band, model: Density) -> Fit:
     """Return the cost of a model with its gradient and the expected second derivatives."""
-    return _derived(band, model, _matrices(band, model))
-
-
-def _derived(band: Band, model: Density, x: _Matrices) -> Fit:
-    c, m = band.count, model.free
+    x, c, m = _matrices(band, model), band.count, model.free
     d, J = _changes(band, model), _root_changes(model.root)
     W = c[:, None, None] * (x.C - x.Y.conj().swapaxes(1, 2) @ x.own @ x.Y)
     total, again = x.weighted.sum(axis=0), (x.weighted @ x.own @ x.D).sum(axis=0)
@@ -382,15 +378,6 @@ def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Compl
     return out
 
 
-def _with_background(band: Band, model: Density, x: _Matrices) -> Fit:
-    """Return the fit with the better one of two steps of the background."""
-    after = _expected(band, model, x)
-    models = [replace(model, background=B) for B in (after, _scored(band, model, x, after))]
-    matrices = [_matrices(band, each) for each in models]
-    best = int(matrices[1].cost < matrices[0].cost)
-    return _derived(band, models[best], matrices[best])
-
-
 def _expected(band: Band, model: Density, x: _Matrices) -> Floats:
     """Return the background that is most likely if the modal responses are as the model says."""
     again = (x.weighted @ x.own @ x.D).sum(axis=0) + x.weighted.sum(axis=0)
@@ -406,16 +393,17 @@ def _prior(band: Band) -> Floats:
     return out
 
 
-def _scored(band: Band, model: Density, x: _Matrices, after: Floats) -> Floats:
+def _background(band: Band, model: Density, x: _Matrices) -> Floats:
     r"""Return the background after a step of scoring of its own.
 
     With B = R R^T and changes R Z R^T, the second derivatives are :math:`\sum_k (I - V D V^T) Z
     (I - V D V^T)`, V = R^-1 Psi, and the gradient is the step of expectation and maximisation
     times the number of lines. In an orthonormal basis U of V and beside it, they are solved for
-    the parts of Z one by one. Where Z is negative, the step is exp Z: B stays positive.
+    the parts of Z one by one.
     """
     c, n = band.count, len(model.phi)
     weight = c.sum() + PRIOR + n
+    after = _expected(band, model, x)
     R = la.cholesky(model.background, lower=True)
     V = la.solve_triangular(R, model.columns, lower=True)
     inner = la.solve_triangular(R, after - model.background, lower=True)
@@ -433,9 +421,10 @@ def _scored(band: Band, model: Density, x: _Matrices, after: Floats) -> Floats:
     half = U @ (beside - beside @ U @ U.T)
     rest = right - U @ (U.T @ right)
     Z = (rest - rest @ U @ U.T) / weight + half + half.T + U @ inside @ U.T
-    value, vector = la.eigh((Z + Z.T) / 2)
-    step = (R @ vector) * (1 + np.abs(value)) ** (np.sign(value) / 2)
-    out: Floats = step @ step.T
+    Z = (Z + Z.T) / 2
+    if la.eigvalsh(Z)[0] < -0.9:
+        return after
+    out: Floats = R @ (np.eye(n) + Z) @ R.T
     return out
 
 
@@ -455,7 +444,9 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
                 break
             continue
         before = fit.cost
-        fit = _with_background(band, trial, x)
+        fit = evaluate(band, replace(trial, background=_background(band, trial, x)))
+        if not fit.cost < x.cost + TOLERANCE:
+            fit = evaluate(band, replace(trial, background=_expected(band, trial, x)))
         damping = damping / 8
         if abs(before - fit.cost) < TOLERANCE and damping < 1e-2:
             return replace(fit, converged=True)
