@@ -30,13 +30,6 @@ NAMED = 3
 """Functions that are fitted poorly, modes and warnings that are named."""
 
 
-NARROW = (
-    "standard deviations of ambient tests hold for white forces: where the excitation is coloured "
-    "and common to many modes, frequencies may be off by several of them"
-)
-"""Warning on the modes of ambient tests."""
-
-
 @dataclass(frozen=True, repr=False)
 class IdentifiedTest:
     """Modes of a modal test.
@@ -96,8 +89,7 @@ class IdentifiedTest:
             for name, identification in zip(self.names, self.identified, strict=True)
             for text in _warnings(identification)
         ]
-        ambient = [NARROW] if self.test.setups and self.modes is not None else []
-        return modes + spread + read + ambient + fitted
+        return modes + spread + read + fitted
 
     def write(self, path: Path | str) -> list[Path]:
         """Write modal data, in ``.uff`` as dataset 55, and all else beside it; return the files.

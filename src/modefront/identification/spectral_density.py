@@ -3,32 +3,45 @@ r"""The likelihood of the Fourier transforms of ambient records, in a band with 
 The transforms :math:`F_k` of the records of all sensors at the lines :math:`\omega_k` are circular
 complex normal and independent, with the spectral density matrix
 
-.. math:: E_k = \Phi N_k \Phi^T + B,\qquad N_k = h_k S h_k^*,\qquad
+.. math:: E_k = \Psi N_k \Psi^T + B,\qquad N_k = H_k S H_k^*,\qquad
           h_{rk} = \frac{2\zeta_r x^q}{1 - x^2 + 2\mathrm{i}\zeta_r x},\quad x = \omega_k/\omega_r:
 
-S is the spectral density of the modal forces, and B that of noise and of all that is flat over the
-band, modes far away among it; h is 1 in size at resonance. Of the modes that the model has, the
-first ones are in the band; the others lie beside it, and only their forces are parameters. With
-:math:`P = \Phi^T B^{-1}\Phi`, all of it needs matrices of the size of the modes only,
+S is the spectral density of the modal forces, h is 1 in size at resonance, and B the density of
+noise and of all that is flat over the band, modes far away among it. The forces of those modes are
+related to the forces of the modes in the band, as one wind drives all of them: what a force
+:math:`f_r` moves is :math:`(\varphi_r h_r + \rho_r) f_r`, with a real vector :math:`\rho_r`.
+Without it the flank of a mode that is raised by the interference moves its frequency. A slope of S
+over the band is a part of :math:`\rho_r` along :math:`\varphi_r`, as far as it is linear. So
+:math:`\Psi = [\Phi, R]` and :math:`H = [\operatorname{diag} h;\ I]`, R the vectors of the modes in
+the band. Imaginary parts of :math:`\rho_r` along :math:`\varphi_r` have the form of
+:math:`|h_r|^2`, as S has: they cannot be told from it.
 
-.. math:: Y = (I + N P)^{-1},\quad D = Y N,\quad E^{-1} = B^{-1} - \hat\Phi D \hat\Phi^T,\quad
-          \hat\Phi = B^{-1}\Phi,\quad E^{-1}\Phi = \hat\Phi Y,\quad
-          \ln\det E = \ln\det B + \ln\det(I + N P) .
+Of the modes that the model has, the first ones are in the band; the others lie beside it, and only
+their forces are parameters. With :math:`P = \Psi^T B^{-1}\Psi`, all of it needs matrices of the
+size of the modes only,
+
+.. math:: D = H (I + S H^* P H)^{-1} S H^*,\quad Y = I - D P,\quad
+          E^{-1} = B^{-1} - \hat\Psi D \hat\Psi^T,\quad \hat\Psi = B^{-1}\Psi,\quad
+          E^{-1}\Psi = \hat\Psi Y,\quad \ln\det E = \ln\det B + \ln\det(I + S H^* P H) .
 
 The cost :math:`J = \sum_k \ln\det E_k + F_k^* E_k^{-1} F_k` has the gradient
 :math:`\sum_k \operatorname{tr} E^{-1}\partial E\,(I - E^{-1}FF^*)`, and the expected second
 derivatives :math:`\sum_k \operatorname{tr} E^{-1}\partial_a E\,E^{-1}\partial_b E`, of which steps
-(scoring) and covariances are made. B follows by expectation and maximisation: given the data, the
-modal responses have the mean :math:`D\hat\Phi^T F` and the covariance D, and B becomes the mean of
-:math:`(F - \Phi w)(F - \Phi w)^*`; errors of B reach the other parameters to second order only.
+(scoring) and covariances are made. B follows each of them by a step of its own: by scoring, or by
+expectation and maximisation, as far from the maximum. Given the data, the responses w to the
+forces have the mean :math:`D\hat\Psi^T F` and the covariance D, and B becomes the mean of
+:math:`(F - \Psi w)(F - \Psi w)^*`. Errors of B reach the other parameters to second order only.
 
 ==============  ========================================================================
 symbol          meaning
 ==============  ========================================================================
 Phi             (sensors, modes) real shapes of unit norm
+R               (sensors, modes in the band or none) what their forces move besides
+Psi, H          (sensors, columns), (columns, modes); columns are modes in the band, R, modes
+                beside it
 S = L L^*       (modes, modes) spectral density of the modal forces, L lower triangular
 B               (sensors, sensors) real; a priori diagonal, with the weight of `PRIOR` lines
-C               :math:`\Phi^T E^{-1}\Phi = P Y`
+C               :math:`\Psi^T E^{-1}\Psi = P Y`
 Q               :math:`N C N = N - D`
 q               differentiations of the displacement in the records
 ==============  ========================================================================
@@ -106,6 +119,7 @@ class Density:
     root : (modes, modes) L
     background : (sensors, sensors) B
     free : number of the modes that are in the band, the first ones
+    coherent : (sensors, free) R, or (sensors, 0) for a model without it
     """
 
     omega: Floats
@@ -143,9 +157,7 @@ class Density:
         """Return H at circular frequencies, (lines, columns, modes)."""
         eye = np.eye(len(self.omega))
         of_modes = self.response(omega, order).T[:, :, None] * eye
-        constant = np.broadcast_to(
-            eye[: self.moving - self.free], (len(omega), *eye[: self.moving - self.free].shape)
-        )
+        constant = np.repeat(eye[None, : self.moving - self.free], len(omega), axis=0)
         parts = [of_modes[:, : self.free], constant, of_modes[:, self.free :]]
         out: Complexes = np.concatenate(parts, axis=1)
         return out
@@ -182,9 +194,9 @@ def root_of(S: Complexes) -> Complexes:
 class Fit:
     """A model beside the data: the cost and its derivatives by the parameters.
 
-    The parameters are the shapes (mode by mode), ln omega and ln zeta of the free modes, and the
-    real and imaginary part of L (row by row, the lower triangle). ``bending`` is what the second
-    derivatives of S by L add to those of the cost.
+    The parameters are the shapes (mode by mode), R in the same way, ln omega and ln zeta of the
+    free modes, and the real and imaginary part of L (row by row, the lower triangle). ``bending``
+    is what the second derivatives of S by L add to those of the cost.
     """
 
     model: Density
@@ -221,10 +233,10 @@ class Fit:
 
 @dataclass(frozen=True)
 class _Matrices:
-    """The matrices of the module's text in all blocks, (blocks, modes, modes), and the cost.
+    """The matrices of the module's text in all blocks, (blocks, columns, columns), and the cost.
 
-    ``seen`` is F F^* hat of the data, (blocks, sensors, modes), ``own`` is hat^T F F^* hat, and
-    ``weighted`` is D times the number of lines.
+    ``h`` is H, ``seen`` is F F^* hat of the data, (blocks, sensors, columns), ``own`` is
+    hat^T F F^* hat, and ``weighted`` is D times the number of lines.
     """
 
     h: Complexes
@@ -336,8 +348,8 @@ def _bending(G: Complexes) -> Floats:
 def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Complexes) -> Floats:
     """Return the expected second derivatives, tr E^-1 dE E^-1 dE over the lines.
 
-    With a = Phi N, shapes change E by e_j a_r^* and its adjoint, poles by d phi_r a_r^* and its
-    adjoint, forces by Phi h J h^* Phi^T. Letters below: shapes, poles, forces.
+    With a = Psi N, shapes and R change E by e_j a_r^* and its adjoint, poles by d phi_r a_r^* and
+    its adjoint, forces by Psi H J H^* Psi^T. Letters below: shapes, poles, forces.
     """
     (n, M), m, v = model.phi.shape, model.free, model.moving
     mode = np.tile(np.arange(m), 2)
@@ -465,8 +477,8 @@ def _step(fit: Fit, damping: float) -> Floats:
 def _moved(model: Density, step: Floats) -> Density:
     """Return the model after a step, which is limited in frequency and damping."""
     n, m, v = len(model.phi), model.free, model.moving
-    columns, omega, zeta, root = np.split(step, np.cumsum([v * n, m, m]))
-    change, L = columns.reshape(v, n).T, model.root.copy()
+    moved, omega, zeta, root = np.split(step, np.cumsum([v * n, m, m]))
+    change, L = moved.reshape(v, n).T, model.root.copy()
     phi = np.hstack([model.phi[:, :m] + change[:, :m], model.phi[:, m:]])
     rows, columns, units = _entries(len(L))
     np.add.at(L, (rows, columns), units * root)

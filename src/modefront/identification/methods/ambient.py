@@ -70,7 +70,7 @@ DAMPING = 0.002, 0.05
 QUIET = 0.1
 """Quantile of the power of a sensor over a band that its background starts from."""
 
-TRIAL_STEPS = 12
+TRIAL_STEPS = 8
 """Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
 
 HARMONIC = 1e-3
