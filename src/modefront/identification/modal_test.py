@@ -29,6 +29,12 @@ POOR_FIT = 0.5
 NAMED = 3
 """Functions that are fitted poorly, modes and warnings that are named."""
 
+NARROW = (
+    "standard deviations of ambient tests hold for white forces: under coloured ones that many "
+    "modes share, those of long tests are up to a third too small"
+)
+"""Warning on the modes of ambient tests."""
+
 
 @dataclass(frozen=True, repr=False)
 class IdentifiedTest:
@@ -89,7 +95,8 @@ class IdentifiedTest:
             for name, identification in zip(self.names, self.identified, strict=True)
             for text in _warnings(identification)
         ]
-        return modes + spread + read + fitted
+        ambient = [NARROW] if self.test.setups and self.modes is not None else []
+        return modes + spread + read + ambient + fitted
 
     def write(self, path: Path | str) -> list[Path]:
         """Write modal data, in ``.uff`` as dataset 55, and all else beside it; return the files.

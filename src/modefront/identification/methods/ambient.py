@@ -3,7 +3,7 @@ r"""Ambient tests: from the records of all setups to modes, by the likelihood of
 1. Half spectra of each setup (`spectra`) give poles at many orders, and clusters of them to start
    from (`stabilisation`).
 2. Modes that overlap share a band; the likelihood of the transforms in it (`spectral_density`) is
-   maximised, with the modes beside the band.
+   maximised, with the modes beside the band and, at last, with what forces of modes move besides.
 3. A mode is accepted where the likelihood gains more by it than noise makes somewhere in the band;
    in the other setups it needs what noise makes at a pole that is known.
 4. A mode with the amplitude of a machine is none. With :math:`a(t)` the modal response to lines
@@ -49,8 +49,9 @@ from modefront.identification.stabilisation import (
 )
 
 REACH = 6.0
-"""Half bandwidths on either side of a mode that its band has: they hold nearly all that is known
-of it (Au, Mech. Syst. Signal Process. 48 (2014) 15-33, doi:10.1016/j.ymssp.2013.07.004)."""
+"""Half bandwidths on either side of a mode that its band has: they hold nearly all that is known of
+it (Au, Mech. Syst. Signal Process. 48 (2014) 15-33, doi:10.1016/j.ymssp.2013.07.004), and over
+wider bands what modes far away contribute is not flat."""
 
 OVERLAP = 4.0
 """Distance over the sum of half bandwidths within which modes are fitted at once."""
@@ -364,7 +365,8 @@ def _shares(band: Band, model: Density) -> Floats:
     all_modes = np.einsum(
         "jr,rk,rs,sk,js->jk", model.phi, h, model.force, h.conj(), model.phi, optimize=True
     ).real
-    out: Floats = (own / (all_modes + np.diag(model.background)[:, None])).max(axis=0)
+    shares = own / (all_modes + np.diag(model.background)[:, None])
+    out: Floats = np.minimum(shares.max(axis=0), 1.0)
     return out
 
 
