@@ -42,7 +42,8 @@ def test_an_ambient_test_of_three_setups_is_one_set(tmp_path: Path) -> None:
     np.testing.assert_allclose(result.frequency, kept.frequency, rtol=1e-4)
     np.testing.assert_allclose(result.shape, kept.shape, atol=1e-4)
     assert set(result.sensors) == {"floor1", "floor2", "floor3"}
-    assert result.frequency == pytest.approx(np.array([[4.7357, 13.089, 17.957]]), rel=3e-3)
+    true = np.array([[4.7357, 13.089, 17.957]])
+    assert (np.abs(result.frequency - true) < 3 * result.frequency_std).all()
     assert (result.shape_std > 0).all()
     assert len(list(pictures.iterdir())) == 3
     report = json.loads((tmp_path / "again-identification.json").read_text())

@@ -22,7 +22,9 @@ def _model(rng: np.random.Generator) -> Density:
     half = rng.standard_normal((SENSORS, SENSORS))
     background = half @ half.T / 50 + 0.02 * np.eye(SENSORS)
     poles = np.array([10.0, 10.3, 12.0]), np.array([0.01, 0.02, 0.015])
-    return Density(*poles, phi / np.linalg.norm(phi, axis=0), root, background, 2)
+    return Density(
+        *poles, phi / np.linalg.norm(phi, axis=0), root, background, 2, np.zeros((SENSORS, 0))
+    )
 
 
 def _circular(rng: np.random.Generator, *shape: int) -> Complexes:
@@ -40,14 +42,18 @@ def _density(band: Band, model: Density) -> Complexes:
     """Return E at all lines as its definition has it."""
     h = model.response(band.omega, band.order)
     a = np.einsum("jr,rk->kjr", model.phi, h)
+    a[:, :, : model.coherent.shape[1]] += model.coherent
     out: Complexes = a @ model.force @ a.conj().swapaxes(1, 2) + model.background
     return out
 
 
 def _moved(model: Density, parameter: int, step: float) -> Density:
-    change = np.zeros(2 * SENSORS + 4 + 9)
+    constants = model.coherent.size
+    change = np.zeros(2 * SENSORS + constants + 4 + 9)
     change[parameter] = step
-    shapes, omega, zeta, root = np.split(change, [2 * SENSORS, 2 * SENSORS + 2, 2 * SENSORS + 4])
+    parts = np.cumsum([2 * SENSORS, constants, 2, 2])
+    shapes, constant, omega, zeta, root = np.split(change, parts)
+    coherent = model.coherent + constant.reshape(-1, SENSORS).T
     phi, L = model.phi.copy(), model.root.copy()
     phi[:, :2] += shapes.reshape(2, SENSORS).T
     lower = [(0, 0, 1), (1, 0, 1), (1, 0, 1j), (1, 1, 1), (2, 0, 1), (2, 0, 1j)]
@@ -56,12 +62,14 @@ def _moved(model: Density, parameter: int, step: float) -> Density:
         L[i, j] += unit * value
     new_omega = model.omega * np.exp(np.append(omega, 0))
     new_zeta = model.zeta * np.exp(np.append(zeta, 0))
-    return replace(model, omega=new_omega, zeta=new_zeta, phi=phi, root=L)
+    return replace(model, omega=new_omega, zeta=new_zeta, phi=phi, root=L, coherent=coherent)
 
 
-def test_cost_and_derivatives_are_those_of_the_whole_density() -> None:
+@pytest.mark.parametrize("coherent", [0, 2])
+def test_cost_and_derivatives_are_those_of_the_whole_density(coherent: int) -> None:
     rng = np.random.default_rng(0)
     model, band = _model(rng), _band(rng)
+    model = replace(model, coherent=0.3 * rng.standard_normal((SENSORS, coherent)))
     fit = spectral_density.evaluate(band, model)
 
     def cost(model: Density) -> float:

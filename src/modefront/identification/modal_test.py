@@ -29,10 +29,9 @@ POOR_FIT = 0.5
 NAMED = 3
 """Functions that are fitted poorly, modes and warnings that are named."""
 
-
 NARROW = (
-    "standard deviations of ambient tests hold for white forces: where the excitation is coloured "
-    "and common to many modes, frequencies may be off by several of them"
+    "standard deviations of ambient tests hold for white forces: under coloured ones that many "
+    "modes share, those of long tests are up to a third too small"
 )
 """Warning on the modes of ambient tests."""
 

@@ -3,32 +3,45 @@ r"""The likelihood of the Fourier transforms of ambient records, in a band with 
 The transforms :math:`F_k` of the records of all sensors at the lines :math:`\omega_k` are circular
 complex normal and independent, with the spectral density matrix
 
-.. math:: E_k = \Phi N_k \Phi^T + B,\qquad N_k = h_k S h_k^*,\qquad
+.. math:: E_k = \Psi N_k \Psi^T + B,\qquad N_k = H_k S H_k^*,\qquad
           h_{rk} = \frac{2\zeta_r x^q}{1 - x^2 + 2\mathrm{i}\zeta_r x},\quad x = \omega_k/\omega_r:
 
-S is the spectral density of the modal forces, and B that of noise and of all that is flat over the
-band, modes far away among it; h is 1 in size at resonance. Of the modes that the model has, the
-first ones are in the band; the others lie beside it, and only their forces are parameters. With
-:math:`P = \Phi^T B^{-1}\Phi`, all of it needs matrices of the size of the modes only,
+S is the spectral density of the modal forces, h is 1 in size at resonance, and B the density of
+noise and of all that is flat over the band, modes far away among it. The forces of those modes are
+related to the forces of the modes in the band, as one wind drives all of them: what a force
+:math:`f_r` moves is :math:`(\varphi_r h_r + \rho_r) f_r`, with a real vector :math:`\rho_r`.
+Without it the flank of a mode that is raised by the interference moves its frequency. A slope of S
+over the band is a part of :math:`\rho_r` along :math:`\varphi_r`, as far as it is linear. So
+:math:`\Psi = [\Phi, R]` and :math:`H = [\operatorname{diag} h;\ I]`, R the vectors of the modes in
+the band. Imaginary parts of :math:`\rho_r` along :math:`\varphi_r` have the form of
+:math:`|h_r|^2`, as S has: they cannot be told from it.
 
-.. math:: Y = (I + N P)^{-1},\quad D = Y N,\quad E^{-1} = B^{-1} - \hat\Phi D \hat\Phi^T,\quad
-          \hat\Phi = B^{-1}\Phi,\quad E^{-1}\Phi = \hat\Phi Y,\quad
-          \ln\det E = \ln\det B + \ln\det(I + N P) .
+Of the modes that the model has, the first ones are in the band; the others lie beside it, and only
+their forces are parameters. With :math:`P = \Psi^T B^{-1}\Psi`, all of it needs matrices of the
+size of the modes only,
+
+.. math:: D = H (I + S H^* P H)^{-1} S H^*,\quad Y = I - D P,\quad
+          E^{-1} = B^{-1} - \hat\Psi D \hat\Psi^T,\quad \hat\Psi = B^{-1}\Psi,\quad
+          E^{-1}\Psi = \hat\Psi Y,\quad \ln\det E = \ln\det B + \ln\det(I + S H^* P H) .
 
 The cost :math:`J = \sum_k \ln\det E_k + F_k^* E_k^{-1} F_k` has the gradient
 :math:`\sum_k \operatorname{tr} E^{-1}\partial E\,(I - E^{-1}FF^*)`, and the expected second
 derivatives :math:`\sum_k \operatorname{tr} E^{-1}\partial_a E\,E^{-1}\partial_b E`, of which steps
-(scoring) and covariances are made. B follows by expectation and maximisation: given the data, the
-modal responses have the mean :math:`D\hat\Phi^T F` and the covariance D, and B becomes the mean of
-:math:`(F - \Phi w)(F - \Phi w)^*`; errors of B reach the other parameters to second order only.
+(scoring) and covariances are made. B follows each of them by a step of its own: by scoring, or by
+expectation and maximisation, as far from the maximum. Given the data, the responses w to the
+forces have the mean :math:`D\hat\Psi^T F` and the covariance D, and B becomes the mean of
+:math:`(F - \Psi w)(F - \Psi w)^*`. Errors of B reach the other parameters to second order only.
 
 ==============  ========================================================================
 symbol          meaning
 ==============  ========================================================================
 Phi             (sensors, modes) real shapes of unit norm
+R               (sensors, modes in the band or none) what their forces move besides
+Psi, H          (sensors, columns), (columns, modes); columns are modes in the band, R, modes
+                beside it
 S = L L^*       (modes, modes) spectral density of the modal forces, L lower triangular
 B               (sensors, sensors) real; a priori diagonal, with the weight of `PRIOR` lines
-C               :math:`\Phi^T E^{-1}\Phi = P Y`
+C               :math:`\Psi^T E^{-1}\Psi = P Y`
 Q               :math:`N C N = N - D`
 q               differentiations of the displacement in the records
 ==============  ========================================================================
@@ -56,9 +69,6 @@ PRIOR = 1.0
 
 TOLERANCE = 1e-2
 """Change of the cost below which a maximum is reached: a half is one standard deviation."""
-
-MOST_PRODUCTS = 20
-"""Products with the second derivatives by the background, in one step."""
 
 MOST_STEPS = 60
 """Steps to a maximum, at most."""
@@ -109,6 +119,7 @@ class Density:
     root : (modes, modes) L
     background : (sensors, sensors) B
     free : number of the modes that are in the band, the first ones
+    coherent : (sensors, free) R, or (sensors, 0) for a model without it
     """
 
     omega: Floats
@@ -117,6 +128,17 @@ class Density:
     root: Complexes
     background: Floats
     free: int
+    coherent: Floats
+
+    @property
+    def columns(self) -> Floats:
+        """Psi, (sensors, columns): shapes of free modes, R, shapes beside."""
+        return np.hstack([self.phi[:, : self.free], self.coherent, self.phi[:, self.free :]])
+
+    @property
+    def moving(self) -> int:
+        """Number of columns that are parameters, the first ones."""
+        return self.free + self.coherent.shape[1]
 
     @property
     def force(self) -> Complexes:
@@ -131,8 +153,21 @@ class Density:
         inner: Complexes = 1 - x**2 + 2j * zeta * x
         return 2 * zeta * x**order / inner
 
+    def lifted(self, omega: Floats, order: int) -> Complexes:
+        """Return H at circular frequencies, (lines, columns, modes)."""
+        eye = np.eye(len(self.omega))
+        of_modes = self.response(omega, order).T[:, :, None] * eye
+        constant = np.repeat(eye[None, : self.moving - self.free], len(omega), axis=0)
+        parts = [of_modes[:, : self.free], constant, of_modes[:, self.free :]]
+        out: Complexes = np.concatenate(parts, axis=1)
+        return out
+
+    def with_coherent(self) -> Density:
+        """Return the same model with R = 0 as parameters."""
+        return replace(self, coherent=np.zeros((len(self.phi), self.free)))
+
     def without(self, mode: int) -> Density:
-        """Return the model without one of its modes."""
+        """Return the model without one of its modes, and without R."""
         kept = np.delete(np.arange(len(self.omega)), mode)
         return replace(
             self,
@@ -141,6 +176,7 @@ class Density:
             phi=self.phi[:, kept],
             root=root_of(self.force[np.ix_(kept, kept)]),
             free=self.free - (mode < self.free),
+            coherent=self.coherent[:, :0],
         )
 
 
@@ -158,9 +194,9 @@ def root_of(S: Complexes) -> Complexes:
 class Fit:
     """A model beside the data: the cost and its derivatives by the parameters.
 
-    The parameters are the shapes (mode by mode), ln omega and ln zeta of the free modes, and the
-    real and imaginary part of L (row by row, the lower triangle). ``bending`` is what the second
-    derivatives of S by L add to those of the cost.
+    The parameters are the shapes (mode by mode), R in the same way, ln omega and ln zeta of the
+    free modes, and the real and imaginary part of L (row by row, the lower triangle). ``bending``
+    is what the second derivatives of S by L add to those of the cost.
     """
 
     model: Density
@@ -186,7 +222,8 @@ class Fit:
     def covariance(self, mode: int) -> Floats:
         """Return the covariance of ln omega, ln zeta and the shape of a free mode."""
         n, m = len(self.model.phi), self.model.free
-        rows = [m * n + mode, m * n + m + mode, *range(mode * n, (mode + 1) * n)]
+        first = self.model.moving * n + mode
+        rows = [first, first + m, *range(mode * n, (mode + 1) * n)]
         A, scale = self.scaled()
         value, vector = la.eigh(A)
         half = (scale[:, None] * vector)[rows] / np.sqrt(np.maximum(value, 1e-13))
@@ -196,10 +233,10 @@ class Fit:
 
 @dataclass(frozen=True)
 class _Matrices:
-    """The matrices of the module's text in all blocks, (blocks, modes, modes), and the cost.
+    """The matrices of the module's text in all blocks, (blocks, columns, columns), and the cost.
 
-    ``seen`` is F F^* hat of the data, (blocks, sensors, modes), ``own`` is hat^T F F^* hat, and
-    ``weighted`` is D times the number of lines.
+    ``h`` is H, ``seen`` is F F^* hat of the data, (blocks, sensors, columns), ``own`` is
+    hat^T F F^* hat, and ``weighted`` is D times the number of lines.
     """
 
     h: Complexes
@@ -222,14 +259,14 @@ class _Matrices:
 
 def _matrices(band: Band, model: Density) -> _Matrices:
     n, B = len(model.phi), model.background
-    h = model.response(band.omega, band.order).T
+    h, psi = model.lifted(band.omega, band.order), model.columns
     inverse = np.linalg.inv(B)
-    hat = inverse @ model.phi
-    P = model.phi.T @ hat
-    N = h[:, :, None] * model.force * h[:, None, :].conj()
-    A = np.eye(len(P)) + N @ P
-    Y: Complexes = np.asarray(np.linalg.inv(A), complex)
-    D = Y @ N
+    hat = inverse @ psi
+    P = psi.T @ hat
+    left = h.conj().swapaxes(1, 2)
+    A = np.eye(len(model.omega)) + model.force @ (left @ P @ h)
+    D: Complexes = np.asarray(h @ np.linalg.solve(A, model.force[None]) @ left, complex)
+    N, Y = h @ model.force @ left, np.eye(len(P)) - D @ P
     seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape)
     own, weighted = hat.T @ seen, band.count[:, None, None] * D
     weight = band.count.sum() + PRIOR + n
@@ -245,12 +282,12 @@ def evaluate(band: Band, model: Density) -> Fit:
     W = c[:, None, None] * (x.C - x.Y.conj().swapaxes(1, 2) @ x.own @ x.Y)
     total, again = x.weighted.sum(axis=0), (x.weighted @ x.own @ x.D).sum(axis=0)
     measured = np.linalg.solve(model.background, x.both.T).T
-    shapes = 2 * ((total + again) @ x.hat.T - measured).real
+    columns = 2 * ((total + again) @ x.hat.T - measured).real
     NW = np.sum(x.N * W.swapaxes(1, 2), axis=2)[:, :m]
     poles = 2 * np.sum(d * np.hstack([NW, NW]), axis=0).real
-    whole = (W.swapaxes(1, 2) * x.h[:, :, None] * x.h.conj()[:, None]).sum(axis=0)
+    whole = (x.h.conj().swapaxes(1, 2) @ W @ x.h).sum(axis=0).T
     forces = (J.reshape(len(J), whole.size) @ whole.ravel()).real
-    gradient = np.concatenate([shapes[:m].ravel(), poles, forces])
+    gradient = np.concatenate([columns[: model.moving].ravel(), poles, forces])
     return Fit(model, x.cost, gradient, _information(model, x, c, d, J), _bending(whole.T))
 
 
@@ -261,10 +298,10 @@ def modal_responses(
 
     Also returns their spectral densities by the model, which are those of Q.
     """
-    h = model.response(omega, order).T
-    hat = la.solve(model.background, model.phi, assume_a="pos")
-    N = h[:, :, None] * model.force * h[:, None, :].conj()
-    D = np.linalg.solve(np.eye(len(h.T)) + N @ (model.phi.T @ hat), N)
+    h, psi = model.lifted(omega, order), model.columns
+    hat = la.solve(model.background, psi, assume_a="pos")
+    N = h @ model.force @ h.conj().swapaxes(1, 2)
+    D = np.linalg.solve(np.eye(len(hat.T)) + N @ (psi.T @ hat), N)
     Q = np.einsum("krr->rk", N - D).real
     return np.einsum("krs,sk->rk", D, hat.T @ F), Q
 
@@ -311,14 +348,14 @@ def _bending(G: Complexes) -> Floats:
 def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Complexes) -> Floats:
     """Return the expected second derivatives, tr E^-1 dE E^-1 dE over the lines.
 
-    With a = Phi N, shapes change E by e_j a_r^* and its adjoint, poles by d phi_r a_r^* and its
-    adjoint, forces by Phi h J h^* Phi^T. Letters below: shapes, poles, forces.
+    With a = Psi N, shapes and R change E by e_j a_r^* and its adjoint, poles by d phi_r a_r^* and
+    its adjoint, forces by Psi H J H^* Psi^T. Letters below: shapes, poles, forces.
     """
-    (n, M), m = model.phi.shape, model.free
+    (n, M), m, v = model.phi.shape, model.free, model.moving
     mode = np.tile(np.arange(m), 2)
-    hat, h, D, C, Q, NC = x.hat, x.h[:, None], x.D, x.C, x.N - x.D, x.N @ x.C
+    hat, h, D, C, Q, NC = x.hat, x.h, x.D, x.C, x.N - x.D, x.N @ x.C
     adjoint, left = x.Y.conj().swapaxes(1, 2), h.conj().swapaxes(1, 2)
-    NCh, flat = NC * h, J.reshape(M**2, M**2).T
+    NCh, flat = NC @ h, J.reshape(M**2, M**2).T
 
     def gram(a: Complexes, b: Complexes) -> Complexes:
         """Return the sum of c a_rs b_tu over the lines, (r, s, t, u)."""
@@ -331,22 +368,22 @@ def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Compl
         return out
 
     # (a_r^* E^-1)_l (a_s^* E^-1)_j + Q_rs (E^-1)_lj
-    SS = gram(D[:, :m], D[:, :m]).swapaxes(1, 2) - gram(Q[:, :m, :m], D)
-    total = np.tensordot(c, Q[:, :m, :m], 1)[..., None, None]
+    SS = gram(D[:, :v], D[:, :v]).swapaxes(1, 2) - gram(Q[:, :v, :v], D)
+    total = np.tensordot(c, Q[:, :v, :v], 1)[..., None, None]
     SS = (hat @ SS @ hat.T + total * np.linalg.inv(model.background)).transpose(0, 3, 1, 2)
-    SP = each(NC[:, :m, mode] * d[:, None], D[:, mode])
-    SP += each(Q[:, :m, mode] * d.conj()[:, None], adjoint[:, mode])
+    SP = each(NC[:, :v, mode] * d[:, None], D[:, mode])
+    SP += each(Q[:, :v, mode] * d.conj()[:, None], adjoint[:, mode])
     SP = (SP @ hat.T).transpose(1, 2, 0)
-    SF = gram(NCh[:, :m], left * adjoint).transpose(0, 3, 1, 2)
-    SF = hat @ (SF.reshape(m, M, M**2) @ flat)
+    SF = gram(NCh[:, :v], left @ adjoint).transpose(0, 3, 1, 2)
+    SF = hat @ (SF.reshape(v, hat.shape[1], M**2) @ flat)
     NCp, Qp, Cp = (y[:, mode][:, :, mode] for y in (NC, Q, C))
     T, CP = NCp * d[:, None], Cp * d[:, None] * d.conj()[:, :, None]
     PP = np.sum(c[:, None, None] * (T * T.swapaxes(1, 2) + Qp * CP.swapaxes(1, 2)), axis=0)
-    PF = each(NCh[:, mode].swapaxes(1, 2), (left * C[:, :, mode] * d[:, None]).swapaxes(1, 2))
+    PF = each(NCh[:, mode].swapaxes(1, 2), ((left @ C)[:, :, mode] * d[:, None]).swapaxes(1, 2))
     PF = PF.reshape(2 * m, M**2) @ flat
-    Ch = left * C * h
+    Ch = left @ C @ h
     FF = flat.T @ gram(Ch, Ch).transpose(1, 2, 3, 0).reshape(M**2, M**2) @ flat
-    SS, SP, SF = (y.reshape(m * n, size) for y, size in ((SS, m * n), (SP, 2 * m), (SF, M**2)))
+    SS, SP, SF = (y.reshape(v * n, size) for y, size in ((SS, v * n), (SP, 2 * m), (SF, M**2)))
     out: Floats = np.block(
         [[2 * SS, 2 * SP, 2 * SF], [2 * SP.T, 2 * PP, 2 * PF], [2 * SF.T, 2 * PF.T, FF]]
     ).real
@@ -356,8 +393,8 @@ def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Compl
 def _expected(band: Band, model: Density, x: _Matrices) -> Floats:
     """Return the background that is most likely if the modal responses are as the model says."""
     again = (x.weighted @ x.own @ x.D).sum(axis=0) + x.weighted.sum(axis=0)
-    both = (model.phi @ x.both).real
-    B = band.total - both - both.T + model.phi @ again.real @ model.phi.T + _prior(band)
+    both = (model.columns @ x.both).real
+    B = band.total - both - both.T + model.columns @ again.real @ model.columns.T + _prior(band)
     out: Floats = (B + B.T) / (2 * (band.count.sum() + PRIOR + len(B)))
     return out
 
@@ -372,38 +409,30 @@ def _background(band: Band, model: Density, x: _Matrices) -> Floats:
     r"""Return the background after a step of scoring of its own.
 
     With B = R R^T and changes R Z R^T, the second derivatives are :math:`\sum_k (I - V D V^T) Z
-    (I - V D V^T)`, V = R^-1 Phi, and the gradient is the step of expectation and maximisation
-    times the number of lines. They are solved by conjugate gradients.
+    (I - V D V^T)`, V = R^-1 Psi, and the gradient is the step of expectation and maximisation
+    times the number of lines. In an orthonormal basis U of V and beside it, they are solved for
+    the parts of Z one by one.
     """
     c, n = band.count, len(model.phi)
     weight = c.sum() + PRIOR + n
     after = _expected(band, model, x)
     R = la.cholesky(model.background, lower=True)
-    V = la.solve_triangular(R, model.phi, lower=True)
+    V = la.solve_triangular(R, model.columns, lower=True)
     inner = la.solve_triangular(R, after - model.background, lower=True)
     right = weight * la.solve_triangular(R, inner.T, lower=True)
-    single = V @ x.weighted.real.sum(axis=0) @ V.T
-    flat = x.D.reshape(len(c), -1)
-    M = V.shape[1]
-    double = ((c[:, None] * flat).T @ flat).real.reshape(M, M, M, M).transpose(0, 3, 1, 2)
-    squared = double.reshape(M * M, M * M)
-
-    def product(Z: Floats) -> Floats:
-        middle = (squared @ (V.T @ Z @ V).ravel()).reshape(M, M)
-        out: Floats = weight * Z - single @ Z - Z @ single + V @ middle @ V.T
-        return out
-
-    Z, r = np.zeros((n, n)), right
-    p, size = r, float(np.vdot(r, r))
-    least = 1e-4 * size
-    for _ in range(MOST_PRODUCTS):
-        if size <= least:
-            break
-        Ap = product(p)
-        alpha = size / float(np.vdot(p, Ap))
-        Z, r = Z + alpha * p, r - alpha * Ap
-        size, before = float(np.vdot(r, r)), size
-        p = r + size / before * p
+    U, T = la.qr(V, mode="economic")
+    size = len(T)
+    single = T @ x.weighted.real.sum(axis=0) @ T.T
+    D = (T @ x.D @ T.T).reshape(len(c), -1)
+    double = ((c[:, None] * D).T @ D).real.reshape(size, size, size, size)
+    eye = np.eye(size)
+    A = double.transpose(0, 3, 1, 2).reshape(size**2, size**2) + weight * np.eye(size**2)
+    A -= np.kron(single, eye) + np.kron(eye, single)
+    beside = la.solve(weight * eye - single, U.T @ right, assume_a="pos")
+    inside = la.solve(A, (U.T @ right @ U).ravel()).reshape(size, size)
+    half = U @ (beside - beside @ U @ U.T)
+    rest = right - U @ (U.T @ right)
+    Z = (rest - rest @ U @ U.T) / weight + half + half.T + U @ inside @ U.T
     Z = (Z + Z.T) / 2
     if la.eigvalsh(Z)[0] < -0.9:
         return after
@@ -447,10 +476,10 @@ def _step(fit: Fit, damping: float) -> Floats:
 
 def _moved(model: Density, step: Floats) -> Density:
     """Return the model after a step, which is limited in frequency and damping."""
-    n, m = len(model.phi), model.free
-    shapes, omega, zeta, root = np.split(step, np.cumsum([m * n, m, m]))
-    phi, L = model.phi.copy(), model.root.copy()
-    phi[:, :m] += shapes.reshape(m, n).T
+    n, m, v = len(model.phi), model.free, model.moving
+    moved, omega, zeta, root = np.split(step, np.cumsum([v * n, m, m]))
+    change, L = moved.reshape(v, n).T, model.root.copy()
+    phi = np.hstack([model.phi[:, :m] + change[:, :m], model.phi[:, m:]])
     rows, columns, units = _entries(len(L))
     np.add.at(L, (rows, columns), units * root)
     new_omega, new_zeta = model.omega.copy(), model.zeta.copy()
@@ -458,10 +487,24 @@ def _moved(model: Density, step: Floats) -> Density:
     new_omega[:m] *= np.exp(np.clip(omega, -reach, reach))
     new_zeta[:m] *= np.exp(np.clip(zeta, -LONGEST, LONGEST))
     new_zeta = np.clip(new_zeta, LEAST_DAMPING, GREATEST_DAMPING)
-    return _normalised(replace(model, omega=new_omega, zeta=new_zeta, phi=phi, root=L))
+    return _normalised(
+        replace(
+            model,
+            omega=new_omega,
+            zeta=new_zeta,
+            phi=phi,
+            root=L,
+            coherent=model.coherent + change[:, m:],
+        )
+    )
 
 
 def _normalised(model: Density) -> Density:
     """Return the same model with shapes of unit norm."""
     norm = np.linalg.norm(model.phi, axis=0)
-    return replace(model, phi=model.phi / norm, root=model.root * norm[:, None])
+    return replace(
+        model,
+        phi=model.phi / norm,
+        root=model.root * norm[:, None],
+        coherent=model.coherent / norm[: model.moving - model.free],
+    )

@@ -3,7 +3,7 @@ r"""Ambient tests: from the records of all setups to modes, by the likelihood of
 1. Half spectra of each setup (`spectra`) give poles at many orders, and clusters of them to start
    from (`stabilisation`).
 2. Modes that overlap share a band; the likelihood of the transforms in it (`spectral_density`) is
-   maximised, with the modes beside the band.
+   maximised, with the modes beside the band and, at last, with what forces of modes move besides.
 3. A mode is accepted where the likelihood gains more by it than noise makes somewhere in the band;
    in the other setups it needs what noise makes at a pole that is known.
 4. A mode with the amplitude of a machine is none. With :math:`a(t)` the modal response to lines
@@ -48,9 +48,10 @@ from modefront.identification.stabilisation import (
     support,
 )
 
-REACH = 8.0
-"""Half bandwidths on either side of a mode that its band has: they hold nearly all that is known
-of it (Au, Mech. Syst. Signal Process. 48 (2014) 15-33, doi:10.1016/j.ymssp.2013.07.004)."""
+REACH = 6.0
+"""Half bandwidths on either side of a mode that its band has: they hold nearly all that is known of
+it (Au, Mech. Syst. Signal Process. 48 (2014) 15-33, doi:10.1016/j.ymssp.2013.07.004), and over
+wider bands what modes far away contribute is not flat."""
 
 OVERLAP = 4.0
 """Distance over the sum of half bandwidths within which modes are fitted at once."""
@@ -70,7 +71,7 @@ DAMPING = 0.002, 0.05
 QUIET = 0.1
 """Quantile of the power of a sensor over a band that its background starts from."""
 
-TRIAL_STEPS = 12
+TRIAL_STEPS = 8
 """Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
 
 HARMONIC = 1e-3
@@ -183,8 +184,7 @@ def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float])
     }
     modes = [replace(mode, held=k in seeded) for k, mode in enumerate(modes)]
     least = needed(len(lines.omega), len(records.sensors))
-    for _ in range(2):
-        modes = _fitted(setup, modes, least)
+    modes = _fitted(setup, _fitted(setup, modes, least), least, last=True)
     return replace(setup, modes=tuple(modes))
 
 
@@ -223,14 +223,19 @@ def _seeded(lines: Transforms, omega: float, phi: Floats | None = None) -> Local
     return Local(omega, half / omega, shape / np.linalg.norm(shape))
 
 
-def _fitted(setup: _Setup, modes: Sequence[Local], least: float) -> list[Local]:
-    """Return the modes that data need, each fitted with those that it overlaps."""
+def _fitted(
+    setup: _Setup, modes: Sequence[Local], least: float, *, last: bool = False
+) -> list[Local]:
+    """Return the modes that data need, each fitted with those that it overlaps.
+
+    The ``last`` fit has the background that their forces move; no mode is judged by it.
+    """
     found = []
     for group in _overlapping(modes):
         chosen = [modes[k] for k in group]
         band = _band_of(setup.lines, chosen)
         beside = [modes[k] for k in _beside(band, modes, group)]
-        found += _of_group(setup, band, chosen, beside, least)
+        found += _of_group(setup, band, chosen, beside, least, last)
     return found
 
 
@@ -266,7 +271,12 @@ def _beside(band: Band, modes: Sequence[Local], group: Sequence[int]) -> list[in
 
 
 def _of_group(
-    setup: _Setup, band: Band, modes: Sequence[Local], beside: Sequence[Local], least: float
+    setup: _Setup,
+    band: Band,
+    modes: Sequence[Local],
+    beside: Sequence[Local],
+    least: float,
+    last: bool,
 ) -> list[Local]:
     """Return the modes of a band without those that gain less, the weakest first."""
     fit = spectral_density.maximise(band, _first(band, [*modes, *beside], len(modes)), TRIAL_STEPS)
@@ -293,6 +303,8 @@ def _of_group(
             fit = spectral_density.maximise(band, model, TRIAL_STEPS)
     else:
         return []
+    if last:
+        fit = spectral_density.maximise(band, fit.model.with_coherent())
     model, out = fit.model, []
     visible = _shares(band, model)
     for r in range(model.free):
@@ -320,6 +332,7 @@ def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
         np.eye(len(modes), dtype=complex),
         np.diag(np.maximum(np.quantile(own, QUIET, axis=0), band.floor)),
         free,
+        np.zeros((len(phi), 0)),
     )
     h2 = np.abs(model.response(band.omega, band.order)) ** 2
     inverse = np.linalg.pinv(phi, rcond=0.1)
@@ -352,7 +365,8 @@ def _shares(band: Band, model: Density) -> Floats:
     all_modes = np.einsum(
         "jr,rk,rs,sk,js->jk", model.phi, h, model.force, h.conj(), model.phi, optimize=True
     ).real
-    out: Floats = (own / (all_modes + np.diag(model.background)[:, None])).max(axis=0)
+    shares = own / (all_modes + np.diag(model.background)[:, None])
+    out: Floats = np.minimum(shares.max(axis=0), 1.0)
     return out
 
 
@@ -422,7 +436,7 @@ def _completed(
             tried = [_tried(setup, setups, groups[r]) for r in lacking]
             known = [row for row in rows if row is not None]
             least = float(chi2.isf(FALSE, len(setup.records.sensors)))
-            found = _fitted(setup, [*known, *tried], least)
+            found = _fitted(setup, [*known, *tried], least, last=True)
             for r, start in zip(lacking, tried, strict=True):
                 near = [
                     m for m in found if abs(m.omega - start.omega) < 2 * max(m.half, start.half)
