@@ -25,6 +25,11 @@ settings.register_profile("modefront", deadline=None, derandomize=True, print_bl
 settings.load_profile("modefront")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Have the longest tests begin first, so that none of them is left alone at the end."""
+    items.sort(key=lambda item: -sum(mark.args[0] for mark in item.iter_markers("slow")))
+
+
 @pytest.fixture
 def costs() -> Iterator[Costs]:
     """Count what the test spends."""

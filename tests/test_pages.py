@@ -80,7 +80,7 @@ def test_the_prediction_of_the_page_can_be_made() -> None:
     assert period("slow", 2).places == ("slow: mode 2",)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 def test_the_page_of_python_runs_and_prints_what_it_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -323,7 +323,7 @@ def test_fresh_starts_over_and_deletes_nothing(
     assert len(after) == 2 * len(before) + 1
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [

@@ -33,6 +33,7 @@ def test_the_example_gives_the_modal_data_it_comes_with(tmp_path: Path) -> None:
     assert [len(identified["modes"]) for identified in report["sets"]] == [3, 3, 3]
 
 
+@pytest.mark.slow(5)
 def test_an_ambient_test_of_three_setups_is_one_set(tmp_path: Path) -> None:
     write_example("ambient-test", tmp_path)
     pictures = tmp_path / "pictures"

@@ -111,6 +111,7 @@ def assert_nothing_is_better(front: Front, problem: Seen, tolerance: float = TOL
 # ---- what is kept ----------------------------------------------------------------------------
 
 
+@pytest.mark.slow(3)
 @settings(max_examples=4)
 @given(st.integers(0, 2**31), st.integers(2, 3))
 def test_no_evaluated_model_is_better_than_what_is_reported(seed: int, n: int) -> None:

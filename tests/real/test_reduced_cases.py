@@ -14,7 +14,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-@pytest.mark.slow
+@pytest.mark.slow(6)
 def test_the_frame_is_found_from_a_hundred_random_starts(costs: Costs) -> None:
     structure, rng = read("concrete_frame_sim"), np.random.default_rng(0)
     problem = frequencies_and_shapes(structure, mf.Pairing("order"), reduced=True)

@@ -121,6 +121,7 @@ def variant(file: Path, name: str, old: str, new: str) -> Path:
     return out
 
 
+@pytest.mark.slow(27)
 def test_the_front_is_that_of_full_solutions(file: Path, whole: xr.Dataset) -> None:
     study = mf.load(variant(file, "off", "reduction = 1e-8", 'reduction = "off"'))
     full = mf.run(study, file.with_name("off")).dataset

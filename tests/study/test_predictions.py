@@ -179,7 +179,7 @@ def assert_same(first: xr.Dataset, other: xr.Dataset) -> None:
     assert first.attrs == other.attrs
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_an_interrupted_run_predicts_the_same_digits(
     quick: tuple[Path, xr.Dataset], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -191,7 +191,7 @@ def test_an_interrupted_run_predicts_the_same_digits(
     assert_same(run(tmp_path, FRF + QUICK), quick[1])
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_other_predictions_do_no_old_work_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -331,7 +331,7 @@ def command(*arguments: object) -> int:
     return left.value.code
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_show_prints_and_draws_predictions(
     quick: tuple[Path, xr.Dataset],
     tmp_path: Path,

@@ -125,7 +125,7 @@ def test_a_search_costs_less_where_more_doubt_is_allowed() -> None:
         assert quick.attrs["model_evaluations"] < data.attrs["model_evaluations"]
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 @pytest.mark.parametrize("model", ["M0", "M1"])
 def test_global_optima_do_not_depend_on_the_seed(model: str) -> None:
     expected = results(model)

@@ -108,7 +108,7 @@ def test_a_process_that_is_killed_leaves_no_lock(results: Path) -> None:
                 refused(results)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_of_many_processes_one_works_at_a_time(results: Path) -> None:
     """Each adds to a number that it has read before, and some are killed while they do."""
     count = results / "count"

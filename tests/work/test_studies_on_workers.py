@@ -123,7 +123,7 @@ def pools() -> Iterator[dict[str, Workers]]:
         yield {name: stack.enter_context(Workers(pool)) for name, pool in every.items()}
 
 
-@pytest.mark.slow
+@pytest.mark.slow(10)
 @pytest.mark.parametrize(
     ("of", "names"),
     [(everything, ["2", "3"]), (reduced, ["3", "cluster"]), (evolution, ["2", "cluster"])],
@@ -162,7 +162,7 @@ def test_a_process_that_is_killed_during_a_certificate_is_replaced(tmp_path: Pat
     assert set(multiprocessing.active_children()) <= others
 
 
-@pytest.mark.slow
+@pytest.mark.slow(8)
 def test_a_run_whose_scheduler_is_gone_ends_and_a_later_one_goes_on(tmp_path: Path) -> None:
     distributed: Any = pytest.importorskip("distributed")
     expected = mf.run(plain(tmp_path), tmp_path / "whole").dataset
