@@ -67,8 +67,8 @@ class StandIn:
 
     def analyze(self, *_: object) -> None:
         A = scipy.sparse.csr_array(self.matrix)
-        buffers = A.indptr.astype(np.int32), A.indices.astype(np.int32), A.data
-        self.solver.solve(*map(memoryview, buffers), A.shape[0], rhs=None)
+        index_ptr, indices = (x.astype(np.int32).tobytes() for x in (A.indptr, A.indices))
+        self.solver.solve(index_ptr, indices, A.data.tobytes(), A.shape[0], rhs=None)
 
     def getNodeTags(self) -> list[int]:
         return [4, 7, 9]

@@ -76,6 +76,7 @@ def assert_peaks(
         assert frequency == pytest.approx(middle, rel=1e-7)
 
 
+@pytest.mark.slow(3)
 def test_peaks_are_those_of_the_direct_solution(results: xr.Dataset) -> None:
     force = np.array([0.0, 2.0])
     for name, output in (("low", [1.0, 0.0]), ("drift", [-1.0, 1.0])):
@@ -368,6 +369,7 @@ def test_show_prints_and_draws_predictions(
     assert "pip install modefront[figures]" in capsys.readouterr().err
 
 
+@pytest.mark.slow(4)
 def test_models_are_drawn_without_a_front_too(results: xr.Dataset, tmp_path: Path) -> None:
     single = results.isel(point=results["kind"].values != "front")
     paths = write_figures(single, tmp_path)
