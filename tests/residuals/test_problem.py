@@ -16,6 +16,7 @@ from modefront.models.function import function_model
 from modefront.models.parameters import Parameter
 from modefront.optim.scalarisation import LogSum
 from modefront.pairing.match import Pairs
+from modefront.residuals.base import Scale
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.work.costs import Costs
@@ -192,6 +193,35 @@ def test_errors_of_modes_bound_those_of_objectives(step: list[float]) -> None:
     moved = np.abs(np.sqrt(problem.evaluate(other).J) - np.sqrt(problem.evaluate(theta).J))
     assert (moved[:1] <= margins[:1] * (1 + 1e-9) + 1e-12).all()
     assert (moved <= 1.2 * margins + 1e-12).all()
+
+
+@pytest.mark.parametrize("scale", ["measured", "std"])
+def test_sensitivities_to_measured_values_are_those_of_differences(scale: Scale) -> None:
+    std = {"frequency_std": 0.01 * FREQUENCY, "shape_std": 0.02 + 0.01 * SHAPE**2}
+    groups = (
+        Group("frequencies", frequency="all", scale=scale),
+        Group("shapes", shape="all", scale=scale),
+    )
+    theta, h = np.array([1.2, 0.9, 1.1, 1.05]), 1e-5
+
+    def problem(step: Floats) -> UpdatingProblem:
+        """Return the problem of data that are so many standard deviations away."""
+        f, shape = FREQUENCY + step[:, 0] * std["frequency_std"], step[:, 1:] * std["shape_std"]
+        return problem_of(modal_data(f, SHAPE + shape, FLOORS, **std), groups)
+
+    plain = problem(np.zeros((3, 4)))
+    modes, pairs = plain.modes(theta)
+    for i, row in enumerate(plain.members):
+        for change in (x for member in row for x in member.sensitivities(modes, pairs)):
+            for number, dJ, ddJ in zip(change.values, change.J, change.dJ, strict=True):
+                step = np.zeros(12)
+                step[number] = h
+                after, before = (problem(s * step.reshape(3, 4)).evaluate(theta) for s in (1, -1))
+                assert dJ == pytest.approx((after.J - before.J)[i] / (2 * h), rel=1e-4, abs=1e-8)
+                assert after.derivatives is not None
+                assert before.derivatives is not None
+                expected = (after.derivatives.dJ - before.derivatives.dJ)[i] / (2 * h)
+                assert ddJ == pytest.approx(expected, rel=1e-4, abs=1e-6)
 
 
 def test_each_evaluation_is_counted_once(costs: Costs) -> None:
