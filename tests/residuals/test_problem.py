@@ -224,6 +224,23 @@ def test_sensitivities_to_measured_values_are_those_of_differences(scale: Scale)
                 assert ddJ == pytest.approx(expected, rel=1e-4, abs=1e-6)
 
 
+def test_scatter_is_what_no_model_fits() -> None:
+    """Of one frequency and one shape for all sets: a weighted mean, the first singular vector."""
+    rng = np.random.default_rng(2)
+    f = FREQUENCY * (1 + 0.01 * rng.standard_normal((3, 3)))
+    shape = SHAPE + 0.05 * rng.standard_normal((3, 3, 3))
+    std = 0.01 * f * [[1], [2], [1]]
+    data = modal_data(f, shape, FLOORS, frequency_std=std, shape_std=np.full(shape.shape, 0.02))
+    groups = Group("f", frequency="all", scale="std"), Group("s", shape="all", scale="std")
+    frequencies, shapes = problem_of(data, groups).members
+    for r in range(3):
+        mean = np.average(f[:, r], weights=std[:, r] ** -2)
+        scatter = (((f[:, r] - mean) / std[:, r]) ** 2).mean()
+        assert frequencies[r].independent() == pytest.approx((1, scatter, 2))
+        others = np.linalg.svd(shape[:, r] / 0.02, compute_uv=False)[1:]
+        assert shapes[r].independent() == pytest.approx((2, others @ others / 3, 4))
+
+
 def test_each_evaluation_is_counted_once(costs: Costs) -> None:
     problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
     for derivatives in (True, False):
