@@ -111,6 +111,7 @@ def dominated(J: Floats, known: Floats, scale: Floats) -> bool:
     return False
 
 
+@pytest.mark.slow(7)
 @pytest.mark.parametrize("std", [True, False])
 def test_pareto_is_what_no_model_reported_or_evaluated_dominates(std: bool) -> None:
     data, front = solved(std=std)
