@@ -197,7 +197,7 @@ def test_errors_of_modes_bound_those_of_objectives(step: list[float]) -> None:
 
 @pytest.mark.parametrize("scale", ["measured", "std"])
 def test_sensitivities_to_measured_values_are_those_of_differences(scale: Scale) -> None:
-    std = {"frequency_std": 0.01 * FREQUENCY, "shape_std": 0.02 + 0.01 * SHAPE**2}
+    f_std, shape_std = 0.01 * FREQUENCY, 0.02 + 0.01 * SHAPE**2
     groups = (
         Group("frequencies", frequency="all", scale=scale),
         Group("shapes", shape="all", scale=scale),
@@ -206,8 +206,9 @@ def test_sensitivities_to_measured_values_are_those_of_differences(scale: Scale)
 
     def problem(step: Floats) -> UpdatingProblem:
         """Return the problem of data that are so many standard deviations away."""
-        f, shape = FREQUENCY + step[:, 0] * std["frequency_std"], step[:, 1:] * std["shape_std"]
-        return problem_of(modal_data(f, SHAPE + shape, FLOORS, **std), groups)
+        f, shape = FREQUENCY + step[:, 0] * f_std, SHAPE + step[:, 1:] * shape_std
+        data = modal_data(f, shape, FLOORS, frequency_std=f_std, shape_std=shape_std)
+        return problem_of(data, groups)
 
     plain = problem(np.zeros((3, 4)))
     modes, pairs = plain.modes(theta)
