@@ -215,6 +215,7 @@ def test_at_its_budget_a_search_ends_and_says_what_did_not_converge(budget: int)
     assert front.open
 
 
+@pytest.mark.slow(3)
 def test_what_a_search_leaves_open_at_its_budget_is_a_finding() -> None:
     names = ["k1", "k2", "k3"]
     model = mf.chain(names, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=names)

@@ -310,6 +310,7 @@ def test_without_webgl_shapes_are_drawn_as_svg(playwright: Playwright, report: P
     browser.close()
 
 
+@pytest.mark.slow(8)
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1280, 360])
 def test_a_page_fits_and_axe_finds_nothing(

@@ -266,6 +266,7 @@ def test_what_cannot_be_met_in_the_memory_is_said_and_is_an_exit_of_1(
     assert f"errors above the tolerance, kept and marked: {', '.join(failed)}" in err
 
 
+@pytest.mark.slow(3)
 def test_a_model_without_a_basis_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

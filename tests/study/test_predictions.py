@@ -89,6 +89,7 @@ def test_peaks_are_those_of_the_direct_solution(results: xr.Dataset) -> None:
     assert_peaks(results, "ridden: high", zeta, -MASSES, np.array([0.0, 1.0]), 2, 1.0)
 
 
+@pytest.mark.slow(3)
 def test_a_moving_base_is_the_force_of_inertia(results: xr.Dataset) -> None:
     for name in ("low", "middle"):
         first, other = (
@@ -272,6 +273,7 @@ def test_several_inputs_have_noise_of_their_own(tmp_path: Path) -> None:
     assert total == pytest.approx(parts, rel=1e-9, abs=1e-12 * parts.max())
 
 
+@pytest.mark.slow(3)
 def test_in_memory_and_from_a_file_are_the_same(
     quick: tuple[Path, xr.Dataset], tmp_path: Path
 ) -> None:
