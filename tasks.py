@@ -1,11 +1,12 @@
 """Sets up everything in .venv, then does one of the project's tasks.
 
 python3 tasks.py demo    the three-story study, both configurations, beside the published numbers
-python3 tasks.py test    the tests
+python3 tasks.py test    the tests, but for those that are marked as slow
 python3 tasks.py lint    formatting, lint and types
 python3 tasks.py docs    the pages, as docs/_build/html/index.html
+python3 tasks.py trials  the tests that are marked as slow (minutes)
 python3 tasks.py verify  docs/verification.md: what is compared with others (a quarter of an hour)
-python3 tasks.py trials  inputs that are spoilt by chance and runs that are killed (hours)
+python3 tasks.py spoil   inputs that are spoilt by chance and runs that are killed (hours)
 
 Needs Python 3.11 or newer and nothing else. Packages are those pinned in requirements.txt for the
 demo, and in requirements-docs.txt for the pages and requirements-dev.txt for all else, which add
@@ -28,12 +29,14 @@ RUNTIME, DEVELOPMENT, PAGES = (
     "requirements-dev.txt",
     "requirements-docs.txt",
 )
+PYTEST = ["-m", "pytest", "-q", "-n", "auto"]
 NEEDS = {"demo": RUNTIME, "docs": PAGES}
 TASKS = {
     "demo": [["examples/three_story.py", "demo"]],
-    "test": [["-m", "pytest", "-q", "-n", "auto", "--dist", "worksteal"]],
+    "test": [[*PYTEST, "--dist", "worksteal", "-m", "not slow"]],
+    "trials": [[*PYTEST, "--dist", "load", "--maxschedchunk", "1", "-m", "slow"]],
     "verify": [["benchmarks/verify.py"]],
-    "trials": [["tests/trials/trials.py"]],
+    "spoil": [["tests/trials/trials.py"]],
     "docs": [["-m", "sphinx", "-q", "-W", "--keep-going", "docs", "docs/_build/html"]],
     "lint": [
         ["-m", "ruff", "format", "--check", "."],

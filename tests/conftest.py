@@ -9,15 +9,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.io
+import scipy.linalg
 import scipy.sparse
 from faultless import CHAIN, DATA, K0, K1, K2, MATRICES, STUDY, M
 from hypothesis import settings
 from refusals import Check, command
+from threadpoolctl import threadpool_limits
 
 from modefront.work.costs import Costs, counted
 
+# Threads wait for each other on small matrices. SciPy brings a BLAS of its own: `scipy.linalg`.
+threadpool_limits(1, user_api="blas")
+
 settings.register_profile("modefront", deadline=None, derandomize=True, print_blob=False)
 settings.load_profile("modefront")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Have the longest tests begin first, so that none of them is left alone at the end."""
+    items.sort(key=lambda item: -sum(mark.args[0] for mark in item.iter_markers("slow")))
 
 
 @pytest.fixture

@@ -241,6 +241,7 @@ def test_labels_of_a_study_are_those_that_results_have(study: Path) -> None:
     }
 
 
+@pytest.mark.slow(7)
 def test_a_study_made_in_python_is_that_of_a_file(study: Path, tmp_path: Path) -> None:
     study.write_text(
         study.read_text()

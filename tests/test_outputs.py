@@ -193,6 +193,7 @@ def plant(path: Path, kind: str, precious: Path) -> None:
         os.mkfifo(path)
 
 
+@pytest.mark.slow(4)
 @pytest.mark.parametrize("kind", ["link", "pipe"])
 def test_names_that_can_be_guessed_lead_nowhere(kind: str, folder: Path) -> None:
     precious, results = folder / "precious", folder / "results"

@@ -86,7 +86,7 @@ def test_the_prediction_of_the_page_can_be_made() -> None:
     assert period("slow", 2).places == ("slow: mode 2",)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 @pytest.mark.parametrize(("page", "count"), [("python.md", 12), ("extend.md", 3)])
 def test_the_cells_of_pages_in_python_run(
     page: str, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -27,8 +27,10 @@ def test_every_public_name_is_there_and_documented(name: str) -> None:
 
 
 def assert_documented(name: str, value: object, arguments: list[str]) -> None:
+    """Assert that each argument heads lines of its own: ``name``, or ``name, other : text``."""
     text = inspect.getdoc(value) or ""
-    assert [x for x in arguments if not re.search(rf"\b{x}\b", text)] == [], name
+    heads = re.findall(r"^([\w*, ]+)(?: :.*)?$", text, re.MULTILINE)
+    assert {*arguments} <= {word.strip("*") for head in heads for word in head.split(", ")}, name
 
 
 @pytest.mark.parametrize("name", mf.fem.__all__)

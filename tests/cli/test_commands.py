@@ -272,11 +272,10 @@ def test_where_no_start_leads_to_an_edge_the_best_known_models_are_its_place(
     assert np.diag(J[edges]) == pytest.approx(J.min(axis=0), rel=1e-3)
 
 
-@pytest.mark.parametrize("tasks", [0, 5])
 def test_an_interrupted_run_goes_on_to_the_same_results(
-    tasks: int, modefront_: Run, study: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
+    modefront_: Run, study: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    broken = study.with_name("broken")
+    broken, tasks = study.with_name("broken"), 5
     interrupt_after(tasks, monkeypatch)
     status, out, err = modefront_("run", study, "-o", broken)
     assert status == 130
@@ -324,7 +323,7 @@ def test_fresh_starts_over_and_deletes_nothing(
     assert len(after) == 2 * len(before) + 1
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [

@@ -30,7 +30,7 @@ def test_each_command_names_the_next_until_the_report(
     assert (tmp_path / "my study" / "study-results" / "report.html").stat().st_size < 1e6
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_the_commands_of_the_readme_run_one_after_another(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

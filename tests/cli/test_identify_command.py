@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from written import write
 
 from modefront.cli.main import cli
 from modefront.data.csv import read_csv
 from modefront.errors import InputError, UnfinishedError
-from modefront.study.examples import write_example
 
 
 def _invoke(*arguments: object) -> str:
@@ -20,7 +20,7 @@ def _invoke(*arguments: object) -> str:
 
 
 def test_the_example_gives_the_modal_data_it_comes_with(tmp_path: Path) -> None:
-    write_example("hammer-test", tmp_path)
+    write("hammer-test", tmp_path)
     output = tmp_path / "again.csv"
     text = _invoke(tmp_path / "test-m0.toml", "-o", output)
     result, kept = read_csv(output), read_csv(tmp_path / "modes-m0.csv")
@@ -33,8 +33,9 @@ def test_the_example_gives_the_modal_data_it_comes_with(tmp_path: Path) -> None:
     assert [len(identified["modes"]) for identified in report["sets"]] == [3, 3, 3]
 
 
+@pytest.mark.slow(5)
 def test_an_ambient_test_of_three_setups_is_one_set(tmp_path: Path) -> None:
-    write_example("ambient-test", tmp_path)
+    write("ambient-test", tmp_path)
     pictures = tmp_path / "pictures"
     output = tmp_path / "again.csv"
     _invoke(tmp_path / "test.toml", "-o", output, "--figures", pictures)
@@ -53,7 +54,7 @@ def test_an_ambient_test_of_three_setups_is_one_set(tmp_path: Path) -> None:
 
 def test_universal_files_are_written(tmp_path: Path) -> None:
     pyuff = pytest.importorskip("pyuff")
-    write_example("hammer-test", tmp_path)
+    write("hammer-test", tmp_path)
     pictures = tmp_path / "pictures"
     _invoke(tmp_path / "m0-set1-floor3.csv", "-o", tmp_path / "m.uff", "--figures", pictures)
     assert len(list(pictures.iterdir())) == 3
@@ -63,7 +64,7 @@ def test_universal_files_are_written(tmp_path: Path) -> None:
 
 
 def test_a_band_without_modes_is_said_and_nothing_is_written(tmp_path: Path) -> None:
-    write_example("hammer-test", tmp_path)
+    write("hammer-test", tmp_path)
     with pytest.raises(UnfinishedError, match="no mode was found in the band"):
         _invoke(tmp_path / "test-m0.toml", "-o", tmp_path / "o.csv", "--band", 20.5, 24)
     assert not (tmp_path / "o.csv").exists()
@@ -77,13 +78,13 @@ def test_a_band_without_modes_is_said_and_nothing_is_written(tmp_path: Path) -> 
     ],
 )
 def test_wrong_input_is_named(tmp_path: Path, arguments: list[str], message: str) -> None:
-    write_example("hammer-test", tmp_path)
+    write("hammer-test", tmp_path)
     with pytest.raises(InputError, match=message):
         _invoke(tmp_path / "test-m0.toml", *arguments)
 
 
 def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
-    write_example("hammer-test", tmp_path)
+    write("hammer-test", tmp_path)
     test, output = tmp_path / "test-m0.toml", tmp_path / "o.csv"
     _invoke(test, "-o", output, "--keep", "1,2", "--drop", "1", "--seed", "18.5")
     found = read_csv(output)
@@ -97,7 +98,7 @@ def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
 
 
 def test_a_mode_at_a_seed_stays_and_is_flagged(tmp_path: Path) -> None:
-    write_example("hammer-test", tmp_path)
+    write("hammer-test", tmp_path)
     functions, output = tmp_path / "m0-set1-floor3.csv", tmp_path / "o.csv"
     _invoke(functions, "-o", output, "--seed", "9,4.7")
     report = json.loads((tmp_path / "o-identification.json").read_text())

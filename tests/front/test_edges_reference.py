@@ -100,6 +100,7 @@ VALLEYS = [
 ]
 
 
+@pytest.mark.slow(3)
 @pytest.mark.parametrize(("key", "i"), VALLEYS)
 def test_a_valley(key: Key, i: int) -> None:
     exact, flatness = regime(key, i)
@@ -116,6 +117,7 @@ MANIFOLDS = [
 ]
 
 
+@pytest.mark.slow(3)
 @pytest.mark.parametrize(("key", "i"), MANIFOLDS)
 def test_a_manifold_of_exact_fits(key: Key, i: int) -> None:
     exact, flatness = regime(key, i)
@@ -124,7 +126,7 @@ def test_a_manifold_of_exact_fits(key: Key, i: int) -> None:
     assert_as_good(key, i)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_a_front_on_which_other_modes_are_paired() -> None:
     """Of this frame, SLSQP finds models between the points of two pairings, on the second one."""
     problem = make("frame", 29).problem

@@ -73,7 +73,7 @@ def rugged(points: int = 12) -> tuple[Front, int]:
     return front, costs.eigenproblems
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_a_rugged_front_is_not_behind_an_evolution_with_as_many_evaluations() -> None:
     problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
     truth = rastrigin_front()
@@ -108,7 +108,6 @@ def test_no_evaluated_model_is_better_than_edges_and_weighted_models() -> None:
         assert front.edges[i].best.J.tolist() == models[f"edge-J{i + 1}"].tolist()
 
 
-@pytest.mark.slow
 def test_a_search_that_is_continued_evaluates_nothing_again(tmp_path: Path) -> None:
     fronts, evaluations = [], []
     search = Search(evaluations=800)
@@ -181,7 +180,7 @@ def product_front(n: int, *, linear: bool) -> Callable[[Floats], Derivatives]:
     return function
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 @pytest.mark.parametrize(("n", "linear"), [(4, True), (4, False), (5, False)])
 def test_fronts_of_four_and_five_objectives_whose_edges_coincide(n: int, linear: bool) -> None:
     problem = box(product_front(n, linear=linear), [0.0] * n, [1.0] * n, n)

@@ -110,6 +110,7 @@ def assert_nothing_is_better(front: Front, problem: Seen, tolerance: float = TOL
 # ---- what is kept ----------------------------------------------------------------------------
 
 
+@pytest.mark.slow(3)
 @settings(max_examples=4)
 @given(st.integers(0, 2**31), st.integers(2, 3))
 def test_no_evaluated_model_is_better_than_what_is_reported(seed: int, n: int) -> None:
@@ -213,6 +214,7 @@ def test_at_its_budget_a_search_ends_and_says_what_did_not_converge(budget: int)
     assert front.open
 
 
+@pytest.mark.slow(3)
 def test_what_a_search_leaves_open_at_its_budget_is_a_finding() -> None:
     names = ["k1", "k2", "k3"]
     model = mf.chain(names, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=names)

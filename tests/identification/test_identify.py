@@ -32,7 +32,7 @@ def _scores(level: float, known: bool, force: float, runs: int) -> Floats:
     return np.array(out)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 @pytest.mark.parametrize(
     ("level", "known", "force"), [(0.01, True, 0.0), (0.05, False, 0.0), (0.05, True, 0.05)]
 )

@@ -139,6 +139,7 @@ def test_the_pattern_of_sparse_matrices_is_analysed_once() -> None:
     assert model.at(np.array([0.6]), derivatives=False).pencil.symbolic is known
 
 
+@pytest.mark.slow(4)
 def test_a_study_of_a_function_finds_the_front_of_the_chain() -> None:
     frequency = np.array([4.646, 13.81, 19.48])
     shape = np.array([[0.4561, 0.8069, 1.0], [1.0, 0.3009, -0.9026], [-0.7801, 1.0, -0.6448]])

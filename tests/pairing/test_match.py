@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from modefront._typing import Floats
 from modefront.data.modal import modal_data
 from modefront.pairing.mac import mac
-from modefront.pairing.match import Pairing, match, modes_needed
+from modefront.pairing.match import Pairing, mac_slopes, match, mean_mac, modes_needed
 
 
 @given(st.integers(0, 2**31), st.booleans())
@@ -76,3 +77,23 @@ def test_values_are_means_over_data_sets_at_the_sensors_that_measured() -> None:
     data = modal_data(np.array([[1.0], [1.0]]), shapes, SENSORS)
     pairs = match(Pairing(), data, np.array([1.0]), np.array([[1.0], [0.0], [0.0]]))
     assert pairs.mac == pytest.approx((1 + 0.5) / 2)
+
+
+def test_slopes_of_the_mac_are_those_of_differences() -> None:
+    """Of two data sets, one of which lacks a component; no mode is normalised."""
+    rng = np.random.default_rng(4)
+    shape = rng.normal(size=(2, 2, 4))
+    shape[1, 0, 3] = np.nan
+    f = np.array([[1.0, 2.0]] * 2)
+    data = modal_data(f, shape, ("a", "b", "c", "d"))
+    phi, dphi = rng.normal(size=(4, 3)), rng.normal(size=(4, 3, 2))
+    pairs = match(Pairing(), data, np.array([1.0, 2.0, 3.0]), phi)
+
+    def values(step: list[float]) -> Floats:
+        return mean_mac(data, phi + dphi @ step)[np.arange(2), pairs.index]
+
+    h = 1e-6
+    expected = [
+        (values(step) - values([-x for x in step])) / (2 * h) for step in ([h, 0.0], [0.0, h])
+    ]
+    assert mac_slopes(data, pairs, phi, dphi) == pytest.approx(np.transpose(expected), rel=1e-6)

@@ -32,6 +32,7 @@ def building(tmp_path_factory: pytest.TempPathFactory) -> Results:
     )
 
 
+@pytest.mark.slow(3)
 def test_figures_show_all_studies(building: Results, tmp_path: Path) -> None:
     data = building.dataset
     studies = [("M0", data), ("again", data)]

@@ -13,7 +13,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import modefront as mf
-from modefront.plots import PLOTS, Plots, pictures, write_figures
+from modefront.plots import PLOTS, Plots, pictures, write_figures, write_pictures
 from modefront.results.results import Results
 
 SEARCH = mf.Search(doubt=0.5)
@@ -125,15 +125,24 @@ def test_what_results_do_not_hold_is_said(three: Results) -> None:
         Plots(bare).uncertainty()
 
 
-@pytest.mark.parametrize("form", ["svg", "png", "pdf"])
-def test_files_of_all_pictures_are_the_same_again(two: Results, form: str, tmp_path: Path) -> None:
-    paths = write_figures(two.dataset, tmp_path / "a", form)
-    again = write_figures(two.dataset, tmp_path / "b", form)
+def test_all_pictures_are_written(two: Results, tmp_path: Path) -> None:
+    paths = write_figures(two.dataset, tmp_path)
     assert {path.stem for path in paths} >= {*PLOTS, "frf-push"} - {"modes"}
-    start = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}[form]
-    for path, other in zip(paths, again, strict=True):
-        assert path.read_bytes().startswith(start)
-        assert path.read_bytes() == other.read_bytes()
+    assert all(path.read_bytes().startswith(b"<?xml") for path in paths)
+
+
+@pytest.mark.parametrize(
+    ("form", "start"), [("svg", b"<?xml"), ("png", b"\x89PNG"), ("pdf", b"%PDF")]
+)
+def test_the_file_of_a_picture_is_the_same_again(
+    form: str, start: bytes, two: Results, tmp_path: Path
+) -> None:
+    first, again = (
+        write_pictures(iter([("front", two.plot.front())]), tmp_path / name, form)[0].read_bytes()
+        for name in "ab"
+    )
+    assert first.startswith(start)
+    assert first == again
 
 
 def test_every_picture_is_shown_by_notebooks(three: Results) -> None:

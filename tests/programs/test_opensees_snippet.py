@@ -6,9 +6,14 @@ import importlib.metadata
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+import scipy.linalg
+import scipy.sparse
 
 from modefront.programs.importing import import_model
 
@@ -42,8 +47,58 @@ def snippet() -> str:
     return str(code)
 
 
-def test_the_snippet_is_python() -> None:
-    compile(snippet(), str(PAGE), "exec")
+class StandIn:
+    """What the snippet calls of OpenSees, for two masses between springs along x."""
+
+    def __init__(self, k: float) -> None:
+        self.K = scipy.sparse.csr_array([[3.0 + k, -k], [-k, k]])
+        self.M = scipy.sparse.csr_array(np.diag([2.0, 1.0]))
+
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        assert name in ("wipeAnalysis", "constraints", "numberer", "test", "algorithm", "analysis")
+        return lambda *_: None
+
+    def system(self, _: str, options: dict[str, Any]) -> None:
+        self.solver = options["solver"]
+
+    def integrator(self, _: str, m: float, c: float, k: float) -> None:
+        assert c == 0
+        self.matrix = m * self.M + k * self.K
+
+    def analyze(self, *_: object) -> None:
+        A = scipy.sparse.csr_array(self.matrix)
+        index_ptr, indices = (x.astype(np.int32).tobytes() for x in (A.indptr, A.indices))
+        self.solver.solve(index_ptr, indices, A.data.tobytes(), A.shape[0], rhs=None)
+
+    def getNodeTags(self) -> list[int]:
+        return [4, 7, 9]
+
+    def nodeCoord(self, node: int) -> list[float]:
+        return [float(node), 0.0]
+
+    def nodeDOFs(self, node: int) -> list[int]:
+        return {4: [-1, -1], 7: [1, -1], 9: [0, -1]}[node]
+
+    def getEleTags(self) -> list[int]:
+        return [1, 2]
+
+    def eleNodes(self, element: int) -> list[int]:
+        return [[4, 7], [7, 9]][element - 1]
+
+
+def test_the_snippet_writes_what_is_imported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(compile(snippet(), str(PAGE), "exec"), names)
+    for job, k in (("base", 5.0), ("k", 10.0)):
+        names["write_matrices"](StandIn(k), job)
+    result = import_model("opensees", tmp_path / "base", {"k": tmp_path / "k"})
+    assert result.terms.dofs.sensor(9, "x") == [(0, 1.0)]
+    assert result.terms.dofs.sensor(7, "x") == [(1, 1.0)]
+    lam = scipy.linalg.eigvalsh(StandIn(5.0).K.toarray(), StandIn(5.0).M.toarray())
+    assert result.frequencies == pytest.approx(np.sqrt(lam) / (2 * np.pi))
 
 
 def reason() -> str:

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-@pytest.mark.slow
+@pytest.mark.slow(6)
 def test_the_frame_is_found_from_a_hundred_random_starts(costs: Costs) -> None:
     structure, rng = read("concrete_frame_sim"), np.random.default_rng(0)
     problem = frequencies_and_shapes(structure, mf.Pairing("order"), reduced=True)
@@ -26,6 +26,7 @@ def test_the_frame_is_found_from_a_hundred_random_starts(costs: Costs) -> None:
     assert costs.eigenproblems <= 3
 
 
+@pytest.mark.slow(3)
 @pytest.mark.parametrize("weight", [10.0, 100.0])
 def test_models_of_the_bridge_are_the_same_with_and_without_reduction(weight: float) -> None:
     structure, w = read("steel_bridge_exp"), np.array([weight, 1.0])

@@ -76,6 +76,7 @@ def test_the_check_says_so_in_words(frame: mf.UpdatingProblem) -> None:
     assert derivative_error(frame) < 1e-5
 
 
+@pytest.mark.slow(5)
 def test_the_results_say_so_too(frame: mf.UpdatingProblem) -> None:
     search = mf.Search(doubt=0.5)
     data = mf.solve(

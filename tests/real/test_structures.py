@@ -27,7 +27,7 @@ from modefront.work.costs import Costs
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason=f"there is no folder {FOLDER}")
 
 
-@pytest.mark.slow
+@pytest.mark.slow(10)
 def test_random_starts_find_the_true_concrete_frame(costs: Costs) -> None:
     """913 of its 2,302 degrees of freedom have no mass; some starts are next to a mechanism."""
     frame = read("concrete_frame_sim")
@@ -40,6 +40,7 @@ def test_random_starts_find_the_true_concrete_frame(costs: Costs) -> None:
     assert costs.eigenproblems < 6 * 25
 
 
+@pytest.mark.slow(16)
 def test_small_sensors_of_the_steel_bridge_that_are_reversed() -> None:
     """At ``dof887`` it lowers MAC 5 from 0.90 to 0.81: a mode must not be left out for that."""
     problem = frequencies_and_shapes(read("steel_bridge_exp"))
@@ -127,7 +128,7 @@ source = "none"
     return study
 
 
-@pytest.mark.slow
+@pytest.mark.slow(240)
 def test_the_front_of_the_steel_bridge_over_its_standard_deviations(tmp_path: Path) -> None:
     """474 of its 946 degrees of freedom have no mass; what scales a shape has no deviation."""
     study = load(write_study(read("steel_bridge_exp"), tmp_path))

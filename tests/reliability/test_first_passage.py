@@ -116,6 +116,7 @@ def problems(draw):
     return FirstPassage(system, noise, 6.0, 0.05, filter=soil, modulation=modulation)
 
 
+@pytest.mark.slow(3)
 @settings(max_examples=12, deadline=None, derandomize=True)
 @given(problem=problems())
 def test_estimators_agree_with_counting(problem):

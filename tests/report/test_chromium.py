@@ -92,7 +92,10 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return written(tmp_path_factory.mktemp("chain"), chain())
 
 
-LABELS = chain()["label"].values[front_points(chain())].tolist() if CHROMIUM.exists() else []
+@pytest.fixture(scope="module")
+def labels() -> list[str]:
+    """Return the labels of the front of the chain, in its order."""
+    return list(chain()["label"].values[front_points(chain())])
 
 
 def test_every_view_has_its_name(report: Path, opened: Open) -> None:
@@ -104,55 +107,57 @@ def test_every_view_has_its_name(report: Path, opened: Open) -> None:
     assert "0123abcd" in page.view("how to cite").inner_text()
 
 
-def test_the_slider_and_arrow_keys_walk_along_the_front(report: Path, opened: Open) -> None:
+def test_the_slider_and_arrow_keys_walk_along_the_front(
+    report: Path, opened: Open, labels: list[str]
+) -> None:
     page = opened(report)
     slider = page.page.get_by_role("slider", name="model", exact=True)
     slider.press("Home")
-    assert page.chosen == LABELS[0]
-    for label in LABELS[1:]:
+    assert page.chosen == labels[0]
+    for label in labels[1:]:
         slider.press("ArrowRight")
         assert page.chosen == label
-    assert slider.get_attribute("aria-valuetext") == LABELS[-1]
+    assert slider.get_attribute("aria-valuetext") == labels[-1]
     slider.fill("3")
-    assert page.chosen == LABELS[2]
+    assert page.chosen == labels[2]
     page.page.get_by_role("heading", level=1).click()
     page.page.keyboard.press("ArrowLeft")
-    assert page.chosen == LABELS[1]
+    assert page.chosen == labels[1]
     page.page.get_by_role("button", name="next model").click()
-    assert page.chosen == LABELS[2]
+    assert page.chosen == labels[2]
 
 
-def test_a_click_in_one_view_chooses_in_all(report: Path, opened: Open) -> None:
+def test_a_click_in_one_view_chooses_in_all(report: Path, opened: Open, labels: list[str]) -> None:
     page = opened(report)
-    label = LABELS[3]
+    label = labels[3]
     page.view("front").locator(f"circle[data-label='{label}']").click()
     assert page.chosen == label
     assert label in page.view("mode shape").inner_text()
     assert label in page.view("tables").locator("thead").first.inner_text()
     k1 = float(chain()["theta"].values[front_points(chain())[3], 0])
     assert f"{k1:.4g}" in (page.view("parameters").locator(".value").first.text_content() or "")
-    page.view("predictions").locator(f"circle[data-label='{LABELS[5]}']").first.click()
-    assert page.chosen == LABELS[5]
+    page.view("predictions").locator(f"circle[data-label='{labels[5]}']").first.click()
+    assert page.chosen == labels[5]
     page.page.get_by_role("button", name="nominal", exact=True).click()
     assert page.chosen == "nominal"
 
 
-def test_a_brush_in_one_view_shows_in_all(report: Path, opened: Open) -> None:
+def test_a_brush_in_one_view_shows_in_all(report: Path, opened: Open, labels: list[str]) -> None:
     page = opened(report)
     box = page.box(page.view("MAC").locator(".brush .overlay"))
     page.page.mouse.move(box["x"] + 1, box["y"] + 5)
     page.page.mouse.down()
     page.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + 60, steps=4)
     page.page.mouse.up()
-    half = len(LABELS) // 2
-    clear = page.page.get_by_text(f"{half} of {len(LABELS)} selected")
+    half = len(labels) // 2
+    clear = page.page.get_by_text(f"{half} of {len(labels)} selected")
     assert clear.is_visible()
     for name in ("front", "predictions"):
         marks = page.view(name).locator("svg").first.locator("circle.mark")
         dimmed = [
             "dimmed" in (marks.nth(k).get_attribute("class") or "") for k in range(marks.count())
         ]
-        assert dimmed == [label not in LABELS[:half] for label in LABELS]
+        assert dimmed == [label not in labels[:half] for label in labels]
     clear.click()
     assert page.view("front").locator(".dimmed").count() == 0
 
@@ -282,15 +287,15 @@ def test_three_groups_have_parallel_coordinates_and_pairs(tmp_path: Path, opened
     assert page.chosen == mark.get_attribute("data-label")
 
 
-def test_several_fronts_are_in_one_report(tmp_path: Path, opened: Open) -> None:
+def test_several_fronts_are_in_one_report(tmp_path: Path, opened: Open, labels: list[str]) -> None:
     other = chain().assign_attrs(study="another one")
     page = opened(written(tmp_path, chain(), other))
-    assert page.view("front").locator("circle.mark").count() == 2 * len(LABELS)
+    assert page.view("front").locator("circle.mark").count() == 2 * len(labels)
     assert "three storeys" in page.view("summary").inner_text()
     page.page.get_by_label("study", exact=True).select_option("1")
     assert "another one" in page.view("summary").inner_text()
-    page.view("front").locator(f"circle[data-label='{LABELS[2]}']").last.click()
-    assert page.chosen == LABELS[2]
+    page.view("front").locator(f"circle[data-label='{labels[2]}']").last.click()
+    assert page.chosen == labels[2]
 
 
 def test_without_webgl_shapes_are_drawn_as_svg(playwright: Playwright, report: Path) -> None:
@@ -305,6 +310,7 @@ def test_without_webgl_shapes_are_drawn_as_svg(playwright: Playwright, report: P
     browser.close()
 
 
+@pytest.mark.slow(8)
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1280, 360])
 def test_a_page_fits_and_axe_finds_nothing(

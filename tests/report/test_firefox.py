@@ -227,6 +227,7 @@ async def walk(address: str, file: Path, markup: Path, downloads: Path) -> None:
     socket.close()
 
 
+@pytest.mark.slow(3)
 def test_a_report_in_firefox(tmp_path: Path) -> None:
     downloads = tmp_path / "downloads"
     downloads.mkdir()

@@ -292,7 +292,7 @@ def test_results_of_a_study_without_modes_of_points_are_shown() -> None:
     assert report["fronts"][0]["geometry"] is None
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 def test_no_values_of_a_file_lead_to_another_error() -> None:
     """Every variable is taken away, emptied and made infinite: refused in words, or drawn."""
     data = chain()

@@ -16,6 +16,7 @@ from modefront.models.function import function_model
 from modefront.models.parameters import Parameter
 from modefront.optim.scalarisation import LogSum
 from modefront.pairing.match import Pairs
+from modefront.residuals.base import Scale
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.work.costs import Costs
@@ -192,6 +193,53 @@ def test_errors_of_modes_bound_those_of_objectives(step: list[float]) -> None:
     moved = np.abs(np.sqrt(problem.evaluate(other).J) - np.sqrt(problem.evaluate(theta).J))
     assert (moved[:1] <= margins[:1] * (1 + 1e-9) + 1e-12).all()
     assert (moved <= 1.2 * margins + 1e-12).all()
+
+
+@pytest.mark.parametrize("scale", ["measured", "std"])
+def test_sensitivities_to_measured_values_are_those_of_differences(scale: Scale) -> None:
+    f_std, shape_std = 0.01 * FREQUENCY, 0.02 + 0.01 * SHAPE**2
+    groups = (
+        Group("frequencies", frequency="all", scale=scale),
+        Group("shapes", shape="all", scale=scale),
+    )
+    theta, h = np.array([1.2, 0.9, 1.1, 1.05]), 1e-5
+
+    def problem(step: Floats) -> UpdatingProblem:
+        """Return the problem of data that are so many standard deviations away."""
+        f, shape = FREQUENCY + step[:, 0] * f_std, SHAPE + step[:, 1:] * shape_std
+        data = modal_data(f, shape, FLOORS, frequency_std=f_std, shape_std=shape_std)
+        return problem_of(data, groups)
+
+    plain = problem(np.zeros((3, 4)))
+    modes, pairs = plain.modes(theta)
+    for i, row in enumerate(plain.members):
+        for change in (x for member in row for x in member.sensitivities(modes, pairs)):
+            for number, dJ, ddJ in zip(change.values, change.J, change.dJ, strict=True):
+                step = np.zeros(12)
+                step[number] = h
+                after, before = (problem(s * step.reshape(3, 4)).evaluate(theta) for s in (1, -1))
+                assert dJ == pytest.approx((after.J - before.J)[i] / (2 * h), rel=1e-4, abs=1e-8)
+                assert after.derivatives is not None
+                assert before.derivatives is not None
+                expected = (after.derivatives.dJ - before.derivatives.dJ)[i] / (2 * h)
+                assert ddJ == pytest.approx(expected, rel=1e-4, abs=1e-6)
+
+
+def test_scatter_is_what_no_model_fits() -> None:
+    """Of one frequency and one shape for all sets: a weighted mean, the first singular vector."""
+    rng = np.random.default_rng(2)
+    f = FREQUENCY * (1 + 0.01 * rng.standard_normal((3, 3)))
+    shape = SHAPE + 0.05 * rng.standard_normal((3, 3, 3))
+    std = 0.01 * f * [[1], [2], [1]]
+    data = modal_data(f, shape, FLOORS, frequency_std=std, shape_std=np.full(shape.shape, 0.02))
+    groups = Group("f", frequency="all", scale="std"), Group("s", shape="all", scale="std")
+    frequencies, shapes = problem_of(data, groups).members
+    for r in range(3):
+        mean = np.average(f[:, r], weights=std[:, r] ** -2)
+        scatter = (((f[:, r] - mean) / std[:, r]) ** 2).mean()
+        assert frequencies[r].independent() == pytest.approx((1, scatter, 2))
+        others = np.linalg.svd(shape[:, r] / 0.02, compute_uv=False)[1:]
+        assert shapes[r].independent() == pytest.approx((2, others @ others / 3, 4))
 
 
 def test_each_evaluation_is_counted_once(costs: Costs) -> None:

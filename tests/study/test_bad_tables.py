@@ -123,7 +123,7 @@ def test_everything_that_is_wrong_is_said_at_once_before_a_run_and_by_check(
     assert capsys.readouterr() == ("", text)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(6)
 def test_names_may_hold_what_a_path_or_a_terminal_gives_a_meaning(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -121,6 +121,7 @@ def variant(file: Path, name: str, old: str, new: str) -> Path:
     return out
 
 
+@pytest.mark.slow(27)
 def test_the_front_is_that_of_full_solutions(file: Path, whole: xr.Dataset) -> None:
     study = mf.load(variant(file, "off", "reduction = 1e-8", 'reduction = "off"'))
     full = mf.run(study, file.with_name("off")).dataset
@@ -163,11 +164,10 @@ def test_a_few_full_solutions_are_enough_and_all_models_hold(whole: xr.Dataset) 
     assert whole.attrs["model_evaluations"] == total
 
 
-@pytest.mark.parametrize("tasks", [1, 20])
 def test_an_interrupted_run_goes_on_to_the_same_digits(
-    tasks: int, file: Path, whole: xr.Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    file: Path, whole: xr.Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    interrupt_after(tasks, monkeypatch)
+    interrupt_after(20, monkeypatch)
     with pytest.raises(KeyboardInterrupt):
         mf.run(mf.load(file), tmp_path)
     xr.testing.assert_identical(mf.run(mf.load(file), tmp_path).dataset, whole)
@@ -266,6 +266,7 @@ def test_what_cannot_be_met_in_the_memory_is_said_and_is_an_exit_of_1(
     assert f"errors above the tolerance, kept and marked: {', '.join(failed)}" in err
 
 
+@pytest.mark.slow(3)
 def test_a_model_without_a_basis_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -101,7 +101,6 @@ def test_exact_fits_of_the_frequencies_are_points() -> None:
         assert modes == pytest.approx(problem_of(std=0.002).data.frequency[0], rel=1e-7)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("source", ["std", "sets"])
 def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
     """100 drawings tell a standard deviation to 7 %; where it is smooth, the linear one agrees.
@@ -126,7 +125,7 @@ def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
     )
 
 
-@pytest.mark.slow
+@pytest.mark.slow(6)
 def test_points_of_three_groups_scatter_as_synthetic_data_do() -> None:
     """60 drawings tell a standard deviation to 9 %: within the simplex, on its border, beyond.
 
@@ -270,7 +269,6 @@ shape = [2]
 """
 
 
-@pytest.mark.slow
 def test_the_scatter_of_three_groups_runs_on_with_the_same_digits(tmp_path: Path) -> None:
     write_data(tmp_path)
     head, tail = STUDY.split('[[group]]\nname = "shapes"\nshape = "all"\n')

@@ -82,7 +82,7 @@ def test_all_methods_give_the_same_variables_and_count_alike(method: str) -> Non
         assert data.attrs[name] > 0
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 @pytest.mark.parametrize("method", ["spea2", "nsga2"])
 def test_evolution_repeats_with_the_same_seed_and_stays_behind(method: str) -> None:
     again = solved(method, seed=1)
@@ -104,6 +104,7 @@ def test_the_weight_sweep_misses_the_branch_next_to_the_frequency_edge() -> None
     assert nondominated(result).all(), "what it finds is optimal"
 
 
+@pytest.mark.slow(4)
 @pytest.mark.parametrize("size", [0.06, 0.02])
 def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(size: float) -> None:
     coarse = results("nbi")
@@ -118,6 +119,7 @@ def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(size: float) -> No
         assert np.linalg.norm((J[piece == k] - end) / scale, axis=1).min() <= size
 
 
+@pytest.mark.slow(4)
 def test_refining_finds_a_gap_that_few_points_step_over() -> None:
     """Of 8 points, none lies in the gap of M0: only that nothing is found there tells of it."""
     expected, coarse = (
@@ -134,7 +136,6 @@ def test_refining_finds_a_gap_that_few_points_step_over() -> None:
     assert (fine["piece"].values[front_points(fine)][behind] == 0).all()
 
 
-@pytest.mark.slow
 def test_edges_of_three_groups_are_pareto_optimal() -> None:
     """Next to an edge, what is lost in its own objective is of the second order."""
     groups = (
@@ -160,7 +161,7 @@ def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
     assert (weights > -1e-6).all(), "every point is a local Pareto optimum"
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_each_property_a_group() -> None:
     groups = [mf.Group(f"f{r}", frequency=[r]) for r in (1, 2, 3)]
     groups += [mf.Group(f"s{r}", shape=[r]) for r in (1, 2, 3)]
@@ -209,7 +210,6 @@ def test_scatter_next_to_the_end_of_a_piece_is_doubtful() -> None:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("method", ["spea2", "nsga2"])
 def test_an_interrupted_evolution_goes_on_where_it_stopped(
     method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

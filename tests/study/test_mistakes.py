@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from written import write
 
 from modefront import Group, ModalData, UpdatingProblem, chain, modal_data
 from modefront.cli.main import cli
@@ -19,7 +20,6 @@ from modefront.diagnosis.search import diagnose
 from modefront.models.matrices import MatrixModel
 from modefront.modes.result import Modes
 from modefront.study.check import Findings, check
-from modefront.study.examples import write_example
 from modefront.study.file import load
 
 CHAIN, FRAME, SETS = "three-story-c0", "three-story-fe-c1", "hammer-test"
@@ -31,7 +31,7 @@ def spoilt(
     folder: Path, example: str, *edits: tuple[str, str], data: Callable[[Rows], None] | None = None
 ) -> Path:
     """Write an example with parts of the study file replaced and its data changed."""
-    write_example(example, folder)
+    write(example, folder)
     study = folder / "study.toml"
     text = study.read_text(encoding="utf-8")
     for old, new in edits:
@@ -130,6 +130,7 @@ def test_a_reversed_sensor(example: str, sensor: str, tmp_path: Path) -> None:
     assert f"check the direction of {sensor}" in text
 
 
+@pytest.mark.slow(9)
 def test_a_reversed_sensor_that_moves_too_little_for_the_mac() -> None:
     names = [f"k{i + 1}" for i in range(50)]
     model = chain(names, [1.0] * 50, [1e4] * 50, sensors={f"s{i}": i for i in range(50)})
@@ -169,7 +170,7 @@ def test_exchanged_sensors(example: str, tmp_path: Path) -> None:
 
 def test_sensors_of_one_data_set(tmp_path: Path) -> None:
     first = tmp_path / "modes-m0.csv"
-    write_example(SETS, tmp_path / "plain")
+    write(SETS, tmp_path / "plain")
     names = load(tmp_path / "plain" / "study.toml").problem.data.sets
     text = only(spoilt(tmp_path, SETS, data=scaled("floor2", -1.0, names[1])))
     assert f"sensor floor2 is reversed in set {names[1]}" in text
@@ -186,7 +187,7 @@ def test_a_sensor_that_most_data_sets_have_reversed(tmp_path: Path) -> None:
 
 
 def test_a_data_set_in_another_unit_and_one_with_another_frequency(tmp_path: Path) -> None:
-    write_example(SETS, tmp_path / "plain")
+    write(SETS, tmp_path / "plain")
     name = load(tmp_path / "plain" / "study.toml").problem.data.sets[2]
     text = only(spoilt(tmp_path / "a", SETS, data=scaled("frequency", 6.2831853, name)))
     assert f"all frequencies of set {name} are 6.28 times" in text
@@ -235,7 +236,7 @@ def test_of_two_sets_nobody_knows_which_is_wrong() -> None:
 
 
 def test_modes_that_one_set_numbers_differently(tmp_path: Path) -> None:
-    write_example(SETS, tmp_path / "plain")
+    write(SETS, tmp_path / "plain")
     name = load(tmp_path / "plain" / "study.toml").problem.data.sets[0]
 
     def renumbered(rows: Rows) -> None:

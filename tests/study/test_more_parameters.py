@@ -69,6 +69,7 @@ def row(data: xr.Dataset, label: str) -> xr.Dataset:
     return data.isel(point=data["label"].values.tolist().index(label))
 
 
+@pytest.mark.slow(7)
 @pytest.mark.parametrize("std", [True, False])
 def test_the_most_probable_model_is_preferred_where_all_is_fitted_exactly(std: bool) -> None:
     data, _ = solved(std=std)
@@ -110,6 +111,7 @@ def dominated(J: Floats, known: Floats, scale: Floats) -> bool:
     return False
 
 
+@pytest.mark.slow(7)
 @pytest.mark.parametrize("std", [True, False])
 def test_pareto_is_what_no_model_reported_or_evaluated_dominates(std: bool) -> None:
     data, front = solved(std=std)
@@ -179,6 +181,7 @@ a,2,7.25,0.036,,1.0,0.02,-0.71,0.02
 """
 
 
+@pytest.mark.slow(8)
 def test_a_run_that_is_interrupted_goes_on_to_the_same_digits(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

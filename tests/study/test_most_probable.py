@@ -63,6 +63,7 @@ def test_the_reference_is_the_most_probable_model_with_intervals(
     assert (data["sample_theta"].values <= upper).all()
 
 
+@pytest.mark.slow(4)
 def test_kept_tasks_and_other_processes_lead_to_the_same_digits(
     whole: tuple[Path, xr.Dataset],
 ) -> None:

@@ -63,6 +63,7 @@ def test_others_are_found_where_one_is_fixed_and_one_tied() -> None:
     assert tied.dataset["parameter"].values.tolist() == ["k1", "k3"]
 
 
+@pytest.mark.slow(3)
 @pytest.mark.parametrize("prior", [mf.Prior("normal", 0.01), mf.Prior("lognormal", 0.01)])
 def test_what_data_leave_open_a_prior_decides(prior: mf.Prior) -> None:
     """One mode of three storeys: a narrow prior holds a parameter, and the others follow."""

@@ -213,7 +213,7 @@ def with_draws(count: int) -> str:
     return FRF + QUICK + f"[uncertainty]\ndraws = {count}\n"
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 def test_an_interrupted_run_has_the_same_digits(
     drawn: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -227,7 +227,7 @@ def test_an_interrupted_run_has_the_same_digits(
     assert again.attrs == drawn.attrs
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 def test_more_draws_cost_only_themselves(drawn: xr.Dataset, tmp_path: Path) -> None:
     run(tmp_path, FRF + QUICK)
     folder = tmp_path / "results" / "tasks"

@@ -76,6 +76,7 @@ def assert_peaks(
         assert frequency == pytest.approx(middle, rel=1e-7)
 
 
+@pytest.mark.slow(3)
 def test_peaks_are_those_of_the_direct_solution(results: xr.Dataset) -> None:
     force = np.array([0.0, 2.0])
     for name, output in (("low", [1.0, 0.0]), ("drift", [-1.0, 1.0])):
@@ -88,6 +89,7 @@ def test_peaks_are_those_of_the_direct_solution(results: xr.Dataset) -> None:
     assert_peaks(results, "ridden: high", zeta, -MASSES, np.array([0.0, 1.0]), 2, 1.0)
 
 
+@pytest.mark.slow(3)
 def test_a_moving_base_is_the_force_of_inertia(results: xr.Dataset) -> None:
     for name in ("low", "middle"):
         first, other = (
@@ -179,7 +181,7 @@ def assert_same(first: xr.Dataset, other: xr.Dataset) -> None:
     assert first.attrs == other.attrs
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_an_interrupted_run_predicts_the_same_digits(
     quick: tuple[Path, xr.Dataset], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -191,7 +193,7 @@ def test_an_interrupted_run_predicts_the_same_digits(
     assert_same(run(tmp_path, FRF + QUICK), quick[1])
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_other_predictions_do_no_old_work_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -271,6 +273,7 @@ def test_several_inputs_have_noise_of_their_own(tmp_path: Path) -> None:
     assert total == pytest.approx(parts, rel=1e-9, abs=1e-12 * parts.max())
 
 
+@pytest.mark.slow(3)
 def test_in_memory_and_from_a_file_are_the_same(
     quick: tuple[Path, xr.Dataset], tmp_path: Path
 ) -> None:
@@ -331,7 +334,7 @@ def command(*arguments: object) -> int:
     return left.value.code
 
 
-@pytest.mark.slow
+@pytest.mark.slow(4)
 def test_show_prints_and_draws_predictions(
     quick: tuple[Path, xr.Dataset],
     tmp_path: Path,
@@ -368,6 +371,7 @@ def test_show_prints_and_draws_predictions(
     assert "pip install modefront[figures]" in capsys.readouterr().err
 
 
+@pytest.mark.slow(4)
 def test_models_are_drawn_without_a_front_too(results: xr.Dataset, tmp_path: Path) -> None:
     single = results.isel(point=results["kind"].values != "front")
     paths = write_figures(single, tmp_path)

@@ -107,7 +107,7 @@ def studies(folder: Path, monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     return [folder / "chain.toml", folder / "matrices.toml", folder / "fe" / "study.toml"]
 
 
-@pytest.mark.slow
+@pytest.mark.slow(60)
 def test_schema_and_reader_agree_on_studies_that_are_spoilt(studies: list[Path]) -> None:
     validator = jsonschema.Draft7Validator(study_schema())
     chance = random.Random(1)

@@ -117,6 +117,7 @@ def test_the_optimal_weights_of_M0_are_regular_and_confirmed() -> None:
     assert iterated == pytest.approx(data["theta"].values[position], abs=1e-5)
 
 
+@pytest.mark.slow(3)
 def test_a_search_costs_less_where_more_doubt_is_allowed() -> None:
     for model in ("M0", "M1"):
         data = results(model)
@@ -125,7 +126,7 @@ def test_a_search_costs_less_where_more_doubt_is_allowed() -> None:
         assert quick.attrs["model_evaluations"] < data.attrs["model_evaluations"]
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 @pytest.mark.parametrize("model", ["M0", "M1"])
 def test_global_optima_do_not_depend_on_the_seed(model: str) -> None:
     expected = results(model)
@@ -187,6 +188,7 @@ def test_sign_and_scale_of_measured_shapes_do_not_matter() -> None:
     compare(other, results("M0"))
 
 
+@pytest.mark.slow(4)
 def test_scaling_the_model_scales_the_parameters() -> None:
     # Stiffnesses and masses twice as large, each alone: theta makes up for it.
     problem = problem_of("M0", stiffness=2.0)

@@ -1,6 +1,6 @@
 """Files of which a row is lost, doubled or moved are refused, or give the same data.
 
-``MODEFRONT_EXAMPLES`` is the number of examples of each format; `tasks.py trials` takes 5,000.
+``MODEFRONT_EXAMPLES`` is the number of examples of each format; `tasks.py spoil` takes 5,000.
 """
 
 from __future__ import annotations

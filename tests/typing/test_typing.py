@@ -17,7 +17,7 @@ HERE = Path(__file__).parent
 MARK = "# rejected"
 
 
-@pytest.mark.slow
+@pytest.mark.slow(15)
 @pytest.mark.skipif(find_spec("mypy") is None, reason="needs mypy")
 def test_mypy_rejects_every_marked_line_and_no_other() -> None:
     file = HERE / "rejected.py"

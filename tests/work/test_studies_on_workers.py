@@ -123,7 +123,7 @@ def pools() -> Iterator[dict[str, Workers]]:
         yield {name: stack.enter_context(Workers(pool)) for name, pool in every.items()}
 
 
-@pytest.mark.slow
+@pytest.mark.slow(10)
 @pytest.mark.parametrize(
     ("of", "names"),
     [(everything, ["2", "3"]), (reduced, ["3", "cluster"]), (evolution, ["2", "cluster"])],
@@ -145,6 +145,7 @@ def test_results_do_not_depend_on_who_does_the_work(
         assert sorted(x.name for x in (tmp_path / name).rglob("*.npz")) == files
 
 
+@pytest.mark.slow(5)
 def test_a_process_that_is_killed_during_a_certificate_is_replaced(tmp_path: Path) -> None:
     expected = mf.run(reduced(tmp_path), tmp_path / "whole").dataset
     killed: list[Any] = []
@@ -162,7 +163,7 @@ def test_a_process_that_is_killed_during_a_certificate_is_replaced(tmp_path: Pat
     assert set(multiprocessing.active_children()) <= others
 
 
-@pytest.mark.slow
+@pytest.mark.slow(8)
 def test_a_run_whose_scheduler_is_gone_ends_and_a_later_one_goes_on(tmp_path: Path) -> None:
     distributed: Any = pytest.importorskip("distributed")
     expected = mf.run(plain(tmp_path), tmp_path / "whole").dataset
@@ -225,6 +226,7 @@ def test_processes_of_a_pool_never_see_interrupts_of_the_terminal() -> None:
     assert done.stdout == "1\n1\n"
 
 
+@pytest.mark.slow(3)
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
 def test_signals_interrupt_a_run_and_end_its_processes(name: str, tmp_path: Path) -> None:
@@ -262,6 +264,7 @@ def test_signals_interrupt_a_run_and_end_its_processes(name: str, tmp_path: Path
 FAULTY = Path(__file__).parents[1] / "trials" / "faulty.py"
 
 
+@pytest.mark.slow(3)
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
 @pytest.mark.parametrize("kind", ["full", "read-only"])
 def test_a_drive_that_fails_ends_a_run_and_its_processes(kind: str, tmp_path: Path) -> None:
@@ -284,6 +287,7 @@ def test_a_drive_that_fails_ends_a_run_and_its_processes(kind: str, tmp_path: Pa
     assert list(folder.rglob("*.npz"))
 
 
+@pytest.mark.slow(5)
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
 def test_a_run_whose_output_nobody_reads_is_done_and_says_so_once(tmp_path: Path) -> None:
     path, folder = write_study(tmp_path, ""), tmp_path / "results"

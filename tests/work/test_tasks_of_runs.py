@@ -80,7 +80,7 @@ def kept(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     return records
 
 
-@pytest.mark.slow
+@pytest.mark.slow(5)
 @pytest.mark.parametrize("of", [plain, everything])
 def test_every_task_of_a_run_gives_the_same_record_after_pickle(
     of: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from modefront._typing import Complexes
 from modefront.brief import as_html
@@ -184,12 +185,13 @@ def identify(
         if not low <= f <= high:
             expected = f"frequencies within the band, {low:g} to {high:g} Hz"
             raise InputError(Fault(str(path), "--seed", expected, f"{f:g}"))
-    if read.setups:
-        identified = [ambient.identify(read.setups, band, read.modes, seeds)]
-    else:
-        identified = [
-            hammer.identify(part.assembled.data, band, read.modes, seeds) for part in read.sets
-        ]
+    with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
+        if read.setups:
+            identified = [ambient.identify(read.setups, band, read.modes, seeds)]
+        else:
+            identified = [
+                hammer.identify(part.assembled.data, band, read.modes, seeds) for part in read.sets
+            ]
     names = _names(read)
     if (keep or drop) and any(each.modes for each in identified):
         identified = _chosen(path, identified, combine(names, identified).index, keep, drop)

@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import h5netcdf
 import numpy as np
 import xarray as xr
 
@@ -21,6 +20,7 @@ from modefront.errors import Fault, InputError, reason
 from modefront.inputs import available_memory, file_size
 from modefront.isolated import isolated
 from modefront.outputs import output
+from modefront.results.netcdf import contents
 from modefront.results.remarks import CHANGED
 from modefront.results.schema import FORMAT, variables_in
 from modefront.results.soundness import faults
@@ -123,13 +123,9 @@ def _text(*parts: object) -> bytes:
 def _read(path: Path) -> xr.Dataset:
     """Return the contents of a netCDF file, after a process that damaged files may end read it."""
     isolated(READER, path, SECONDS, available_memory())
-    with h5netcdf.File(path, "r", decode_vlen_strings=True) as file:
-        variables = {
-            name: xr.Variable(each.dimensions, each[...], dict(each.attrs))
-            for name, each in file.variables.items()
-        }
-        raw = xr.Dataset(variables, attrs=dict(file.attrs))
-    return xr.decode_cf(raw, decode_times=False)
+    variables, attributes = contents(path)
+    raw = xr.Dataset({name: xr.Variable(*each) for name, each in variables.items()})
+    return xr.decode_cf(raw.assign_attrs(attributes), decode_times=False)
 
 
 def _plain(data: xr.Dataset) -> xr.Dataset:

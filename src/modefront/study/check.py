@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from modefront.brief import as_html
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
@@ -109,6 +110,11 @@ def check(study: Study) -> Findings:
     InputError
         If no parameter changes a group.
     """
+    with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
+        return _checked(study)
+
+
+def _checked(study: Study) -> Findings:
     problem = study.problem
     refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
     nominal = problem.evaluate(problem.start)
