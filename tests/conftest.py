@@ -16,6 +16,7 @@ from hypothesis import settings
 from refusals import Check, command
 from threadpoolctl import threadpool_limits
 
+from modefront.study.extensions import FAMILIES
 from modefront.work.costs import Costs, counted
 
 # Threads wait for each other on small matrices. SciPy brings a BLAS of its own: `scipy.linalg`.
@@ -28,6 +29,15 @@ settings.load_profile("modefront")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Have the longest tests begin first, so that none of them is left alone at the end."""
     items.sort(key=lambda item: -sum(mark.args[0] for mark in item.iter_markers("slow")))
+
+
+@pytest.fixture(autouse=True, scope="module")
+def nothing_stays_registered_after_a_file() -> Iterator[None]:
+    """Forget what the tests of a file have registered."""
+    before = [dict(family.added) for family in FAMILIES]
+    yield
+    for family, added in zip(FAMILIES, before, strict=True):
+        family.added = added
 
 
 @pytest.fixture
