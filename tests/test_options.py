@@ -281,6 +281,7 @@ def test_options_that_take_the_place_of_those_of_a_file_are_other_inputs(study: 
     assert replace(read, problem=replace(read.problem)).work == ""
 
 
+@pytest.mark.slow(3)
 def test_pareto_and_its_options_may_be_given_together(study: Path) -> None:
     problem = mf.load(study).problem
     quick: dict[str, Any] = {"search": mf.Search(doubt=0.5), "seed": 2}

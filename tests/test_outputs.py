@@ -214,6 +214,7 @@ def test_names_that_can_be_guessed_lead_nowhere(kind: str, folder: Path) -> None
     assert precious.read_text() == "precious"
 
 
+@pytest.mark.slow(3)
 @pytest.mark.parametrize("deep", [False, True])
 def test_linked_folders_of_tasks_are_refused(
     deep: bool, folder: Path, capsys: pytest.CaptureFixture[str]

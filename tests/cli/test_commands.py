@@ -232,6 +232,7 @@ def test_compare_prints_tables_and_json(modefront_: Run, whole: Path) -> None:
     assert result["pairs"][0]["common"] == ["k1", "k2"]
 
 
+@pytest.mark.slow(2)
 def test_a_front_is_refined_where_neighbours_are_far_apart(
     modefront_: Run, study: Path, done: Path
 ) -> None:

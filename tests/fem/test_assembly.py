@@ -247,6 +247,7 @@ def test_eccentric_shell_is_the_strip_beside_its_nodes() -> None:
     assert w[1][0] == pytest.approx(w[0][0], rel=2e-3)
 
 
+@pytest.mark.slow(3)
 def test_50000_dofs_have_a_term_for_each_power_of_the_thickness() -> None:
     X, cells = fem.grids.plate(1.0, 1.0, 91, 90)
     structure = fem.Structure(

@@ -156,6 +156,7 @@ def test_a_mesh_is_one_file(name: str, content: str, says: str, tmp_path: Path) 
         read_mesh(tmp_path / name)
 
 
+@pytest.mark.slow(3)
 def test_files_that_would_be_read_without_an_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -175,6 +175,7 @@ def test_close_modes_are_found_and_a_machine_is_none() -> None:
     assert "harmonic" in result.rejected[0].reason
 
 
+@pytest.mark.slow(4)
 def test_setups_make_one_set_of_shapes_at_all_sensors() -> None:
     rng = np.random.default_rng(4)
     _, first = _records(rng, 10)

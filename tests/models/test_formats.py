@@ -207,6 +207,7 @@ def test_hostile_files(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     refused(tmp_path / name, content, monkeypatch)
 
 
+@pytest.mark.slow(3)
 def test_variables_that_grow(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     refused(tmp_path / "A.mat", bomb(), monkeypatch)
     data = np.zeros((3000, 3000))

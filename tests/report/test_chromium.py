@@ -18,7 +18,10 @@ CHROMIUM = Path("/usr/bin/chromium")
 AXE = ROOT / "report" / "node_modules" / "axe-core" / "axe.min.js"
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
-pytestmark = pytest.mark.skipif(not CHROMIUM.exists(), reason="needs Chromium: /usr/bin/chromium")
+pytestmark = [
+    pytest.mark.slow(2),
+    pytest.mark.skipif(not CHROMIUM.exists(), reason="needs Chromium: /usr/bin/chromium"),
+]
 
 
 @dataclass

@@ -18,6 +18,8 @@ import modefront as mf
 from modefront.reports.words import topics
 from modefront.results.files import FILE, checksum, read_dataset, write
 
+pytestmark = pytest.mark.slow(2)
+
 SAYS = "results.nc has values that do not fit its checksum"
 
 

@@ -31,6 +31,8 @@ from modefront.work.costs import Costs, counted
 from modefront.work.run import Run
 from modefront.work.task import Executor, R, Task
 
+pytestmark = pytest.mark.slow(2)
+
 N = 14
 STUDY = (
     """

@@ -17,6 +17,8 @@ from modefront.results.selection import front_points
 from modefront.study.examples import write_example
 from modefront.work.costs import counted
 
+pytestmark = pytest.mark.slow(2)
+
 METHODS = ("nbi", "weights", "spea2", "nsga2")
 
 EVALUATIONS = 800

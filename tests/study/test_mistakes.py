@@ -22,6 +22,8 @@ from modefront.modes.result import Modes
 from modefront.study.check import Findings, check
 from modefront.study.file import load
 
+pytestmark = pytest.mark.slow(2)
+
 CHAIN, FRAME, SETS = "three-story-c0", "three-story-fe-c1", "hammer-test"
 
 Rows = list[dict[str, str]]

@@ -129,6 +129,7 @@ def test_pareto_is_what_no_model_reported_or_evaluated_dominates(std: bool) -> N
     assert data["dominated_among_front"].values.tolist() == among
 
 
+@pytest.mark.slow(6)
 @pytest.mark.parametrize("std", [True, False])
 def test_no_edge_is_worse_than_any_evaluated_model(std: bool) -> None:
     data, front = solved(std=std)

@@ -22,6 +22,8 @@ from modefront.uncertainty.differences import STEP
 from modefront.uncertainty.prediction import SUMMARY
 from modefront.work.progress import Progress, State
 
+pytestmark = pytest.mark.slow(2)
+
 K, MASS, DAMPING = 400.0, 2.0, 0.03
 ONE_MASS = mf.chain(["k"], [MASS], [K], stiffness_parameters=["k"])
 TWO_MASSES = mf.chain(["k1", "k2"], [2.0, 1.0], [3e3, 2e3], stiffness_parameters=["k1", "k2"])

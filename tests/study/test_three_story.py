@@ -161,6 +161,7 @@ def compare(result: xr.Dataset, expected: xr.Dataset, order: list[int] | None = 
         assert first == pytest.approx(other[order], abs=2e-5)
 
 
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("model", ["M0", "M1"])
 def test_the_order_of_the_parameters_does_not_matter(model: str) -> None:
     other = mf.solve(
@@ -169,6 +170,7 @@ def test_the_order_of_the_parameters_does_not_matter(model: str) -> None:
     compare(other, results(model), [2, 0, 1])
 
 
+@pytest.mark.slow(2)
 @pytest.mark.parametrize("model", ["M0", "M1"])
 def test_units_do_not_matter(model: str) -> None:
     # Tonnes and kilonewtons a metre: the frequencies stay.
@@ -178,6 +180,7 @@ def test_units_do_not_matter(model: str) -> None:
     compare(other, results(model))
 
 
+@pytest.mark.slow(3)
 def test_sign_and_scale_of_measured_shapes_do_not_matter() -> None:
     other = mf.solve(
         problem_of("M0", shape_scales=(-1.0, 250.0, -3e-4)),
@@ -222,6 +225,7 @@ def test_matrices_give_the_same_front_as_the_chain() -> None:
     compare(mf.solve(problem, points=20, programme="equations", seed=1).dataset, results("M0"))
 
 
+@pytest.mark.slow(2)
 def test_single_modes_as_groups() -> None:
     groups = [
         mf.Group("mode 1", frequency=[1], shape=[1]),

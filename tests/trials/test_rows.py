@@ -17,6 +17,8 @@ from rows import FORMATS, Change, cannot_be_noticed, spoilt
 from modefront.errors import InputError, ModelError
 from modefront.fem.section import FemError
 
+pytestmark = pytest.mark.slow(2)
+
 EXAMPLES = int(os.environ.get("MODEFRONT_EXAMPLES", "25"))
 
 

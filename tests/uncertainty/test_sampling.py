@@ -78,6 +78,7 @@ def flat(theta: Floats) -> Residuals:
     return [(np.array([(x - 0.4) / 0.2]), np.array([[5 + 0 * x, 0 * y]]))]
 
 
+@pytest.mark.slow(2)
 @pytest.mark.parametrize(
     ("function", "a"), [(banana, 2.0), (basins, 2.0), (flat, 1.0)], ids=lambda x: str(x)[:20]
 )

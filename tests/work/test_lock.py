@@ -99,6 +99,7 @@ def test_a_lock_that_lives_is_not_taken_over(before: str, results: Path) -> None
         assert process.poll() is None
 
 
+@pytest.mark.slow(4)
 def test_a_process_that_is_killed_leaves_no_lock(results: Path) -> None:
     for _ in range(3):
         with holding(results) as process:

@@ -119,6 +119,7 @@ def test_a_shared_object_is_sent_where_it_is_not_known(forgets: bool) -> None:
         assert work.run(totals(big, 1)) == [2e5 + k for k in range(6)]
 
 
+@pytest.mark.slow(2)
 @given(st.lists(st.sets(st.integers(0, 2)), min_size=1, max_size=5))
 def test_another_process_may_take_what_one_has_lacked(known: list[set[int]]) -> None:
     part = Big(np.ones(5))
