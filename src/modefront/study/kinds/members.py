@@ -122,6 +122,11 @@ def _above_zero(expected: str) -> Key:
     return Key(number(expected, above=0), required=True)
 
 
+def _one_or(count: int, expected: str, one: Schema) -> Key:
+    """Return the key of one number, or of a list of as many, of 0 or more."""
+    return Key(Requirement(expected, any_of(one, array(NOT_NEGATIVE, count, count))), required=True)
+
+
 _PLACE = any_of(DOF, {"type": "string"})
 _PLACES = Requirement(
     "a node counted from 0, the name of a group or node set, or a list of these",
@@ -227,13 +232,7 @@ MEMBERS: Mapping[str, tuple[Callable[..., Any], Keys]] = {
             "name": _name("springs"),
             "nodes": NODES,
             "to": SOME_NODES,
-            "stiffness": Key(
-                Requirement(
-                    "a stiffness above 0, or 6 of 0 or more",
-                    any_of(ABOVE_ZERO, array(NOT_NEGATIVE, 6, 6)),
-                ),
-                required=True,
-            ),
+            "stiffness": _one_or(6, "a stiffness above 0, or 6 of 0 or more", ABOVE_ZERO),
             "direction": Key(DIRECTION),
             "axes": OF_AXES,
         },
@@ -243,13 +242,7 @@ MEMBERS: Mapping[str, tuple[Callable[..., Any], Keys]] = {
         {
             "name": _name("masses"),
             "nodes": NODES,
-            "mass": Key(
-                Requirement(
-                    "a mass of 0 or more, or 3 for x, y and z",
-                    any_of(NOT_NEGATIVE, array(NOT_NEGATIVE, 3, 3)),
-                ),
-                required=True,
-            ),
+            "mass": _one_or(3, "a mass of 0 or more, or 3 for x, y and z", NOT_NEGATIVE),
             "inertia": Key(numbers("3 moments of inertia of 0 or more", array(NOT_NEGATIVE, 3, 3))),
             "offset": OF_VECTOR,
         },
