@@ -123,7 +123,8 @@ def wall_matrices() -> tuple[dict[str, Floats], Floats]:
                 v[i - 1] = -row
             stories.append(WALL[direction] * np.outer(v, v))
         parts[name] = np.array(stories)
-    return parts, np.kron(np.eye(FLOORS), FLOOR * np.diag([1.0, 1.0, RADIUS**2]))
+    mass: Floats = np.kron(np.eye(FLOORS), FLOOR * np.diag([1.0, 1.0, RADIUS**2]))
+    return parts, mass
 
 
 def three_groups(folder: Path) -> None:
