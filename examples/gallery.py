@@ -123,8 +123,8 @@ def wall_matrices() -> tuple[dict[str, Floats], Floats]:
                 v[i - 1] = -row
             stories.append(WALL[direction] * np.outer(v, v))
         parts[name] = np.array(stories)
-    mass: Floats = np.kron(np.eye(FLOORS), FLOOR * np.diag([1.0, 1.0, RADIUS**2]))
-    return parts, mass
+    mass = np.kron(np.eye(FLOORS), np.diag([FLOOR, FLOOR, FLOOR * RADIUS**2]))
+    return parts, mass.astype(np.float64)
 
 
 def three_groups(folder: Path) -> None:
