@@ -1,17 +1,27 @@
 """The examples that ``init`` writes."""
 
+import runpy
+import shutil
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import modefront as mf
+from modefront._typing import Floats
+from modefront.data.csv import read_csv
 from modefront.errors import InputError
 from modefront.study.check import check
 from modefront.study.examples import names, write_example
 from modefront.study.file import load
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
 
 def test_the_promised_examples_are_there() -> None:
-    assert {"three-story-c0", "three-story-c1"} <= set(names())
+    promised = {"footbridge", "three-groups", "eighteen-stories", "wrong-class"}
+    assert promised | {"three-story-c0", "three-story-c1"} <= set(names())
 
 
 @pytest.mark.parametrize("name", names())
@@ -19,7 +29,9 @@ def test_each_example_is_written_whole_and_is_sound(name: str, tmp_path: Path) -
     written = write_example(name, tmp_path / "new" / "folder")
     assert sorted(written) == sorted((tmp_path / "new" / "folder").iterdir())
     study = load(tmp_path / "new" / "folder" / "study.toml")
-    assert check(study).sound
+    checked = check(study)
+    assert checked.sound
+    assert bool(checked.warnings) == (name == "eighteen-stories"), "more parameters than data"
 
 
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
@@ -43,3 +55,71 @@ def test_an_unknown_example_is_answered_with_the_known_ones(tmp_path: Path) -> N
     with pytest.raises(InputError, match=r"expected one of ambient-test, calculix, .*did you mean"):
         write_example("three-story", tmp_path / "new")
     assert not (tmp_path / "new").exists()
+
+
+def solved(name: str, study: str, folder: Path) -> mf.Results:
+    """Return the results of a study of an example."""
+    if not (folder / "new").exists():
+        write_example(name, folder / "new")
+    return mf.run(load(folder / "new" / study), folder / study.removesuffix(".toml"))
+
+
+def held(results: mf.Results, truth: Floats | list[float]) -> list[bool]:
+    """Return which 90 % intervals hold the truth."""
+    low, _, high = results.interval.values.T
+    return ((low <= truth) & (truth <= high)).tolist()
+
+
+@pytest.mark.slow(3)
+@pytest.mark.parametrize(
+    ("name", "study", "truth"),
+    [
+        ("footbridge", "study.toml", [0.92, 1.25, 0.6, 1.2]),
+        ("three-groups", "study.toml", [1.19, 0.93, 1.05, 0.78]),
+        ("wrong-class", "study-neighbour.toml", [1.1, 0.95, 1.05, 0.9, 1.0, 0.25]),
+        ("eighteen-stories", "study-zones.toml", [1.0, 3 / (2 + 1 / 0.7), 1.0, 1.0, 1.0, 1.0]),
+    ],
+)
+def test_intervals_of_simulated_examples_hold_their_truth(
+    name: str, study: str, truth: list[float], tmp_path: Path
+) -> None:
+    results = solved(name, study, tmp_path)
+    assert results.verdict[0].startswith("Use most-probable")
+    assert (results["trust"].values == "determined").all()
+    assert all(held(results, truth))
+
+
+@pytest.mark.slow(6)
+def test_more_parameters_than_data_are_not_determined(tmp_path: Path) -> None:
+    results = solved("eighteen-stories", "study.toml", tmp_path)
+    truth = np.ones(18)
+    truth[4] = 0.7
+    assert "determined" not in results["trust"].values
+    assert all(held(results, truth))
+    assert any(sentence.startswith("Measure the mode") for sentence in results.verdict)
+
+
+@pytest.mark.slow(3)
+def test_a_model_of_a_wrong_class_is_refused(tmp_path: Path) -> None:
+    results = solved("wrong-class", "study.toml", tmp_path)
+    assert results.verdict[0].startswith("Do not use any of these models: errors of frequencies")
+    assert results.attrs["reference"] == ""
+
+
+def test_the_script_makes_the_measurements_that_are_shipped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made, shipped = tmp_path / "made", tmp_path / "shipped"
+    for name in ("footbridge", "three-groups", "eighteen-stories", "wrong-class"):
+        write_example(name, shipped / name)
+    shutil.copytree(shipped, made)
+    for file in (*made.rglob("modes.csv"), *(made / "three-groups").glob("*.npy")):
+        file.unlink()
+    monkeypatch.setattr(sys, "argv", ["gallery.py", str(made)])
+    runpy.run_path(str(EXAMPLES / "gallery.py"), run_name="__main__")
+    for file in shipped.rglob("modes.csv"):
+        again, expected = (read_csv(root / file.relative_to(shipped)) for root in (made, shipped))
+        assert again.frequency == pytest.approx(expected.frequency, rel=1e-4)
+        assert again.shape == pytest.approx(expected.shape, abs=1e-3)
+    for file in (shipped / "three-groups").glob("*.npy"):
+        assert np.load(made / "three-groups" / file.name) == pytest.approx(np.load(file))

@@ -23,7 +23,9 @@ from modefront.uncertainty.conditions import (
     optimal_weights,
     over_ranges,
 )
+from modefront.uncertainty.linear import Local, front_scatter
 from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.points import Role, SolvedPoint
 from modefront.uncertainty.scatter import Scatter, scatter
 
 TIGHT = Options(step=1e-11, constraint=1e-12, reduction=0.0, iterations=200)
@@ -229,3 +231,22 @@ def test_what_no_data_determine_is_named_and_left_out() -> None:
     expected = gain @ np.diag(case.std.ravel() ** 2) @ gain.T
     combined = np.array([[1.0, 2.0, 0.0], [0.0, 0.0, 1.0]])
     assert combined @ result.covariance @ combined.T == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_point_of_which_no_weights_are_known_has_no_scatter() -> None:
+    case = bent(4)
+    problem = case.problem()
+    edges = [minimum(problem, weighted(w), np.zeros(3)) for w in np.eye(2) + 1e-4]
+    between = replace(edges[0], weights=np.zeros(2), beta=np.array([0.5, 0.5]))
+    points = [
+        *(SolvedPoint(f"edge-{i}", edges[i], Role("edge", objective=i)) for i in range(2)),
+        SolvedPoint("nbi-1", between, Role("boundary", ("edge-0", "edge-1"))),
+    ]
+    known = {
+        each.label: Local(point_of(problem, each.solution), case.noise(each.solution.theta), {})
+        for each in points
+    }
+    assert set(front_scatter(problem, points, known, np.ones(2), np.ones(2))) == {
+        "edge-0",
+        "edge-1",
+    }

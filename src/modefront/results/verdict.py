@@ -1,10 +1,14 @@
-"""The first answer: which model to use and why, how sure it is, and what the front says."""
+"""The first answer: which model to use and why, how sure it is, and what the front says.
+
+`SENTENCES` has all it can say; docs/verdicts.md says of each what it means and what to do.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from textwrap import wrap
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -43,6 +47,43 @@ FORETOLD = 2
 TWINS = 0.9
 """Correlation of draws, without its sign, from which two parameters are known only together."""
 
+SENTENCES: Mapping[str, str] = {
+    "do-not-use": "Do not use any of these models: {why}.",
+    "far": "errors of {group} are {misfit:.2g} times those expected",
+    "worse": "{group} fits worse than at the nominal model",
+    "use": "Use {reference}: its errors over those expected are {errors}.",
+    "lacks": "They are larger than noise: the model lacks something.",
+    "at-bound": "{at}: widen {it}, or ask what the model lacks.",
+    "at-harmless-bound": "{at}: wider bounds lower no errors by more than {gain:.0f} %.",
+    "at-wrong-bound": (
+        "{at}. With {where}, errors of {group} are {after:.2g} of those expected instead of "
+        "{before:.2g}: widen {its} bounds, or ask what the model lacks."
+    ),
+    "assumed": "Assumed: {assumed}; say yours in [noise].",
+    "unlike": (
+        "Shapes at these sensors do not tell which modes of the model are those measured as "
+        "{modes}: frequencies decide here. The front pairs them by the MAC, and may be wrong."
+    ),
+    "determined": "Determined (90 %): {parameters}.",
+    "partly": "Partly (90 %): {parameters}.",
+    "not determined": "Not determined (90 %): {parameters}.",
+    "measure": "Measure {what}: the interval of {name} becomes {gain:.0f} % narrower.",
+    "leave-open-less": "Or leave open less, in [[parameter]] of {lines}.",
+    "agree": (
+        "Along the front errors of {group} change by {change:.2g} of those expected: the "
+        "compromise hardly matters."
+    ),
+    "compromise": (
+        "The front is a compromise: along it errors of {group} change by {change:.2g} times those "
+        "expected."
+    ),
+    "prediction": (
+        "{name}, {place}: {quantity} {low:.3g} to {high:.3g} (90 %), {least:.3g} to {greatest:.3g} "
+        "over the front."
+    ),
+}
+"""Each sentence of the first answer, and each reason of a refusal, by its name."""
+
 
 def with_verdict(data: xr.Dataset) -> xr.Dataset:
     """Return results with the first answer, and without a reference where no model is to be used.
@@ -59,12 +100,16 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     if refused:
         more = [f"{len(refused) - NAMED} more"] * (len(refused) > NAMED)
         why = enumeration([*refused[:NAMED], *more])
-        said.insert(0, f"Do not use any of these models: {why}.")
+        said.insert(0, _say("do-not-use", why=why))
         data = data.assign_attrs(reference="")
     else:
         further = (_parameters(data), _front(data), _next(data), _predictions(data))
         said = [_use(data), *said, *chain.from_iterable(further)]
     return data.assign_attrs(verdict="\n".join(_with_room(said)))
+
+
+def _say(kind: str, **values: Any) -> str:
+    return SENTENCES[kind].format(**values)
 
 
 def _with_room(sentences: Sequence[str]) -> list[str]:
@@ -81,14 +126,8 @@ def refusals(groups: Sequence[str], misfit: Floats, nominal: Floats) -> list[str
     """
     far, worse = misfit > FAR, (misfit > WORSE * nominal) & (misfit > LARGE)
     return [
-        *(
-            f"errors of {groups[i]} are {misfit[i]:.2g} times those expected"
-            for i in np.flatnonzero(far).tolist()
-        ),
-        *(
-            f"{groups[i]} fits worse than at the nominal model"
-            for i in np.flatnonzero(worse & ~far).tolist()
-        ),
+        *(_say("far", group=groups[i], misfit=misfit[i]) for i in np.flatnonzero(far).tolist()),
+        *(_say("worse", group=groups[i]) for i in np.flatnonzero(worse & ~far).tolist()),
     ]
 
 
@@ -97,11 +136,8 @@ def _use(data: xr.Dataset) -> str:
     misfit, groups = data["misfit"].values, data["group"].values
     worst = np.argsort(-misfit)[:NAMED] if misfit.size > NAMED else np.arange(misfit.size)
     size = _some([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], misfit.size)
-    larger = " They are larger than noise: the model lacks something."
-    return (
-        f"Use {data.attrs['reference']}: its errors over those expected are {size}."
-        + larger * bool((misfit > LARGE).any())
-    )
+    use = _say("use", reference=data.attrs["reference"], errors=size)
+    return f"{use} {_say('lacks')}" if (misfit > LARGE).any() else use
 
 
 def _at_bounds(data: xr.Dataset) -> Iterator[str]:
@@ -118,36 +154,37 @@ def _at_bounds(data: xr.Dataset) -> Iterator[str]:
     more = f" and {held.size - NAMED} more" * (held.size > NAMED)
     said = f"{enumeration([at[j] for j in held[:NAMED]])}{more}"
     if "freed_theta" not in data:
-        yield f"{said}: widen {'it' if held.size == 1 else 'them'}, or ask what the model lacks."
+        yield _say("at-bound", at=said, it="it" if held.size == 1 else "them")
         return
     free, before, after = (data[name].values for name in ("freed_theta", "misfit", "freed_misfit"))
     beyond = [j for j in held if sides[j] * (free[j] - values[j]) > 0]
     i = int(np.argmax(before - after))
     if not beyond or before[i] - after[i] < GAIN * before[i]:
-        yield f"{said}: wider bounds lower no errors by more than {100 * GAIN:.0f} %."
+        yield _say("at-harmless-bound", at=said, gain=100 * GAIN)
         return
     where = enumeration([f"{names[j]} = {free[j]:.3g}" for j in beyond[:NAMED]])
     further = f" and {len(beyond) - NAMED} more" * (len(beyond) > NAMED)
-    yield (
-        f"{said}. With {where}{further}, errors of {data['group'].values[i]} are {after[i]:.2g} of "
-        f"those expected instead of {before[i]:.2g}: widen "
-        f"{'its bounds' if len(beyond) == 1 else 'their bounds'}, or ask what the model lacks."
+    yield _say(
+        "at-wrong-bound",
+        at=said,
+        where=where + further,
+        group=data["group"].values[i],
+        after=after[i],
+        before=before[i],
+        its="its" if len(beyond) == 1 else "their",
     )
 
 
 def _assumed(data: xr.Dataset) -> Iterator[str]:
     if data.attrs.get("assumed"):
-        yield f"Assumed: {data.attrs['assumed']}; say yours in [noise]."
+        yield _say("assumed", assumed=data.attrs["assumed"])
 
 
 def _pairs(data: xr.Dataset) -> Iterator[str]:
     unlike = data["likely_mode"].values != _row(data, Kind.MOST_PROBABLE)["paired_mode"].values
     if unlike.any():
         modes = enumeration([str(r) for r in data["mode"].values[unlike]])
-        yield (
-            f"Shapes at these sensors do not tell which modes of the model are those measured as "
-            f"{modes}: frequencies decide here. The front pairs them by the MAC, and may be wrong."
-        )
+        yield _say("unlike", modes=modes)
 
 
 def _parameters(data: xr.Dataset) -> Iterator[str]:
@@ -161,7 +198,7 @@ def _parameters(data: xr.Dataset) -> Iterator[str]:
             for j in own[:NAMED]
         ]
         if own:
-            yield f"{trust.capitalize()} (90 %): {_some(parts, len(own))}."
+            yield _say(trust, parameters=_some(parts, len(own)))
 
 
 def _interval(value: float, low: float, high: float) -> str:
@@ -189,20 +226,10 @@ def _front(data: xr.Dataset) -> Iterator[str]:
     with np.errstate(divide="ignore", invalid="ignore"):
         expected = np.where(misfit > 0, best["error"].values / misfit, np.inf)
     change = np.ptp(error, axis=0) / expected
-    if (change < SMALL).any():
-        i = int(np.argmin(change))
-        name = data["group"].values[i]
-        yield (
-            f"Along the front errors of {name} change by {change[i]:.2g} of those expected: the "
-            "compromise hardly matters."
-        )
-    else:
-        i = int(np.argmax(change))
-        name = data["group"].values[i]
-        yield (
-            f"The front is a compromise: along it errors of {name} change by {change[i]:.2g} times "
-            "those expected."
-        )
+    agree = (change < SMALL).any()
+    i = int(np.argmin(change) if agree else np.argmax(change))
+    kind = "agree" if agree else "compromise"
+    yield _say(kind, group=data["group"].values[i], change=change[i])
 
 
 def _predictions(data: xr.Dataset) -> Iterator[str]:
@@ -214,9 +241,15 @@ def _predictions(data: xr.Dataset) -> Iterator[str]:
         if interval is None or not np.isfinite([least, greatest]).all():
             continue
         low, high = interval.sel(statistic=["5 %", "95 %"]).values[:, place]
-        yield (
-            f"{each.name}, {each.places[0]}: {variable.key} {low:.3g} to {high:.3g} (90 %), "
-            f"{least:.3g} to {greatest:.3g} over the front."
+        yield _say(
+            "prediction",
+            name=each.name,
+            place=each.places[0],
+            quantity=variable.key,
+            low=low,
+            high=high,
+            least=least,
+            greatest=greatest,
         )
 
 
@@ -235,10 +268,10 @@ def _next(data: xr.Dataset) -> Iterator[str]:
             data["candidate_frequency"].values[c],
         )
         what = f"at sensor {sensor}" if sensor else f"the mode near {frequency:.3g} Hz"
-        yield f"Measure {what}: the interval of {name} becomes {100 * gain[c]:.0f} % narrower."
+        yield _say("measure", what=what, name=name, gain=100 * gain[c])
     lines = _closed(data["parameter"].values.tolist(), data["sample_theta"].values, trust.tolist())
     if lines:
-        yield f"Or leave open less, in [[parameter]] of {_some(lines[:NAMED], len(lines), '; ')}."
+        yield _say("leave-open-less", lines=_some(lines[:NAMED], len(lines), "; "))
 
 
 def _closed(names: Sequence[str], samples: Floats, trust: Sequence[str]) -> list[str]:

@@ -53,7 +53,10 @@ def front_scatter(
     a: Floats,
     sizes: Floats,
 ) -> dict[str, Scatter]:
-    """Return the scatter of the points for which it is defined, by label."""
+    """Return the scatter of the points for which it is defined, by label.
+
+    A point of which the solver knows no weights, as where the objectives jump, has none.
+    """
     level_of: dict[int, Floats] = {}  # changes of the least value of each objective
     ends: dict[str, tuple[Floats, Floats]] = {}
     out: dict[str, Scatter] = {}
@@ -76,7 +79,7 @@ def front_scatter(
             case "level" if role.objective in level_of:
                 dv = (1 + role.tolerance) * level_of[role.objective]
                 conditions = level(point, role.objective, dv, noise)
-            case "boundary" if beta is not None and {*role.ends} <= set(ends):
+            case "boundary" if beta is not None and w.any() and {*role.ends} <= set(ends):
                 target = _target(role, ends)
                 w, conditions = boundary(point, w, target, beta, noise, role.equations)
             case _:
