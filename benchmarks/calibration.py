@@ -1,6 +1,7 @@
 """How often 90 % intervals of parameters hold the truth, in random simulated tests.
 
     python benchmarks/calibration.py --seeds 1000:1100 [--draws 100] [--wrong] [--few] [--quiet]
+    python benchmarks/calibration.py --seeds 1000:1100 --prior [--quiet]
 
 Seeds 1000 to 1999 are for development. Seeds from 9000 on are for judgement: nobody tunes
 anything on them, and ``--quiet`` prints their rates only.
@@ -10,7 +11,10 @@ parameters, with 2 to 8 modes at 2 to 12 sensors in 1 to 4 data sets; frequencie
 to 3 %, shapes of 1 to 5 % of their greatest component. The errors that are expected are the true
 ones, twice or half of these, in columns ``_std`` or in ``[noise]``. With ``--wrong`` the members of
 a parameter vary by 5 to 10 % about its true value, or springs are missing in the model. With
-``--few`` there are two or three sensors, which hardly tell modes apart.
+``--few`` there are two or three sensors, which hardly tell modes apart. With ``--prior`` the truth
+and the variances of the errors are drawn from their priors, and the ranks of the truth among the
+draws are counted: they are uniform where draws are from the posterior (simulation-based
+calibration, Talts et al. 2018, arXiv:1804.06788). No test is left out then.
 
 ``held`` is the share of parameters of which the interval holds the truth, ``old`` that of Laplace's
 approximation about optimal weights, where these exist. ``far`` are the parameters that are called
@@ -26,6 +30,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.stats
 
 import modefront as mf
 from modefront._typing import Floats
@@ -42,6 +47,8 @@ from modefront.work.task import IMMEDIATE
 
 BOUNDS = (0.3, 3.0)
 STARTS = 6
+BINS = 10
+WEIGHT = NoisePrior().weight
 
 
 @dataclass(frozen=True)
@@ -98,7 +105,7 @@ def members(kind: str, rng: np.random.Generator) -> tuple[int, list[Floats]]:
 
 # 62 lines: one choice after the other.
 def case(
-    seed: int, wrong: bool, few: bool = False
+    seed: int, wrong: bool = False, few: bool = False, prior: bool = False
 ) -> tuple[mf.UpdatingProblem, NoisePrior, Floats, tuple[str, ...]]:
     """Return a simulated test, what is expected of its errors, the truth and its classes."""
     rng = np.random.default_rng(seed)
@@ -107,7 +114,7 @@ def case(
     p = min(int(rng.integers(2, 21)), len(parts))
     owner = np.sort(np.append(np.arange(p), rng.integers(0, p, len(parts) - p)))
     names = tuple(f"k{j}" for j in range(p))
-    truth = rng.uniform(0.6, 1.6, p)
+    truth = rng.uniform(*BOUNDS, p) if prior else rng.uniform(0.6, 1.6, p)
     factors = truth[owner]
     if wrong and rng.random() < 0.7:
         share = rng.uniform(0.05, 0.1)
@@ -131,11 +138,12 @@ def case(
     true = mf.matrices(["x"], {"x": K}, {"base": np.diag(mass)}, places).modes(np.ones(1), modes)
     sets = int(rng.integers(1, 5))
     sf, ss = np.exp(rng.uniform(np.log(0.002), np.log(0.03))), rng.uniform(0.01, 0.05)
-    f = true.frequency * (1 + sf * rng.normal(size=(sets, modes)))
+    size = np.sqrt(WEIGHT / rng.chisquare(WEIGHT, 2)) if prior else np.ones(2)
+    f = true.frequency * (1 + size[0] * sf * rng.normal(size=(sets, modes)))
     clean = true.phi.T
     top = np.abs(clean).max(axis=1)[:, None]
-    phi = clean + ss * top * rng.normal(size=(sets, *clean.shape))
-    factor = float(rng.choice([0.5, 1.0, 2.0]))
+    phi = clean + size[1] * ss * top * rng.normal(size=(sets, *clean.shape))
+    factor = 1.0 if prior else float(rng.choice([0.5, 1.0, 2.0]))
     std = bool(rng.random() < 0.5)
     data = mf.modal_data(
         f,
@@ -147,7 +155,7 @@ def case(
     groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     parameters = [mf.Parameter(name, nominal=1.0, bounds=BOUNDS) for name in names]
     problem = mf.updating_problem(model, data, groups, parameters=parameters)
-    prior = NoisePrior() if std else NoisePrior(frequency=factor * sf, shape=factor * ss)
+    expected = NoisePrior() if std else NoisePrior(frequency=factor * sf, shape=factor * ss)
     count = modes * len(places)
     size = "p < modes" if p < modes else "p < data" if p < count else "p >= data"
     classes = (
@@ -155,7 +163,27 @@ def case(
         f"expected x {factor:g}",
         "2, 3 sensors" if len(places) < 4 else "4+ sensors",
     )
-    return problem, prior, truth, classes
+    return problem, expected, truth, classes
+
+
+def ranks(seed: int, draws: int, few: bool) -> list[int]:
+    """Return how many of ``draws`` draws are below the truth, for each parameter."""
+    problem, prior, truth, _ = case(seed, few=few, prior=True)
+    noise = prior.of(problem, mf.Uncertainty().of(problem.data))
+    assert noise is not None
+    known = list(np.random.default_rng([seed, 1]).uniform(*BOUNDS, (STARTS, truth.size)))
+    best = most_probable(problem, noise, known, IMMEDIATE)[0]
+    samples = draw_models(noise, best.theta, draws, seed, IMMEDIATE).theta
+    return [int(x) for x in (samples < truth).sum(axis=0)]
+
+
+def histogram(found: Sequence[int], draws: int) -> str:
+    """Return the ranks in bins, and how probable it is that uniform ones are farther from even."""
+    counts = np.histogram(found, BINS, (0, draws + 1))[0]
+    return (
+        f"ranks of {len(found)} parameters in {BINS} bins: {counts.tolist()}, "
+        f"probability if uniform {scipy.stats.chisquare(counts).pvalue:.2g}"
+    )
 
 
 def judge(seed: int, draws: int, wrong: bool, few: bool) -> list[Verdict]:
@@ -233,9 +261,17 @@ def main() -> None:
     parser.add_argument("--wrong", action="store_true")
     parser.add_argument("--quiet", action="store_true")
     parser.add_argument("--few", action="store_true")
+    parser.add_argument("--prior", action="store_true")
     options = parser.parse_args()
+    seeds = range(*map(int, options.seeds.split(":")))
+    if options.prior:
+        of = {seed: ranks(seed, options.draws, options.few) for seed in seeds}
+        if not options.quiet:
+            print(*(f"{seed}: {found}" for seed, found in of.items()), sep="\n")
+        print(histogram([x for found in of.values() for x in found], options.draws))
+        return
     verdicts, refused = [], 0
-    for seed in range(*map(int, options.seeds.split(":"))):
+    for seed in seeds:
         began = time.process_time()
         found = judge(seed, options.draws, options.wrong, options.few)
         verdicts += found

@@ -125,3 +125,10 @@ def test_results_have_the_range_over_stiffness_and_mass_scaled_together() -> Non
     assert least == pytest.approx((value / (2.0 / theta.max(axis=1))).min(), rel=1e-4)
     assert greatest == pytest.approx((value / (0.5 / theta.min(axis=1))).max(), rel=1e-4)
     assert spread > 3
+
+
+def test_of_two_extremes_along_equivalent_models_the_farther_one_is_found() -> None:
+    """x = y = z = t: of q = (t - 1.1)^2 the greatest value is at t = 2, not at 0.5 nearby."""
+    least, greatest = along(Ratios(), lambda x: float((x[0] - 1.1) ** 2), np.full((1, 3), 0.9))
+    assert least == pytest.approx(0.0, abs=1e-8)
+    assert greatest == pytest.approx(0.9**2, rel=1e-6)

@@ -18,7 +18,9 @@ With a slack s models are nearly as good, and for all i
 .. math:: \min \pm q(\theta) \quad\text{subject to}\quad J_i(\theta) \le (1 + s) J_i(\theta_P) .
 
 The constraints are a penalty on the greatest violation, exact from some factor on, which grows
-until they are met. The next point starts where the last one ended, relative to it.
+until they are met. A function along a set of models has several extremes: from the first point
+with others, the search starts at the point and at the best end of an open direction; the next point
+starts where the last one ended, relative to it.
 """
 
 from __future__ import annotations
@@ -79,6 +81,18 @@ class Equivalent:
         U, sigma, Vt = np.linalg.svd(dr)
         k = int((sigma > RANK * sigma.max(initial=0.0)).sum())
         return U[:, :k].T / sigma[:k, None], Vt[k:].T
+
+    def ends(self) -> list[Floats]:
+        """Return the models (p,) at the bounds to which open directions lead."""
+        out, span = [], self.span
+        lower, upper = self.problem.lower, self.problem.upper
+        for v in self.equations()[1].T:
+            for step in (v * span, -v * span):
+                moves = np.abs(step) > RANK * span
+                room = np.where(step > 0, upper, lower)[moves] - self.model.theta[moves]
+                reach = max(float((room / step[moves]).min()), 0.0)
+                out.append(np.clip(self.model.theta + reach * step, lower, upper))
+        return out
 
     def _lengths(self) -> list[float]:
         parts = [np.linalg.norm(x.dr * self.span) for x in self.model.residuals]
@@ -170,6 +184,10 @@ class Equivalent:
         return out / self.span
 
 
+def _finite(value: float) -> float:
+    return value if np.isfinite(value) else np.inf
+
+
 # 6 arguments: the problem, the models, and what is sought.
 def extreme(
     problem: Problem, thetas: Floats, q: Values, sign: float, slack: float, step: float
@@ -185,11 +203,14 @@ def extreme(
         if not (here.feasible and np.isfinite(value)):
             continue
         size = abs(value) if value else 1.0
-        start = np.clip(theta + shift, problem.lower, problem.upper)
         each = Equivalent(problem, here, slack, step)
-        found = each.extreme(q, size, sign, start)
-        if found is None and shift.any():
-            found = each.extreme(q, size, sign, theta)
+        start = np.clip(theta + shift, problem.lower, problem.upper)
+        found = each.extreme(q, size, sign, start) if shift.any() else None
+        if found is None:
+            end = min(each.ends(), key=lambda x: _finite(sign * q(x)), default=theta)
+            tried = [each.extreme(q, size, sign, start) for start in (theta, end)]
+            met = [x for x in tried if x is not None]
+            found = min(met, key=lambda x: sign * float(x.J[-1]), default=None)
         shift = np.zeros(theta.size) if found is None else found.theta - theta
         ends = [value] if found is None else [value, float(found.J[-1]) * size]
         best = sign * float(np.nanmin([sign * best, *(sign * x for x in ends)]))
