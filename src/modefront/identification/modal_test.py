@@ -109,7 +109,8 @@ class IdentifiedTest:
         report = path.with_name(path.stem + "-identification.json")
         if path.suffix.lower() == ".uff":
             modes = modal_modes(self)
-            write_uff55(path, self.names, modes, self.data.sensors)
+            pairs = [each.pairs for each in self.identified]
+            write_uff55(path, self.names, modes, self.data.sensors, pairs)
         else:
             sensors = self.data.sensors
             clashing = [name for name in sensors if is_reserved(name, sensors)]

@@ -109,7 +109,8 @@ def identify(
     if len(seeds):
         start = selection.seeded(task, fit, 2 * np.pi * np.array(seeds) / omega)
         fit = selection.refit(task, *start, *fine)
-    return _result(_Solution(data, task, fit, omega, size, diagram))
+    gain = selection.gains(task, fit)
+    return _result(_Solution(data, task, selection.paired(task, fit), gain, omega, size, diagram))
 
 
 def weighting(data: FrequencyResponses) -> Weighting:
@@ -213,11 +214,12 @@ def _reweighted(task: Problem, fit: Fit, kind: Weighting) -> Problem:
 
 @dataclass(frozen=True)
 class _Solution:
-    """The last fit to the data, with its units of frequency and of functions."""
+    """The last fit to the data, the gain of its modes before pairs have one pole, and its units."""
 
     data: FrequencyResponses
     task: Problem
     fit: Fit
+    gain: Floats
     omega: float
     size: float
     diagram: StabilisationDiagram
@@ -270,7 +272,7 @@ def _evidence(
 ) -> list[Evidence]:
     """Return what speaks for every mode; only those that are ``kept`` are neighbours."""
     task, fit = solution.task, solution.fit
-    gain, least = selection.gains(task, fit), selection.needed(task)
+    gain, least = solution.gain, selection.needed(task)
     shares = support(solution.diagram, fit.model.lam * solution.omega, gain)
     visible, mac = _visibility(task, fit), auto_mac(fit.model.phi)
     spacing = float(np.median(np.diff(solution.data.frequency)))
@@ -289,14 +291,25 @@ def _evidence(
         if mode.frequency_std > half or mode.damping_std > mode.damping:
             flags.append("frequency or damping hardly determined")
         for k in kept:
-            other = estimates[k].frequency
-            near = k != r and abs(other - mode.frequency) < NEIGHBOURS * mode.frequency
-            if near and len(fit.model.phi[r]) > 1 and mac[r, k] > selection.SAME:
+            other = estimates[k]
+            apart = abs(other.frequency - mode.frequency)
+            if k == r or apart > NEIGHBOURS * mode.frequency:
+                continue
+            if other.pole == mode.pole:
+                flags.append("one of a pair: both shapes are a basis of a plane")
+            elif len(fit.model.phi[r]) > 1 and mac[r, k] > selection.SAME:
                 flags.append(
-                    f"shape of {other:.5g} Hz (MAC {mac[r, k]:.2f}): one peak split in two, or "
-                    "sensors that cannot tell them apart"
+                    f"shape of {other.frequency:.5g} Hz (MAC {mac[r, k]:.2f}): one peak split in "
+                    "two, or sensors that cannot tell them apart"
                 )
-        out.append(Evidence(gain[r] / least, shares[r], visible[r], tuple(flags)))
+            elif len(task.H) == 1 and apart < max(half, other.damping * other.frequency):
+                flags.append(
+                    f"within the half bandwidth of {other.frequency:.5g} Hz: one peak split in "
+                    "two, or two modes that one reference cannot tell apart"
+                )
+        out.append(
+            Evidence(float(gain[r] / least), float(shares[r]), float(visible[r]), tuple(flags))
+        )
     return out
 
 
