@@ -209,6 +209,8 @@ def backward(task: Problem, fit: Fit, least: float, count: int | None = None) ->
         gain, lam = gains(task, fit), fit.model.lam
         weak = gain < least if count is None else gain.argsort().argsort() < len(gain) - count
         gone = doubles(lam, fit.model.phi, gain)
+        if gone.any():  # shapes of a pair may be alike by chance
+            gone[[k for pair in paired(task, fit).model.pairs for k in pair]] = False
         for r in gain.argsort()[: weak.sum()]:  # neighbours may stand for one and the same mode
             gone[r] |= (alike(lam[r], lam[gone]) < ALONE).all()
         if not gone.any():
