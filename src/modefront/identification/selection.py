@@ -98,6 +98,10 @@ SAME = 0.95
 APART = 0.01
 """Probability that two modes of one pole are taken for modes of two."""
 
+CLEARLY = 100.0
+"""Squared difference of two poles in its deviations from which on they are no pair: close poles
+are not normally distributed, and are told apart by the likelihood below."""
+
 PAIR_FREEDOM = 6
 """Real numbers of a matrix, 2 by 2, beyond those of one pole."""
 
@@ -210,7 +214,7 @@ def backward(task: Problem, fit: Fit, least: float, count: int | None = None) ->
         weak = gain < least if count is None else gain.argsort().argsort() < len(gain) - count
         gone = doubles(lam, fit.model.phi, gain)
         if gone.any():  # shapes of a pair may be alike by chance
-            gone[[k for pair in paired(task, fit).model.pairs for k in pair]] = False
+            gone[[k for pair in paired(task, fit, gone).model.pairs for k in pair]] = False
         for r in gain.argsort()[: weak.sum()]:  # neighbours may stand for one and the same mode
             gone[r] |= (alike(lam[r], lam[gone]) < ALONE).all()
         if not gone.any():
@@ -258,16 +262,23 @@ def standing_out(
     return lam[chosen], L[chosen]
 
 
-def paired(task: Problem, fit: Fit) -> Fit:
+def paired(task: Problem, fit: Fit, among: Bools) -> Fit:
     """Return the fit in which modes are pairs whose poles the data cannot tell apart.
 
-    The closest are tried first. Real parts of the shapes of a pair are orthonormal.
+    The closest are tried first, of which one at least is ``among`` some, (modes,), and which are
+    not clearly apart by their deviations. Real parts of the shapes of a pair are orthonormal.
     """
     lam, pairs = fit.model.lam, fit.model.pairs
     apart = np.abs(lam[:, None] - lam) / np.maximum.outer(-lam.real, -lam.real)
     close = np.argwhere(np.triu(apart < 1, 1)) if len(task.H) > 1 else np.zeros((0, 2), int)
+    C = np.linalg.pinv(fit.information, hermitian=True) * noise_level(task, fit) / 2
     for r, s in close[apart[tuple(close.T)].argsort()].tolist():
-        if {r, s} & {k for pair in pairs for k in pair}:
+        if {r, s} & {k for pair in pairs for k in pair} or not among[[r, s]].any():
+            continue
+        difference = np.array([(lam[r] - lam[s]).real, (lam[r] - lam[s]).imag])
+        both = np.zeros((2, len(C)))
+        both[[0, 1], [2 * r, 2 * r + 1]], both[[0, 1], [2 * s, 2 * s + 1]] = 1.0, -1.0
+        if difference @ np.linalg.solve(both @ C @ both.T, difference) > CLEARLY:
             continue
         model = fit.model
         start = model.lam.copy()
