@@ -305,7 +305,7 @@ function page(report: Identified): void {
   const warnings = h("ul", {}, ...report.warnings.map((text) => h("li", {}, text)));
   document.body.replaceChildren(
     h("header", {}, title, themeButton()),
-    h("main", {}, report.sets.length > 1 ? sets : null, views, section("warnings", "What to look at", warnings)),
+    h("main", {}, report.sets.length > 1 ? sets : null, views, report.warnings.length ? section("warnings", "What to look at", warnings) : null),
     node,
   );
   show(0);
