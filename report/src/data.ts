@@ -92,7 +92,8 @@ export interface Report {
   fronts: Front[];
 }
 
-async function inflated(text: string): Promise<ArrayBuffer> {
+/** Returns what gzip in base64 holds. */
+export async function inflated(text: string): Promise<ArrayBuffer> {
   const packed = Uint8Array.from(atob(text.trim()), (c) => c.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   return new Response(stream).arrayBuffer();

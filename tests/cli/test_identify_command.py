@@ -46,7 +46,7 @@ def test_an_ambient_test_of_three_setups_is_one_set(tmp_path: Path) -> None:
     true = np.array([[4.7357, 13.089, 17.957]])
     assert (np.abs(result.frequency - true) < 3 * result.frequency_std).all()
     assert (result.shape_std > 0).all()
-    assert len(list(pictures.iterdir())) == 3
+    assert len(list(pictures.iterdir())) == 4
     report = json.loads((tmp_path / "again-identification.json").read_text())
     assert "harmonic" in report["sets"][0]["rejected"][0]["reason"]
     assert any("standard deviations of ambient tests" in text for text in report["warnings"])
@@ -57,7 +57,7 @@ def test_universal_files_are_written(tmp_path: Path) -> None:
     write("hammer-test", tmp_path)
     pictures = tmp_path / "pictures"
     _invoke(tmp_path / "m0-set1-floor3.csv", "-o", tmp_path / "m.uff", "--figures", pictures)
-    assert len(list(pictures.iterdir())) == 3
+    assert len(list(pictures.iterdir())) == 4
     sets = pyuff.UFF(str(tmp_path / "m.uff")).read_sets()
     assert [part["type"] for part in sets] == [55, 55, 55]
     assert abs(sets[0]["eig"]) / (2 * np.pi) == pytest.approx(4.7357, rel=1e-3)

@@ -10,6 +10,7 @@ from modefront.data.frf_csv import read_test_csv
 from modefront.data.modal_test import read_test
 from modefront.errors import InputError
 from modefront.identification.methods.hammer import weighting
+from modefront.study.examples import write_example
 
 F = np.arange(0.1, 20.05, 0.1)
 
@@ -184,3 +185,23 @@ def test_a_table_that_ends_within_its_last_number_is_refused(tmp_path: Path, end
             read_test_csv(path, "b")
     path.write_text(text.rstrip("\n"))
     np.testing.assert_array_equal(read_test_csv(path, "b").channels[0].H, right.channels[0].H)
+
+
+@pytest.mark.parametrize(
+    ("lines", "says"),
+    [
+        ("[identify]\nkeep = [0]", "a list of numbers of modes, from 1"),
+        ('[identify]\nseed = ["4 Hz"]', "a list of frequencies in Hz"),
+        ("[geometry]\nfloor1 = [0, 0, 1]", "x, y, z and a direction, six numbers"),
+        ("[geometry]\nfloor1 = [0, 0, 1, 0, 0, 0]", "a direction that is not zero"),
+        ("[geometry]\nflor1 = [0, 0, 1, 1, 0, 0]", "did you mean 'floor1'"),
+    ],
+)
+def test_modes_by_hand_and_places_that_are_wrong(tmp_path: Path, lines: str, says: str) -> None:
+    write_example("hammer-test", tmp_path)
+    test = tmp_path / "test-m0.toml"
+    text = test.read_text(encoding="utf-8")
+    whole = "" if lines.startswith("[identify]") else "[identify]\n"
+    test.write_text(text.replace("[identify]\n", f"{lines}\n{whole}", 1), encoding="utf-8")
+    with pytest.raises(InputError, match=says):
+        read_test(test)

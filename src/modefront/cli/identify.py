@@ -15,13 +15,14 @@ MOST_FINDINGS = 8
 """Lines of what to look at; a file beside holds all."""
 
 
-# 7 arguments: the options of the command.
+# 8 arguments: the options of the command.
 def run_identify(
     path: Path,
     output: Path,
     band: tuple[float, float] | None,
     figures: Path | None,
     *,
+    report: Path | None = None,
     keep: Sequence[int] = (),
     drop: Sequence[int] = (),
     seeds: Sequence[float] = (),
@@ -38,6 +39,10 @@ def run_identify(
         from modefront.plots import identification_figures
 
         written += identification_figures(test.names, test.identified, figures)
+    if report is not None:
+        from modefront.reports.identification import write_identification
+
+        written.append(write_identification(test, report))
     if test.modes is not None:
         _print_modes(screen, test, test.modes)
     findings = test.warnings
@@ -51,8 +56,8 @@ def run_identify(
         say(f"wrote {file}")
     if test.modes is None:
         raise UnfinishedError("no mode was found in the band: is it right? --seed places modes")
-    if figures is None:
-        say_next("identify", path, "-o", output, "--figures", "pictures")
+    if report is None and figures is None:
+        say_next("identify", path, "-o", output, "--report", "test.html")
     else:
         say(f'next: [data] file = "{output}" in study.toml, then modefront check study.toml')
 

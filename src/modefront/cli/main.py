@@ -298,7 +298,13 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
 @click.option(
     "--figures",
     type=click.Path(path_type=Path),
-    help="Folder for the stabilisation diagram, the synthesised functions and the auto-MAC.",
+    help="Folder for pictures: stabilisation diagram, mode indicators, functions, auto-MAC.",
+)
+@click.option(
+    "--report",
+    type=click.Path(path_type=Path),
+    metavar="FILE.html",
+    help="One HTML file to look at, in which poles are chosen for the test file.",
 )
 @click.option("--keep", type=Numbers(int), metavar="1,2,…", help="Modes that stay, of the table.")
 @click.option("--drop", type=Numbers(int), metavar="7,…", help="Modes that do not stay.")
@@ -310,14 +316,20 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
     help="Frequencies in Hz at which there is to be a mode, whatever its evidence.",
 )
 def identify(
-    test: Path, output: Path, band: tuple[float, float] | None, figures: Path | None, **chosen: Any
+    test: Path,
+    output: Path,
+    band: tuple[float, float] | None,
+    figures: Path | None,
+    report: Path | None,
+    **chosen: Any,
 ) -> None:
     """Turn the frequency response functions of TEST into modal data."""
     from modefront.cli.identify import run_identify
 
     if band and band[0] >= band[1]:
         raise click.UsageError(f"--band: expected LOW below HIGH, found {band[0]:g} {band[1]:g}")
-    run_identify(test, output, band, figures, **{k: v or () for k, v in chosen.items()})
+    by_hand = {k: v or () for k, v in chosen.items()}
+    run_identify(test, output, band, figures, report=report, **by_hand)
 
 
 @cli.command("import")

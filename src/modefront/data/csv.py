@@ -8,6 +8,9 @@ is checked, and used by nothing so far.
 Columns are separated by commas, semicolons or tabs, whichever the header has most of, or as a
 line ``sep=;`` before it says. Where they are not separated by commas, numbers may have decimal
 commas, as spreadsheets write them. Empty columns without names at the end are left out.
+
+Two modes of one frequency have any basis of a plane as their shapes. A column ``pair`` says so, by
+the number of the other mode.
 """
 
 from __future__ import annotations
@@ -34,6 +37,8 @@ from modefront.text import NAME, clean
 
 KEYS = ("set", "mode")
 QUANTITIES = ("frequency", "damping")
+PAIR = "pair"
+
 OPTIONAL = ("set", "damping")
 """Columns that may be left out: all rows are of one data set then, no damping is measured."""
 
@@ -80,7 +85,7 @@ SHAPES = 1 / LARGEST_NUMBER, LARGEST_NUMBER
 def is_reserved(name: str, sensors: Collection[str]) -> bool:
     """Return whether a column of this name would be another one than that of a sensor."""
     base = name.removesuffix(STD)
-    return name in (*KEYS, *QUANTITIES) or (base != name and base in (*QUANTITIES, *sensors))
+    return name in (*KEYS, PAIR, *QUANTITIES) or (base != name and base in (*QUANTITIES, *sensors))
 
 
 def renamed(
@@ -190,17 +195,22 @@ def write_csv(
 
     Modes of which a data set has neither frequency nor shape are left out.
     """
-    stds = ("frequency", "damping", *data.sensors)
-    header = [*KEYS, *QUANTITIES, *data.sensors, *(name + STD for name in stds)]
+    columns = (*QUANTITIES, *data.sensors)
+    header = [*KEYS, *columns, *(name + STD for name in columns)]
+    header += [PAIR] * bool(data.pairs)
+    other = {a: b for pair in data.pairs for a, b in (pair, pair[::-1])}
     unknown = np.full(data.frequency.shape, np.nan) if damping_std is None else damping_std
     rows = []
     for k, name in enumerate(data.sets):
-        for r, mode in enumerate(data.modes):
-            values = [data.frequency[k, r], data.damping[k, r], *data.shape[k, r]]
-            values += [data.frequency_std[k, r], unknown[k, r], *data.shape_std[k, r]]
-            if np.isfinite(values).any():
-                texts = ["" if math.isnan(value) else f"{value:.{digits}g}" for value in values]
-                rows.append([name, str(mode), *texts])
+        values = np.column_stack([data.frequency[k], data.damping[k], data.shape[k]])
+        stds = np.column_stack([data.frequency_std[k], unknown[k], data.shape_std[k]])
+        known = np.isfinite(values).any(axis=1)
+        here = {mode for mode, any_known in zip(data.modes, known, strict=True) if any_known}
+        for mode, row in zip(data.modes, np.hstack([values, stds]), strict=True):
+            if mode in here:
+                texts = ["" if math.isnan(value) else f"{value:.{digits}g}" for value in row]
+                partner = str(other[mode]) if other.get(mode) in here else ""
+                rows.append([name, str(mode), *texts, *[partner] * bool(data.pairs)])
     write_table(path, [header, *rows])
 
 
@@ -274,7 +284,7 @@ def _repeated(
 def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[str, str, str]]:
     """Return (column, expected, found) for everything that is wrong with the header."""
     required = (*KEYS, *QUANTITIES, *sensors)
-    known = dict.fromkeys((*required, *(name + STD for name in (*QUANTITIES, *sensors))))
+    known = dict.fromkeys((*required, PAIR, *(name + STD for name in (*QUANTITIES, *sensors))))
     counts = Counter(header)
     expected = "the name of a quantity or of a sensor of the model"
     unknown = [name for name in counts if name not in known]
@@ -358,6 +368,7 @@ def _assemble(
     sensors: tuple[str, ...],
 ) -> ModalData:
     """Return the data of all rows; raises InputError where they are spread over too many sets."""
+    pairs = _pairs(path, keys, columns[PAIR]) if PAIR in columns and PAIR not in sensors else ()
     sets = tuple(dict.fromkeys(name for _, name, _ in keys))
     modes = tuple(sorted({mode for _, _, mode in keys}))
     size = 8 * len(sets) * len(modes) * len(columns)
@@ -384,4 +395,26 @@ def _assemble(
         collect(*sensors),
         collect("frequency" + STD)[..., 0],
         collect(*(name + STD for name in sensors)),
+        pairs,
     )
+
+
+def _pairs(
+    path: Path, keys: Sequence[tuple[int, str, int]], other: Floats
+) -> tuple[tuple[int, int], ...]:
+    """Return the pairs of modes; raises InputError where the rows of both do not say so."""
+    named = {(name, mode): x for (_, name, mode), x in zip(keys, other, strict=True) if x == x}
+    lines = {(name, mode): line for line, name, mode in keys}
+    faults = [
+        _fault(str(path), lines[name, mode], PAIR, "the other mode of a pair of this set", f"{x:g}")
+        for (name, mode), x in named.items()
+        if x in (mode, math.inf) or x % 1 or named.get((name, int(x))) != mode
+    ]
+    pairs = {tuple(sorted((mode, int(x)))) for (_, mode), x in named.items()}
+    members = [mode for pair in pairs for mode in pair]
+    if not faults and len(members) > len(set(members)):
+        twice = next(mode for mode in members if members.count(mode) > 1)
+        expected = "each mode in one pair, the same in all sets"
+        faults.append(Fault(str(path), f"column {PAIR!r}", expected, f"mode {twice} in two"))
+    refuse(faults)
+    return tuple(sorted((a, b) for a, b in pairs))

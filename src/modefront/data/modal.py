@@ -51,6 +51,7 @@ class ModalData:
     damping : (sets, modes) damping ratios
     shape : (sets, modes, sensors) mode shape components, in any scale and with any sign
     frequency_std, shape_std : standard deviations, of the shape of ``frequency`` and ``shape``
+    pairs : numbers of modes of one frequency, whose shapes are some basis of a plane
     """
 
     sets: tuple[str, ...]
@@ -61,6 +62,7 @@ class ModalData:
     shape: Floats
     frequency_std: Floats
     shape_std: Floats
+    pairs: tuple[tuple[int, int], ...] = ()
 
     __repr__ = brief
     _repr_html_ = as_html

@@ -8,10 +8,13 @@ test of one set.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
+from modefront._typing import Floats
 from modefront.data.blows import Averaged, Contents, averaged_blows
 from modefront.data.channels import Assembled, Channel, assemble
 from modefront.data.frf_csv import read_test_csv
@@ -34,6 +37,21 @@ MOST_MODES = 200
 
 
 @dataclass(frozen=True)
+class ByHand:
+    """Modes that are chosen by hand.
+
+    Attributes
+    ----------
+    keep, drop : numbers of the modes that stay alone, and that do not
+    seeds : frequencies in Hz at which there is to be a mode
+    """
+
+    keep: tuple[int, ...] = ()
+    drop: tuple[int, ...] = ()
+    seeds: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
 class DataSet:
     """One data set of a test: its name, its functions, and warnings about them."""
 
@@ -52,6 +70,8 @@ class ModalTest:
     modes : their number, or None where it is to be found
     sets : the data sets with functions
     setups : the records of an ambient test, which has no functions
+    chosen : what is chosen by hand
+    places : (3,) positions of sensors and (3,) directions, by name; of sensors that are placed
     """
 
     name: str
@@ -59,6 +79,8 @@ class ModalTest:
     modes: int | None
     sets: tuple[DataSet, ...]
     setups: tuple[Records, ...] = ()
+    chosen: ByHand = ByHand()
+    places: Mapping[str, tuple[Floats, Floats]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -110,7 +132,8 @@ def _from_toml(path: Path) -> ModalTest:
     if ambient:
         return _ambient(root, name or path.stem, settings)
     settings = replace(settings, windows=_impact_table(root))
-    band, modes = _identify_table(root)
+    band, modes, chosen = _identify_table(root)
+    places = _geometry_table(root)
     sets = _set_tables(root, path.parent)
     root.close()
     if faults:
@@ -128,12 +151,14 @@ def _from_toml(path: Path) -> ModalTest:
             raise InputError(faults)
         its_own = replace(settings, decay=decay)
         data_sets.append(DataSet(label, _assembled(contents, label, its_own, root)))
-    return ModalTest(name or path.stem, band, modes, tuple(data_sets))
+    _check_places(root, places, (r for part in data_sets for r in part.assembled.data.responses))
+    return ModalTest(name or path.stem, band, modes, tuple(data_sets), chosen=chosen, places=places)
 
 
 def _ambient(root: Table, name: str, settings: _Settings) -> ModalTest:
     """Return an ambient test, of which every set is a setup."""
-    band, modes = _identify_table(root)
+    band, modes, chosen = _identify_table(root)
+    places = _geometry_table(root)
     folder, setups = Path(root.file).parent, []
     for number, table in enumerate(root.tables("set", required=True), start=1):
         files = table.take("files", "a list of files", _are_names, ...) or []
@@ -162,7 +187,8 @@ def _ambient(root: Table, name: str, settings: _Settings) -> ModalTest:
             found = ", ".join(each.sensors[:8])
             raise InputError(Fault(root.file, f"[[set]] {each.name!r}", expected, found))
         joined_to.update(each.sensors)
-    return ModalTest(name, band, modes, (), tuple(records))
+    _check_places(root, places, joined_to)
+    return ModalTest(name, band, modes, (), tuple(records), chosen, places)
 
 
 def _test_table(root: Table) -> tuple[str, bool, _Settings]:
@@ -184,10 +210,10 @@ def _test_table(root: Table) -> tuple[str, bool, _Settings]:
     return title, ambient, _Settings(quantity, sensors)
 
 
-def _identify_table(root: Table) -> tuple[tuple[float, float] | None, int | None]:
+def _identify_table(root: Table) -> tuple[tuple[float, float] | None, int | None, ByHand]:
     table = root.table("identify", default=None)
     if not table:
-        return None, None
+        return None, None, ByHand()
     expected = "a band [low, high] in Hz, 0 <= low < high"
     limits = table.value("band", numbers(expected, array(NOT_NEGATIVE, 2, 2), rising), None)
     modes = table.take(
@@ -196,9 +222,46 @@ def _identify_table(root: Table) -> tuple[tuple[float, float] | None, int | None
         lambda x: x == "auto" or (type(x) is int and 1 <= x <= MOST_MODES),
         "auto",
     )
+    modes_expected = "a list of numbers of modes, from 1"
+    whole = [
+        table.value(key, numbers(modes_expected, array({"type": "integer", "minimum": 1})), ())
+        for key in ("keep", "drop")
+    ]
+    expected = "a list of frequencies in Hz"
+    seeds = table.value("seed", numbers(expected, array(NOT_NEGATIVE)), ())
     table.close()
     band = (limits[0], limits[1]) if limits else None
-    return band, None if modes == "auto" else int(modes)
+    keep, drop = (tuple(map(int, chosen or ())) for chosen in whole)
+    return band, None if modes == "auto" else int(modes), ByHand(keep, drop, tuple(seeds or ()))
+
+
+def _geometry_table(root: Table) -> dict[str, tuple[Floats, Floats]]:
+    """Return the places of ``[geometry]``: sensor = [x, y, z, direction, of three numbers too]."""
+    table = root.table("geometry", default=None)
+    if not table:
+        return {}
+    out = {}
+    six = numbers("x, y, z and a direction, six numbers", array({"type": "number"}, 6, 6))
+    for name in table.values:
+        values = table.value(name, six)
+        if values is None:
+            continue
+        place = np.array(values)
+        size = float(np.linalg.norm(place[3:]))
+        if not size:
+            table.fault(name, "a direction that is not zero", "zeros")
+        out[name] = place[:3], place[3:] / (size or 1.0)
+    table.close()
+    return out
+
+
+def _check_places(root: Table, places: Iterable[str], sensors: Iterable[str]) -> None:
+    known = list(dict.fromkeys(sensors))
+    for name in places:
+        if name not in known:
+            root.fault(f"[geometry] {name}", "a sensor of the files", suggestion(name, known))
+    if root.faults:
+        raise InputError(root.faults)
 
 
 def _impact_table(root: Table) -> Windows | None:

@@ -354,21 +354,25 @@ def write_uff55(
     sets: Sequence[str],
     modes: Sequence[Sequence[tuple[complex, np.ndarray[Any, np.dtype[np.complex128]]]]],
     sensors: Sequence[str],
+    pairs: Sequence[Sequence[tuple[int, int]]] = (),
 ) -> None:
     """Write modes as complex eigenvectors of first order, dataset 55 (analysis type 3).
 
     ``modes`` holds, for every data set, poles in rad/s and complex shapes at the sensors; sensors
-    that are named by node and direction keep both, others are numbered from 1, in X.
+    that are named by node and direction keep both, others are numbered from 1, in X. ``pairs``
+    holds positions of modes of one pole, for every data set; none unless given.
     """
     places = [_place(name, i) for i, name in enumerate(sensors)]
     nodes = list(dict.fromkeys(node for node, _ in places))
     rows, axes = [nodes.index(node) for node, _ in places], [axis for _, axis in places]
     written = []
-    for name, listed in zip(sets, modes, strict=True):
+    for name, listed, paired in zip(sets, modes, pairs or [()] * len(sets), strict=True):
+        other = {a + 1: b + 1 for pair in paired for a, b in (pair, pair[::-1])}
         for number, (pole, phi) in enumerate(listed, start=1):
             values = np.zeros((len(nodes), 3), complex)
             values[rows, axes] = phi
             frequency = f"mode {number}, {abs(pole) / (2 * np.pi):.9g} Hz"
+            frequency += f", pair with mode {other[number]}" if number in other else ""
             texts = (f"set {name}"[:79], frequency, ", ".join(sensors)[:79] or "NONE")
             parameters = (pole.real, pole.imag, 0.0, 0.0, 0.0, 0.0)
             content = dataset_55(texts, number, parameters, nodes, values)

@@ -10,7 +10,8 @@ damping, or of a complex one (3 and 7) with its eigenvalue :math:`\lambda`,
 
 A complex shape is turned in the plane until most of it is real, and its real part is taken. A
 component that is 0 in all modes of a data set was not measured. Modes that come again with the same
-number are those of a further data set; ``set NAME`` in the first line of a dataset says its name.
+number are those of a further data set; ``set NAME`` in the first line of a dataset says its name,
+and ``pair with mode NUMBER`` at the end of one that both shapes are a basis of a plane.
 """
 
 from __future__ import annotations
@@ -79,6 +80,7 @@ class NodalModes:
     axes : (nodes, 3, 3) axes of the components, in rows; NaN where the file does not tell them
     frequency, damping : (sets, modes) in Hz, and ratios; NaN where none
     shape : (sets, modes, nodes, 6) components along X, Y, Z, RX, RY and RZ; NaN if not measured
+    pairs : numbers of modes of one frequency
     """
 
     file: str
@@ -90,6 +92,7 @@ class NodalModes:
     frequency: Floats
     damping: Floats
     shape: Floats
+    pairs: tuple[tuple[int, int], ...] = ()
 
     def local(self, node: int, direction: Floats) -> Floats:
         """Return a direction (6,) of space along the axes of a node, by position."""
@@ -126,7 +129,7 @@ class NodalModes:
         nothing = np.full(shape.shape, np.nan)
         return ModalData(
             *(self.sets, self.modes, tuple(sensors), self.frequency, self.damping, shape),
-            *(nothing[..., 0], nothing),
+            *(nothing[..., 0], nothing, self.pairs),
         )
 
     def place(self, name: str) -> tuple[int, Floats] | None:
@@ -193,7 +196,10 @@ def _integers(line: str, count: int) -> list[int]:
 
 @dataclass(frozen=True, eq=False)
 class _Mode:
-    """One dataset 55: its data set (empty if not given), number, values, and place in the file."""
+    """One dataset 55: its data set (empty if not given), number, values, and place in the file.
+
+    ``other`` is the number of the other mode of a pair, 0 for none.
+    """
 
     set: str
     number: int
@@ -202,6 +208,7 @@ class _Mode:
     nodes: Ints
     shape: Floats
     place: str
+    other: int
 
 
 def _mode(file: str, block: Block, lines: list[str]) -> _Mode:
@@ -239,7 +246,11 @@ def _mode(file: str, block: Block, lines: list[str]) -> _Mode:
         raise InputError(faults)
     named = [m for m in (re.match(r"\s*set (\S.*?)\s*$", line) for line in lines[:5]) if m]
     name = named[0][1] if named else ""
-    return _Mode(name, number, frequency, damping, nodes, shape, place)
+    paired = [
+        m for m in (re.search(r"pair with mode (\d{1,9})\s*$", line) for line in lines[:5]) if m
+    ]
+    other = int(paired[0][1]) if paired else 0
+    return _Mode(name, number, frequency, damping, nodes, shape, place, other)
 
 
 def _values(file: str, block: Block, lines: list[str], size: int) -> tuple[Ints, Floats]:
@@ -353,7 +364,11 @@ def _assembled(
             _check_nodes(file, row, np.intersect1d(row.nodes, list(positions)))
     places = np.array([positions.get(int(node), np.full(3, np.nan)) for node in nodes])
     of_nodes = np.array([axes.get(int(node), np.eye(3)) for node in nodes])
-    return NodalModes(file, sets, modes, nodes, places, of_nodes, frequency, damping, shape)
+    pairs = {(number, row.other) for (_, number), row in placed.items() if number < row.other}
+    return NodalModes(
+        *(file, sets, modes, nodes, places, of_nodes, frequency, damping, shape),
+        tuple(sorted(pair for pair in pairs if pair[1] in modes)),
+    )
 
 
 def _check_nodes(file: str, row: _Mode, nodes: Ints) -> None:

@@ -63,6 +63,34 @@ class UnusedGroup:
         )
 
 
+@dataclass(frozen=True)
+class ComparedPair:
+    """A group compares the shapes of a pair of modes one by one.
+
+    Attributes
+    ----------
+    modes : numbers of the measured modes
+    group : name of the group
+    """
+
+    modes: tuple[int, int]
+    group: str
+    kind = "compared-pair"
+
+    def __str__(self) -> str:
+        """Return the finding and what mends it."""
+        a, b = self.modes
+        return (
+            f"modes {a} and {b} of the data are a pair of one frequency: their shapes are any two "
+            f"of a plane, and group '{self.group}' compares them one by one; write subspace = "
+            f"[{a}, {b}], and the other modes in shape = […]"
+        )
+
+
+Note = DataDirection | UnusedGroup | ComparedPair
+"""What is found where a study is read."""
+
+
 def axis_name(direction: Floats) -> str:
     """Return a direction, (3,) or (6,), in words: an axis with its sign, or a vector."""
     greatest = int(np.argmax(np.abs(direction)))

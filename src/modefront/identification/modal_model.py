@@ -142,6 +142,7 @@ class ModalModel:
     held : (modes,) index of the reference with the greatest factor
     phi : (modes, responses)
     residual : (powers, references, responses)
+    pairs : modes that have one and the same pole; their shapes are a basis of a plane
     """
 
     lam: Complexes
@@ -149,6 +150,7 @@ class ModalModel:
     held: Ints
     phi: Complexes
     residual: Floats
+    pairs: tuple[tuple[int, int], ...] = ()
 
     def __len__(self) -> int:
         return len(self.lam)
@@ -243,7 +245,13 @@ def _pair(front: Complexes, first: Complexes, second: Complexes, out: Complexes)
     np.multiply(1j * front, first - second, out=out[1])
 
 
-def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
+def evaluate(
+    task: Problem,
+    lam: Complexes,
+    L: Complexes,
+    held: Ints,
+    pairs: tuple[tuple[int, int], ...] = (),
+) -> Fit:
     """Return the model with the best shapes for the given poles and participation factors."""
     E = primitives(task, lam)
     M = gram(task, E)
@@ -260,7 +268,7 @@ def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
     right = (G @ lost[..., None])[..., 0]
     c = c + lost
     rho = rho - (lost[None, :, None] @ TM)[:, :, 0]
-    model = _model(lam, L, held, c, len(task.powers))
+    model = replace(_model(lam, L, held, c, len(task.powers)), pairs=pairs)
     row, coefficient = derivatives(model, E.shape[0])
     direct = np.zeros((row.size, row.size))
     for j, i in np.ndindex(M.shape[:2]):
@@ -320,23 +328,27 @@ def maximise(
     L: Complexes,
     most: int = MOST_EVALUATIONS,
     tolerance: float = FINE,
+    pairs: tuple[tuple[int, int], ...] = (),
 ) -> Fit:
     """Return the maximum-likelihood fit from initial poles and participation factors.
 
     Levenberg-Marquardt in alpha. The iteration ends where the squared length of a step, in
     standard deviations of the parameters, is below ``tolerance``, and fails after ``most``
-    evaluations.
+    evaluations. Modes of ``pairs`` keep one pole.
     """
     held = np.abs(L).argmax(axis=1)
     L = np.asarray(L, complex) / L[np.arange(len(L)), held][:, None]
-    fit = evaluate(task, lam, L, held)
+    for pair in map(list, pairs):
+        held[pair] = la.qr(L[pair], mode="economic", pivoting=True)[2][:2]
+        L[pair] = np.linalg.solve(L[np.ix_(pair, held[pair])], L[pair])
+    fit = evaluate(task, lam, L, held, pairs)
     damping, evaluations = 0.0, 1
     converged = not len(lam)
     while evaluations < most and not converged:
         step = _step(fit, damping)
         decrement = float(step @ fit.curvature @ step)
         noise = max(2 * fit.cost / max(task.count, 1), 1.0)
-        trial = evaluate(task, *_moved(fit.model, step), held)
+        trial = evaluate(task, *_moved(fit.model, step), held, pairs)
         evaluations += 1
         if trial.cost <= fit.cost * (1 + 1e-14):
             converged = 2 * decrement <= tolerance * noise
@@ -533,11 +545,31 @@ def _second(model: ModalModel, rho: Floats, powers: int) -> Floats:
     return U
 
 
+def directions(model: ModalModel) -> Floats:
+    """Return the directions in which alpha is free, (alphas, free): all, unless there are pairs.
+
+    Both modes of a pair have one pole. Factors of either at the references that are held for both
+    stay: another basis of the plane of their shapes would change them, and not the functions.
+    """
+    n = len(model)
+    factors = free_factors(model.held, model.L.shape[1])
+    out, gone = np.eye(2 * (n + len(factors))), np.zeros(n + len(factors), bool)
+    for r, s in model.pairs:
+        out[2 * s : 2 * s + 2, 2 * r : 2 * r + 2] = np.eye(2)
+        gone[s] = True
+        for k, factor in enumerate(factors, start=n):
+            gone[k] |= factor in ((r, model.held[s]), (s, model.held[r]))
+    return out[:, ~gone.repeat(2)]
+
+
 def _step(fit: Fit, damping: float) -> Floats:
-    diagonal = fit.curvature.diagonal()
+    free = directions(fit.model)
+    curvature = free.T @ fit.curvature @ free
+    diagonal = curvature.diagonal()
     scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
-    scaled = fit.curvature * np.outer(scale, scale) + (damping + 1e-12) * np.eye(len(scale))
-    step: Floats = -scale * la.solve(scaled, scale * fit.gradient, assume_a="sym")
+    scaled = curvature * np.outer(scale, scale) + (damping + 1e-12) * np.eye(len(scale))
+    slope = scale * (free.T @ fit.gradient)
+    step: Floats = -free @ (scale * la.solve(scaled, slope, assume_a="sym"))
     n = len(fit.model)
     sigma, omega = fit.model.lam.real, fit.model.lam.imag
     # poles stay in the second quadrant, and none goes beyond its neighbourhood; each for itself,

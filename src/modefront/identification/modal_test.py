@@ -16,7 +16,7 @@ from modefront._typing import Complexes
 from modefront.brief import as_html
 from modefront.data.csv import is_reserved, write_csv
 from modefront.data.modal import ModalData
-from modefront.data.modal_test import ModalTest, read_test
+from modefront.data.modal_test import ByHand, ModalTest, read_test
 from modefront.data.uff import write_uff55
 from modefront.errors import Fault, InputError, UnfinishedError
 from modefront.identification.methods import ambient, hammer
@@ -109,7 +109,8 @@ class IdentifiedTest:
         report = path.with_name(path.stem + "-identification.json")
         if path.suffix.lower() == ".uff":
             modes = modal_modes(self)
-            write_uff55(path, self.names, modes, self.data.sensors)
+            pairs = [each.pairs for each in self.identified]
+            write_uff55(path, self.names, modes, self.data.sensors, pairs)
         else:
             sensors = self.data.sensors
             clashing = [name for name in sensors if is_reserved(name, sensors)]
@@ -167,9 +168,10 @@ def identify(
     band
         Least and greatest frequency in Hz; that of the test file, or all lines, unless given.
     keep, drop
-        Numbers of the modes that stay alone, and that do not, by the table without these options.
+        Numbers of the modes that stay alone, and that do not, by the table without these options;
+        those of the test file unless given.
     seeds
-        Frequencies in Hz at which there is to be a mode, whatever its evidence.
+        Frequencies in Hz at which there is to be a mode, whatever its evidence; likewise.
 
     Raises
     ------
@@ -179,6 +181,9 @@ def identify(
     path = Path(test)
     read = read_test(path)
     band = band or read.band
+    keep, drop = keep or read.chosen.keep, drop or read.chosen.drop
+    seeds = seeds or read.chosen.seeds
+    read = replace(read, chosen=ByHand(tuple(keep), tuple(drop), tuple(seeds)))
     _check_band(path, read, band)
     low, high = band or (0.0, np.inf)
     for f in seeds:

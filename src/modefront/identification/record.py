@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -134,3 +135,9 @@ class Identification:
     functions: FittedFunctions
     evaluations: int
     converged: bool
+
+    @property
+    def pairs(self) -> tuple[tuple[int, int], ...]:
+        """Positions of modes of one pole, whose shapes are some basis of a plane."""
+        poles = [mode.pole for mode in self.modes]
+        return tuple((k, k + 1) for k, two in enumerate(pairwise(poles)) if two[0] == two[1])

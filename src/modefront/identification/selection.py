@@ -18,6 +18,11 @@ Poles come from the stabilisation diagram, and then from the residuals: wherever
 explain more of the whitened residuals than noise does in every other test, one is added, until
 nothing stands out. Backwards, :math:`\Delta J` of a mode is the Wald statistic of its shape.
 
+Two modes are a *pair* where the data cannot tell their poles apart. Residues of two close poles are
+:math:`C(sI - M)^{-1}B` with a matrix M, 2 by 2, whose eigenvalues are the poles. With one pole,
+:math:`M = \lambda I`, the cost is greater by half a :math:`\chi^2` of six degrees of freedom, and
+any basis of the plane of both shapes gives the same functions.
+
 Sources: Johnstone, On the distribution of the largest eigenvalue in principal components analysis,
 Ann. Stat. 29 (2001) 295-327, doi:10.1214/aos/1009210544 (the matrix); Adler & Taylor, *Random
 Fields and Geometry*, 2007, doi:10.1007/978-0-387-48116-6, chapter 15 (maxima over a family).
@@ -45,7 +50,7 @@ from modefront.identification.modal_model import (
     maximise,
     synthesise,
 )
-from modefront.identification.shapes import auto_mac
+from modefront.identification.shapes import auto_mac, plane_basis
 from modefront.identification.stabilisation import Cluster
 
 FALSE = 1e-3
@@ -89,6 +94,16 @@ ALONE = 0.25
 
 SAME = 0.95
 """MAC of shapes that are the same."""
+
+APART = 0.01
+"""Probability that two modes of one pole are taken for modes of two."""
+
+CLEARLY = 100.0
+"""Squared difference of two poles in its deviations from which on they are no pair: close poles
+are not normally distributed, and are told apart by the likelihood below."""
+
+PAIR_FREEDOM = 6
+"""Real numbers of a matrix, 2 by 2, beyond those of one pole."""
 
 
 def freedom(task: Problem, fit: Fit) -> int:
@@ -198,6 +213,8 @@ def backward(task: Problem, fit: Fit, least: float, count: int | None = None) ->
         gain, lam = gains(task, fit), fit.model.lam
         weak = gain < least if count is None else gain.argsort().argsort() < len(gain) - count
         gone = doubles(lam, fit.model.phi, gain)
+        if gone.any():  # shapes of a pair may be alike by chance
+            gone[[k for pair in paired(task, fit, gone).model.pairs for k in pair]] = False
         for r in gain.argsort()[: weak.sum()]:  # neighbours may stand for one and the same mode
             gone[r] |= (alike(lam[r], lam[gone]) < ALONE).all()
         if not gone.any():
@@ -243,6 +260,42 @@ def standing_out(
         if gain[c] > TRACES * of_others and (alike(lam[c], blocked) < ALONE).all():
             chosen.append(int(c))
     return lam[chosen], L[chosen]
+
+
+def paired(task: Problem, fit: Fit, among: Bools) -> Fit:
+    """Return the fit in which modes are pairs whose poles the data cannot tell apart.
+
+    The closest are tried first, of which one at least is ``among`` some, (modes,), and which are
+    not clearly apart by their deviations. Real parts of the shapes of a pair are orthonormal.
+    """
+    lam, pairs = fit.model.lam, fit.model.pairs
+    apart = np.abs(lam[:, None] - lam) / np.maximum.outer(-lam.real, -lam.real)
+    close = np.argwhere(np.triu(apart < 1, 1)) if len(task.H) > 1 else np.zeros((0, 2), int)
+    C = np.linalg.pinv(fit.information, hermitian=True) * noise_level(task, fit) / 2
+    for r, s in close[apart[tuple(close.T)].argsort()].tolist():
+        if {r, s} & {k for pair in pairs for k in pair} or not among[[r, s]].any():
+            continue
+        difference = np.array([(lam[r] - lam[s]).real, (lam[r] - lam[s]).imag])
+        both = np.zeros((2, len(C)))
+        both[[0, 1], [2 * r, 2 * r + 1]], both[[0, 1], [2 * s, 2 * s + 1]] = 1.0, -1.0
+        if difference @ np.linalg.solve(both @ C @ both.T, difference) > CLEARLY:
+            continue
+        model = fit.model
+        start = model.lam.copy()
+        start[[r, s]] = (lam[r] + lam[s]) / 2
+        trial = maximise(task, start, model.L, pairs=(*pairs, (r, s)))
+        lost = 2 * (trial.cost - fit.cost) / noise_level(task, fit)
+        if lost < chi2.isf(APART, PAIR_FREEDOM):
+            L = trial.model.L.copy()
+            for pair in map(list, trial.model.pairs):
+                L[pair] = np.linalg.solve(plane_basis(trial.model.phi[pair]).T, L[pair])
+            pairs = trial.model.pairs
+            fit = replace(
+                evaluate(task, trial.model.lam, L, trial.model.held, pairs),
+                evaluations=trial.evaluations,
+                converged=trial.converged,
+            )
+    return fit
 
 
 def seeded(task: Problem, fit: Fit, omega: Floats) -> tuple[Complexes, Complexes]:

@@ -15,7 +15,8 @@ Then the sets have a variance of their own besides (DerSimonian & Laird, Control
           \sum_k \sigma_k^{-2}},
 
 and every standard deviation becomes :math:`\sqrt{\sigma_k^2 + \tau^2}`. Shapes are compared in
-the sign and scale of the first set that has the mode.
+the sign and scale of the first set that has the mode; those of a pair are not, as each set has some
+basis of their plane.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ SIGNIFICANT = 0.95
 """Level of the test of homogeneity; the 5 % that is usual."""
 
 
+# 11 fields: what a table of modes has, and which modes belong together.
 @dataclass(frozen=True)
 class CombinedModes:
     """Modes of all sets; NaN where a set does not have a mode.
@@ -53,6 +55,7 @@ class CombinedModes:
     spread : (modes, 2) standard deviations between sets of frequency and damping, 0 where the
         sets agree within theirs
     index : (sets, modes) which mode of each set it is; -1 for none
+    pairs : positions of modes that are a pair in one of the sets
     """
 
     sets: tuple[str, ...]
@@ -65,6 +68,7 @@ class CombinedModes:
     shape_std: Floats
     spread: Floats
     index: tuple[tuple[int, ...], ...]
+    pairs: tuple[tuple[int, int], ...]
 
 
 def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> CombinedModes:
@@ -82,12 +86,18 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
             z[k, r], z_std[k, r] = mode.damping, mode.damping_std
             phi[k, r] = _at(mode.shape.shape, identifications[k], sensors)
             phi_std[k, r] = _at(mode.shape_std, identifications[k], sensors)
+    paired = _pairs(identifications, index)
     spread = np.zeros((R, 2))
     for r in range(R):
         spread[r] = between(f[:, r], f_std[:, r]), between(z[:, r], z_std[:, r])
+        if r in paired:
+            continue
         phi[:, r], phi_std[:, r] = _shapes(phi[:, r], phi_std[:, r])
     f_std, z_std = np.hypot(f_std, spread[:, 0]), np.hypot(z_std, spread[:, 1])
-    return CombinedModes(tuple(sets), sensors, f, z, phi, f_std, z_std, phi_std, spread, index)
+    pairs = tuple((r, s) for r, s in paired.items() if r < s)
+    return CombinedModes(
+        *(tuple(sets), sensors, f, z, phi, f_std, z_std, phi_std, spread, index, pairs)
+    )
 
 
 def modal_data_of(modes: CombinedModes) -> ModalData:
@@ -97,7 +107,21 @@ def modal_data_of(modes: CombinedModes) -> ModalData:
         tuple(range(1, modes.frequency.shape[1] + 1)),
         modes.sensors,
         *(modes.frequency, modes.damping, modes.shape, modes.frequency_std, modes.shape_std),
+        tuple((r + 1, s + 1) for r, s in modes.pairs),
     )
+
+
+def _pairs(
+    identifications: Sequence[Identification], index: Sequence[Sequence[int]]
+) -> dict[int, int]:
+    """Return the other mode of each one that is of a pair in a set, the first set that has it."""
+    out: dict[int, int] = {}
+    for each, of_set in zip(identifications, index, strict=True):
+        for pair in each.pairs:
+            r, s = (of_set.index(k) for k in pair)
+            if r not in out and s not in out:
+                out |= {r: s, s: r}
+    return out
 
 
 def between(x: Floats, std: Floats) -> float:
@@ -120,8 +144,9 @@ def between(x: Floats, std: Floats) -> float:
 
 
 def _at(values: Floats, identification: Identification, sensors: Sequence[str]) -> Floats:
-    where = dict(zip(identification.responses, values, strict=True))
-    return np.array([where.get(name, np.nan) for name in sensors])
+    out = np.full((len(sensors), *values.shape[1:]), np.nan)
+    out[[sensors.index(name) for name in identification.responses]] = values
+    return out
 
 
 def mode_groups(
@@ -160,16 +185,20 @@ def _agreement(
     of_b: Identification,
     sensors: Sequence[str],
 ) -> float:
-    """Return the MAC at common sensors, 0 where the frequencies are too far apart."""
+    """Return the MAC at common sensors, 0 where the frequencies are too far apart.
+
+    That of the planes of pairs is the squared cosine of the least angle between them.
+    """
     half = max(a.damping * a.frequency, b.damping * b.frequency, 0.005 * a.frequency)
     if abs(a.frequency - b.frequency) > max(
         WIDTH * np.hypot(a.frequency_std, b.frequency_std), half
     ):
         return 0.0
-    x, y = _at(a.shape.shape, of_a, sensors), _at(b.shape.shape, of_b, sensors)
-    both = np.isfinite(x) & np.isfinite(y)
-    power = float(np.sum(x[both] ** 2) * np.sum(y[both] ** 2))
-    return float(np.sum(x[both] * y[both]) ** 2) / power if power else 0.0
+    x, y = _at(a.shape.plane, of_a, sensors), _at(b.shape.plane, of_b, sensors)
+    both = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
+    # squared cosine of the least angle between the planes of pairs: MAC of single shapes
+    first, second = (np.linalg.svd(z[both], full_matrices=False)[0] for z in (x, y))
+    return float(np.linalg.norm(first.T @ second, 2) ** 2) if both.any() else 0.0
 
 
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:

@@ -17,6 +17,10 @@ and :math:`a + \mathrm{i}b = e^{-\mathrm{i}\theta}\mathrm{d}\varphi`,
 
 .. math:: \mathrm{d}\theta = \frac{x^T b + y^T a}{\sum\psi_i^2},\qquad
           \mathrm{d}u = (I - u u^T)\,(a + y\,\mathrm{d}\theta) / \|x\| .
+
+Two modes with the same pole have any two shapes of one plane: both are turned by the same angle,
+that of the sum over both, and are an orthonormal basis U of the plane of the real parts.
+What is determined of them is their change out of the plane, with :math:`I - U U^T` instead.
 """
 
 from __future__ import annotations
@@ -41,6 +45,8 @@ class RealShape:
     collinearity : MPC
     norm : that of the real part before it was scaled
     turn : the rotation, exp(-i theta), with the sign that makes the greatest component positive
+    plane : (responses, 1 or 2) orthonormal shapes of which none changes in the span of them: the
+        shape itself, and the other one of a pair
     """
 
     complex_shape: Complexes
@@ -48,6 +54,7 @@ class RealShape:
     collinearity: float
     norm: float
     turn: complex
+    plane: Floats
 
     @property
     def loss(self) -> float:
@@ -60,7 +67,7 @@ class RealShape:
         change = self.turn * dphi / self.norm
         dtheta = (u @ change.imag + y @ change.real) / max(1 - float(y @ y), TINY)
         dx = change.real + np.outer(y, dtheta)
-        out: Floats = dx - np.outer(u, u @ dx)
+        out: Floats = dx - self.plane @ (self.plane.T @ dx)
         return out
 
 
@@ -78,7 +85,33 @@ def real_shape(phi: Complexes) -> RealShape:
     if psi.real[np.abs(psi.real).argmax()] < 0:
         turn, psi = -turn, -psi
     norm = max(float(np.linalg.norm(psi.real)), TINY)
-    return RealShape(psi / norm, psi.real / norm, phase_collinearity(phi), norm, complex(turn))
+    u: Floats = psi.real / norm
+    return RealShape(psi / norm, u, phase_collinearity(phi), norm, complex(turn), u[:, None])
+
+
+def plane_basis(phi: Complexes) -> Floats:
+    """Return B so that the real parts of turned shapes B phi, (2, responses), are orthonormal.
+
+    The greatest component of either is positive; ``phi`` is (2, responses).
+    """
+    x = (np.exp(-0.5j * np.angle(np.sum(phi**2))) * phi).real
+    left, size, right = np.linalg.svd(x, full_matrices=False)
+    sign = np.sign(right[[0, 1], np.abs(right).argmax(axis=1)])
+    out: Floats = (sign / np.maximum(size, TINY))[:, None] * left.T
+    return out
+
+
+def real_plane(phi: Complexes) -> list[RealShape]:
+    """Return the real shapes of a pair that has the basis of `plane_basis`."""
+    turn = np.exp(-0.5j * np.angle(np.sum(phi**2)))
+    psi = turn * phi
+    if psi[0].real[np.abs(psi[0].real).argmax()] < 0:
+        turn, psi = -turn, -psi
+    plane: Floats = psi.real.T
+    return [
+        RealShape(each, each.real, phase_collinearity(each), 1.0, complex(turn), plane)
+        for each in psi
+    ]
 
 
 def auto_mac(phi: Complexes) -> Floats:

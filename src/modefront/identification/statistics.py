@@ -59,6 +59,7 @@ from modefront.identification.modal_model import (
     Fit,
     Problem,
     design,
+    directions,
     gram,
     primitives,
     projected,
@@ -67,7 +68,7 @@ from modefront.identification.modal_model import (
 )
 from modefront.identification.noise import square
 from modefront.identification.record import ModeEstimate, Residuals
-from modefront.identification.shapes import TINY, RealShape, real_shape
+from modefront.identification.shapes import TINY, RealShape, real_plane, real_shape
 
 SIGNIFICANT = 3.0
 """Standard errors beyond which a correlation of the residuals is one."""
@@ -161,7 +162,9 @@ def mode_estimates(
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
     model = fit.model
     shapes = [real_shape(phi) for phi in model.phi]
-    inverse = _inverse(fit.information)
+    for pair in map(list, model.pairs):
+        shapes[pair[0]], shapes[pair[1]] = real_plane(model.phi[pair])
+    inverse = _inverse_information(fit)
     linear, alpha = _roots_of_responses(task, fit, residuals)
     C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
     variance = np.zeros(model.phi.shape)
@@ -193,14 +196,15 @@ def _shape_variance(shape: RealShape, direct: Complexes, answer: Floats, alpha: 
     Errors of response i change its own component by ``direct[i]``, (errors,), and the nonlinear
     parameters by ``alpha[i]``, (alphas, errors), which change the shape by ``-answer``,
     (responses, alphas). By the equations of `modefront.identification.shapes`, what i does to
-    component k is :math:`\delta_{ik} a_i - u_k u_i a_i + y_k\,\mathrm{d}\theta_i -
+    component k is :math:`\delta_{ik} a_i - (U U^T)_{ki} a_i + y_k\,\mathrm{d}\theta_i -
     \mathrm{answer}_k \alpha_i`: its squares are summed over i at once.
     """
     u, y = shape.shape, shape.complex_shape.imag
     a = shape.turn * direct / shape.norm
     theta = (u[:, None] * a.imag + y[:, None] * a.real) / max(1 - float(y @ y), TINY)
-    causes = np.concatenate([(u[:, None] * a.real)[:, None], theta[:, None], alpha], axis=1)
-    effects = np.column_stack([-u, y, -answer])
+    inside = shape.plane[:, :, None] * a.real[:, None]
+    causes = np.concatenate([inside, theta[:, None], alpha], axis=1)
+    effects = np.column_stack([-shape.plane, y, -answer])
     flat = causes.transpose(1, 0, 2).reshape(effects.shape[1], -1)
     common = np.sum((effects @ (flat @ flat.T)) * effects, axis=1)
     of_itself = np.einsum("ia,iae->ie", effects, causes)
@@ -266,6 +270,13 @@ def _estimate(
     )
 
 
+def _inverse_information(fit: Fit) -> Floats:
+    """Return A^-1 in the directions in which alpha is free, (alphas, alphas)."""
+    free = directions(fit.model)
+    out: Floats = free @ _inverse(free.T @ fit.information @ free) @ free.T
+    return out
+
+
 def _inverse(A: Floats) -> Floats:
     """Return the inverse of a symmetric matrix that may be nearly singular: large, not wrong."""
     diagonal = A.diagonal()
@@ -287,7 +298,7 @@ def _force_influence(task: Problem, fit: Fit, force: Floats) -> Iterator[tuple[F
     T = design(fit.model.L, powers)
     X, first = projected(fit.model, T, fit.Z, len(E)), T.shape[1]
     H = synthesise(task, fit.model)
-    inverse = _inverse(fit.information)
+    inverse = _inverse_information(fit)
     for j in np.flatnonzero(force).tolist():
         for y in _force_products(task, E, H[j], j, force[j]):
             alpha = inverse @ np.einsum("iqa,iqk->ak", X[j], y, optimize=True)

@@ -157,7 +157,7 @@ def paper_figures(studies: Sequence[tuple[str, xr.Dataset]], folder: Path) -> li
 def identification_figures(
     names: Sequence[str], identified: Sequence[Identification], folder: Path
 ) -> list[Path]:
-    """Write three pictures for every data set of an identification and return their paths.
+    """Write four pictures for every data set of an identification and return their paths.
 
     Raises what `write_figures` raises.
     """

@@ -1,4 +1,4 @@
-"""Pictures of an identification: stabilisation diagram, synthesised functions, auto-MAC."""
+"""Pictures of an identification: poles, mode indicators, synthesised functions, auto-MAC."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from modefront.identification.indicators import complex_indicators, multivariate_indicators
 from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
 from modefront.plots.canvas import COLOURS, plain
@@ -21,8 +22,13 @@ SHORT = 40
 def figures(
     names: Sequence[str], identified: Sequence[Identification]
 ) -> Iterator[tuple[str, Figure]]:
-    """Yield names and three pictures of every data set."""
-    kinds = {"stabilisation": _stabilisation, "functions": _functions, "auto-mac": _auto_mac}
+    """Yield names and four pictures of every data set."""
+    kinds = {
+        "stabilisation": _stabilisation,
+        "indicators": _indicators,
+        "functions": _functions,
+        "auto-mac": _auto_mac,
+    }
     for name, identification in zip(names, identified, strict=True):
         for kind, draw in kinds.items():
             figure = Figure(layout="constrained")
@@ -57,6 +63,25 @@ def _stabilisation(figure: Figure, identification: Identification) -> None:
     behind.plot(identification.functions.data.frequency, level, color="0.6", linewidth=0.6)
     behind.set_ylabel(f"mean {identification.functions.data.quantity} in dB")
     axes.legend(loc="upper right")
+
+
+def _indicators(figure: Figure, identification: Identification) -> None:
+    """Draw the complex mode indicator functions, and the multivariate ones of hammer tests."""
+    data = identification.functions.data
+    curves = [("CMIF", "log", complex_indicators(data))]
+    if np.any(np.nan_to_num(data.H).imag):  # spectral densities of ambient tests have no phase
+        curves.append(("multivariate MIF", "linear", multivariate_indicators(data)))
+    figure.set_size_inches(7.0, 1.0 + 2.2 * len(curves))
+    panels = figure.subplots(len(curves), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, (label, scale, values) in zip(panels, curves, strict=True):
+        for k, row in enumerate(values):
+            axes.plot(data.frequency, row, color=COLOURS[k % len(COLOURS)], linewidth=0.8)
+        for mode in identification.modes:
+            axes.axvline(mode.frequency, color="0.7", linewidth=0.6, zorder=0)
+        axes.set(ylabel=label, yscale=scale)
+    panels[0].set_title("mode indicator functions")
+    panels[-1].set_xlabel("frequency in Hz")
+    panels[-1].set_xlim(*identification.band)
 
 
 def _functions(figure: Figure, identification: Identification) -> None:

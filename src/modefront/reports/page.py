@@ -44,9 +44,13 @@ PAGE = """\
 
 def page(results: Sequence[tuple[str, xr.Dataset]]) -> str:
     """Return the page of sound results, given with the names of their folders."""
-    title, data = payload(results)
+    return page_of(*payload(results), "report.js")
+
+
+def page_of(title: str, data: str, name: str) -> str:
+    """Return the page with a title, data in base64, and the script of a name."""
     folder = files("modefront.reports")
-    script = (folder / "report.js").read_text(encoding="utf-8")
+    script = (folder / name).read_text(encoding="utf-8")
     style = (folder / "style.css").read_text(encoding="utf-8")
     policy = (
         f"default-src 'none'; script-src '{_digest(script)}'; style-src '{_digest(style)}'; "
@@ -75,8 +79,6 @@ def report(folders: Path | str | Sequence[Path | str], output: Path | str | None
     """
     listed = [folders] if isinstance(folders, Path | str) else folders
     path = Path(output) if output else Path(listed[0]) / "report.html"
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(Fault(str(path), "-o", "a file that ends in .html", f"'{path.name}'"))
     write_page(read_together([Path(folder) for folder in listed]), path)
     return path
 
@@ -86,7 +88,13 @@ def write_page(results: Sequence[tuple[str, xr.Dataset]], path: Path) -> None:
 
     Raises InputError where the file cannot be written.
     """
-    text = page(results)
+    write_html(page(results), path)
+
+
+def write_html(text: str, path: Path) -> None:
+    """Write a page whole or not at all; raises InputError where the file cannot be written."""
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError(Fault(str(path), "-o", "a file that ends in .html", f"'{path.name}'"))
     try:
         write_text(path, text, lasting=True)
     except OSError as error:

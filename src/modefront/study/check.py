@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from modefront.brief import as_html
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
-from modefront.diagnosis.notes import DataDirection, UnusedGroup
+from modefront.diagnosis.notes import Note
 from modefront.diagnosis.pairs import PairRemark
 from modefront.diagnosis.search import Found, diagnose
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
@@ -52,7 +52,7 @@ KEPT = 500
 HARMLESS = ("damping", "unused-group", "distant-pair", "beyond-candidates", "foreign-mode")
 """Mistakes that leave the residuals as they are, or that need not be mistakes."""
 
-Mistake = Found | PairRemark | DataDirection | UnusedGroup
+Mistake = Found | PairRemark | Note
 """What looks wrong: a record with a kind and a subject, and a sentence as its text."""
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated
 
 from modefront.brief import as_html
-from modefront.diagnosis.notes import DataDirection, UnusedGroup
+from modefront.diagnosis.notes import Note
 from modefront.errors import Fault, InputError, refuse
 from modefront.front.given import Weighted, label_faults
 from modefront.front.options import Pareto
@@ -48,7 +48,7 @@ class Origin:
     work: str
     problem: UpdatingProblem
     remark: str = ""
-    notes: tuple[UnusedGroup | DataDirection, ...] = ()
+    notes: tuple[Note, ...] = ()
 
 
 # 12 fields: the problem, where it was read, and each table of options.

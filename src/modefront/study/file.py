@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from modefront.diagnosis.notes import DataDirection, UnusedGroup
+from modefront.diagnosis.notes import Note
 from modefront.errors import InputError, ModelError
 from modefront.front.options import Pareto
 from modefront.front.search import Search
@@ -98,7 +98,7 @@ def load(path: Path | str) -> Study:
         _digest(json.dumps(front, sort_keys=True).encode(), root.files),
         problem,
         reduction.fallback(problem.model),
-        tuple(note for note in root.notes if isinstance(note, UnusedGroup | DataDirection)),
+        tuple(note for note in root.notes if isinstance(note, Note)),
     )
     return Study(
         problem,

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TypeVar, get_args
 
 from modefront.data.modal import ModalData
+from modefront.diagnosis.notes import ComparedPair
 from modefront.errors import Fault, InputError
 from modefront.findings.knowledge import enumeration
 from modefront.front.given import Weighted, label_faults
@@ -118,6 +119,9 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
         out.append(group)
         if data is None or wrong:
             continue
+        chosen = {kind.name: rs for kind, rs in group.positions(data)}
+        single = {data.modes[r] for r in chosen.get("shape", ())}
+        root.notes += [ComparedPair(pair, group.name) for pair in data.pairs if single & set(pair)]
         members = frozenset((kind.name, r) for kind, rs in group.positions(data) for r in rs)
         if members in held:  # their objectives could not differ
             expected = f"other members than those of '{held[members]}'"

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -213,21 +214,29 @@ def _reweighted(task: Problem, fit: Fit, kind: Weighting) -> Problem:
 
 @dataclass(frozen=True)
 class _Solution:
-    """The last fit to the data, with its units of frequency and of functions."""
+    """The last fit to the data, with its units of frequency and of functions.
+
+    ``apart`` is the fit in which no two modes have one pole.
+    """
 
     data: FrequencyResponses
     task: Problem
-    fit: Fit
+    apart: Fit
     omega: float
     size: float
     diagram: StabilisationDiagram
+
+    @cached_property
+    def fit(self) -> Fit:
+        """The fit with pairs."""
+        return selection.paired(self.task, self.apart, np.ones(len(self.apart.model), bool))
 
 
 def _result(solution: _Solution) -> Identification:
     """Return the modes of the last fit; those outside the band stand for residual terms."""
     task, fit, omega = solution.task, solution.fit, solution.omega
     misfit = residuals(task, fit)
-    estimates = mode_estimates(task, fit, misfit, omega)
+    estimates = _with_split(mode_estimates(task, fit, misfit, omega), solution)
     f = solution.data.frequency
     reasons = [_reason(mode, f) for mode in estimates]
     kept = [k for k, why in enumerate(reasons) if not why]
@@ -258,6 +267,25 @@ def _result(solution: _Solution) -> Identification:
     )
 
 
+def _with_split(estimates: Sequence[ModeEstimate], solution: _Solution) -> list[ModeEstimate]:
+    """Return estimates of which those of pairs deviate by half the difference of their poles, too.
+
+    It is that of the fit in which they are apart: the data do not exclude it.
+    """
+    out, lam = list(estimates), solution.apart.model.lam
+    for pair in solution.fit.model.pairs:
+        size = np.abs(lam[list(pair)])
+        split = float(np.ptp(size)) * solution.omega / (4 * np.pi)
+        of_damping = float(np.ptp(lam[list(pair)].real / size)) / 2
+        for r in pair:
+            out[r] = replace(
+                out[r],
+                frequency_std=float(np.hypot(out[r].frequency_std, split)),
+                damping_std=float(np.hypot(out[r].damping_std, of_damping)),
+            )
+    return out
+
+
 def _reason(mode: ModeEstimate, frequency: Floats) -> str:
     """Return why a pole that data need stands for residual terms; empty where it is a mode."""
     if not frequency[0] <= mode.frequency <= frequency[-1]:
@@ -270,7 +298,7 @@ def _evidence(
 ) -> list[Evidence]:
     """Return what speaks for every mode; only those that are ``kept`` are neighbours."""
     task, fit = solution.task, solution.fit
-    gain, least = selection.gains(task, fit), selection.needed(task)
+    gain, least = selection.gains(task, solution.apart), selection.needed(task)
     shares = support(solution.diagram, fit.model.lam * solution.omega, gain)
     visible, mac = _visibility(task, fit), auto_mac(fit.model.phi)
     spacing = float(np.median(np.diff(solution.data.frequency)))
@@ -289,14 +317,25 @@ def _evidence(
         if mode.frequency_std > half or mode.damping_std > mode.damping:
             flags.append("frequency or damping hardly determined")
         for k in kept:
-            other = estimates[k].frequency
-            near = k != r and abs(other - mode.frequency) < NEIGHBOURS * mode.frequency
-            if near and len(fit.model.phi[r]) > 1 and mac[r, k] > selection.SAME:
+            other = estimates[k]
+            apart = abs(other.frequency - mode.frequency)
+            if k == r or apart > NEIGHBOURS * mode.frequency:
+                continue
+            if other.pole == mode.pole:
+                flags.append("one of a pair: both shapes are a basis of a plane")
+            elif len(fit.model.phi[r]) > 1 and mac[r, k] > selection.SAME:
                 flags.append(
-                    f"shape of {other:.5g} Hz (MAC {mac[r, k]:.2f}): one peak split in two, or "
-                    "sensors that cannot tell them apart"
+                    f"shape of {other.frequency:.5g} Hz (MAC {mac[r, k]:.2f}): one peak split in "
+                    "two, or sensors that cannot tell them apart"
                 )
-        out.append(Evidence(gain[r] / least, shares[r], visible[r], tuple(flags)))
+            elif len(task.H) == 1 and apart < max(half, other.damping * other.frequency):
+                flags.append(
+                    f"within the half bandwidth of {other.frequency:.5g} Hz: one peak split in "
+                    "two, or two modes that one reference cannot tell apart"
+                )
+        out.append(
+            Evidence(float(gain[r] / least), float(shares[r]), float(visible[r]), tuple(flags))
+        )
     return out
 
 

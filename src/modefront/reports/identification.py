@@ -1,0 +1,158 @@
+"""The report of an identification: one HTML file to look at, and to choose poles in."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront._version import __version__
+from modefront.identification.indicators import complex_indicators, multivariate_indicators
+from modefront.identification.modal_test import IdentifiedTest
+from modefront.identification.record import Identification
+from modefront.identification.shapes import auto_mac
+from modefront.reports.page import page_of, write_html
+
+MOST_LINES = 600
+"""Lines of a curve: more are not seen."""
+
+MOST_FUNCTIONS = 40
+"""Functions of a data set, those with the greatest residuals first."""
+
+
+def write_identification(test: IdentifiedTest, path: Path) -> Path:
+    """Write the page of an identification; raises InputError where that cannot be done."""
+    report = {
+        "title": test.test.name,
+        "version": __version__,
+        "warnings": test.warnings,
+        "chosen": {
+            "keep": list(test.test.chosen.keep),
+            "drop": list(test.test.chosen.drop),
+            "seed": list(test.test.chosen.seeds),
+        },
+        "sets": [{"name": name} | _set(test, k) for k, name in enumerate(test.names)],
+    }
+    text = json.dumps(report, allow_nan=False).encode()
+    data = base64.b64encode(gzip.compress(text, mtime=0)).decode("ascii")
+    write_html(page_of(test.test.name, data, "identification.js"), path)
+    return path
+
+
+def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
+    each = test.identified[k]
+    numbers = {}
+    if test.modes is not None:
+        given = _numbers(test)
+        numbers = {index: given[r] for r, index in enumerate(test.modes.index[k]) if index >= 0}
+    data = each.functions.data
+    kept = _lines(each)
+    diagram = each.diagram
+    inside = (diagram.frequency >= each.band[0]) & (diagram.frequency <= each.band[1])
+    indicators = [_logarithms(row[kept]) for row in complex_indicators(data)]
+    has_phase = bool(np.any(np.nan_to_num(data.H).imag))
+    multivariate = multivariate_indicators(data)[:, kept] if has_phase else np.zeros((0, 0))
+    positions, directions = _places(test, each)
+    return {
+        "band": list(each.band),
+        "quantity": data.quantity,
+        "modes": [
+            {
+                "number": numbers.get(r, r + 1),
+                "frequency": mode.frequency,
+                "frequencyStd": mode.frequency_std,
+                "damping": mode.damping,
+                "dampingStd": mode.damping_std,
+                "evidence": _known(mode.evidence.gain),
+                "orders": _known(mode.evidence.support),
+                "seen": _known(mode.evidence.visibility),
+                "collinearity": mode.shape.collinearity,
+                "flags": list(mode.evidence.flags),
+                "shape": _rounded(mode.shape.shape),
+            }
+            for r, mode in enumerate(each.modes)
+        ],
+        "poles": {
+            "frequency": _rounded(diagram.frequency[inside], 7),
+            "damping": _rounded(diagram.damping[inside]),
+            "order": diagram.order[inside].tolist(),
+            "stable": diagram.stable[inside].astype(int).tolist(),
+        },
+        "lines": _rounded(data.frequency[kept], 7),
+        "complexIndicators": indicators,
+        "multivariateIndicators": [_rounded(row) for row in multivariate],
+        "functions": _functions(each, kept),
+        "mac": [
+            _rounded(row, 3)
+            for row in auto_mac(np.array([mode.shape.complex_shape for mode in each.modes]))
+        ]
+        if each.modes
+        else [],
+        "sensors": list(each.responses),
+        "positions": positions.tolist(),
+        "directions": directions.tolist(),
+    }
+
+
+def _numbers(test: IdentifiedTest) -> list[int]:
+    """Return the numbers of the modes in the table in which none was left out by hand."""
+    chosen, count = test.test.chosen, 0 if test.modes is None else len(test.modes.index[0])
+    numbers = sorted(chosen.keep) or range(1, count + len(set(chosen.drop)) + 1)
+    return [number for number in dict.fromkeys(numbers) if number not in chosen.drop]
+
+
+def _lines(each: Identification) -> Any:
+    """Return positions of lines evenly over the band, and those at modes."""
+    f = each.functions.data.frequency
+    even = np.linspace(0, len(f) - 1, min(len(f), MOST_LINES)).astype(int)
+    nearest = [int(np.abs(f - mode.frequency).argmin()) for mode in each.modes]
+    return np.unique(np.concatenate([even, np.array(nearest, int)]))
+
+
+def _functions(each: Identification, kept: Any) -> list[dict[str, Any]]:
+    fitted = each.functions
+    share = np.nan_to_num(fitted.residuals.share, nan=-1.0)
+    measured = [p for p in np.argsort(-share.ravel()) if share.ravel()[p] >= 0]
+    out = []
+    for position in measured[:MOST_FUNCTIONS]:
+        j, i = np.unravel_index(position, share.shape)
+        out.append(
+            {
+                "name": f"{fitted.data.references[j]} to {fitted.data.responses[i]}",
+                "residual": float(share[j, i]),
+                "measured": _logarithms(np.abs(fitted.data.H[j, i, kept]) ** 2),
+                "synthesised": _logarithms(np.abs(fitted.synthesised[j, i, kept]) ** 2),
+            }
+        )
+    return out
+
+
+def _places(test: IdentifiedTest, each: Identification) -> tuple[Floats, Floats]:
+    """Return positions and directions of the sensors, (sensors, 3): in a row where not given."""
+    places = test.test.places
+    if all(name in places for name in each.responses):
+        rows = [places[name] for name in each.responses]
+        return np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+    n = len(each.responses)
+    row = np.column_stack([np.arange(n, dtype=float), np.zeros((n, 2))])
+    return row, np.tile([0.0, 0.0, 1.0], (n, 1))
+
+
+def _logarithms(power: Floats) -> list[int | None]:
+    """Return hundredths of dB; None where there is nothing."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        level = np.round(1000 * np.log10(power))
+    return [int(x) if np.isfinite(x) else None for x in level]
+
+
+def _rounded(values: Floats, digits: int = 4) -> list[float | None]:
+    return [float(f"{x:.{digits}g}") if np.isfinite(x) else None for x in values.tolist()]
+
+
+def _known(value: float) -> float | None:
+    return value if np.isfinite(value) else None
