@@ -76,7 +76,8 @@ def front_scatter(
             case "level" if role.objective in level_of:
                 dv = (1 + role.tolerance) * level_of[role.objective]
                 conditions = level(point, role.objective, dv, noise)
-            case "boundary" if beta is not None and {*role.ends} <= set(ends):
+            # Where a search ended at its start, as at a jump, no weights are known.
+            case "boundary" if beta is not None and {*role.ends} <= set(ends) and w.any():
                 target = _target(role, ends)
                 w, conditions = boundary(point, w, target, beta, noise, role.equations)
             case _:
