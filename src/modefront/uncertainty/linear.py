@@ -76,10 +76,12 @@ def front_scatter(
             case "level" if role.objective in level_of:
                 dv = (1 + role.tolerance) * level_of[role.objective]
                 conditions = level(point, role.objective, dv, noise)
-            # Where a search ended at its start, as at a jump, no weights are known.
-            case "boundary" if beta is not None and {*role.ends} <= set(ends) and w.any():
+            case "boundary" if beta is not None and {*role.ends} <= set(ends):
                 target = _target(role, ends)
-                w, conditions = boundary(point, w, target, beta, noise, role.equations)
+                found = boundary(point, w, target, beta, noise, role.equations)
+                if found is None:
+                    continue
+                w, conditions = found
             case _:
                 continue
         out[text] = scatter(problem, point, w, conditions, noise)
