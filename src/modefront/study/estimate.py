@@ -37,7 +37,7 @@ from modefront.work.task import seed_sequence
 EDGE = 10.0, 60.0
 """Searches for the best model of a group or of given weights, from and to."""
 
-DRAW = 0.4, 1.6
+DRAW = 0.4, 2.0
 """Time of a draw of the posterior over that of a search, from and to."""
 
 REST = 1.4
@@ -261,7 +261,7 @@ def _parts(study: Study, evaluations: float) -> Iterator[Part]:
         yield Part("sample-posterior", (DRAW[0] * DRAWS, DRAW[1] * DRAWS))
     equivalent = study.identifiability.models * n / evaluations
     yield Part(
-        "manifold", (0.0, 5 * equivalent), "fewer equivalent models ([identifiability] models)"
+        "manifold", (0.0, 8 * equivalent), "fewer equivalent models ([identifiability] models)"
     )
     samples = study.uncertainty.bootstrap
     if samples:
