@@ -73,11 +73,12 @@ def report(folders: Path | str | Sequence[Path | str], output: Path | str | None
     InputError
         For results that are not sound, and a file that cannot be written.
     """
-    listed = [folders] if isinstance(folders, Path | str) else folders
-    path = Path(output) if output else Path(listed[0]) / "report.html"
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(Fault(str(path), "-o", "a file that ends in .html", f"'{path.name}'"))
-    write_page(read_together([Path(folder) for folder in listed]), path)
+    if output and Path(output).suffix.lower() not in SUFFIXES:
+        found = f"'{Path(output).name}'"
+        raise InputError(Fault(str(output), "-o", "a file that ends in .html", found))
+    results = read_together(folders)
+    path = Path(output) if output else Path(results[0][0]) / "report.html"
+    write_page(results, path)
     return path
 
 
