@@ -1,10 +1,11 @@
 """Estimate of the time that a study takes, as a range, with advice on how to shorten it.
 
-A few searches are timed, and each prediction once, with few samples. Each stage of a run takes from
-and to so many searches, as counted over studies with 2 to 12 parameters; how many evaluations a
-search takes differs more between studies, and is measured. Where a search takes too long to be
-timed, its evaluations are an average: 10, and one more for each parameter.
-``benchmarks/honest_time.py`` measures how often the time of a run is within the range.
+A few searches are timed, and each prediction once, with few samples: all times are those of the
+processor, whatever else it does. Each stage of a run takes from and to so many searches, as counted
+over studies with 2 to 12 parameters; how many evaluations a search takes differs more between
+studies, and is measured. Where a search takes too long to be timed, its evaluations are an average:
+10, and one more for each parameter. ``benchmarks/honest_time.py`` measures how often the time of a
+run is within the range.
 """
 
 from __future__ import annotations
@@ -102,7 +103,7 @@ class Estimate:
         longest = max(self.plan.other.values(), key=lambda span: span[1], default=(0.0, 0.0))
         share = f", {_span(longest)} for predictions" if longest[1] > most / 10 else ""
         return (
-            f"a run takes {_span((least, most))}: the number of minima decides "
+            f"a run takes {_span((least, most))} of a processor: the number of minima decides "
             f"({few:,} to {many:,} searches of {duration(self.plan.search)} each{share})"
         )
 
@@ -207,14 +208,14 @@ def _timed(
     problem: UpdatingProblem, group: int, theta: Floats, options: Options | None = None
 ) -> tuple[float, int]:
     """Return the seconds and the evaluations of a search from theta (p,); no evaluation: none."""
-    began, i = time.perf_counter(), group % len(problem.objectives)
+    began, i = time.process_time(), group % len(problem.objectives)
     try:
         start = problem.evaluate(theta, second=True)
         unit = np.eye(len(problem.objectives))[i] / (start.J[i] or 1.0)
         found = solve(problem, weighted(unit), begin(start), options)
     except ModelError:
         return 0.0, 0
-    return time.perf_counter() - began, (1 + found.evaluations) * start.feasible
+    return time.process_time() - began, (1 + found.evaluations) * start.feasible
 
 
 def _share_of_basis(problem: UpdatingProblem) -> float:
@@ -228,9 +229,9 @@ def _share_of_basis(problem: UpdatingProblem) -> float:
 
 def _modes(problem: UpdatingProblem) -> float:
     """Return the seconds of the modes of the full model and their derivatives."""
-    began = time.perf_counter()
+    began = time.process_time()
     full_of(problem.model).modes(problem.start, len(problem.data.modes))
-    return time.perf_counter() - began
+    return time.process_time() - began
 
 
 def _snapshots(study: Study) -> Span:
@@ -306,9 +307,9 @@ def _seconds_of(prediction: Prediction, problem: UpdatingProblem) -> float:
 
     def timed(each: Prediction) -> float:
         complete = each.complete(problem)
-        began = time.perf_counter()
+        began = time.process_time()
         complete.evaluate(problem, problem.start, np.random.SeedSequence(0))
-        return time.perf_counter() - began
+        return time.process_time() - began
 
     if not isinstance(prediction, Passage) or prediction.samples <= 3 * SAMPLES:
         return timed(prediction)
