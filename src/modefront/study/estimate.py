@@ -27,10 +27,9 @@ from modefront.optim.scalarisation import weighted
 from modefront.optim.sqp import Options, begin, solve
 from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.predictions import extent
 from modefront.study.definition import Study
 from modefront.uncertainty.most_probable import STARTS as MAXIMA
-from modefront.uncertainty.sampling import BATCH, DRAWS
+from modefront.uncertainty.sampling import DRAWS
 from modefront.work.costs import uncounted
 from modefront.work.progress import Plan, Span
 from modefront.work.task import seed_sequence
@@ -136,18 +135,6 @@ def estimate(study: Study) -> Estimate | None:
     if study.problem.model.size >= LARGE and not is_reduced(study.problem.model):
         said.insert(0, 'a reduced basis ([model] reduction = "auto")')
     return Estimate(plan, (*said, "--workers N with as many as there are cores"))
-
-
-def expected_tasks(study: Study) -> dict[str, int]:
-    """Return the tasks of stages that have a number of them which is known before they begin."""
-    known = study.uncertainty.of(study.problem.data) is not None
-    drawn = study.uncertainty.draws or 1 + 2 * len(study.problem.start)
-    return {
-        "sample-posterior": DRAWS // BATCH if study.noise.weight else 0,
-        "second-derivatives": _models(study) if known else 1,
-        "bootstrap": study.uncertainty.bootstrap,
-        **extent(study.predictions, _models(study) + drawn),
-    }
 
 
 def duration(seconds: float) -> str:
@@ -291,7 +278,8 @@ def _models(study: Study) -> int:
 def _predictions(study: Study, each: float) -> Sequence[Part]:
     """Return the time of the predictions."""
     out = []
-    models = expected_tasks(study)["predict"] / max(len(study.predictions), 1)
+    drawn = study.uncertainty.draws or 1 + 2 * len(study.problem.start)
+    models = _models(study) + drawn
     for prediction in study.predictions:
         try:
             spent = max(_seconds_of(prediction, study.problem) - each, each)
