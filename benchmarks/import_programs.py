@@ -28,7 +28,7 @@ import scipy.sparse
 
 from modefront.programs import PROGRAMS
 from modefront.programs.base import JobOptions
-from modefront.programs.importing import import_model
+from modefront.study.importing import import_model
 
 Array = npt.NDArray[np.float64]
 

@@ -47,6 +47,13 @@ def test_fronts_are_compared_by_the_texts_of_their_paths(folder: Path) -> None:
     comparison = mf.compare([name, name])
     assert comparison.pairs[0].least == 0.0
     assert "reference model" in comparison.table.index
+    assert [front.name for front in mf.compare(name).fronts] == [name]
+
+
+def test_no_folder_at_all_is_refused() -> None:
+    for function in (mf.compare, mf.report):
+        with pytest.raises(mf.InputError, match="one folder of results or more, found none"):
+            function([])
 
 
 def test_a_report_is_written_beside_the_results_or_where_it_is_wanted(folder: Path) -> None:

@@ -19,7 +19,7 @@ const SHAPES: Record<string, [SymbolType, number]> = {
   edge: [symbolSquare, 110],
   "given-weights": [symbolDiamond, 70],
   "equal-weights": [symbolTriangle, 70],
-  "optimal-weights": [symbolStar, 110],
+  "optimal-weights": [symbolWye, 90],
   "most-probable": [symbolStar, 110],
   "identifiable-part": [symbolWye, 40],
   "identifiable-edge": [symbolSquare, 50],

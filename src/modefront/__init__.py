@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from modefront.predictions import Prediction as Prediction
     from modefront.predictions import PredictionKind as PredictionKind
     from modefront.predictions import SoilFilter as SoilFilter
-    from modefront.programs.deck import import_deck as import_deck
-    from modefront.programs.importing import import_model as import_model
     from modefront.reports.page import report as report
     from modefront.residuals.groups import Group as Group
     from modefront.residuals.problem import UpdatingProblem as UpdatingProblem
@@ -51,10 +49,12 @@ if TYPE_CHECKING:
     from modefront.results.results import Results as Results
     from modefront.results.results import read_results as read_results
     from modefront.study.check import check as check
+    from modefront.study.deck import import_deck as import_deck
     from modefront.study.definition import Study as Study
     from modefront.study.export import export as export
     from modefront.study.extensions import register as register
     from modefront.study.file import load as load
+    from modefront.study.importing import import_model as import_model
     from modefront.study.kinds.sensors import ModelKind as ModelKind
     from modefront.study.measured import DataReader as DataReader
     from modefront.study.session import run as run

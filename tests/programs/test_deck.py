@@ -12,9 +12,9 @@ import pytest
 
 import modefront as mf
 from modefront.programs.changes import write_deck
-from modefront.programs.deck import Target, job_text, lines_of, printed_frequencies
-from modefront.programs.importing import model_of
+from modefront.study.deck import Target, job_text, lines_of, printed_frequencies
 from modefront.study.examples import write_example
+from modefront.study.importing import model_of
 
 CCX = shutil.which("ccx")
 needs_ccx = pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not installed")
@@ -128,3 +128,17 @@ def test_a_deck_is_imported_with_jobs_of_its_own_and_comes_back_whole(tmp_path: 
     expected = printed_frequencies(tmp_path / "updated.dat")
     lam = model_of(imported.terms).full_modes(np.array(list(theta.values())), 8).lam
     assert np.sqrt(lam) / (2 * np.pi) == pytest.approx(expected, rel=2e-5)
+
+
+def test_a_study_beside_its_deck_has_it_back_whole_and_no_other_one(tmp_path: Path) -> None:
+    write_example("calculix", tmp_path / "study")
+    deck, theta = tmp_path / "study" / "nominal.inp", dict.fromkeys(("plate", "columns"), 0.5)
+    theta |= dict.fromkeys(("spring", "mass"), 2.0)
+    write_deck(tmp_path / "study", theta, tmp_path)
+    before, after = deck.read_text().splitlines(), (tmp_path / "nominal.inp").read_text()
+    changed = [y for x, y in zip(before, after.splitlines(), strict=True) if x != y]
+    assert changed == ["1.05e+11, 0.3", "1.05e+11, 0.3", "800000.", "16."]
+    (tmp_path / "nominal.inp").unlink()
+    deck.write_text(deck.read_text().replace("2.100000e+11", "7.000000e+10"))
+    write_deck(tmp_path / "study", theta, tmp_path)
+    assert not (tmp_path / "nominal.inp").exists()

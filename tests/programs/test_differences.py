@@ -22,7 +22,7 @@ from program_files import (
 
 from modefront.errors import InputError
 from modefront.programs.base import Quantity
-from modefront.programs.importing import Imported, import_model, model_of
+from modefront.study.importing import Imported, import_model, model_of
 
 
 def jobs(folder: Path, runs: Mapping[str, Mapping[str, float]]) -> None:

@@ -106,6 +106,9 @@ def small(tmp_path: Path) -> Path:
 
 def test_an_imported_study_needs_data_and_sensors_only(small: Path) -> None:
     study = load(small / "study.toml")
+    first, _ = (small / "study.toml").read_text().split("\n", 1)
+    assert first == "#:schema study.schema.json"
+    assert (small / "study.schema.json").is_file()
     assert study.problem.model.directions == ("x", "y", "z")
     assert estimate(study.problem) == pytest.approx([1.2, 0.8], rel=1e-6)
 

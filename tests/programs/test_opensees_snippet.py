@@ -15,7 +15,7 @@ import pytest
 import scipy.linalg
 import scipy.sparse
 
-from modefront.programs.importing import import_model
+from modefront.study.importing import import_model
 
 PAGE = Path(__file__).parents[2] / "docs" / "programs.md"
 

@@ -99,6 +99,20 @@ def mesh() -> xr.Dataset:
     return mf.solve(problem, points=4, search=search).dataset
 
 
+@cache
+def many_modes() -> xr.Dataset:
+    """Results of a chain of eight masses, all of whose modes are measured."""
+    names = ("k1", "k2")
+    springs = [names[0]] * 4 + [names[1]] * 4
+    model = mf.chain(names, [1.0] * 8, [80.0] * 8, stiffness_parameters=springs)
+    modes = model.modes(np.array([1.1, 0.9]), 8)
+    data = mf.modal_data(modes.frequency, modes.phi.T * np.linspace(0.97, 1.03, 8), model.sensors)
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    bounds = dict.fromkeys(names, (0.5, 2.0))
+    problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(bounds, 1.0))
+    return mf.solve(problem, points=3, search=mf.Search(doubt=0.5)).dataset
+
+
 def hostile() -> xr.Dataset:
     """The results of the chain with markup and escape sequences in all names."""
     data = chain()

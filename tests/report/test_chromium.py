@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 import pytest
-from pages import HOSTILE, ROOT, chain, hostile, mesh, three_groups, written
+from pages import HOSTILE, ROOT, chain, hostile, many_modes, mesh, three_groups, written
 from playwright.sync_api import Browser, FloatRect, Locator, Page, Playwright, sync_playwright
 
 from modefront.results.selection import front_points
@@ -329,3 +329,18 @@ def test_a_page_fits_and_axe_finds_nothing(
     page.page.evaluate(AXE.read_text(encoding="utf-8"))
     result = page.page.evaluate("axe.run().then((result) => result.violations)")
     assert [(each["id"], [node["html"] for node in each["nodes"]]) for each in result] == []
+
+
+def test_nothing_overlaps_on_a_phone_and_on_paper(tmp_path: Path, opened: Open) -> None:
+    page = opened(written(tmp_path, many_modes()), width=390)
+    cells = page.view("MAC").locator("tbody td")
+    assert cells.count() == 8 * 8
+    wide = "(all) => all.filter((x) => x.scrollWidth > x.clientWidth).length"
+    assert cells.evaluate_all(wide) == 0
+    for details in page.page.locator("details").all():
+        details.locator("summary").click()
+    page.page.emulate_media(media="print")
+    boxes = page.page.locator(".scroll")
+    assert boxes.count() >= 3
+    cut = "(all) => all.filter((x) => x.scrollHeight > x.clientHeight).length"
+    assert boxes.evaluate_all(cut) == 0

@@ -109,7 +109,9 @@ def of_corners(beta: Floats, std: float) -> Scatter:
     E = np.array([edge.J for edge in edges]).T
     point, chosen = point_at(problem, result.theta.tolist()), noise(result.theta)
     moving = between(E, np.stack(dE, axis=2))
-    w, conditions = boundary(point, result.weights, moving, beta, chosen)
+    found = boundary(point, result.weights, moving, beta, chosen)
+    assert found is not None
+    w, conditions = found
     return scatter(problem, point, w, conditions, chosen)
 
 

@@ -18,7 +18,7 @@ from modefront._typing import Floats
 from modefront.front.archive import Archive, Outcome, Recorder, recorded
 from modefront.optim.problem import Problem, Wrapped
 from modefront.work.costs import Costs, counted, spend, total, uncounted
-from modefront.work.progress import Progress, State
+from modefront.work.progress import Plan, Progress, State
 from modefront.work.run import Run
 from modefront.work.store import Store
 from modefront.work.task import IMMEDIATE, R, Task, Within, seed_sequence
@@ -255,24 +255,12 @@ def test_a_run_is_followed_from_task_to_task() -> None:
     assert states[-1] == State("edge", 0, 1, 10, 0.0, None, (0, 2)), "time runs from the first task"
     clock.now += 3
     follow.end("edge", 3.0)
-    assert states[-1] == State("edge", 1, 0, 10, 3.0, 9 * 3.0, (1, 2))
+    assert states[-1] == State("edge", 1, 0, 10, 3.0, None, (1, 2))
     follow.start("edge")
     clock.now += 1
     follow.end("edge", 1.0)
-    assert states[-1] == State("edge", 2, 0, 10, 4.0, 8 * 2.0, (2, 2))
+    assert states[-1] == State("edge", 2, 0, 10, 4.0, None, (2, 2))
     assert len(states) == 5, "after every change"
-
-
-def test_kept_tasks_are_done_and_tell_nothing_of_the_time_left() -> None:
-    follow, states, clock = progress()
-    follow.expect({"edge": 4})
-    follow.start("edge")
-    follow.end("edge", None)
-    assert (states[-1].done, states[-1].left) == (1, None)
-    follow.start("edge")
-    clock.now += 10
-    follow.end("edge", 10.0)
-    assert (states[-1].done, states[-1].left) == (2, 2 * 10.0)
 
 
 def test_a_stage_ends_where_another_one_starts() -> None:
@@ -283,13 +271,12 @@ def test_a_stage_ends_where_another_one_starts() -> None:
         follow.end("front", 1.0)
     assert states[-1].expected == 22
     follow.start("gap")
-    assert states[-1] == State("gap", 3, 1, 3 + 2, 0.0, 2 * 1.0, (0, 2))
+    assert states[-1] == State("gap", 3, 1, 3 + 2, 0.0, None, (0, 2))
     follow.end("gap", 1.0)
     for _ in range(4):
         follow.start("gap")
         follow.end("gap", 1.0)
     assert (states[-1].done, states[-1].expected) == (8, 8), "more than was expected"
-    assert states[-1].surpassed
     assert states[-1].of_stage == (5, 5)
 
 
@@ -334,32 +321,45 @@ def test_never_more_is_done_than_expected_whatever_happens(
             ended.append((running.pop(0), value))
     for state in states:
         assert state.done + state.running <= state.expected
-        assert state.left is None or state.left >= 0
+        assert state.left is None or 0 <= state.left[0] <= state.left[1]
     assert all(state.done <= other.done for state, other in pairwise(states))
     last = follow.state
     assert (last.done, last.running) == (len(ended), len(running))
-    computed = [seconds for _, seconds in ended if seconds is not None]
-    assert (last.left is None) == (not computed)
-    if computed:
-        of = {x: [y for stage, y in ended if stage == x and y is not None] for x, _ in ended}
-        means = [sum(some) / len(some) for some in of.values() if some]
-        to_come = last.expected - last.done
-        assert last.left is not None
-        assert to_come * min(means) * (1 - 1e-9) <= last.left <= to_come * max(means) * (1 + 1e-9)
 
 
-def test_the_time_left_follows_a_plan_until_tasks_of_a_stage_are_done() -> None:
+def test_the_time_left_follows_a_plan() -> None:
     follow, states, clock = progress()
-    follow.planned = {"edge": 2.0, "predict": 2.0}
-    follow.expect({"edge": 2, "predict": 50})
-    assert states[-1].left == 104.0
-    follow.start("edge")
-    clock.now += 6
-    follow.end("edge", 6.0)
-    assert states[-1].left == pytest.approx(6.0 + 100.0)
-    follow.start("predict")
-    follow.end("predict", 1.0)
-    assert states[-1].left == pytest.approx(49.0), "edges have ended, predictions are quick"
+    assert follow.state.left is None
+    follow.plan = Plan(0.1, {"edges": (100, 1000), "bootstrap": (20, 80)}, {"predict": (2.0, 8.0)})
+    assert follow.plan.seconds == pytest.approx((14.0, 116.0))
+    follow.expect({"bootstrap": 4})
+    assert states[-1].left == pytest.approx((14.0, 116.0))
+
+    def task(stage: str, seconds: float) -> tuple[float, float]:
+        follow.start(stage)
+        clock.now += seconds
+        follow.end(stage, seconds)
+        assert states[-1].left is not None
+        return states[-1].left
+
+    assert task("edges", 0.1) == pytest.approx((13.9, 115.9)), "what was done is subtracted"
+    least, most = task("edges", 2.0)
+    assert least > 14.0, "searches take longer than planned"
+    assert 200.0 < most < 400.0
+    assert task("edges", 800.0)[1] > most
+    for _ in range(1000):
+        task("edges", 1.0)
+    assert task("edges", 1.0)[1] == np.inf, "it goes on for longer than planned"
+    least, most = task("bootstrap", 3.0)
+    assert 2.0 + 0.5 * 9.0 < least < most < 8.0 + 2 * 9.0, "edges have ended, three tasks are left"
+
+
+def test_of_a_stage_that_was_kept_in_part_the_least_is_not_known() -> None:
+    follow, states, _ = progress()
+    follow.plan = Plan(0.1, {"edges": (100, 1000)})
+    follow.start("edges")
+    follow.end("edges", None)
+    assert states[-1].left == (0.0, 100.0)
 
 
 def test_serial_tells_of_every_task_and_of_what_it_took(tmp_path: Path) -> None:

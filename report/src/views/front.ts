@@ -103,7 +103,13 @@ export function frontView(state: State, aspiration: Aspiration, tip: Tip): HTMLE
     ),
     controls,
     plot,
-    h("p", { class: "legend" }, ...series, ...legend(state.current)),
+    h(
+      "p",
+      { class: "legend" },
+      ...series,
+      ...legend(state.current),
+      groups.length === 2 ? h("span", { class: "goal-word" }, "◇ what would do: drag it") : null,
+    ),
   );
   sized(plot, (w) => {
     width = w;

@@ -56,7 +56,7 @@ export function macView(state: State, tip: Tip): HTMLElement {
       h("thead", {}, head),
       h("tbody", {}, ...body),
     );
-    if (many) table.style.minWidth = `${80 + 30 * count}px`;
+    if (many) table.style.minWidth = `${84 + (count > 9 ? 34 : 38) * count}px`;
     return table;
   }
 

@@ -185,7 +185,7 @@ export function scatter(state: State, options: Options): { svg: SVGSVGElement; u
     goal.append(
       s("circle", { r: 14, class: "grip" }),
       s("path", { d: "M0,-8L8,0L0,8L-8,0Z" }),
-      s("text", { x: 13, y: 4 }, "aspiration"),
+      s("title", {}, "what would do: drag it"),
     );
     goal.addEventListener("pointerdown", (event) => {
       event.preventDefault();

@@ -106,7 +106,6 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
     known: Front | None = None
     for number in range(1, ROUNDS + 1):
         here = Within(work, turn=("round", number))
-        work.expect({"snapshot": 1, "certificate": 1})
         front = search(work=here, known=known)
         candidates = _candidates(problem, front)
         enough = (LATER if known else AIM) * model.tolerance

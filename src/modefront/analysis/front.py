@@ -87,7 +87,9 @@ def analyse_front(
     """Return the analysis of a front."""
     a, source = problem.properties, options.uncertainty.of(problem.data)
     sizes = front.scale if source is not None else None
-    work.expect(_extent(front, options, sizes))
+    samples = options.uncertainty.bootstrap
+    solutions = 1 if sizes is None else len(front.points)
+    work.expect({"second-derivatives": solutions, "bootstrap": samples})
     part = _identifiable_part(problem, front, options, work)
     points = _points(problem, front, part)
     manifolds = _manifolds(problem, front, options.identifiability, work)
@@ -116,15 +118,6 @@ def analyse_front(
         posterior,
         replicates,
     )
-
-
-def _extent(front: Front, options: AnalysisOptions, sizes: Floats | None) -> dict[str, int]:
-    """Return the expected number of tasks of each stage."""
-    return {
-        "manifold": len(front.edges) + 1 if options.identifiability.models else 0,
-        "second-derivatives": 1 if sizes is None else len(front.points),
-        "bootstrap": options.uncertainty.bootstrap,
-    }
 
 
 def _identifiable_part(

@@ -9,9 +9,8 @@ from typing import Any
 from modefront.cli.terminal import say
 from modefront.errors import Fault, InputError
 from modefront.programs.base import JobOptions
-from modefront.programs.deck import import_deck
-from modefront.programs.importing import Imported, describe, import_model
-from modefront.study.schema import add_schema
+from modefront.study.deck import import_deck
+from modefront.study.importing import Imported, describe, import_model
 
 
 def run_import(program: str, base: Path, options: JobOptions, output: Path, **given: Any) -> None:
@@ -88,7 +87,7 @@ def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
         say(f"frequencies of the nominal model: {shown} Hz")
         if not any("program prints" in note for note in imported.notes):
             say("  if your program prints other frequencies, check the units (N, kg, m; N, t, mm)")
-    for file in (add_schema(files[-1:]), *files):
+    for file in files:
         say(f"wrote {file}")
     say(f"next: add [data] and [model.sensors] to {files[-1]}, then modefront check {files[-1]}")
 

@@ -448,9 +448,9 @@ def _run(
 
     loaded = _refined(load(study), refine)
     expected = estimate(loaded)
-    if expected is not None and expected.seconds > SHORT:
+    if expected is not None and expected.range[1] > SHORT:
         say_estimate(expected, err=True)
-    with progress_bar(loaded.name, expected.stages if expected else {}) as progress:
+    with progress_bar(loaded.name, expected.plan if expected else None) as progress:
         results = run_on(carrier, loaded, directory, fresh=fresh, progress=progress)
     return results.dataset, progress.spent
 

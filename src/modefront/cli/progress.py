@@ -1,11 +1,12 @@
 """Progress of a run on standard error: two lines in a terminal, one line a stage in a log.
 
-The first line has the study, a bar, the tasks done and expected, and the time; the second one says
-in words what goes on, inside long tasks too, and how long it will probably take.
+The first line has the study, a bar, the tasks done, and the time; the second one says in words what
+goes on, inside long tasks too, and from and to how long it will take.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -21,7 +22,7 @@ from rich.text import Text
 from modefront.study.estimate import duration
 from modefront.text import NAME, clean
 from modefront.work.costs import Costs, counted
-from modefront.work.progress import ITERATION, Progress, State, listening
+from modefront.work.progress import COUNTED, ITERATION, Plan, Progress, State, listening
 
 TITLES: Mapping[str, str] = {
     "check-groups": "check of the groups",
@@ -49,11 +50,6 @@ TITLES: Mapping[str, str] = {
 }
 """Stages of a run in words."""
 
-SEARCHES = frozenset(
-    ("edges", "near", "front", "gap", "most-probable", "manifold", "identifiable", "probe-basis")
-)
-"""Stages that go on for as long as they find something: what is left is known from below only."""
-
 WIDTH = 24
 """Characters of a study's name in the bar, so that all fits into 80 columns."""
 
@@ -65,18 +61,15 @@ PER_SECOND = 4
 
 
 @contextmanager
-def progress_bar(title: str, planned: Mapping[str, float]) -> Iterator[Progress]:
-    """Show how many tasks are done, of about how many, what goes on and the time that is left.
-
-    ``planned`` are the seconds that a task of each stage will probably take.
-    """
+def progress_bar(title: str, plan: Plan | None) -> Iterator[Progress]:
+    """Show how many tasks are done, what goes on and the time that is left by a plan of the run."""
     screen = Console(stderr=True)
     if not screen.is_terminal:
-        yield Progress(_Log(screen, title), planned=planned)
+        yield Progress(_Log(screen, title), plan=plan)
         return
     with counted() as costs:
         lines = _Lines(clean(title, WIDTH), costs)
-        progress = Progress(lines.take, planned=planned)
+        progress = Progress(lines.take, plan=plan)
         with Live(lines, console=screen, refresh_per_second=PER_SECOND), listening(lines.hear):
             yield progress
             lines.end()
@@ -121,11 +114,8 @@ class _Lines:
         self.is_done = True
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        done, expected = (self.state.done, self.state.expected) if self.state else (0, 0)
-        expected = done if self.is_done else max(expected, 1)
-        known = self.state is not None and not self.is_done
-        of = f"{done} of about {expected} tasks" if known else f"{done} tasks"
-        count = f"{of}  {timedelta(seconds=int(self.clock() - self.began))}"
+        now, done = self.clock(), self.state.done if self.state else 0
+        count = f"{done} tasks  {timedelta(seconds=int(now - self.began))}"
         if options.max_width < len(self.title) + len(count) + LEAST:
             yield Text(f"{self.title}  {count}", overflow="fold")
             yield Text(self.words, overflow="fold")
@@ -134,10 +124,18 @@ class _Lines:
         grid.add_column(no_wrap=True)
         grid.add_column(ratio=1)
         grid.add_column(no_wrap=True)
-        bar = ProgressBar(total=max(expected, 1), completed=done)
+        bar = ProgressBar(total=1.0, completed=1.0 if self.is_done else self.share(now))
         grid.add_row(Text(self.title), bar, Text(count))
         yield grid
         yield Text(self.words, overflow="fold")
+
+    def share(self, now: float) -> float:
+        """Return the share of the time that has passed, by the middle of what is left."""
+        if self.state is None or self.state.left is None:
+            return 0.0
+        least, most = self.state.left
+        left = least if most == math.inf else (least + most) / 2
+        return (now - self.began) / max(self.taken - self.began + left, now - self.began, 1e-9)
 
     @property
     def words(self) -> str:
@@ -168,28 +166,27 @@ class _Log:
             self.stage = state.stage
             left = _left(state)
             words = ", ".join([TITLES.get(state.stage, state.stage), *([left] if left else [])])
-            text = f"{self.title}: {state.done} of about {state.expected} tasks done: {words}"
+            text = f"{self.title}: {state.done} tasks done: {words}"
             self.screen.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def _stage(state: State) -> str:
-    """Return the stage, and how many of its tasks are done."""
+    """Return the stage, and how many of its tasks are done: of how many, where that is known."""
     done, expected = state.of_stage
     title = TITLES.get(state.stage, state.stage)
     if expected < 2:
         return title
-    return f"{title} {done}" if state.surpassed else f"{title} {done} of about {expected}"
+    return f"{title} {done} of {expected}" if state.stage in COUNTED else f"{title} {done}"
 
 
 def _left(state: State, since: float = 0.0) -> str:
-    """Return what is known of the time that is left, ``since`` seconds after the state was so.
-
-    It is known from below only where a search goes on, and not at all where there are more tasks
-    than were expected.
-    """
-    if state.left is None or state.left - since < 1:
+    """Return what is known of the time that is left, ``since`` seconds after the state was so."""
+    if state.left is None:
         return ""
-    if state.surpassed:
-        return "longer than expected"
-    left = duration(round(state.left - since))
-    return f"{left} or more" if state.stage in SEARCHES else f"about {left} left"
+    least, most = (max(x - since, 0.0) for x in state.left)
+    if most == math.inf:
+        return f"{duration(round(least))} or more" if least >= 1 else "longer than expected"
+    if most < 1:
+        return ""
+    ends = [duration(round(x)) for x in (least, most) if x >= 1]
+    return f"{' to ' if len(ends) > 1 else 'at most '}".join(["", *ends][-2:]) + " left"

@@ -120,23 +120,27 @@ def deck_text(job: Path) -> str:
 
 
 def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> None:
-    """Write the deck that the folder of a study keeps with updated values, if it keeps one.
+    """Write the deck of a study with updated values: that which its folder keeps, or the job's own.
 
-    It is left out where a value of the deck is no parameter of the model.
+    It is left out where there is none with these lines, or a value of it is no parameter of the
+    model.
     """
     changes = read_changes(study / CHANGES) if (study / CHANGES).is_file() else []
-    kept = study / f"{KEPT}{changes[0].file}" if changes else study
-    if not kept.is_file() or {each.parameter for each in changes} - set(theta):
+    decks = [study / f"{beginning}{each.file}" for each in changes[:1] for beginning in (KEPT, "")]
+    kept = next((path for path in decks if path.is_file()), None)
+    if kept is None or {each.parameter for each in changes} - set(theta):
         return
-    lines = kept.read_text("utf-8").splitlines()
+    lines = dict(enumerate(kept.read_text("utf-8", "replace").splitlines(), start=1))
+    if any(lines.get(each.line) != each.text for each in changes):
+        return
     factors: dict[int, dict[tuple[int, int], float]] = {}
     for each in changes:
-        line = factors.setdefault(each.line - 1, {})
+        line = factors.setdefault(each.line, {})
         for span in each.spans:
             line[span] = line.get(span, 1.0) * theta[each.parameter]
     for k, of_line in factors.items():
         lines[k] = _multiplied(lines[k], of_line)
-    write_text(folder / changes[0].file, "\n".join(lines) + "\n")
+    write_text(folder / changes[0].file, "\n".join(lines.values()) + "\n")
 
 
 def _deck(path: Path) -> Path | None:

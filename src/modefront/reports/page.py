@@ -77,9 +77,9 @@ def report(folders: Path | str | Sequence[Path | str], output: Path | str | None
     InputError
         For results that are not sound, and a file that cannot be written.
     """
-    listed = [folders] if isinstance(folders, Path | str) else folders
-    path = Path(output) if output else Path(listed[0]) / "report.html"
-    write_page(read_together([Path(folder) for folder in listed]), path)
+    results = read_together(folders)
+    path = Path(output) if output else Path(results[0][0]) / "report.html"
+    write_page(results, path)
     return path
 
 

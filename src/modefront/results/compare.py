@@ -162,13 +162,13 @@ class Comparison:
         return str(self.table.to_html(float_format="{:.4g}".format))
 
 
-def compare(folders: Sequence[str | Path]) -> Comparison:
+def compare(folders: Path | str | Sequence[Path | str]) -> Comparison:
     """Return the comparison of the results in folders.
 
     Parameters
     ----------
     folders
-        Folders with a ``results.nc`` each, of studies with the same groups.
+        Folder with a ``results.nc``, or several of studies with the same groups.
 
     Returns
     -------
@@ -181,11 +181,11 @@ def compare(folders: Sequence[str | Path]) -> Comparison:
     InputError
         Where there are no results, or their groups are not the same, or no model is Pareto optimal.
     """
-    results = read_together([Path(folder) for folder in folders], whole=False)
-    for folder, (_, data) in zip(folders, results, strict=True):
+    results = read_together(folders, whole=False)
+    for folder, data in results:
         if not _best(data).sizes["point"]:
             expected = "at least one Pareto-optimal model"
-            raise InputError(Fault(str(folder), "variable 'pareto'", expected, "none"))
+            raise InputError(Fault(folder, "variable 'pareto'", expected, "none"))
     groups = tuple(map(str, results[0][1]["group"].values))
     fronts = [_summary(name, data, _length(results[0][1])) for name, data in results]
     pairs = [_apart(first, other) for first, other in combinations(results, 2)]
@@ -198,15 +198,20 @@ def short_names(folders: Sequence[str]) -> list[str]:
     return short if len(set(short)) == len(short) else list(folders)
 
 
-def read_together(folders: Sequence[Path], *, whole: bool = True) -> list[tuple[str, xr.Dataset]]:
-    """Return the results in folders, each with the name of its folder.
+def read_together(
+    folders: Path | str | Sequence[Path | str], *, whole: bool = True
+) -> list[tuple[str, xr.Dataset]]:
+    """Return the results in a folder or several, each with the name of its folder.
 
     A ``whole`` file has all variables that belong together. Raises InputError where there are none,
     or where their groups are not the same.
     """
+    listed = [Path(each) for each in ([folders] if isinstance(folders, Path | str) else folders)]
+    if not listed:
+        raise InputError(Fault("", "folders", "one folder of results or more", "none"))
     faults: list[Fault] = []
     results: list[tuple[str, xr.Dataset]] = []
-    for folder in folders:
+    for folder in listed:
         try:
             results.append((str(folder), read_dataset(folder, whole=whole)))
         except InputError as error:

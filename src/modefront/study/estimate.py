@@ -1,37 +1,47 @@
-"""Estimate of the time that a study takes, with advice on how to shorten it.
+"""Estimate of the time that a study takes, as a range, with advice on how to shorten it.
 
-One model is evaluated a few times, and each prediction once, with few samples. How many models a
-run evaluates is counted in `_parts` from averages over studies with 1 to 17 parameters: a local
-search takes 8 evaluations and one more for every second parameter, a point of the front 4 and half
-as many. Searches for global minima go on for as long as they find new ones, so that the estimate
-may be wrong by a factor of three.
+A few searches are timed, and each prediction once, with few samples: all times are those of the
+processor, whatever else it does. Each stage of a run takes from and to so many searches, as counted
+over studies with 2 to 12 parameters; how many evaluations a search takes differs more between
+studies, and is measured. Where a search takes too long to be timed, its evaluations are an average:
+10, and one more for each parameter. ``benchmarks/honest_time.py`` measures how often the time of a
+run is within the range.
 """
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
+from modefront._typing import Floats
 from modefront.errors import InputError, ModelError
 from modefront.front.simplex import default_points, size
 from modefront.models.base import full_of, is_reduced
+from modefront.models.matrices import MatrixModel
+from modefront.models.reduced.cost import estimate as reduced_cost
+from modefront.optim.scalarisation import weighted
+from modefront.optim.sqp import Options, begin, solve
 from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.predictions import extent
 from modefront.study.definition import Study
 from modefront.uncertainty.most_probable import STARTS as MAXIMA
-from modefront.uncertainty.sampling import BATCH, DRAWS
+from modefront.uncertainty.sampling import DRAWS
 from modefront.work.costs import uncounted
+from modefront.work.progress import Plan, Span
+from modefront.work.task import seed_sequence
 
-STARTS = 12
-"""Searches that an edge usually takes."""
+EDGE = 10.0, 60.0
+"""Searches for the best model of a group or of given weights, from and to."""
 
-WITHIN = 3.0
-"""Factor within which the estimate is right where searches end before their budget."""
+DRAW = 0.4, 2.0
+"""Time of a draw of the posterior over that of a search, from and to."""
+
+REST = 1.4
+"""Time of a run over that of its searches: what is known is kept and compared, results are made."""
 
 SHORT = 30.0
 """Seconds up to which no advice on a shorter run is given."""
@@ -39,16 +49,12 @@ SHORT = 30.0
 SHARE = 0.25
 """Share of the time from which a part of the work is worth to be made shorter."""
 
-REDUCED = 0.05
-"""Share of a solution in full that one in a reduced basis takes, for models that have one."""
-
+TIMED, STEPS, WITHIN = 8, 3, 0.4
+"""Searches that are timed, after a few steps that tell whether there is time for them; seconds
+within which another one is begun."""
 
 SAMPLES = 100
 """Samples with which a prediction is timed, and three times as many."""
-
-PROGRAMME = 4e-9
-"""Seconds of the quadratic programme of a step over the third power of the number of parameters:
-that of some ten decompositions."""
 
 LARGE = 2000
 """Degrees of freedom from which a reduced basis is worth a try."""
@@ -61,12 +67,12 @@ class Part:
     Attributes
     ----------
     stage : of the run in which it is done
-    seconds : that it will probably take
+    span : evaluations of models, or seconds, that it will probably take, from and to
     advice : what would make it shorter; empty for nothing
     """
 
     stage: str
-    seconds: float
+    span: Span
     advice: str = ""
 
 
@@ -76,91 +82,59 @@ class Estimate:
 
     Attributes
     ----------
-    seconds : in all, by one process
-    evaluations : models that are evaluated, about
-    each : seconds for one of them
-    steps : seconds for the quadratic programmes of all steps
+    plan : what each stage of the run takes
     advice : what would make the run shorter, that of the longest part first; none for short runs
-    stages : seconds of a task of the stages of a run
-    budget : seconds of a search that spends all of its evaluations
     """
 
-    seconds: float
-    evaluations: int
-    each: float
-    steps: float
-    advice: tuple[str, ...]
-    stages: Mapping[str, float]
-    budget: float = 0.0
+    plan: Plan
+    advice: tuple[str, ...] = ()
+
+    @property
+    def range(self) -> Span:
+        """Seconds in all, by one process."""
+        return self.plan.seconds
 
     @property
     def text(self) -> str:
         """The estimate in a sentence."""
-        predicted = self.seconds - self.evaluations * self.each - self.steps
-        share = f", {duration(predicted)} for predictions" if predicted > self.seconds / 10 else ""
-        if self.steps > self.seconds / 10:
-            share += f", {duration(self.steps)} for steps in so many parameters"
-        least, most = self.seconds / WITHIN, max(WITHIN * self.seconds, self.budget)
+        least, most = self.range
+        few, many = (_round(round(sum(x))) for x in zip(*self.plan.searches.values(), strict=True))
+        longest = max(self.plan.other.values(), key=lambda span: span[1], default=(0.0, 0.0))
+        share = f", {_span(longest)} for predictions" if longest[1] > most / 10 else ""
         return (
-            f"a run takes {duration(least)} to {duration(most)}: the number of minima decides "
-            f"(roughly {_round(self.evaluations)} models at {duration(self.each)} each{share})"
+            f"a run takes {_span((least, most))} of a processor: the number of minima decides "
+            f"({few:,} to {many:,} searches of {duration(self.plan.search)} each{share})"
         )
 
 
 def estimate(study: Study) -> Estimate | None:
     """Return the time that a study takes; None where the nominal model cannot be evaluated."""
-    problem = study.problem
-    with uncounted():
-        each = _seconds(problem)
-        if each is None:
+    with uncounted(), threadpool_limits(1, user_api="blas"):
+        timed = _search(study)
+        if timed is None:
             return None
-        step = PROGRAMME * len(problem.start) ** 3
-        parts = [*_parts(study, each, step), *_predictions(study, each)]
-    seconds = sum(part.seconds for part in parts)
-    solving = sum(part.seconds for part in parts if part.stage != "predict")
-    steps = solving - sum(part.seconds for part in _parts(study, each, 0.0))
-    evaluations = round((solving - steps) / each) if each else 0
-    long = [part for part in parts if part.seconds > SHARE * seconds and part.advice]
-    advice = [part.advice for part in sorted(long, key=lambda part: -part.seconds)]
+        search, evaluations = timed
+        advice = []
+        searches: dict[str, Span] = {}
+        other: dict[str, Span] = {}
+        for part in _parts(study, evaluations):
+            searches[part.stage] = part.span
+            advice.append((part.span[1] * search, part.advice))
+        if is_reduced(study.problem.model):
+            other["snapshot"] = _snapshots(study)
+        for part in _predictions(study, search / evaluations):
+            known = other.get(part.stage, (0.0, 0.0))
+            other[part.stage] = (known[0] + part.span[0], known[1] + part.span[1])
+            advice.append((part.span[1], part.advice))
+    plan = Plan(REST * search, searches, other)
+    most = plan.seconds[1]
+    if most <= SHORT:
+        return Estimate(plan)
+    advice.sort(key=lambda part: -part[0])
+    said = [text for seconds, text in advice if seconds > SHARE * most and text]
     if study.problem.model.size >= LARGE and not is_reduced(study.problem.model):
-        advice.insert(0, 'a reduced basis ([model] reduction = "auto")')
-    if seconds > SHORT:
-        advice.append("--workers N with as many as there are cores")
-    stages: dict[str, float] = {}
-    tasks = expected_tasks(study)
-    for part in parts:
-        share = part.seconds / max(tasks.get(part.stage, 1), 1)
-        stages[part.stage] = stages.get(part.stage, 0.0) + share
-    budget = seconds + (each + step) * study.search.evaluations
-    long_enough = tuple(advice) if seconds > SHORT else ()
-    return Estimate(seconds, evaluations, each, steps, long_enough, stages, budget)
-
-
-def expected_tasks(study: Study) -> dict[str, int]:
-    """Return the tasks that a run of a study will probably have, by their stages."""
-    n, pareto = len(study.problem.groups), study.pareto
-    models = study.identifiability.models
-    known = study.uncertainty.of(study.problem.data) is not None
-    out = {
-        "check-groups": 1,
-        "sample": 1,
-        "edges": (n + len(study.weighted) + 1) * STARTS,
-        "optimal-weights": n + 2,
-        "iterated-weights": 1,
-        "manifold": n + 1 if models else 0,
-        "second-derivatives": _models(study) if known else 1,
-        "bootstrap": study.uncertainty.bootstrap,
-        "nominal": 1,
-        "shapes": 1,
-    }
-    if study.noise.weight:
-        out |= {"most-probable": MAXIMA, "sample-posterior": DRAWS // BATCH, "posterior": 1}
-    if n > 1:
-        generations = max(pareto.evaluations // pareto.population, 1)
-        searched = 2 * (_points(study) + STARTS)
-        out["front"] = searched if pareto.method in ("nbi", "weights") else generations
-    predicted = _models(study) + (study.uncertainty.draws or 1 + 2 * len(study.problem.start))
-    return out | extent(study.predictions, predicted)
+        said.insert(0, 'a reduced basis ([model] reduction = "auto")')
+    return Estimate(plan, (*said, "--workers N with as many as there are cores"))
 
 
 def duration(seconds: float) -> str:
@@ -188,61 +162,102 @@ def _round(count: int) -> int:
     return max(round(count / power), 1) * power
 
 
-def _seconds(problem: UpdatingProblem) -> float | None:
-    """Return the seconds of an evaluation; the first one makes what others share."""
-    model = full_of(problem.model)
-    count = len(problem.data.modes)
+def _span(span: Span) -> str:
+    """Return a range of times: "0.4 s to 8 s"."""
+    return f"{duration(span[0])} to {duration(span[1])}"
+
+
+def _search(study: Study) -> tuple[float, float] | None:
+    """Return the seconds and the evaluations of a search; None where there is no nominal model.
+
+    It is one for the best model of a group, from a model within the bounds.
+    """
+    problem = replace(study.problem, model=full_of(study.problem.model))
+    rng = np.random.default_rng(seed_sequence(study.seed, "estimate"))
+    for _ in range(2):  # the first time also makes what others share
+        each, count = _timed(problem, 0, problem.start, Options(iterations=STEPS))
+        if not count:
+            return None
+    average = 10.0 + problem.start.size
+    seconds = average * each / count
+    found: list[tuple[float, int]] = []
+    if seconds < WITHIN:
+        for k in range(TIMED):
+            if sum(x[0] for x in found) < WITHIN:
+                found.append(_timed(problem, k, rng.uniform(problem.lower, problem.upper)))
+        found = [x for x in found if x[1]]
+    if found:
+        seconds, average = (float(np.mean(x)) for x in zip(*found, strict=True))
+    return seconds * _share_of_basis(study.problem), average
+
+
+def _timed(
+    problem: UpdatingProblem, group: int, theta: Floats, options: Options | None = None
+) -> tuple[float, int]:
+    """Return the seconds and the evaluations of a search from theta (p,); no evaluation: none."""
+    began, i = time.process_time(), group % len(problem.objectives)
     try:
-        model.modes(problem.start, count)
-        best = math.inf
-        for _ in range(2):
-            began = time.perf_counter()
-            model.modes(problem.start, count)
-            best = min(best, time.perf_counter() - began)
+        start = problem.evaluate(theta, second=True)
+        unit = np.eye(len(problem.objectives))[i] / (start.J[i] or 1.0)
+        found = solve(problem, weighted(unit), begin(start), options)
     except ModelError:
-        return None
-    return best * (REDUCED if is_reduced(problem.model) else 1.0)
+        return 0.0, 0
+    return time.process_time() - began, (1 + found.evaluations) * start.feasible
 
 
-def _parts(study: Study, each: float, step: float) -> Iterator[Part]:
-    """Yield the parts of the work, predictions apart: seconds of a model and of a step besides."""
-    p, n = len(study.problem.start), len(study.problem.groups)
-    search, pareto = study.search, study.pareto
-    both = each + step
-    yield Part("optimal-weights", both * 6 * (8 + p / 2))
+def _share_of_basis(problem: UpdatingProblem) -> float:
+    """Return the time of an evaluation over that with a full solution."""
+    model = full_of(problem.model)
+    if model is problem.model:
+        return 1.0
+    assert isinstance(model, MatrixModel)  # no other one is reduced
+    return reduced_cost(model, len(problem.data.modes)).share
+
+
+def _modes(problem: UpdatingProblem) -> float:
+    """Return the seconds of the modes of the full model and their derivatives."""
+    began = time.process_time()
+    full_of(problem.model).modes(problem.start, len(problem.data.modes))
+    return time.process_time() - began
+
+
+def _snapshots(study: Study) -> Span:
+    """Return the seconds of the snapshots of a reduced basis and their certificates."""
+    alone, p = _modes(study.problem), len(study.problem.start)
+    return (alone * p, 2 * alone * (3 * p + 5))
+
+
+def _parts(study: Study, evaluations: float) -> Iterator[Part]:
+    """Yield the parts of the work, predictions apart, in searches of so many evaluations."""
+    n, pareto, points = len(study.problem.groups), study.pareto, _points(study)
+    edges, budget = n + len(study.weighted) + 1, study.search.evaluations / evaluations
     yield Part(
         "edges",
-        both * min((n + 1) * STARTS * (8 + p / 2), search.evaluations),
-        f"fewer evaluations of the search ([search] evaluations, now {search.evaluations})",
+        (min(EDGE[0] * edges, budget), min(EDGE[1] * edges, budget)),
+        f"fewer evaluations of the search ([search] evaluations, now {study.search.evaluations})",
     )
-    if study.noise.weight:
-        yield Part("most-probable", both * MAXIMA * (8 + p / 2))
-        yield Part("sample-posterior", both * DRAWS * (8 + p / 2))
-    points = _points(study)
-    point = 4 + p / 2
     if pareto.method in ("nbi", "weights"):
-        along = points * point
-        yield Part(
-            "front", both * along, f"fewer points of the front ([pareto] points), now {points}"
-        )
+        advice = f"fewer points of the front ([pareto] points), now {points}"
+        yield Part("front", (points / 5, 2.0 * points), advice)
     else:
-        evaluations = pareto.evaluations
-        advice = f"fewer evaluations ([pareto] evaluations, now {evaluations})"
-        yield Part("front", each * evaluations, advice)
-    manifolds = min(study.identifiability.models, 40) * n
+        all_of_it = pareto.evaluations / evaluations
+        advice = f"fewer evaluations ([pareto] evaluations, now {pareto.evaluations})"
+        yield Part("front", (all_of_it, all_of_it), advice)
+    yield Part("optimal-weights", (0.0, 3.0 * edges))
+    if study.noise.weight:
+        yield Part("most-probable", (1.0, MAXIMA))
+        yield Part("sample-posterior", (DRAW[0] * DRAWS, DRAW[1] * DRAWS))
+    equivalent = study.identifiability.models * n / evaluations
     yield Part(
-        "manifold", each * 3 * manifolds, "fewer equivalent models ([identifiability] models)"
+        "manifold", (0.0, 8 * equivalent), "fewer equivalent models ([identifiability] models)"
     )
-    yield Part("second-derivatives", each * points)
     samples = study.uncertainty.bootstrap
     if samples:
         yield Part(
             "bootstrap",
-            both * samples * points * point,
+            (samples * points / 5, samples * points),
             f"fewer bootstrap samples ([uncertainty] bootstrap, now {samples})",
         )
-    if is_reduced(study.problem.model):
-        yield Part("snapshot", each / REDUCED * (3 * p + 5))
 
 
 def _points(study: Study) -> int:
@@ -263,14 +278,15 @@ def _models(study: Study) -> int:
 def _predictions(study: Study, each: float) -> Sequence[Part]:
     """Return the time of the predictions."""
     out = []
-    models = expected_tasks(study)["predict"] / max(len(study.predictions), 1)
+    drawn = study.uncertainty.draws or 1 + 2 * len(study.problem.start)
+    models = _models(study) + drawn
     for prediction in study.predictions:
         try:
             spent = max(_seconds_of(prediction, study.problem) - each, each)
         except (ModelError, InputError):
             continue
         advice = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
-        out.append(Part("predict", models * spent, advice))
+        out.append(Part("predict", (models * spent / 2, 2 * models * spent), advice))
     return out
 
 
@@ -279,9 +295,9 @@ def _seconds_of(prediction: Prediction, problem: UpdatingProblem) -> float:
 
     def timed(each: Prediction) -> float:
         complete = each.complete(problem)
-        began = time.perf_counter()
+        began = time.process_time()
         complete.evaluate(problem, problem.start, np.random.SeedSequence(0))
-        return time.perf_counter() - began
+        return time.process_time() - began
 
     if not isinstance(prediction, Passage) or prediction.samples <= 3 * SAMPLES:
         return timed(prediction)

@@ -36,7 +36,6 @@ from modefront.predictions.runner import PredictionRunner
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
-from modefront.study.estimate import expected_tasks
 from modefront.study.processes import processes
 from modefront.study.whereabouts import note_study
 from modefront.uncertainty.inference import infer
@@ -251,7 +250,6 @@ class _Session:
         problem = self.study.problem
         with threadpool_limits(1, user_api="blas"):
             refuse_too_many(problem, str(self.study.file))
-            self.work.expect(expected_tasks(self.study))
             (unchanged,) = self.work.run([Task(("check-groups",), unchanged_groups, (problem,))])
             refuse_unchanged_groups(problem, str(self.study.file), unchanged)
             return self._results()

@@ -81,7 +81,10 @@ def front_scatter(
                 conditions = level(point, role.objective, dv, noise)
             case "boundary" if beta is not None and w.any() and {*role.ends} <= set(ends):
                 target = _target(role, ends)
-                w, conditions = boundary(point, w, target, beta, noise, role.equations)
+                found = boundary(point, w, target, beta, noise, role.equations)
+                if found is None:
+                    continue
+                w, conditions = found
             case _:
                 continue
         out[text] = scatter(problem, point, w, conditions, noise)

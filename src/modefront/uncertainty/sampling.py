@@ -127,6 +127,7 @@ def draw_models(noise: NoiseModel, theta: Floats, count: int, seed: int, work: E
         )
         for k in range(-(-count // BATCH))
     ]
+    work.expect({"sample-posterior": len(tasks)})
     parts = work.run(tasks)
     return Draws(
         *(

@@ -1,22 +1,66 @@
-"""Progress of a run: tasks done, running, expected, and the time that is left.
+"""Progress of a run: its stage, tasks done, and the time that is left, as a range.
 
 Every task belongs to a stage. The extent of a stage is an estimate until it ends; a stage has ended
 when a task of another one starts, and its extent then is the number of tasks that it had.
 
-Tasks of a stage that has begun take as long as those before them. What the others take is planned;
-without a plan they take as long as all tasks.
+A plan says from and to how many searches each stage takes. What a stage has taken is subtracted
+from it; a stage that has tasks of a known number takes for each that is left as long as for those
+before. A search takes as long as those of the edges and the front so far, and as planned before
+there are many.
 """
 
 from __future__ import annotations
 
+import math
 import time
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 
 from modefront.work.costs import Costs
+
+Span = tuple[float, float]
+"""From and to."""
+
+COUNTED = frozenset(("sample-posterior", "bootstrap", "predict", "second-derivatives"))
+"""Stages whose number of tasks is known when they begin."""
+
+SEARCHES = ("edges", "front")
+"""Stages of which a task is a search."""
+
+MANY, SIMILAR = 8, (0.6, 1.6)
+"""Searches whose time counts as much as the planned one; time of a task that is left over the mean
+of those before, from and to."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run will probably take.
+
+    Attributes
+    ----------
+    search : seconds of a search
+    searches : of each stage, from and to
+    other : seconds of stages that take something else
+    """
+
+    search: float = 0.0
+    searches: Mapping[str, Span] = field(default_factory=dict)
+    other: Mapping[str, Span] = field(default_factory=dict)
+
+    @property
+    def seconds(self) -> Span:
+        """Seconds of all stages."""
+        spans = [self.of(stage, self.search) for stage in (*self.searches, *self.other)]
+        return sum(x[0] for x in spans), sum(x[1] for x in spans)
+
+    def of(self, stage: str, search: float) -> Span:
+        """Return the seconds of a stage, where a search takes so many."""
+        few, many = self.searches.get(stage, (0.0, 0.0))
+        least, most = self.other.get(stage, (0.0, 0.0))
+        return few * search + least, many * search + most
 
 
 @dataclass(frozen=True)
@@ -30,9 +74,9 @@ class State:
     running : tasks that are being computed
     expected : tasks in all, as far as is known; never less than those done and running
     elapsed : seconds since the run began
-    left : estimated seconds until it ends; None for as long as nothing is known of it
+    left : seconds until it ends, from and to, infinite where a search takes longer than planned;
+        None where nothing is planned
     of_stage : tasks of this stage that are done, and expected
-    surpassed : whether this stage has more tasks than were expected
     """
 
     stage: str
@@ -40,12 +84,11 @@ class State:
     running: int
     expected: int
     elapsed: float
-    left: float | None
+    left: Span | None
     of_stage: tuple[int, int] = (0, 0)
-    surpassed: bool = False
 
 
-# 12 fields: five are given, the others are its state.
+# 13 fields: five are given, the others are its state.
 @dataclass
 class Progress:
     """Follows the tasks of a run and reports its state after every change.
@@ -56,20 +99,21 @@ class Progress:
     clock : returns seconds
     spent : costs of the tasks computed, without those kept from an earlier run
     workers : tasks that are computed at the same time, as far as there are so many
-    planned : seconds that a task of each stage will probably take
+    plan : what each stage will probably take; None for unknown
     """
 
     report: Callable[[State], object] = lambda _: None
     clock: Callable[[], float] = time.monotonic
     spent: Costs = field(default_factory=Costs)
     workers: int = 1
-    planned: Mapping[str, float] = field(default_factory=dict)
+    plan: Plan | None = None
     _expected: Counter[str] = field(default_factory=Counter)
     _done: Counter[str] = field(default_factory=Counter)
     _running: Counter[str] = field(default_factory=Counter)
     _stage: str = ""
     _computed: Counter[str] = field(default_factory=Counter)
-    _seconds: dict[str, float] = field(default_factory=dict)
+    _seconds: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))
+    _ended: set[str] = field(default_factory=set)
     _began: float | None = None
 
     def expect(self, stages: Mapping[str, int]) -> None:
@@ -84,6 +128,8 @@ class Progress:
             self._began = self.clock()
         if stage != self._stage and self._stage:
             self._expected[self._stage] = self._met(self._stage)
+            self._ended.add(self._stage)
+        self._ended.discard(stage)
         self._stage = stage
         self._running[stage] += 1
         self.report(self.state)
@@ -94,7 +140,7 @@ class Progress:
         self._done[stage] += 1
         if seconds is not None:
             self._computed[stage] += 1
-            self._seconds[stage] = self._seconds.get(stage, 0.0) + seconds
+            self._seconds[stage] += seconds
         self.report(self.state)
 
     @property
@@ -110,22 +156,26 @@ class Progress:
             0.0 if self._began is None else self.clock() - self._began,
             self._left(extents),
             (self._done[self._stage], extents.get(self._stage, 0)),
-            self._met(self._stage) > self._expected[self._stage],
         )
 
-    def _left(self, extents: Mapping[str, int]) -> float | None:
-        """Return the seconds that all tasks to come will probably take; None for unknown."""
-        count = self._computed.total()
-        if not count and not self.planned:
+    def _left(self, extents: Mapping[str, int]) -> Span | None:
+        """Return the seconds that all stages to come will probably take; None without a plan."""
+        if self.plan is None:
             return None
-        mean = sum(self._seconds.values()) / count if count else 0.0
-        left = 0.0
-        for stage, extent in extents.items():
-            each = self.planned.get(stage, mean)
-            if stage in self._computed:
-                each = self._seconds[stage] / self._computed[stage]
-            left += (extent - self._done[stage]) * each
-        return left / self.workers
+        count = MANY + sum(self._computed[stage] for stage in SEARCHES)
+        taken = MANY * self.plan.search + sum(self._seconds[stage] for stage in SEARCHES)
+        least = most = 0.0
+        for stage in {*self.plan.searches, *self.plan.other} - self._ended:
+            low, high = self.plan.of(stage, taken / count)
+            spent, done = self._seconds[stage], self._computed[stage]
+            if done and stage in COUNTED:
+                mean = (extents[stage] - self._done[stage]) * spent / done
+                low, high = (factor * mean for factor in SIMILAR)
+            else:
+                high = high - spent if high > spent else math.inf
+                low = 0.0 if self._done[stage] > done else max(low - spent, 0.0)
+            least, most = least + low, most + high
+        return least / self.workers, most / self.workers
 
     def _met(self, stage: str) -> int:
         return self._done[stage] + self._running[stage]

@@ -72,6 +72,11 @@ class Estimate:
     evaluations: float
 
     @property
+    def share(self) -> float:
+        """The time of an evaluation in a basis, over that of a full one."""
+        return (self.reduced + SOLVER) / (self.full + SOLVER)
+
+    @property
     def gain(self) -> float:
         """The time of a study with full solutions, over that in a basis."""
         alone = self.evaluations * (self.full + SOLVER)

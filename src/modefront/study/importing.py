@@ -35,6 +35,7 @@ from modefront.programs.changes import (
 from modefront.programs.condense import condensed
 from modefront.programs.differences import Differences, Term, Terms
 from modefront.programs.mesh import write_mesh
+from modefront.study.schema import add_schema
 
 QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
 
@@ -83,7 +84,7 @@ class Imported:
     deck: str = ""
 
     def write(self, folder: Path | str) -> list[Path]:
-        """Write a study with its matrices into a folder that has none, and return the files.
+        """Write a study with its matrices and schema into a folder that has none; return the files.
 
         Raises InputError where the folder has a study already, or cannot be written to.
         """
@@ -316,6 +317,7 @@ def write_study(imported: Imported, program: str, directory: Path) -> list[Path]
                 write_text(folder / f"{KEPT}{imported.changes[0].file}", imported.deck)
             text = _study(imported, program, names)
             write_text(folder / "study.toml", text)
+            add_schema([folder / "study.toml"])
             files = sorted(folder.iterdir(), key=lambda file: file.name == "study.toml")
             return [Path(shutil.move(file, directory / file.name)) for file in files]
     except OSError as error:

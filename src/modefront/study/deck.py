@@ -34,8 +34,8 @@ from modefront._typing import Floats
 from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.inputs import fortran
 from modefront.outputs import write_text
-from modefront.programs.importing import Imported, import_model
 from modefront.programs.inp import DEEPEST, keyword_of
+from modefront.study.importing import Imported, import_model
 from modefront.text import one_line
 
 FACTORS = (2.0, 0.5, 1.5, 0.75)
