@@ -46,14 +46,14 @@ VALUES: list[Any] = [
 
 UNSAID = {
     "names of other tables": "the name of a|names of parameters|a weight above 0, found nothing",
-    "names that repeat": "once|other members than",
-    "files and what is in them": "this column|a quantity|ends in|node set of the mesh|nodes from 0",
+    "names that repeat": "name once|used once|other members than",
+    "files and what is in them": "this column|a quantity|node set of the mesh|nodes from 0",
     "numbers that depend on each other": "as many as|its bounds|lower <|lowest <|rising|step",
-    "keys of which one is needed": "neither|with at least one measured mode",
     "what the model makes of it": "degrees of freedom from|structure that|that the model uses",
     "the rest of the study": "without predictions|directions of the base|or a parameter|or 'base'",
-    "no number": "found nan|nan]|not zero",
+    "no number": "found nan|nan]",
     "a whole number with a decimal point": r"from .*\.0$|counted from|freedom from 0",
+    "names of materials": "material: expected one of",
 }
 """Patterns of faults that no schema can say."""
 
