@@ -23,6 +23,8 @@ NOT_NEGATIVE: Schema = {"type": "number", "minimum": 0, "maximum": LARGEST}
 BELOW_ZERO: Schema = {"type": "number", "minimum": -LARGEST, "exclusiveMaximum": 0}
 NAME: Schema = {"type": "string", "pattern": r"\S"}
 TABLE: Schema = {"type": "object"}
+OPEN: Schema = {"additionalProperties": True}
+"""What a part of a schema says that leaves keys to others: some editors take them for unknown."""
 
 TYPES: Mapping[str, Any] = {
     "string": str,
@@ -87,9 +89,9 @@ def chosen(key: str, schemas: Mapping[str, Schema]) -> Schema:
         said = {
             name: each.get("description") for name, each in schema.get("properties", {}).items()
         }
-        known |= {name: {"description": text} for name, text in said.items() if text}
+        known |= {name: {"description": text, **OPEN} for name, text in said.items() if text}
     cases = [
-        {"if": {"properties": {key: {"enum": [name]}}, "required": [key]}, "then": schema}
+        {"if": {"properties": {key: {"enum": [name]}}, "required": [key], **OPEN}, "then": schema}
         for name, schema in schemas.items()
     ]
     properties = {key: {"enum": [*schemas]}, **known}

@@ -145,6 +145,14 @@ def test_the_schema_is_one_and_takes_all_examples() -> None:
         assert not list(validator.iter_errors(study)), name
 
 
+def test_every_part_that_names_keys_says_whether_there_may_be_others() -> None:
+    """Editors with Tombi take keys for unknown where a part of a schema does not say so."""
+    parts = [table for table, key in places(study_schema()) if key == "properties"]
+    unsaid = [each for each in parts if "additionalProperties" not in each]
+    assert len(parts) > len(unsaid) > 0
+    assert all(each["type"] == "object" and "allOf" in each for each in unsaid)
+
+
 def test_a_key_has_its_meaning_requirement_and_default() -> None:
     points = study_schema()["properties"]["pareto"]["properties"]["points"]
     assert (points["type"], points["minimum"], points["maximum"]) == ("integer", 2, 10_000)

@@ -17,7 +17,7 @@ from modefront.front.given import Weighted
 from modefront.front.options import Pareto
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
-from modefront.json_schema import NAME, Schema, array, chosen, closed, file_name, table_of
+from modefront.json_schema import NAME, OPEN, Schema, array, chosen, closed, file_name, table_of
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.options import Reduction
 from modefront.options import Option, of_options, options, schema_of
@@ -106,10 +106,10 @@ def _data() -> Schema:
         },
         ["file"],
     )
-    universal = {"properties": {"file": file_name(SUFFIXES, any_case=True)}}
+    universal = {"properties": {"file": file_name(SUFFIXES, any_case=True)}, **OPEN}
     without: dict[str, Schema] = {
-        "then": {"properties": {"columns": False}},
-        "else": {"properties": {"sensors": False}},
+        "then": {"properties": {"columns": False}, **OPEN},
+        "else": {"properties": {"sensors": False}, **OPEN},
     }
     return {**table, "if": universal, **without}
 
@@ -137,7 +137,7 @@ def _group() -> Iterator[Option]:
 
 def _has_modes(kind: str) -> Schema:
     """Return the schema of groups that have residuals of a kind."""
-    return {"required": [kind], "properties": {kind: {"minItems": 1}}}
+    return {"required": [kind], "properties": {kind: {"minItems": 1}}, **OPEN}
 
 
 def _predict() -> Schema:
