@@ -8,8 +8,13 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import calibration
+import check
+import elements
+import nafems
 import numpy as np
 import pytest
+import rugged
 import verify
 
 PAGE = Path(__file__).parents[1] / "docs" / "verification.md"
@@ -27,14 +32,12 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
     replaced(three_story, "command", None)
     replaced(three_story, "front", {key: np.ones(9) for key in three_story.PUBLISHED["M0"]})
-    replaced(verify.nafems, "differences", (None, np.zeros(1)))
-    replaced(verify.elements, "relative", np.zeros(1))
-    replaced(verify.calibration, "judge", [SimpleNamespace(held=True)])
-    replaced(verify.check, "spoilt_case", SimpleNamespace(made=["k1"]))
-    replaced(verify.check, "diagnosed", [(["k1"], None)])
-    replaced(
-        verify.rugged, "compare", SimpleNamespace(others={"a": 1}, truth=1, evaluations=9, volume=1)
-    )
+    replaced(nafems, "differences", (None, np.zeros(1)))
+    replaced(elements, "relative", np.zeros(1))
+    replaced(calibration, "judge", [SimpleNamespace(held=True)])
+    replaced(check, "spoilt_case", SimpleNamespace(made=["k1"]))
+    replaced(check, "diagnosed", [(["k1"], None)])
+    replaced(rugged, "compare", SimpleNamespace(others={"a": 1}, truth=1, evaluations=9, volume=1))
     replaced(verify, "noisy", np.zeros(1))
     found = SimpleNamespace(found=1, errors=np.ones(3))
     beside = SimpleNamespace(
