@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import inspect
 import re
 from pathlib import Path
 from types import ModuleType
@@ -144,6 +145,10 @@ def test_every_public_name_is_on_the_page_of_python() -> None:
     shown = dict(re.findall(block, text, re.MULTILINE))
     for module, names in (("modefront", mf.__all__), ("modefront.fem", mf.fem.__all__)):
         assert {":members:", ":imported-members:"} <= set(shown[module].split())
+        values = [getattr(mf if module == "modefront" else mf.fem, name) for name in names]
+        for name, value in zip(names, values, strict=True):
+            made = inspect.ismodule(value) or isinstance(value, type) or inspect.isroutine(value)
+            assert made or re.search(rf"^\.\. py:\w+:: {module}\.{name}$", text, re.MULTILINE), name
         left_out = set(re.findall(r":exclude-members: (.*)", shown[module])[0].split(", "))
         assert left_out < set(names)
         assert {f"{module}.{name}" for name in left_out} <= set(shown)
