@@ -1,7 +1,7 @@
 """Growth of the time of a study with its model and its data.
 
     python benchmarks/growth.py [--over dofs parameters ...] [--save benchmarks/growth.jsonl]
-    python benchmarks/growth.py --draw benchmarks/growth.jsonl docs/growth.svg
+    python benchmarks/growth.py --draw benchmarks/growth.jsonl growth.svg
 
 Plates of shells with noise in the "measured" modes; one thing grows, the others stay: 600 degrees
 of freedom, 3 parameters, 4 modes, 6 points, 12 sensors, one data set, and at most 12 starts of a

@@ -34,6 +34,10 @@ JUDGED = 9500
 """First seed of random tests: on seeds from 9000 on nothing was tuned."""
 
 
+QUANTITIES = "frequencies", "damping ratios", "shapes"
+"""Of which identification has errors."""
+
+
 class Row(NamedTuple):
     """A comparison: what is compared, the target, ours, and whether it holds."""
 
@@ -41,6 +45,11 @@ class Row(NamedTuple):
     target: str
     ours: str
     holds: bool | None
+
+
+def not_compared(whats: Sequence[str], package: str) -> Iterator[Row]:
+    """Yield the rows of a comparison with a package that is not installed."""
+    yield from (Row(what, f"{package} is not installed", "", None) for what in whats)
 
 
 def paper() -> Iterator[Row]:
@@ -122,12 +131,14 @@ def diagnosis(count: int = 10) -> Iterator[Row]:
 
 def identification(runs: int = 5) -> Iterator[Row]:
     """Yield errors of identified modes beside those of sdypy-EMA, which knows the frequencies."""
+    cases = (("three stories", three_story()), ("eight modes", eight()))
+    whats = [f"{name}, 5 % noise: error of {what}" for name, _ in cases for what in QUANTITIES]
     try:
         import identification_beside_ema as beside
     except ImportError:
-        yield Row("hammer tests beside sdypy-EMA", "errors of sdypy-EMA", "not installed", None)
+        yield from not_compared(whats, "sdypy-EMA")
         return
-    for name, structure in (("three stories", three_story()), ("eight modes", eight())):
+    for name, structure in cases:
         H = structure.accelerances(F)
         blows = [noisy(H, "white", 0.05, np.random.default_rng([seed, 18])) for seed in range(runs)]
         results = []
@@ -135,9 +146,26 @@ def identification(runs: int = 5) -> Iterator[Row]:
             squares = [beside.errors(identified(each, structure), structure) for each in blows]
             results.append(np.sqrt(np.mean(squares, axis=0)))
         ours, others = results[0], np.nanmin(results[1:], axis=0)
-        for k, what in enumerate(("frequencies", "damping ratios", "shapes")):
+        for what, least, found in zip(QUANTITIES, others, ours, strict=True):
             text = f"{name}, 5 % noise: error of {what}"
-            yield Row(text, f"{others[k]:.1e}", f"{ours[k]:.1e}", bool(ours[k] <= 1.05 * others[k]))
+            yield Row(text, f"{least:.1e}", f"{found:.1e}", bool(found <= 1.05 * least))
+
+
+def ambient_identification(count: int = 4) -> Iterator[Row]:
+    """Yield what is found in ambient tests beside pyOMA2, which knows the frequencies."""
+    whats = ["modes found", *(f"error of {what}" for what in QUANTITIES)]
+    try:
+        import identification_beside_oma as beside
+    except ImportError:
+        yield from not_compared(whats, "pyOMA2")
+        return
+    found = beside.compare(range(JUDGED, JUDGED + count))
+    ours = found.pop("modefront")
+    errors = np.min([each.errors for each in found.values()], axis=0)
+    modes = max(each.found for each in found.values())
+    yield Row(whats[0], str(modes), str(ours.found), ours.found >= modes)
+    for what, least, error in zip(whats[1:], errors, ours.errors, strict=True):
+        yield Row(what, f"{least:.1e}", f"{error:.1e}", bool(error <= 1.05 * least))
 
 
 def evolution() -> Iterator[Row]:
@@ -190,10 +218,17 @@ PARTS = (
         diagnosis,
     ),
     Part(
-        "Identification",
+        "Hammer tests",
         "Errors of the best of three orders of sdypy-EMA, which is given the true frequencies, on "
         "the same simulated blows.",
         identification,
+    ),
+    Part(
+        "Ambient tests",
+        "Four simulated tests of one setup. Errors of the best of three orders of pyOMA2 "
+        "(stochastic subspace identification), which is given the true frequencies, over the "
+        "modes that all find.",
+        ambient_identification,
     ),
     Part(
         "Evolutionary methods",
@@ -210,6 +245,11 @@ def table(rows: Sequence[Row]) -> str:
     return "\n".join(["| comparison | target | ours | verdict |", "|---|---|---|---|", *lines])
 
 
+def heading(part: Part) -> str:
+    """Return the beginning of a part of the page."""
+    return f"## {part.title}\n\n{part.source}\n\n"
+
+
 def main() -> None:
     """Write the page; with names of parts, print these only."""
     text, total, held, began = [], 0, 0, time.process_time()
@@ -220,7 +260,7 @@ def main() -> None:
         rows = list(part.rows())
         total += len(rows)
         held += sum(row.holds is True for row in rows)
-        text.append(f"## {part.title}\n\n{part.source}\n\n{table(rows)}\n")
+        text.append(f"{heading(part)}{table(rows)}\n")
         print(text[-1], f"{time.process_time() - before:.0f} s of processor time", flush=True)
     head = f"""# What was compared
 

@@ -69,5 +69,7 @@ def test_the_version_and_the_needs_are_the_same_everywhere() -> None:
     assert f'version: "{version}"' in recipe
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert f"version: {version}" in citation
-    assert f"## {version}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"## {version}" in changes
+    assert all(len(each.strip().splitlines()) <= 12 for each in changes.split("## ")[1:])
     assert sys.version_info >= tuple(map(int, project["requires-python"].strip(">=").split(".")))

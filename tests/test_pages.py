@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import inspect
 import re
 from pathlib import Path
 from types import ModuleType
@@ -10,6 +11,7 @@ from typing import Any
 
 import pytest
 
+import modefront as mf
 from modefront.front.point import Kind
 from modefront.predictions import Passage, PeakResponse
 from modefront.results.schema import ATTRIBUTES, FORMAT, variables_of
@@ -100,10 +102,53 @@ def test_the_cells_of_pages_in_python_run(
         exec(compile(code, f"docs/{page}", "exec"), names)
 
 
-def test_no_page_that_teaches_is_long() -> None:
+def part(caption: str) -> list[Path]:
+    """Return the pages of a part of the site."""
     index = (DOCS / "index.md").read_text(encoding="utf-8")
-    for caption in ("Tutorials", "How to"):
-        (listed,) = re.findall(rf":caption: {caption}\n:maxdepth: 1\n(.*?)```", index, re.DOTALL)
-        for name in listed.split():
-            words = len((DOCS / f"{name}.md").read_text(encoding="utf-8").split())
-            assert words <= 1500, f"{name}: {words} words"
+    (listed,) = re.findall(rf":caption: {caption}\n:maxdepth: 1\n(.*?)```", index, re.DOTALL)
+    return [DOCS / f"{name}.md" for name in listed.split()]
+
+
+def test_no_page_that_teaches_is_long() -> None:
+    for page in [*part("Tutorials"), *part("How to")]:
+        words = len(page.read_text(encoding="utf-8").split())
+        assert words <= 1500, f"{page}: {words} words"
+
+
+def test_a_page_of_theory_has_equations_sources_and_the_code_that_has_them() -> None:
+    labels: list[str] = []
+    for page in part("Theory"):
+        text = page.read_text(encoding="utf-8")
+        made = re.findall(r"^\$\$.*?\$\$ \((eq-[a-z]+)\)$", text, re.MULTILINE | re.DOTALL)
+        assert len(made) == text.count("$$") / 2 >= 2, f"{page}: equations without a number"
+        assert "doi:10." in text, page
+        modules = re.findall(r"\]\(([./]*src/modefront/[a-z0-9_/]+\.py)\)", text)
+        assert modules, page
+        assert all((page.parent / module).is_file() for module in modules), page
+        assert len(text.split()) <= 1200, page
+        labels += made
+    assert len(set(labels)) == len(labels)
+    for page in DOCS.rglob("*.md"):
+        used = re.findall(r"\{eq\}`([^`]*)`", page.read_text(encoding="utf-8"))
+        assert set(used) <= set(labels), page
+
+
+def test_no_page_names_the_problems_that_decided_something() -> None:
+    names = r"\b(frame|concrete|steel|rugged|chain|jumps)-\d+\b|(?<!-)\bseeds? \d+"
+    for page in DOCS.rglob("*.md"):
+        assert not re.search(names, page.read_text(encoding="utf-8")), page
+
+
+def test_every_public_name_is_on_the_page_of_python() -> None:
+    text = (DOCS / "reference-python.md").read_text(encoding="utf-8")
+    block = r"^\.\. automodule:: (\S+)\n((?:   :.*\n)*)"
+    shown = dict(re.findall(block, text, re.MULTILINE))
+    for module, names in (("modefront", mf.__all__), ("modefront.fem", mf.fem.__all__)):
+        assert {":members:", ":imported-members:"} <= set(shown[module].split())
+        values = [getattr(mf if module == "modefront" else mf.fem, name) for name in names]
+        for name, value in zip(names, values, strict=True):
+            made = inspect.ismodule(value) or isinstance(value, type) or inspect.isroutine(value)
+            assert made or re.search(rf"^\.\. py:\w+:: {name}$", text, re.MULTILINE), name
+        left_out = set(re.findall(r":exclude-members: (.*)", shown[module])[0].split(", "))
+        assert left_out < set(names)
+        assert {f"{module}.{name}" for name in left_out} <= set(shown)

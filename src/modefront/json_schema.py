@@ -7,18 +7,24 @@ whole number is none that has a decimal point.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from modefront.rounding import LARGEST
 
 Schema = Mapping[str, Any]
 
+WHOLE = 10**9
+"""Largest whole number that a count or a place is."""
+
 NUMBER: Schema = {"type": "number", "minimum": -LARGEST, "maximum": LARGEST}
 ABOVE_ZERO: Schema = {"type": "number", "exclusiveMinimum": 0, "maximum": LARGEST}
 NOT_NEGATIVE: Schema = {"type": "number", "minimum": 0, "maximum": LARGEST}
+BELOW_ZERO: Schema = {"type": "number", "minimum": -LARGEST, "exclusiveMaximum": 0}
 NAME: Schema = {"type": "string", "pattern": r"\S"}
 TABLE: Schema = {"type": "object"}
+OPEN: Schema = {"additionalProperties": True}
+"""What a part of a schema says that leaves keys to others: some editors take them for unknown."""
 
 TYPES: Mapping[str, Any] = {
     "string": str,
@@ -62,6 +68,17 @@ def closed(properties: Mapping[str, Schema], required: list[str]) -> Schema:
     return known | ({"required": required} if required else {})
 
 
+def file_name(endings: Iterable[str], *, any_case: bool = False) -> Schema:
+    """Return the schema of the name of a file, by its endings, in capitals or not."""
+    known = ["".join(f"[{x}{x.upper()}]" if any_case else f"[{x}]" for x in y) for y in endings]
+    return {"type": "string", "pattern": f"({'|'.join(known)})$"}
+
+
+def either(*keys: str) -> Schema:
+    """Return what a schema says in addition of a table that has one of several keys, not more."""
+    return {"oneOf": [{"required": [key]} for key in keys]}
+
+
 def chosen(key: str, schemas: Mapping[str, Schema]) -> Schema:
     """Return the schema of a table of which one key says which schema it meets.
 
@@ -72,9 +89,9 @@ def chosen(key: str, schemas: Mapping[str, Schema]) -> Schema:
         said = {
             name: each.get("description") for name, each in schema.get("properties", {}).items()
         }
-        known |= {name: {"description": text} for name, text in said.items() if text}
+        known |= {name: {"description": text, **OPEN} for name, text in said.items() if text}
     cases = [
-        {"if": {"properties": {key: {"enum": [name]}}, "required": [key]}, "then": schema}
+        {"if": {"properties": {key: {"enum": [name]}}, "required": [key], **OPEN}, "then": schema}
         for name, schema in schemas.items()
     ]
     properties = {key: {"enum": [*schemas]}, **known}

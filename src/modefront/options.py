@@ -190,8 +190,11 @@ def _meanings(docstring: str) -> dict[str, str]:
 
 
 def schema_of(record: type) -> Schema:
-    """Return the schema of a table whose keys are the fields of a record."""
-    return of_options(options(record))
+    """Return the schema of a table whose keys are the fields of a record.
+
+    A class that needs one of several fields, and no more, names them by its attribute ``either``.
+    """
+    return {**of_options(options(record)), **getattr(record, "either", {})}
 
 
 def of_options(known: Iterable[Option]) -> Schema:

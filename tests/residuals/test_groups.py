@@ -15,9 +15,10 @@ from modefront.residuals.kinds import KINDS
         (
             {"frequency": "al"},
             "group 'f': frequency: expected 'all' or a list of measured modes, counted from 1, "
-            "found 'al'",
+            "each once, found 'al'",
         ),
         ({"shape": [0]}, "shape: expected 'all' or a list .* found \\[0\\]"),
+        ({"shape": [1, 1]}, "shape: expected 'all' or a list .* each once, found \\[1, 1\\]"),
         ({"shape": [True]}, "shape: expected 'all' or a list .* found \\[True\\]"),
         ({"frequency": 1}, "frequency: expected 'all' or a list .* found 1"),
         ({"frequncy": "all"}, "expected one of frequency, shape, .*did you mean 'frequency'"),

@@ -301,7 +301,6 @@ def test_a_model_without_modes_is_infeasible_not_an_error() -> None:
             "group 'empty': expected frequency or shape .* one measured mode, found nothing",
         ),
         (Group("f9", frequency=[9]), "found 9"),
-        (Group("twice", frequency=[1, 1]), "each mode once"),
     ],
 )
 def test_wrong_groups_are_refused(group: Group, message: str) -> None:

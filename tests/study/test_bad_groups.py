@@ -31,7 +31,7 @@ CONTRADICTIONS = [
     ('frequency = "all"', "frequency = []", "1 ('frequencies'): ... measured mode, found nothing"),
     ('frequency = "all"', "frequency = [3]", "expected one of the measured modes [1, 2], found 3"),
     ("shape = [1, 2]", "shape = [3]", "shape: expected one of the measured modes [1, 2], found 3"),
-    ("shape = [1, 2]", "shape = [1, 1]", "shape: expected each mode once, found [1, 1]"),
+    ("shape = [1, 2]", "shape = [1, 1]", "shape: expected ... each once, found [1, 1]"),
     # weights
     ("shapes = 2.0", "shape = 2.0", "weights shape: ... found 'shape' (did you mean 'shapes'?)"),
     (", shapes = 2.0", "", WEIGHT + "nothing"),

@@ -28,6 +28,7 @@ from modefront.options import (
 from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVariable, Setting
 from modefront.predictions.load_model import (
     ABOVE,
+    EITHER,
     MEASURED,
     Base,
     Damping,
@@ -164,6 +165,7 @@ class Passage:
     modes: ModeCount | None = None
     damping: Damping = MEASURED
 
+    either: ClassVar = EITHER
     kind: ClassVar = PredictionKind(
         "first_passage",
         "failure",

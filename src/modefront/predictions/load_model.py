@@ -18,7 +18,16 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, ModelError, suggestion, wrong
-from modefront.json_schema import NAME, NUMBER, Schema, any_of, array, table_of
+from modefront.json_schema import (
+    ABOVE_ZERO,
+    BELOW_ZERO,
+    NAME,
+    Schema,
+    any_of,
+    array,
+    either,
+    table_of,
+)
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
 from modefront.options import Requirement, is_name, text, whole
 from modefront.pairing.match import match, modes_needed
@@ -39,17 +48,20 @@ ABOVE = 1.1
 NAMED = "the name of a sensor or output, or a table of them with weights that are not zero"
 
 
-WEIGHTS = any_of(NAME, table_of(NUMBER, 1))
+WEIGHTS = any_of(NAME, table_of(any_of(ABOVE_ZERO, BELOW_ZERO), 1))
+EITHER = either("force", "base")
+"""What the schema of a prediction says of its loads."""
+
 RATIO: Schema = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
 
 
-def _has_no_zero(value: Any) -> bool:
-    """Return whether names can be printed, and no weight is zero."""
+def _is_printable(value: Any) -> bool:
+    """Return whether all names can be printed."""
     if isinstance(value, dict):
-        return all(map(_has_no_zero, value.values()))
+        return all(map(_is_printable, value.values()))
     if isinstance(value, list):
-        return all(map(_has_no_zero, value))
-    return is_name(value) if isinstance(value, str) else value != 0
+        return all(map(_is_printable, value))
+    return is_name(value) if isinstance(value, str) else True
 
 
 def _named_weights(value: Any) -> dict[str, float]:
@@ -71,7 +83,7 @@ def _damping(value: Any) -> str | float | tuple[float, ...]:
 Name = Annotated[str, text("what the prediction is called")]
 
 Force = Annotated[
-    str | Mapping[str, float], Requirement(NAMED, WEIGHTS, _named_weights, _has_no_zero)
+    str | Mapping[str, float], Requirement(NAMED, WEIGHTS, _named_weights, _is_printable)
 ]
 """One force; kept as weights by the name of a sensor or output."""
 
@@ -81,7 +93,7 @@ Forces = Annotated[
         f"{NAMED}; or a list of these",
         any_of(WEIGHTS, array(WEIGHTS, 1)),
         lambda value: tuple(map(_named_weights, value if isinstance(value, list) else [value])),
-        _has_no_zero,
+        _is_printable,
     ),
 ]
 """Forces that are independent of one another; kept as such weights of each."""
@@ -94,7 +106,7 @@ Response = Annotated[
         f"a list of sensors or outputs, or a table, name = {NAMED}",
         any_of(NAME, array(NAME, 1, once=True), table_of(WEIGHTS, 1)),
         _responses,
-        lambda value: _has_no_zero(value) and all(map(is_name, value)),
+        lambda value: _is_printable(value) and all(map(is_name, value)),
     ),
 ]
 """Responses; kept as weights of sensors and outputs by the name of each."""

@@ -18,6 +18,7 @@ from modefront.options import TRUE_OR_FALSE, check_fields, numbers, one_of, risi
 from modefront.predictions.base import PredictionKind, ResultVariable, Setting
 from modefront.predictions.load_model import (
     ABOVE,
+    EITHER,
     MEASURED,
     Base,
     Damping,
@@ -77,6 +78,7 @@ class PeakResponse:
     modes: ModeCount | None = None
     damping: Damping = MEASURED
 
+    either: ClassVar = EITHER
     kind: ClassVar = PredictionKind(
         "frf",
         "frf",

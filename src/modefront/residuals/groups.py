@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 from modefront.data.modal import ModalData
 from modefront.errors import suggestion
-from modefront.json_schema import any_of, array
+from modefront.json_schema import WHOLE, any_of, array, whole_number
 from modefront.options import Requirement, plain
 from modefront.residuals.base import Member, ResidualKind, Scale, Stack
 from modefront.residuals.kinds import KINDS
@@ -17,8 +17,8 @@ ModeNumbers = Sequence[int] | Literal["all"]
 """Numbers of measured modes, counted from 1, or all that were measured."""
 
 MODE_NUMBERS = Requirement(
-    "'all' or a list of measured modes, counted from 1",
-    any_of({"enum": ["all"]}, array({"type": "integer", "minimum": 1})),
+    "'all' or a list of measured modes, counted from 1, each once",
+    any_of({"enum": ["all"]}, array(whole_number(1, WHOLE), once=True)),
 )
 """Requirement of `ModeNumbers`."""
 
@@ -130,8 +130,6 @@ def _of_kind(name: str, modes: ModeNumbers, data: ModalData) -> Iterator[tuple[s
     unknown = [mode for mode in modes if mode not in known] if modes != "all" else []
     if unknown:
         yield name, f"one of the measured modes {measured}", str(unknown[0])
-    elif len(set(modes)) < len(modes) and modes != "all":
-        yield name, "each mode once", str(list(modes))
 
 
 def _of_members(group: Group, data: ModalData) -> Iterator[tuple[str, str, str]]:

@@ -17,7 +17,7 @@ from modefront.front.given import Weighted
 from modefront.front.options import Pareto
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
-from modefront.json_schema import NAME, Schema, array, chosen, closed, table_of
+from modefront.json_schema import NAME, OPEN, Schema, array, chosen, closed, file_name, table_of
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.options import Reduction
 from modefront.options import Option, of_options, options, schema_of
@@ -29,7 +29,7 @@ from modefront.residuals.groups import MODE_NUMBERS
 from modefront.residuals.kinds import KINDS as RESIDUALS
 from modefront.study.definition import Study
 from modefront.study.kinds import KINDS
-from modefront.study.measured import FILE, PLACE
+from modefront.study.measured import FILE, PLACE, READERS
 from modefront.study.tables import GROUP_NAME, SCALE
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
@@ -58,7 +58,7 @@ def study_schema() -> dict[str, Any]:
         "data": _data(),
         "model": chosen("kind", {name: _model(name) for name in KINDS}),
         "parameter": array(schema_of(Parameter), 1),
-        "group": array(of_options(_group()), 1),
+        "group": array({**of_options(_group()), "anyOf": [_has_modes(x) for x in RESIDUALS]}, 1),
         "weighted": array(schema_of(Weighted), 1),
         **{name: schema_of(record) for name, record in OF_OPTIONS.items()},
         "predict": _predict(),
@@ -100,17 +100,16 @@ def _data() -> Schema:
     places = "sensor = node and direction in the file"
     table = closed(
         {
-            "file": FILE.described,
+            "file": {**FILE.described, **file_name([".csv", *SUFFIXES, *READERS], any_case=True)},
             "sensors": {"description": places, **table_of(PLACE)},
             "columns": {"description": columns, **table_of(NAME)},
         },
         ["file"],
     )
-    endings = ["".join(f"[{x}{x.upper()}]" for x in each) for each in SUFFIXES]
-    universal = {"properties": {"file": {"pattern": f"({'|'.join(endings)})$"}}}
+    universal = {"properties": {"file": file_name(SUFFIXES, any_case=True)}, **OPEN}
     without: dict[str, Schema] = {
-        "then": {"properties": {"columns": False}},
-        "else": {"properties": {"sensors": False}},
+        "then": {"properties": {"columns": False}, **OPEN},
+        "else": {"properties": {"sensors": False}, **OPEN},
     }
     return {**table, "if": universal, **without}
 
@@ -134,6 +133,11 @@ def _group() -> Iterator[Option]:
             name, MODE_NUMBERS, True, False, None, f"measured modes whose {kind.plural} count"
         )
     yield Option("scale", SCALE, False, False, "measured", "unit of the residuals")
+
+
+def _has_modes(kind: str) -> Schema:
+    """Return the schema of groups that have residuals of a kind."""
+    return {"required": [kind], "properties": {kind: {"minItems": 1}}, **OPEN}
 
 
 def _predict() -> Schema:

@@ -11,10 +11,10 @@ import scipy.sparse
 
 from modefront.errors import InputError, suggestion
 from modefront.fem.dofs import DIRECTIONS
-from modefront.json_schema import any_of, array, closed, table_of
+from modefront.json_schema import any_of, array, closed, file_name, table_of
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
-from modefront.models.files import read_matrix
+from modefront.models.files import READERS, read_matrix
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import matrices
 from modefront.models.terms import BASE, exponents_of, form_of
@@ -51,7 +51,9 @@ class MatrixFile:
         check_fields(self)
 
 
-TERMS = entries("a table of files", table_of(any_of(FILE.schema, schema_of(MatrixFile)), 1))
+MATRIX = file_name(READERS)
+ONE_OF_SEVERAL = closed({**schema_of(MatrixFile)["properties"], "file": MATRIX}, ["file"])
+TERMS = entries("a table of files", table_of(any_of(MATRIX, ONE_OF_SEVERAL), 1))
 PLACES = entries("a table, name = place", table_of(any_of(WEIGHTED, BY_NODE), 1))
 OUTPUTS = entries("a table, name = place", table_of(any_of(WEIGHTED, BY_NODE)))
 MOVING = any_of(

@@ -11,7 +11,16 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.csv import is_reserved
 from modefront.fem.dofs import DIRECTIONS
-from modefront.json_schema import NUMBER, Schema, any_of, array, closed, fits, pair
+from modefront.json_schema import (
+    NUMBER,
+    WHOLE,
+    any_of,
+    array,
+    closed,
+    fits,
+    pair,
+    whole_number,
+)
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
@@ -46,7 +55,7 @@ PARALLEL = 1e-9
 NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
 """Directions by their names."""
 
-DOF: Schema = {"type": "integer", "minimum": 0}
+DOF = whole_number(0, WHOLE)
 WEIGHTED = any_of(DOF, array(pair(DOF, NUMBER), 1))
 """A degree of freedom, or weights of several."""
 
