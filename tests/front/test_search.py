@@ -460,7 +460,7 @@ def test_an_edge_that_hardly_any_start_leads_to_is_doubtful() -> None:
         return J, dJ, H
 
     problem = box(rugged, [-1.0] * 4, [1.0] * 4)
-    search = Search(evaluations=1500)
+    search = Search(evaluations=2000)
     front = pareto_front(problem, ONES, Pareto(points=4), seed=1, search=search)
     rough, smooth = front.edges
     assert rough.doubtful

@@ -57,8 +57,8 @@ from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
 
 LOOSE = 10 * RHO
-"""Distance of a point from its normal, over the ranges, above which the front ends there: the share
-of all objectives in what it minimises moves it by less."""
+"""Distance of a point from its normal, over that, above which the front ends there: the share of
+all objectives in what it minimises moves it by less."""
 
 
 # 8 arguments: the problem, and each group of options of a search.
@@ -278,7 +278,7 @@ class _Run:
 
     def _drop_points(self) -> None:
         """Take the points of a front away."""
-        self.state.places = [x for x in self.places if not is_along(x.subproblem)]
+        self.state.keep([x for x in self.places if not is_along(x.subproblem)])
 
     def _lattice(self) -> list[tuple[Place, LatticePoint]]:
         """Return the places of the points of the lattice, with their subproblems."""
@@ -297,7 +297,7 @@ class _Run:
             taken = {point.place for _, point in here}
             beyond: set[tuple[int, ...]] = set()
             for x, point in here:
-                if x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE:
+                if x.incumbent.converged and point.order.spread(x.incumbent.J) < LOOSE:
                     beyond.update(neighbours(point.place))
             added = sorted(beyond - taken)[: most - len(here)]
             if not added:
@@ -305,9 +305,9 @@ class _Run:
             self._add_points(target, added)
             self._run_front()
         for x, point in self._lattice():
-            on_normal = x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE
+            on_normal = x.incumbent.converged and point.order.spread(x.incumbent.J) < LOOSE
             if min(point.place) < 0 and not on_normal:
-                self.state.places = [other for other in self.places if other is not x]
+                self.state.keep([other for other in self.places if other is not x])
 
     def _fill(self, target: Payoff, asked: int) -> None:
         """Add points at models that all points are far from, until as many as asked are distinct.
@@ -340,8 +340,8 @@ class _Run:
             new = []
             for (x, one), (y, other) in pairwise(here):
                 apart = np.linalg.norm((x.incumbent.J - y.incumbent.J) / target.scale)
-                loose = max(one.spread(x.incumbent.J), other.spread(y.incumbent.J)) > LOOSE
-                if size and apart > size and not loose:
+                ends = (one.order.spread(x.incumbent.J), other.order.spread(y.incumbent.J))
+                if size and apart > size and max(ends) <= LOOSE:
                     middle = np.array(one.place) * sum(other.place)
                     middle += np.array(other.place) * sum(one.place)
                     new.append(tuple((middle // np.gcd.reduce(middle)).tolist()))
