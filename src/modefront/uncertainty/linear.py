@@ -53,7 +53,10 @@ def front_scatter(
     a: Floats,
     sizes: Floats,
 ) -> dict[str, Scatter]:
-    """Return the scatter of the points for which it is defined, by label."""
+    """Return the scatter of the points for which it is defined, by label.
+
+    It is not where a search ended before a point was solved, which has no weights then.
+    """
     level_of: dict[int, Floats] = {}  # changes of the least value of each objective
     ends: dict[str, tuple[Floats, Floats]] = {}
     out: dict[str, Scatter] = {}
@@ -69,14 +72,14 @@ def front_scatter(
         match role.kind:
             case "edge":
                 w, conditions = edge_weights(role.objective, sizes), given_weights(noise)
-            case "weights":
+            case "weights" if w.any():
                 conditions = given_weights(noise)
             case "optimal":
                 w, conditions = a / point.J, optimal_weights(point, a, noise)
             case "level" if role.objective in level_of:
                 dv = (1 + role.tolerance) * level_of[role.objective]
                 conditions = level(point, role.objective, dv, noise)
-            case "boundary" if beta is not None and {*role.ends} <= set(ends):
+            case "boundary" if beta is not None and w.any() and {*role.ends} <= set(ends):
                 target = _target(role, ends)
                 w, conditions = boundary(point, w, target, beta, noise, role.equations)
             case _:
