@@ -57,8 +57,8 @@ from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
 
 LOOSE = 10 * RHO
-"""Distance of a point from its normal, over that, above which the front ends there: the share of
-all objectives in what it minimises moves it by less."""
+"""Distance of a point from its normal, over the ranges, above which the front ends there: the share
+of all objectives in what it minimises moves it by less."""
 
 
 # 8 arguments: the problem, and each group of options of a search.
@@ -205,13 +205,9 @@ class _Run:
     def _recall(self) -> None:
         """Evaluate the models of the known front again, from which subproblems start."""
         models = [point.solution for point in self.known.points] if self.known else []
-        distinct: list[Solution] = []
-        for x in models:
-            if self.state.is_new(x, distinct):
-                distinct.append(x)
         tasks = [
             Task(("known", k + 1), evaluated, (self.problem, at(x.theta)))
-            for k, x in enumerate(distinct)
+            for k, x in enumerate(self.state.distinct(models))
         ]
         self.state.models += [x for x in self.needed.run(tasks) if x.feasible]
 
@@ -297,7 +293,7 @@ class _Run:
             taken = {point.place for _, point in here}
             beyond: set[tuple[int, ...]] = set()
             for x, point in here:
-                if x.incumbent.converged and point.order.spread(x.incumbent.J) < LOOSE:
+                if x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE:
                     beyond.update(neighbours(point.place))
             added = sorted(beyond - taken)[: most - len(here)]
             if not added:
@@ -305,7 +301,7 @@ class _Run:
             self._add_points(target, added)
             self._run_front()
         for x, point in self._lattice():
-            on_normal = x.incumbent.converged and point.order.spread(x.incumbent.J) < LOOSE
+            on_normal = x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE
             if min(point.place) < 0 and not on_normal:
                 self.state.keep([other for other in self.places if other is not x])
 
@@ -340,7 +336,7 @@ class _Run:
             new = []
             for (x, one), (y, other) in pairwise(here):
                 apart = np.linalg.norm((x.incumbent.J - y.incumbent.J) / target.scale)
-                ends = (one.order.spread(x.incumbent.J), other.order.spread(y.incumbent.J))
+                ends = (one.spread(x.incumbent.J), other.spread(y.incumbent.J))
                 if size and apart > size and max(ends) <= LOOSE:
                     middle = np.array(one.place) * sum(other.place)
                     middle += np.array(other.place) * sum(one.place)
@@ -366,10 +362,9 @@ class _Run:
         """Return the edge of each objective with its other minima."""
         out = []
         for k, place in enumerate(self.places[: self.n]):
-            known, minima = self.starts.of(place), [place.incumbent]
-            for x in sorted(known.ends, key=lambda x: float(x.J[k])):
-                if self.state.is_new(x, minima):
-                    minima.append(x)
+            known = self.starts.of(place)
+            ends = sorted(known.ends, key=lambda x: float(x.J[k]))
+            minima = self.state.distinct([place.incumbent, *ends])
             rare = self.known is None and known.hits(place, self.state.tolerance) < SURE
             doubtful = rare and known.unseen >= self.loop.search.doubt
             out.append(Edge(place.incumbent, minima, known.rate.tries, len(known.ends), doubtful))
@@ -453,10 +448,7 @@ class _Run:
             Task(("optimal-weights", k + 1), optimal_minimum, (self.problem, self.a, sizes, x))
             for k, x in enumerate(starts)
         ]
-        minima: list[Solution] = []
-        for x in self.work.run(tasks):
-            if x and x.converged and self.state.is_new(x, minima):
-                minima.append(x)
+        minima = self.state.distinct(x for x in self.work.run(tasks) if x and x.converged)
         return accepted(self.problem, minima, self.a, sizes)
 
     def _iterated(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -162,6 +162,14 @@ class State:
         thetas = np.array([x.theta for x in known]).reshape(-1, self.span.size)
         apart = np.abs((thetas - solution.theta) / self.span).max(axis=1)
         return bool((apart > DISTINCT).all())
+
+    def distinct(self, solutions: Iterable[Solution]) -> list[Solution]:
+        """Return solutions in their order, without those of models that are among them already."""
+        out: list[Solution] = []
+        for x in solutions:
+            if self.is_new(x, out):
+                out.append(x)
+        return out
 
 
 @dataclass

@@ -79,14 +79,18 @@ class Order:
     greatest: Floats | float
     share: Floats | float
 
+    def excess(self, J: Floats) -> Floats:
+        """Return c (..., n) of objectives J (..., n)."""
+        return J / self.unit - self.offset
+
     def value(self, J: Floats) -> Floats:
         """Return the numbers (...) by which models with objectives J (..., n) are ordered."""
-        c = J / self.unit - self.offset
+        c = self.excess(J)
         return np.asarray(self.greatest * c.max(axis=-1) + self.share * c.sum(axis=-1))
 
     def spread(self, J: Floats) -> Floats:
         """Return how far J (..., n) lies from the normal of a point, over that; else 0."""
-        return np.asarray(self.greatest * np.ptp(J / self.unit - self.offset, axis=-1))
+        return np.asarray(self.greatest * np.ptp(self.excess(J), axis=-1))
 
 
 def together(orders: Sequence[Order]) -> Order:
@@ -239,6 +243,10 @@ class Point(Subproblem):
         """By the greatest excess with its share of all."""
         return Order(self.target.unit, self.target.offset(self.beta), 1.0, RHO)
 
+    def spread(self, J: Floats) -> float:
+        """Return how far objectives (n,) lie from the normal, over the ranges."""
+        return float(np.ptp(self.order.excess(J) * self.target.r))
+
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the fall of the excess, over the objectives along the normal or their ranges."""
         w = self.weights(known)
@@ -254,7 +262,7 @@ class Point(Subproblem):
         """Return the multipliers of the excess at a solution, or of the greatest one at others."""
         if known.weights.any():
             return known.weights
-        c = self.target.excess(self.beta, known.J)
+        c = self.order.excess(known.J)
         return np.asarray(((c == c.max()) + RHO) / self.target.unit)
 
     def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:

@@ -28,10 +28,9 @@ class Polish:
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
         """Yield the searches from incumbents that are open, the nearest first."""
-        open_places = [k for k, place in enumerate(state.places) if not place.closed]
         spread = state.orders.spread(np.array([x.incumbent.J for x in state.places]))
-        ranked = sorted(open_places, key=lambda k: float(spread[k]))
-        for k in ranked[:most]:
+        nearest_first = np.argsort(spread, kind="stable").tolist()
+        for k in [k for k in nearest_first if not state.places[k].closed][:most]:
             place = state.places[k]
             yield solve_from(k, place, place.incumbent, 1.0)
         equations = [(k, x) for k, x in enumerate(state.places) if not x.subproblem.competes]
