@@ -47,7 +47,7 @@ def front(problem: Known, equations: bool) -> tuple[list[Solution], Bools, Float
         point = Point(np.array([1 - s, s]), (), target, equations)
         starts = [begin(problem.evaluate(np.array([x, 0.1]))) for x in np.linspace(0.05, 0.6, 8)]
         found = [x for x in (point.solve(problem, start) for start in starts) if x.converged]
-        best = min(found, key=lambda x: float(point.value(x.J)))
+        best = min(found, key=lambda x: float(point.order.value(x.J)))
         c = target.r * target.excess(point.beta, best.J)
         if not any(np.abs(best.J - x.J).max() < 1e-5 for x in points):
             points.append(best)

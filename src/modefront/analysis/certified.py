@@ -14,7 +14,7 @@ interrupted run goes on with the same digits.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -226,8 +226,8 @@ def _snapshot(solutions: Sequence[Solution], enough: float) -> SnapshotRequest:
 
 def _wrong(problem: UpdatingProblem, model: ReducedModel, front: Front) -> list[Solution]:
     """Return the worst models above the tolerance of those that have to hold."""
-    needed = {_key(x): x for x in [*_of_the_front(front), *_rivals(problem, front)]}
-    wrong = [solution for solution in needed.values() if _error(solution) > model.tolerance]
+    needed = _each_once([*_of_the_front(front), *_rivals(problem, front)])
+    wrong = [solution for solution in needed if _error(solution) > model.tolerance]
     return sorted(wrong, key=_error, reverse=True)[:WORST]
 
 
@@ -241,7 +241,7 @@ def _candidates(problem: UpdatingProblem, front: Front) -> list[Solution]:
         programme = LogSum(problem.properties)
         most = programme.value(front.optimal[0].J) + CLOSE * problem.properties.sum()
         models += [solution for solution in front.optimal if programme.value(solution.J) <= most]
-    return list({_key(solution): solution for solution in models}.values())
+    return _each_once(models)
 
 
 def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Floats]:
@@ -258,7 +258,9 @@ def _with_errors(
     problem: UpdatingProblem, model: ReducedModel, front: Front, work: Executor
 ) -> Front:
     """Return the front with the estimated errors of all its models."""
-    kept = _certified(problem, model, _distinct(front), "front", work)
+    minima = [x for edge in front.edges for x in edge.minima]
+    reported = _each_once([*_of_the_front(front), *minima, *front.optimal])
+    kept = _certified(problem, model, reported, "front", work)
     errors = {
         _key(solution): {name: solution.evaluation.quantities[name] for name in ERRORS}
         for solution in kept
@@ -358,16 +360,9 @@ def _rivals(problem: UpdatingProblem, front: Front) -> Iterator[Solution]:
             yield solution
 
 
-def _reported(front: Front) -> Iterator[Solution]:
-    yield from _of_the_front(front)
-    for edge in front.edges:
-        yield from edge.minima
-    yield from front.optimal
-
-
-def _distinct(front: Front) -> list[Solution]:
-    """Return the reported models, each once."""
-    return list({_key(solution): solution for solution in _reported(front)}.values())
+def _each_once(solutions: Iterable[Solution]) -> list[Solution]:
+    """Return solutions, each model once."""
+    return list({_key(solution): solution for solution in solutions}.values())
 
 
 def _paired(solution: Solution) -> Ints:

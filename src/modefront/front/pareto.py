@@ -205,13 +205,9 @@ class _Run:
     def _recall(self) -> None:
         """Evaluate the models of the known front again, from which subproblems start."""
         models = [point.solution for point in self.known.points] if self.known else []
-        distinct: list[Solution] = []
-        for x in models:
-            if self.state.is_new(x, distinct):
-                distinct.append(x)
         tasks = [
             Task(("known", k + 1), evaluated, (self.problem, at(x.theta)))
-            for k, x in enumerate(distinct)
+            for k, x in enumerate(self.state.distinct(models))
         ]
         self.state.models += [x for x in self.needed.run(tasks) if x.feasible]
 
@@ -278,7 +274,7 @@ class _Run:
 
     def _drop_points(self) -> None:
         """Take the points of a front away."""
-        self.state.places = [x for x in self.places if not is_along(x.subproblem)]
+        self.state.keep([x for x in self.places if not is_along(x.subproblem)])
 
     def _lattice(self) -> list[tuple[Place, LatticePoint]]:
         """Return the places of the points of the lattice, with their subproblems."""
@@ -307,7 +303,7 @@ class _Run:
         for x, point in self._lattice():
             on_normal = x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE
             if min(point.place) < 0 and not on_normal:
-                self.state.places = [other for other in self.places if other is not x]
+                self.state.keep([other for other in self.places if other is not x])
 
     def _fill(self, target: Payoff, asked: int) -> None:
         """Add points at models that all points are far from, until as many as asked are distinct.
@@ -340,8 +336,8 @@ class _Run:
             new = []
             for (x, one), (y, other) in pairwise(here):
                 apart = np.linalg.norm((x.incumbent.J - y.incumbent.J) / target.scale)
-                loose = max(one.spread(x.incumbent.J), other.spread(y.incumbent.J)) > LOOSE
-                if size and apart > size and not loose:
+                ends = (one.spread(x.incumbent.J), other.spread(y.incumbent.J))
+                if size and apart > size and max(ends) <= LOOSE:
                     middle = np.array(one.place) * sum(other.place)
                     middle += np.array(other.place) * sum(one.place)
                     new.append(tuple((middle // np.gcd.reduce(middle)).tolist()))
@@ -366,10 +362,9 @@ class _Run:
         """Return the edge of each objective with its other minima."""
         out = []
         for k, place in enumerate(self.places[: self.n]):
-            known, minima = self.starts.of(place), [place.incumbent]
-            for x in sorted(known.ends, key=lambda x: float(x.J[k])):
-                if self.state.is_new(x, minima):
-                    minima.append(x)
+            known = self.starts.of(place)
+            ends = sorted(known.ends, key=lambda x: float(x.J[k]))
+            minima = self.state.distinct([place.incumbent, *ends])
             rare = self.known is None and known.hits(place, self.state.tolerance) < SURE
             doubtful = rare and known.unseen >= self.loop.search.doubt
             out.append(Edge(place.incumbent, minima, known.rate.tries, len(known.ends), doubtful))
@@ -453,10 +448,7 @@ class _Run:
             Task(("optimal-weights", k + 1), optimal_minimum, (self.problem, self.a, sizes, x))
             for k, x in enumerate(starts)
         ]
-        minima: list[Solution] = []
-        for x in self.work.run(tasks):
-            if x and x.converged and self.state.is_new(x, minima):
-                minima.append(x)
+        minima = self.state.distinct(x for x in self.work.run(tasks) if x and x.converged)
         return accepted(self.problem, minima, self.a, sizes)
 
     def _iterated(

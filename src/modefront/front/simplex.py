@@ -105,9 +105,14 @@ class Payoff:
 
     def place(self, J: Floats) -> Floats:
         """Return the coordinates (..., n) of the points of the plane that are projected onto J."""
-        y = (J - self.utopia) / self.scale
-        gamma = np.linalg.solve(self.Phi, y[..., None])[..., 0]
-        return np.asarray(gamma - (gamma.sum(axis=-1, keepdims=True) - 1) / gamma.shape[-1])
+        n = self.utopia.size
+        return np.asarray((J - self.utopia) / self.scale @ self._onto.T + 1 / n)
+
+    @cached_property
+    def _onto(self) -> Floats:
+        """The projection of scaled objectives onto the plane, less its middle, (n, n)."""
+        inverse = np.linalg.inv(self.Phi)
+        return np.asarray(inverse - inverse.mean(axis=0))
 
     def offset(self, beta: Floats) -> Floats:
         """Return the point of the plane at beta over the normal, (n,)."""

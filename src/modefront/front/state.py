@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.front.archive import Archive, Outcome, limited
 from modefront.front.dominance import SAME
-from modefront.front.subproblems import Subproblem
+from modefront.front.subproblems import Order, Subproblem, together
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, begin
 from modefront.work.task import Executor, Task
@@ -48,7 +48,7 @@ class State:
     ----------
     problem : that is searched
     tolerance : gain of a subproblem that counts
-    places : subproblems with their incumbents
+    places : subproblems with their incumbents, changed by `add` and `keep`
     archive : nondominated models of all evaluations
     models : solutions that programmes led to, each once, in the order in which they were found
     evaluations : so far
@@ -60,6 +60,7 @@ class State:
     places: list[Place] = field(default_factory=list)
     models: list[Solution] = field(default_factory=list)
     evaluations: int = 0
+    _orders: Order | None = None
 
     @property
     def span(self) -> Floats:
@@ -68,15 +69,26 @@ class State:
 
     def add(self, subproblems: Sequence[Subproblem]) -> None:
         """Add subproblems, with the best of the known models."""
-        for subproblem in subproblems:
-            self.places.append(Place(subproblem, self.best(subproblem)))
+        self.places += [Place(x, self.best(x)) for x in subproblems]
+        self._orders = None
+
+    def keep(self, places: Sequence[Place]) -> None:
+        """Keep some places only."""
+        self.places, self._orders = [*places], None
+
+    @property
+    def orders(self) -> Order:
+        """The orders of all places."""
+        self._orders = self._orders or together([x.subproblem.order for x in self.places])
+        return self._orders
 
     def best(self, subproblem: Subproblem) -> Solution:
         """Return the best of the known models in a subproblem."""
-        k = int(subproblem.value(self.archive.J).argmin())
+        order = subproblem.order
+        k = int(order.value(self.archive.J).argmin())
         best = begin(Evaluation(self.archive.theta[k].copy(), self.archive.J[k].copy()))
-        values = [float(subproblem.value(x.J)) for x in self.models]
-        near = int(np.argmin(values)) if values else -1
+        values = order.value(np.array([x.J for x in self.models])) if self.models else ()
+        near = int(np.argmin(values)) if self.models else -1
         # a model whose derivatives are known saves an evaluation
         close = near >= 0 and subproblem.gain(best.J, self.models[near]) <= self.tolerance
         return self.models[near] if close else best
@@ -104,8 +116,15 @@ class State:
                 if self._replaces(solution, own, place, is_incumbent):
                     place.incumbent, is_incumbent = solution, True
             place.closed = place.closed or is_incumbent
-        for place in self.places:
-            gain = max(gain, self.challenge(place, outcome.theta, outcome.J, solution))
+        if len(outcome.J):
+            values = self.orders.value(outcome.J[:, None])
+            best = values.argmin(axis=0)
+            for j in self.behind(values.min(axis=0)):
+                theta, J = outcome.theta[best[j]], outcome.J[best[j]]
+                model = begin(Evaluation(theta.copy(), J.copy()))
+                if solution and np.array_equal(solution.theta, theta):
+                    model = solution
+                gain = max(gain, self._challenge(self.places[j], model))
         is_known = not (solution and solution.feasible and solution.evaluation.derivatives)
         if solution and not is_known and self.is_new(solution, self.models):
             self.models.append(solution)
@@ -118,28 +137,39 @@ class State:
             return gain > 0 or (gain > -self.tolerance and first)
         return not place.closed or (solution.converged and not place.incumbent.converged)
 
-    def challenge(
-        self, place: Place, theta: Floats, J: Floats, solution: Solution | None = None
-    ) -> float:
-        """Let models compete for a place; return the gain where it had been solved, else 0."""
-        if not len(J) or (place.closed and not place.subproblem.competes):
+    def behind(self, values: Floats) -> list[int]:
+        """Return the places whose incumbents may be behind models of such values (places,).
+
+        Those of edges and weights, of which there are few, may always be: among equals in its
+        objective, an edge has an order of its own.
+        """
+        known = self.orders.value(np.array([x.incumbent.J for x in self.places]))
+        return np.flatnonzero((values < known) | (self.orders.greatest == 0)).tolist()
+
+    def _challenge(self, place: Place, solution: Solution) -> float:
+        """Let a model compete for a place; return the gain where it had been solved, else 0."""
+        if place.closed and not place.subproblem.competes:
             return 0.0
-        k = int(place.subproblem.value(J).argmin())
-        gain = place.subproblem.gain(J[k], place.incumbent)
+        gain = place.subproblem.gain(solution.J, place.incumbent)
         if gain <= self.tolerance:
             return 0.0
-        was_closed = place.closed
-        known = solution is not None and np.array_equal(solution.theta, theta[k])
-        place.incumbent = (
-            solution if known and solution else begin(Evaluation(theta[k].copy(), J[k].copy()))
-        )
-        place.closed = False
+        was_closed, place.closed = place.closed, False
+        place.incumbent = solution
         return gain if was_closed else 0.0
 
     def is_new(self, solution: Solution, known: Sequence[Solution]) -> bool:
         """Return whether a solution is another model than all known ones."""
-        apart = (np.abs((solution.theta - x.theta) / self.span).max() for x in known)
-        return all(distance > DISTINCT for distance in apart)
+        thetas = np.array([x.theta for x in known]).reshape(-1, self.span.size)
+        apart = np.abs((thetas - solution.theta) / self.span).max(axis=1)
+        return bool((apart > DISTINCT).all())
+
+    def distinct(self, solutions: Iterable[Solution]) -> list[Solution]:
+        """Return solutions in their order, without those of models that are among them already."""
+        out: list[Solution] = []
+        for x in solutions:
+            if self.is_new(x, out):
+                out.append(x)
+        return out
 
 
 @dataclass
@@ -181,10 +211,12 @@ class Counted:
 def distinct_points(points: Sequence[Solution], scale: Floats) -> list[Solution]:
     """Return points of a front, each once: objectives over ``scale`` (n,) tell copies apart."""
     out: list[Solution] = []
+    J = np.zeros((len(points), scale.size))  # of those that are kept
     for x in points:
-        same = [k for k, y in enumerate(out) if (np.abs(y.J - x.J) <= COPY * scale).all()]
+        same = np.flatnonzero((np.abs(J[: len(out)] - x.J) <= COPY * scale).all(axis=1)).tolist()
         if not same:
+            J[len(out)] = x.J
             out.append(x)
         elif x.converged and not out[same[0]].converged:
-            out[same[0]] = x
+            out[same[0]], J[same[0]] = x, x.J
     return out

@@ -45,9 +45,6 @@ from modefront.optim.scalarisation import Scalarisation, achievement, constraine
 from modefront.optim.sqp import Options, Solution, solve
 from modefront.work.task import Key
 
-NEAR = 3
-"""Steps of the lattice from a point to models that are compared with it."""
-
 RHO = 1e-4
 """Share of all objectives in what a point of the lattice minimises."""
 
@@ -69,6 +66,44 @@ SAMPLE = 16
 """Random models of which typical sizes are medians."""
 
 
+@dataclass(frozen=True)
+class Order:
+    r"""Orders of models by J: least :math:`g \max_i c_i + s \sum_i c_i`, c = J / unit - offset.
+
+    ``unit`` and ``offset`` (..., n), ``greatest`` g and ``share`` s (...) are of one order, or of
+    many.
+    """
+
+    unit: Floats
+    offset: Floats
+    greatest: Floats | float
+    share: Floats | float
+
+    def excess(self, J: Floats) -> Floats:
+        """Return c (..., n) of objectives J (..., n)."""
+        return J / self.unit - self.offset
+
+    def value(self, J: Floats) -> Floats:
+        """Return the numbers (...) by which models with objectives J (..., n) are ordered."""
+        c = self.excess(J)
+        return np.asarray(self.greatest * c.max(axis=-1) + self.share * c.sum(axis=-1))
+
+    def spread(self, J: Floats) -> Floats:
+        """Return how far J (..., n) lies from the normal of a point, over that; else 0."""
+        return np.asarray(self.greatest * np.ptp(self.excess(J), axis=-1))
+
+
+def together(orders: Sequence[Order]) -> Order:
+    """Return orders as one of many."""
+    parts = [(x.unit, x.offset, x.greatest, x.share) for x in orders]
+    return Order(*(np.array(part) for part in zip(*parts, strict=True)))
+
+
+def _linear(w: Floats) -> Order:
+    """Return the order by w^T J."""
+    return Order(1 / w, np.zeros(w.size), 0.0, 1.0)
+
+
 class Subproblem(Protocol):
     """An order on J, and a programme that leads to a model that is best in it."""
 
@@ -79,18 +114,22 @@ class Subproblem(Protocol):
     @property
     def competes(self) -> bool:
         """Whether any model that is better takes its place; else only its own solutions do."""
+        return True
 
-    def value(self, J: Floats) -> Floats:
-        """Return numbers (...) that order models with objectives J (..., n), least first."""
+    @property
+    def order(self) -> Order:
+        """The order."""
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return how much better objectives (n,) are than a known model: over what that has."""
 
     def weights(self, known: Solution) -> Floats:
         """Return the slope (n,) of what is minimised at a known solution."""
+        return self.programme.gradient(known.J)
 
     def is_near(self, J: Floats, /) -> Bools:
         """Return which models of objectives (models, n) may lead to a solution by a few steps."""
+        return np.ones(len(J), dtype=np.bool_)
 
     @property
     def programme(self) -> Scalarisation:
@@ -101,17 +140,16 @@ class Subproblem(Protocol):
 
 
 @dataclass(frozen=True)
-class Least:
+class Least(Subproblem):
     """The lexicographic minimum of one objective; ``sizes`` (n,) are typical ones."""
 
     objective: int
     sizes: Floats
     name: str
-    competes: bool = True
 
     @property
-    def order(self) -> Lexicographic:
-        """The order of the models."""
+    def search(self) -> Lexicographic:
+        """The search for it."""
         return Lexicographic(self.objective, self.sizes)
 
     @property
@@ -119,68 +157,53 @@ class Least:
         """Name among all subproblems."""
         return ("edge", self.name)
 
-    def value(self, J: Floats) -> Floats:
-        """Return nearly what orders models; among equals in J_i, the others decide."""
-        return np.asarray(J @ self._slope(TIE))
+    @cached_property
+    def order(self) -> Order:
+        """Nearly what orders models; among equals in J_i, the others decide."""
+        return _linear(self.search.programme(TIE).w)
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the share by which J_i falls, or where that is tied, the others."""
         i, before = self.objective, known.J
-        margin = self.order.margin(float(min(J[i], before[i])))
+        margin = self.search.margin(float(min(J[i], before[i])))
         if abs(J[i] - before[i]) > margin:
             return float((before[i] - J[i]) / max(before[i], EXACT * self.sizes[i]))
-        others = self.order.others
+        others = self.search.others
         return float(others @ (before - J)) / max(float(others @ before), EXACT)
-
-    def is_near(self, J: Floats) -> Bools:
-        """Return True of each: any model may."""
-        return np.ones(len(J), dtype=np.bool_)
-
-    def weights(self, _: Solution) -> Floats:
-        """Return the slope of J_i."""
-        return self._slope(0.0)
 
     @property
     def programme(self) -> Scalarisation:
         """J_i."""
-        return weighted(self._slope(0.0))
+        return self.search.programme(0.0)
 
     def solve(self, problem: Problem, start: Solution, known: Floats | None = None) -> Solution:
         """Return the lexicographic minimum below a start, if J_i may be as small as known."""
         least = np.inf if known is None else float(known[self.objective])
-        return self.order.solve(problem, start, _TIGHT, least)
-
-    def _slope(self, rest: float) -> Floats:
-        out = rest * self.order.others
-        out[self.objective] = 1 / self.sizes[self.objective]
-        return out
+        return self.search.solve(problem, start, _TIGHT, least)
 
 
 @dataclass(frozen=True)
-class Weights:
+class Weights(Subproblem):
     """The minimum of w^T J; values below ``negligible`` differ in nothing."""
 
     w: Floats
-    key: Key
+    name: Key
     negligible: float
-    competes: bool = True
 
-    def value(self, J: Floats) -> Floats:
-        """Return w^T J."""
-        return np.asarray(J @ self.w)
+    @property
+    def key(self) -> Key:
+        """Name among all subproblems."""
+        return self.name
+
+    @cached_property
+    def order(self) -> Order:
+        """By w^T J."""
+        return _linear(self.w)
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the share by which w^T J falls."""
         before = float(self.w @ known.J)
         return float(before - self.w @ J) / max(before, self.negligible)
-
-    def is_near(self, J: Floats) -> Bools:
-        """Return True of each: any model may."""
-        return np.ones(len(J), dtype=np.bool_)
-
-    def weights(self, _: Solution) -> Floats:
-        """Return w."""
-        return self.w
 
     @property
     def programme(self) -> Scalarisation:
@@ -194,7 +217,7 @@ class Weights:
 
 
 @dataclass(frozen=True)
-class Point:
+class Point(Subproblem):
     """The point of the lattice at ``beta`` (n,).
 
     With ``equations``, those of Das & Dennis are solved, which may lead to dominated models.
@@ -215,39 +238,31 @@ class Point:
         """Whether it is no solution of equations."""
         return not self.equations
 
-    def excess(self, J: Floats) -> Floats:
-        """Return the excess c (..., n) of objectives."""
-        return np.asarray(J / self.target.unit - self._offset)
-
     @cached_property
-    def _offset(self) -> Floats:
-        return self.target.offset(self.beta)
+    def order(self) -> Order:
+        """By the greatest excess with its share of all."""
+        return Order(self.target.unit, self.target.offset(self.beta), 1.0, RHO)
 
     def spread(self, J: Floats) -> float:
         """Return how far objectives (n,) lie from the normal, over the ranges."""
-        c = self.excess(J) * self.target.r
-        return float(np.ptp(c))
-
-    def value(self, J: Floats) -> Floats:
-        """Return the greatest excess with its share of all."""
-        c = self.excess(J)
-        return np.asarray(c.max(axis=-1) + RHO * c.sum(axis=-1))
+        return float(np.ptp(self.order.excess(J) * self.target.r))
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the fall of the excess, over the objectives along the normal or their ranges."""
         w = self.weights(known)
-        return float(self.value(known.J) - self.value(J)) / min(max(float(w @ known.J), EXACT), 1.0)
+        fall = float(self.order.value(known.J) - self.order.value(J))
+        return fall / min(max(float(w @ known.J), EXACT), 1.0)
 
     def is_near(self, J: Floats) -> Bools:
-        """Return which models lie few steps of the lattice from the normal."""
+        """Return which models lie within a step of the lattice from the normal."""
         steps = np.abs(self.target.place(J) - self.beta) * abs(sum(self.place))
-        return np.asarray(steps.max(axis=-1) <= NEAR)
+        return np.asarray(steps.max(axis=-1) <= 1)
 
     def weights(self, known: Solution) -> Floats:
         """Return the multipliers of the excess at a solution, or of the greatest one at others."""
         if known.weights.any():
             return known.weights
-        c = self.excess(known.J)
+        c = self.order.excess(known.J)
         return np.asarray(((c == c.max()) + RHO) / self.target.unit)
 
     def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:
@@ -260,7 +275,7 @@ class Point:
         if self.equations:
             return self.target.boundary(self.beta)
         unit = self.target.unit
-        return achievement(RHO / unit, np.diag(1 / unit), self._offset)
+        return achievement(RHO / unit, np.diag(1 / unit), self.order.offset)
 
 
 def is_along(subproblem: Subproblem) -> bool:

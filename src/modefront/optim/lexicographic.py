@@ -93,7 +93,7 @@ class Lexicographic:
         A minimum of the first objective that exceeds the ``least`` one is left where it is.
         """
         i = self.objective
-        best = _solved(problem, self._with(0.0), replace(start, evaluations=0), options)
+        best = _solved(problem, self.programme(0.0), replace(start, evaluations=0), options)
         above = best.feasible and best.J[i] > least + self.margin(least)
         alone = self.sizes.size == 1 or not best.feasible
         if above or alone or not self.is_open(problem, best.evaluation):
@@ -113,11 +113,11 @@ class Lexicographic:
         Each but the first ones is solved for from the limit that those before it tell.
         """
         start = replace(start, evaluations=0)
-        coarse = ahead = _solved(problem, self._with(epsilon), start, _along(epsilon, options))
+        coarse = ahead = _solved(problem, self.programme(epsilon), start, _along(epsilon, options))
         while True:
             epsilon /= RATIO
             spent = replace(ahead, evaluations=coarse.evaluations)
-            fine = _solved(problem, self._with(epsilon), spent, _along(epsilon, options))
+            fine = _solved(problem, self.programme(epsilon), spent, _along(epsilon, options))
             theta = fine.theta + (fine.theta - coarse.theta) / (RATIO - 1)
             limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper), second=True)
             fine = replace(fine, evaluations=fine.evaluations + 1)
@@ -131,7 +131,8 @@ class Lexicographic:
         one, two = float(self.others @ J), float(self.others @ other)
         return self.ties(J, other) and abs(one - two) <= TIE * max(one, two)
 
-    def _with(self, epsilon: float) -> Linear:
+    def programme(self, epsilon: float) -> Linear:
+        """Return the objective with a share of the others, over their sizes."""
         return weighted(
             np.eye(self.sizes.size)[self.objective] / self.sizes + epsilon * self.others
         )

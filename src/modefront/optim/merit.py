@@ -53,12 +53,8 @@ class Multipliers:
 
     def weights(self, programme: Scalarisation, J: Floats) -> Floats:
         """Return the slope (n,) of the Lagrangian with respect to the objectives."""
-        w = programme.gradient(J)
-        if self.mu.size:
-            w = w + programme.constraints.matrix.T @ self.mu
-        if self.kappa.size:
-            w = w + programme.maximised.matrix.T @ self.kappa
-        return w
+        A, C = programme.constraints.matrix, programme.maximised.matrix
+        return np.asarray(programme.gradient(J) + self.mu @ A + self.kappa @ C)
 
 
 @dataclass(frozen=True)
@@ -75,12 +71,9 @@ class Merit:
             return np.inf
         c, y = self.programme.constraints.at(point.J), self.programme.maximised.at(point.J)
         mu, kappa = self.multipliers.mu, self.multipliers.kappa
-        value = self.programme.value(point.J)
-        if c.size:
-            value = float(value + mu @ c + 0.5 * self.penalty * (c @ c))
-        if y.size:
-            value = float(value + kappa @ y + surplus(y, kappa, self.penalty))
-        return value
+        of_constraints = mu @ c + 0.5 * self.penalty * (c @ c)
+        of_maximum = kappa @ y + surplus(y, kappa, self.penalty)
+        return float(self.programme.value(point.J) + of_constraints + of_maximum)
 
 
 def surplus(y: Floats, kappa: Floats, penalty: float) -> float:

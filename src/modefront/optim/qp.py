@@ -160,10 +160,10 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
         if len(kept) < len(active):
             active = kept
             continue
-        wrong = _wrong(slope, scale, free, s <= lo, s >= hi)
-        if wrong is None:
+        gain = _gain(slope, free, s <= lo, s >= hi)
+        if gain.max() <= FLAT * scale:
             break
-        free[wrong] = True
+        free[int(gain.argmax())] = True
     return QuadraticStep(s, active)
 
 
@@ -294,18 +294,11 @@ def _met(qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int]) -> tup
     return int(np.argmin(share)), float(share.min())
 
 
-def _wrong(left: Floats, scale: float, free: Bools, low: Bools, high: Bools) -> int | None:
-    """Return the held variable that gains most by leaving the box's side; None where none does.
-
-    ``left`` (p,) is what the multipliers leave of the slope, which is of this ``scale``.
-    """
-    gain = _gain(left, free, low, high)
-    best = int(np.argmax(gain))
-    return best if gain[best] > FLAT * scale else None
-
-
 def _gain(left: Floats, free: Bools, low: Bools, high: Bools) -> Floats:
-    """Return how steeply what is minimised falls as each held variable leaves the box's side."""
+    """Return how steeply what is minimised falls as each held variable leaves the box's side.
+
+    ``left`` (p,) is what the multipliers leave of the slope.
+    """
     return np.where(free | (low & high), 0.0, np.where(low, -left, left))
 
 

@@ -119,19 +119,16 @@ def boundary(
     beta: Floats,
     noise: Noise,
     equations: bool = False,
-) -> tuple[Floats, Conditions] | None:
+) -> tuple[Floats, Conditions]:
     """Return the weights in their right size and the conditions of a point of NBI.
 
     ``beta`` (n,) is the point of the simplex that it was projected from, by the ``equations`` of
-    Das & Dennis or with bounds. None where no bound is active, as where a search ended at a jump.
+    Das & Dennis or with bounds.
     """
     n = target.P.sum(axis=1)
     dn = target.dP.sum(axis=2)
     active = np.ones(n.size, dtype=np.bool_) if equations else active_bounds(w * n)
-    total = float(w[active] @ n[active])
-    if total == 0:
-        return None
-    w = w / total
+    w = w / (w[active] @ n[active])
     above = point.J - target.utopia - target.P @ beta  # n c
     tau = float((above / n)[active].mean())
     moved = target.dutopia + target.dP @ (beta + tau) - noise.J

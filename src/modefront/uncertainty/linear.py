@@ -55,7 +55,8 @@ def front_scatter(
 ) -> dict[str, Scatter]:
     """Return the scatter of the points for which it is defined, by label.
 
-    A point of which the solver knows no weights, as where the objectives jump, has none.
+    A point of which the solver knows no weights has none, as where the objectives jump, or where a
+    search ended before it was solved.
     """
     level_of: dict[int, Floats] = {}  # changes of the least value of each objective
     ends: dict[str, tuple[Floats, Floats]] = {}
@@ -72,7 +73,7 @@ def front_scatter(
         match role.kind:
             case "edge":
                 w, conditions = edge_weights(role.objective, sizes), given_weights(noise)
-            case "weights":
+            case "weights" if w.any():
                 conditions = given_weights(noise)
             case "optimal":
                 w, conditions = a / point.J, optimal_weights(point, a, noise)
@@ -81,10 +82,7 @@ def front_scatter(
                 conditions = level(point, role.objective, dv, noise)
             case "boundary" if beta is not None and w.any() and {*role.ends} <= set(ends):
                 target = _target(role, ends)
-                found = boundary(point, w, target, beta, noise, role.equations)
-                if found is None:
-                    continue
-                w, conditions = found
+                w, conditions = boundary(point, w, target, beta, noise, role.equations)
             case _:
                 continue
         out[text] = scatter(problem, point, w, conditions, noise)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from modefront._typing import Floats
+import numpy as np
+
 from modefront.front.archive import Outcome
 from modefront.front.proposers.base import Offer, solve_from
-from modefront.front.state import Place, State
+from modefront.front.state import State
 from modefront.work.task import Key
 
 
@@ -27,11 +28,9 @@ class Polish:
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
         """Yield the searches from incumbents that are open, the nearest first."""
-        open_places = [k for k, place in enumerate(state.places) if not place.closed]
-        ranked = sorted(
-            open_places, key=lambda k: lag(state.places[k], state.places[k].incumbent.J)
-        )
-        for k in ranked[:most]:
+        spread = state.orders.spread(np.array([x.incumbent.J for x in state.places]))
+        nearest_first = np.argsort(spread, kind="stable").tolist()
+        for k in [k for k in nearest_first if not state.places[k].closed][:most]:
             place = state.places[k]
             yield solve_from(k, place, place.incumbent, 1.0)
         equations = [(k, x) for k, x in enumerate(state.places) if not x.subproblem.competes]
@@ -39,7 +38,7 @@ class Polish:
         for k, place in equations:
             if place.closed and not place.incumbent.converged:
                 key = place.subproblem.key
-                nearest = sorted(met, key=lambda x: lag(place, x.J))
+                nearest = sorted(met, key=lambda x: float(place.subproblem.order.spread(x.J)))
                 for start in nearest[: len(state.problem.objectives)]:
                     if (key, start.theta.tobytes()) not in self._tried:
                         yield solve_from(k, place, start, 1.0)
@@ -50,12 +49,7 @@ class Polish:
         solution = outcome.result
         if not (solution.feasible and solution.evaluation.derivatives):
             return
-        for place in state.places:
+        for k in state.behind(state.orders.value(solution.J)):
+            place = state.places[k]
             if not place.closed and place.subproblem.gain(solution.J, place.incumbent) > 0:
                 place.incumbent = solution
-
-
-def lag(place: Place, J: Floats) -> float:
-    """Return a number that is the less, the nearer objectives (n,) are to the solution."""
-    spread = getattr(place.subproblem, "spread", None)
-    return float(spread(J)) if spread else 0.0

@@ -100,7 +100,8 @@ def promised(problem: Problem, subproblem: Subproblem, evaluation: Evaluation) -
     J = evaluation.J + evaluation.dJ @ change + 0.5 * (evaluation.H @ change @ change)
     squares = [np.sum((each.r + each.dr @ change) ** 2) for each in evaluation.residuals]
     J = np.maximum(J, squares or 0.0)
-    return J if subproblem.value(J) < subproblem.value(evaluation.J) else evaluation.J
+    promise, own = subproblem.order.value(np.array([J, evaluation.J]))
+    return J if promise < own else evaluation.J
 
 
 def is_hopeless(evaluation: Evaluation, w: Floats, level: float) -> bool:
