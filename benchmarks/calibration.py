@@ -138,11 +138,11 @@ def case(
     true = mf.matrices(["x"], {"x": K}, {"base": np.diag(mass)}, places).modes(np.ones(1), modes)
     sets = int(rng.integers(1, 5))
     sf, ss = np.exp(rng.uniform(np.log(0.002), np.log(0.03))), rng.uniform(0.01, 0.05)
-    size = np.sqrt(WEIGHT / rng.chisquare(WEIGHT, 2)) if prior else np.ones(2)
-    f = true.frequency * (1 + size[0] * sf * rng.normal(size=(sets, modes)))
+    spread = np.sqrt(WEIGHT / rng.chisquare(WEIGHT, 2)) if prior else np.ones(2)
+    f = true.frequency * (1 + spread[0] * sf * rng.normal(size=(sets, modes)))
     clean = true.phi.T
     top = np.abs(clean).max(axis=1)[:, None]
-    phi = clean + size[1] * ss * top * rng.normal(size=(sets, *clean.shape))
+    phi = clean + spread[1] * ss * top * rng.normal(size=(sets, *clean.shape))
     factor = 1.0 if prior else float(rng.choice([0.5, 1.0, 2.0]))
     std = bool(rng.random() < 0.5)
     data = mf.modal_data(

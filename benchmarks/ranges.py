@@ -18,9 +18,9 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy.optimize
@@ -28,6 +28,7 @@ from calibration import BOUNDS, members
 
 import modefront as mf
 from modefront._typing import Floats
+from modefront.errors import Fault
 from modefront.predictions import ResultVariable
 
 SAMPLES, POLISHED = 30, 1
@@ -51,12 +52,12 @@ class Expense:
 
     places: ClassVar = ("cost",)
     heading: ClassVar = "cost"
-    settings: ClassVar[Mapping[str, object]] = {}
+    settings: ClassVar[Mapping[str, Sequence[Any]]] = {}
 
-    def faults(self, model: object, data: object) -> tuple[()]:
+    def faults(self, model: object, data: object) -> Iterator[Fault]:
         """Return what model and data lack: nothing."""
         del model, data
-        return ()
+        return iter(())
 
     def complete(self, problem: object) -> Expense:
         """Return it."""
@@ -148,8 +149,9 @@ def case(seed: int) -> Case:
         K, M = np.pad(K, (0, 1)), np.pad(M, (0, 1))
         M[-1, -1] = 1.0
         K[-1, -1] = 1e3 * np.abs(K).max()
-        stiffness["extra"] = np.zeros_like(K)
-        stiffness["extra"][-1, -1] = K[-1, -1]
+        extra = np.zeros(K.shape)
+        extra[-1, -1] = K[-1, -1]
+        stiffness["extra"] = extra
     names = list(stiffness)
     mass = {"m": M} if scaled else {"base": M}
     names += ["m"] * bool(scaled)
