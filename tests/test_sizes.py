@@ -26,7 +26,8 @@ def beyond(node: ast.AST) -> Iterator[str]:
         if count > ARGUMENTS:
             yield f"{count} arguments"
     if isinstance(node, ast.ClassDef):
-        fields = sum(isinstance(item, ast.AnnAssign) for item in node.body)
+        annotated = [item for item in node.body if isinstance(item, ast.AnnAssign)]
+        fields = sum(not ast.unparse(item.annotation).startswith("ClassVar") for item in annotated)
         if fields > FIELDS:
             yield f"{fields} fields"
 

@@ -30,7 +30,7 @@ CONTRADICTIONS = [
         "[model] sensors low: expected degrees of freedom from 0 to 1 ... , found 2",
     ),
     ("low = 0", "low = [[7, 1]]", "sensors low: expected degrees of freedom from 0 to 1, found 7"),
-    ("low = 0", f"low = {'9' * 30}", "sensors low: ... degrees of freedom from 0 to 1, found 999"),
+    ("low = 0", f"low = {'9' * 30}", "sensors low: ... degree of freedom from 0, ... found 999"),
     ("low = 0", "low = -1", SENSOR + "-1"),
     ("low = 0", "low = 0.0", SENSOR + "0.0"),
     ("low = 0", "low = false", SENSOR + "false"),

@@ -122,7 +122,7 @@ class State:
             for j in self.behind(values.min(axis=0)):
                 theta, J = outcome.theta[best[j]], outcome.J[best[j]]
                 model = begin(Evaluation(theta.copy(), J.copy()))
-                if solution and np.array_equal(solution.theta, theta):
+                if solution and solution.feasible and np.array_equal(solution.theta, theta):
                     model = solution
                 gain = max(gain, self._challenge(self.places[j], model))
         is_known = not (solution and solution.feasible and solution.evaluation.derivatives)

@@ -121,7 +121,7 @@ class SoilFilter:
 FILTER = nested("a table { frequency, damping }, a Kanai-Tajimi filter", SoilFilter)
 
 
-# 16 fields: the keys of a table of a study file.
+# 15 fields: the keys of a table of a study file.
 @dataclass(frozen=True)
 class Passage:
     """First-passage probabilities at several levels.
