@@ -18,15 +18,16 @@ With a slack s models are nearly as good, and for all i
 .. math:: \min \pm q(\theta) \quad\text{subject to}\quad J_i(\theta) \le (1 + s) J_i(\theta_P) .
 
 The constraints are a penalty on the greatest violation, exact from some factor on, which grows
-until they are met. A function along a set of models has several extremes: from the first point
-with others, the search starts at the point and at the best end of an open direction; the next point
-starts where the last one ended, relative to it.
+until they are met. The next point starts where the last one ended, relative to it. A function along
+a set of models has several extremes: where one of the ends of the open directions, alone and
+together, promises more, the search goes on from the best of these.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -46,6 +47,9 @@ FACTORS = (1e1, 1e2, 1e3, 1e4)
 
 _ENOUGH = Options(step=1e-5, constraint=1e-6, reduction=1e-8, iterations=40)
 """A range needs a thousandth of itself, and no more."""
+
+MANY = 3
+"""Open directions of which sums are tried: 26 models."""
 
 SLACK = number("a share of 0 or more", least=0)
 
@@ -83,15 +87,16 @@ class Equivalent:
         return U[:, :k].T / sigma[:k, None], Vt[k:].T
 
     def ends(self) -> list[Floats]:
-        """Return the models (p,) at the bounds to which open directions lead."""
-        out, span = [], self.span
-        lower, upper = self.problem.lower, self.problem.upper
-        for v in self.equations()[1].T:
-            for step in (v * span, -v * span):
-                moves = np.abs(step) > RANK * span
-                room = np.where(step > 0, upper, lower)[moves] - self.model.theta[moves]
+        """Return the models (p,) at the bounds to which open directions and their sums lead."""
+        lower, upper, theta = self.problem.lower, self.problem.upper, self.model.theta
+        null, out = self.equations()[1], []
+        for signs in product((-1, 0, 1), repeat=min(null.shape[1], MANY)):
+            step = null[:, : len(signs)] @ signs * self.span
+            moves = np.abs(step) > RANK * self.span
+            if moves.any():
+                room = np.where(step > 0, upper, lower)[moves] - theta[moves]
                 reach = max(float((room / step[moves]).min()), 0.0)
-                out.append(np.clip(self.model.theta + reach * step, lower, upper))
+                out.append(np.clip(theta + reach * step, lower, upper))
         return out
 
     def _lengths(self) -> list[float]:
@@ -184,10 +189,6 @@ class Equivalent:
         return out / self.span
 
 
-def _finite(value: float) -> float:
-    return value if np.isfinite(value) else np.inf
-
-
 # 6 arguments: the problem, the models, and what is sought.
 def extreme(
     problem: Problem, thetas: Floats, q: Values, sign: float, slack: float, step: float
@@ -205,13 +206,16 @@ def extreme(
         size = abs(value) if value else 1.0
         each = Equivalent(problem, here, slack, step)
         start = np.clip(theta + shift, problem.lower, problem.upper)
-        found = each.extreme(q, size, sign, start) if shift.any() else None
-        if found is None:
-            end = min(each.ends(), key=lambda x: _finite(sign * q(x)), default=theta)
-            tried = [each.extreme(q, size, sign, start) for start in (theta, end)]
-            met = [x for x in tried if x is not None]
-            found = min(met, key=lambda x: sign * float(x.J[-1]), default=None)
+        found = each.extreme(q, size, sign, start)
+        if found is None and shift.any():
+            found = each.extreme(q, size, sign, theta)
+        reached = value if found is None else float(found.J[-1]) * size
+        ends = each.ends()
+        promises = np.array([sign * q(end) for end in ends])
+        if (promises < sign * reached).any():
+            other = each.extreme(q, size, sign, ends[int(np.nanargmin(promises))])
+            if other is not None and sign * float(other.J[-1]) * size < sign * reached:
+                found, reached = other, float(other.J[-1]) * size
         shift = np.zeros(theta.size) if found is None else found.theta - theta
-        ends = [value] if found is None else [value, float(found.J[-1]) * size]
-        best = sign * float(np.nanmin([sign * best, *(sign * x for x in ends)]))
+        best = sign * float(np.nanmin([sign * best, sign * value, sign * reached]))
     return best
