@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -134,11 +135,12 @@ def test_a_study_beside_its_deck_has_it_back_whole_and_no_other_one(tmp_path: Pa
     write_example("calculix", tmp_path / "study")
     deck, theta = tmp_path / "study" / "nominal.inp", dict.fromkeys(("plate", "columns"), 0.5)
     theta |= dict.fromkeys(("spring", "mass"), 2.0)
-    write_deck(tmp_path / "study", theta, tmp_path)
+    assert not write_deck(tmp_path / "study", theta, tmp_path)
     before, after = deck.read_text().splitlines(), (tmp_path / "nominal.inp").read_text()
     changed = [y for x, y in zip(before, after.splitlines(), strict=True) if x != y]
     assert changed == ["1.05e+11, 0.3", "1.05e+11, 0.3", "800000.", "16."]
     (tmp_path / "nominal.inp").unlink()
     deck.write_text(deck.read_text().replace("2.100000e+11", "7.000000e+10"))
-    write_deck(tmp_path / "study", theta, tmp_path)
+    left_out = write_deck(tmp_path / "study", theta, tmp_path)
+    assert re.match(r"nominal\.inp: line \d+ of .* is not as it was imported: ", left_out)
     assert not (tmp_path / "nominal.inp").exists()

@@ -119,20 +119,21 @@ def deck_text(job: Path) -> str:
     return deck.read_text("utf-8", "replace") if deck else ""
 
 
-def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> None:
+def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
     """Write the deck of a study with updated values: that which its folder keeps, or the job's own.
 
-    It is left out where there is none with these lines, or a value of it is no parameter of the
-    model.
+    It is left out where a value of it is no parameter of the model, and where it is not there with
+    the lines that were imported: what was not written, and why, is returned, else nothing.
     """
     changes = read_changes(study / CHANGES) if (study / CHANGES).is_file() else []
     decks = [study / f"{beginning}{each.file}" for each in changes[:1] for beginning in (KEPT, "")]
     kept = next((path for path in decks if path.is_file()), None)
     if kept is None or {each.parameter for each in changes} - set(theta):
-        return
+        return ""
     lines = dict(enumerate(kept.read_text("utf-8", "replace").splitlines(), start=1))
-    if any(lines.get(each.line) != each.text for each in changes):
-        return
+    for each in changes:
+        if lines.get(each.line) != each.text:
+            return f"{each.file}: line {each.line} of {kept} is not as it was imported: {each.text}"
     factors: dict[int, dict[tuple[int, int], float]] = {}
     for each in changes:
         line = factors.setdefault(each.line, {})
@@ -141,6 +142,7 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> None:
     for k, of_line in factors.items():
         lines[k] = _multiplied(lines[k], of_line)
     write_text(folder / changes[0].file, "\n".join(lines.values()) + "\n")
+    return ""
 
 
 def _deck(path: Path) -> Path | None:

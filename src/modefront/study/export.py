@@ -103,7 +103,8 @@ def export(
         output.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as unfinished:
             missing = _write(model, loaded.file, Path(unfinished), count)
-            write_deck(loaded.file.parent, model.theta, Path(unfinished))
+            deck = write_deck(loaded.file.parent, model.theta, Path(unfinished))
+            missing += [deck] if deck else []
             files = sorted(Path(unfinished).iterdir())
             moved = tuple(Path(shutil.move(file, output / file.name)) for file in files)
     except ModelError as error:
