@@ -27,7 +27,7 @@ from scipy import sparse
 from scipy.linalg import block_diag
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.fem.blocks import element_blocks, mass_blocks, spring_blocks
+from modefront.fem.blocks import Block, element_blocks, mass_blocks, spring_blocks
 from modefront.fem.check import axes_of, check_names, check_parameters, check_points, node_list
 from modefront.fem.dofs import (
     Dofs,
@@ -40,12 +40,11 @@ from modefront.fem.dofs import (
 )
 from modefront.fem.elements.common import Part
 from modefront.fem.mechanism import check_mechanisms
-from modefront.fem.prestress import check_stability, load_forces, static_state, strain
-from modefront.fem.scatter import Block, Pattern, condense_links, scatter, scatter_plan
+from modefront.fem.prestress import check_stability, load_forces, static_state
 from modefront.fem.section import Checks, FemError
 from modefront.fem.sensors import SensorPlaces, selection_matrix, sensor_places
 from modefront.fem.structure import Coupling, Link, Parameter, Structure, Support
-from modefront.linalg.affine import Monomials, SparseAffine
+from modefront.linalg.affine import Monomials, SparseAffine, sparse_affine
 
 
 @dataclass(frozen=True)
@@ -109,52 +108,32 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     checks.close()
     if selection is None or len(dofs.free) == 0:
         raise FemError("structure: no degree of freedom is free; expected at least one")
-    pattern, slots = scatter_plan(dofs.kept, blocks)
-    if pattern.nnz >= np.iinfo(np.int32).max:
-        raise FemError(f"structure: {pattern.nnz} entries in K, expected fewer than 2^31")
-    each = list(zip(blocks, slots, strict=True))
-    K = _Terms(pattern, structure.parameters)
-    for block, slot in each:
-        K.add(block.name, slot, block.matrices.stiffness, ("E", "spring"))
+    K, M = (_Terms(dofs.T, structure.parameters) for _ in range(2))
+    for block in blocks:
+        K.add(block, block.name, block.matrices.stiffness, ("E", "spring"))
+        M.add(block, block.name, block.matrices.mass, ("density", "mass"))
         if block.prestress is not None:
-            K.add(block.name, slot, (Part(0, block.prestress),), ("prestress",))
+            K.add(block, block.name, (Part(0, block.prestress),), ("prestress",))
     if forces:
-        at = static_state(pattern, K.total(), dofs, forces, floating)
-        for block, slot in each:
-            if block.internal is None:
-                continue
-            internal = block.internal()
-            for load, u in zip(structure.loads, at, strict=True):
-                made = internal.stiffness(u[block.dofs()], strain(load, block.name))
-                K.add(load.name, slot, (Part(0, made),), ("prestress",))
+        for load, u in zip(
+            structure.loads, static_state(K.total(), dofs.T, forces, floating), strict=True
+        ):
+            for block in blocks:
+                if block.internal is not None:
+                    strain = load.strains.get(block.name, 0.0)
+                    made = block.internal().stiffness(u[block.dofs()], strain)
+                    K.add(block, load.name, (Part(0, made),), ("prestress",))
     if not floating and (forces or any(block.prestress is not None for block in blocks)):
-        check_stability(pattern, K.total(), dofs)
-    M = _Terms(pattern, structure.parameters)
-    for block, slot in each:
-        M.add(block.name, slot, block.matrices.mass, ("density", "mass"))
-    (K_data, K_exponents), (M_data, M_exponents) = K.sorted(), M.sorted()
-    if dofs.slave.any():
-        T = dofs.T[np.flatnonzero(dofs.kept.ravel() >= 0)]
-        pattern, data = condense_links(pattern, np.concatenate([K_data, M_data]), T, dofs.slave)
-        K_data, M_data = data[: len(K_data)], data[len(K_data) :]
+        check_stability(K.total())
     return StructureMatrices(
-        stiffness=_affine(pattern, K_data, K_exponents),
-        mass=_affine(pattern, M_data, M_exponents),
+        stiffness=K.affine(),
+        mass=M.affine(),
         parameters=tuple(p.name for p in structure.parameters),
         sensors=tuple(s.name for s in structure.sensors),
         selection=selection,
         dofs=dofs,
         places=places,
     )
-
-
-def _affine(pattern: Pattern, data: Floats, exponents: Ints) -> SparseAffine:
-    """Return the matrix of terms (terms, nnz) on the entries that are not zero in all of them."""
-    kept = data.any(axis=0)
-    indptr = np.append(0, np.cumsum(kept, dtype=np.int32))[pattern.indptr].astype(np.int32)
-    terms = sparse.csc_array(data[:, kept].T)
-    coefficients = Monomials(exponents.astype(float))
-    return SparseAffine(indptr, pattern.indices[kept].astype(np.int32), terms, coefficients)
 
 
 def _following(X: Floats, structure: Structure, checks: Checks) -> list[Followers]:
@@ -225,33 +204,43 @@ def _existing(X: Floats, blocks: list[Block], following: list[Followers]) -> Boo
 
 
 class _Terms:
-    """Terms of one matrix: data (nnz,) by the exponents of the parameters."""
+    """Terms of one matrix at the free degrees of freedom, by the exponents of the parameters."""
 
-    def __init__(self, pattern: Pattern, parameters: Sequence[Parameter]) -> None:
-        self.pattern, self.parameters = pattern, parameters
-        self.terms: dict[tuple[int, ...], Floats] = {}
+    def __init__(self, T: sparse.csr_array, parameters: Sequence[Parameter]) -> None:
+        self.T, self.parameters = T, parameters
+        self.terms: dict[tuple[int, ...], sparse.csr_array] = {}
 
-    def add(self, name: str, slot: Ints, parts: Sequence[Part], linear: Sequence[str]) -> None:
-        """Add parts of elements of a name; `linear` are the quantities that are plain factors."""
+    def add(self, block: Block, name: str, parts: Sequence[Part], linear: Sequence[str]) -> None:
+        """Add parts of a block by the parameters of a name; `linear` ones are plain factors.
+
+        T^T A T is summed element by element, in the same order on either side of the diagonal.
+        """
+        moved = self.T[block.dofs().ravel()]
         for part in parts:
             exponents = tuple(
                 (1 if p.quantity in linear else part.power if p.quantity == "thickness" else 0)
                 * (name in p.of)
                 for p in self.parameters
             )
-            data = scatter(self.pattern, slot, part.matrices)
-            self.terms[exponents] = (
-                self.terms[exponents] + data if exponents in self.terms else data
+            count, size = part.matrices.shape[:2]
+            columns = np.repeat(np.arange(count * size).reshape(count, size), size, axis=0)
+            each = sparse.csr_array(
+                (part.matrices.ravel(), columns.ravel(), np.arange(count * size + 1) * size)
             )
+            term = moved.T @ (each @ moved)
+            known = self.terms.get(exponents)
+            self.terms[exponents] = term if known is None else known + term
 
-    def total(self) -> Floats:
-        """Return the data (nnz,) at theta = 1."""
-        return np.sum(list(self.terms.values()), axis=0)
+    def total(self) -> sparse.csr_array:
+        """Return the matrix at theta = 1."""
+        return sum(self.terms.values(), sparse.csr_array((self.T.shape[1],) * 2))
 
-    def sorted(self) -> tuple[Floats, Ints]:
-        """Return data (terms, nnz) and exponents (terms, parameters), the constant term first."""
+    def affine(self) -> SparseAffine:
+        """Return the matrix as a function of theta, the constant term first."""
         order = sorted(self.terms, key=lambda e: (sum(e) > 0, [-k for k in e]))
-        return (
-            np.array([self.terms[e] for e in order]).reshape(len(order), self.pattern.nnz),
-            np.array(order, dtype=np.int64).reshape(len(order), len(self.parameters)),
-        )
+        exponents = np.array(order, dtype=float).reshape(len(order), len(self.parameters))
+        if (entries := max((A.nnz for A in self.terms.values()), default=0)) >= 2**31:
+            raise FemError(f"structure: {entries} entries in a matrix, expected fewer than 2^31")
+        # Links sum the two halves in different orders: make them equal to the last digit.
+        terms = [(self.terms[e] + self.terms[e].T) / 2 for e in order]
+        return sparse_affine(terms, Monomials(exponents), self.T.shape[1])

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Callable, Sequence, Set
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -22,13 +23,12 @@ from modefront.fem.check import (
     unit_vector,
 )
 from modefront.fem.dofs import direction_indices
-from modefront.fem.elements.beam import beam, truss
-from modefront.fem.elements.common import attachment, elasticity, ply
-from modefront.fem.elements.internal import centre_axes, shell_stresses, solid_stresses
+from modefront.fem.elements.beam import Axial, beam, truss
+from modefront.fem.elements.common import ElementMatrices, attachment, elasticity, ply
+from modefront.fem.elements.internal import Stresses, centre_axes, shell_stresses, solid_stresses
 from modefront.fem.elements.point import lumped_mass, spring
 from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import SOLIDS, solid
-from modefront.fem.scatter import Block
 from modefront.fem.section import Checks, FemError, Material
 from modefront.fem.structure import Beams, Group, Mass, Shells, Solids, Spring, Trusses
 from modefront.rounding import TINY
@@ -39,6 +39,35 @@ SYMMETRIC = 1e-9
 TRANSLATIONS = (0, 1, 2)
 SIX = (0, 1, 2, 3, 4, 5)
 """Directions of nodes of solids, and of beams and shells."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """Elements of one kind and group with their matrices.
+
+    Attributes
+    ----------
+    name : of the group, spring or mass
+    cells : nodes (elements, k)
+    directions : the d DOFs of each node that the matrices have, ascending
+    matrices : of size k d
+    rigid : whether an element that nothing deforms is one rigid body with its nodes
+    prestress : geometric stiffness (elements, k d, k d) of given forces; None without any
+    internal : returns internal forces; None for elements that make no geometric stiffness
+    """
+
+    name: str
+    cells: Ints
+    directions: tuple[int, ...]
+    matrices: ElementMatrices
+    rigid: bool = False
+    prestress: Floats | None = None
+    internal: Callable[[], Axial | Stresses] | None = None
+
+    def dofs(self) -> Ints:
+        """Return 6 node + direction of each row of the matrices (elements, k d)."""
+        dofs = 6 * self.cells[:, :, None] + np.array(self.directions)
+        return np.asarray(dofs.reshape(len(dofs), -1))
 
 
 def element_blocks(

@@ -12,8 +12,7 @@ K_q = T^T K T is exact.
 ========  =====================================================================
 symbol    meaning
 ========  =====================================================================
-kept      DOFs that exist and are not held (free and slaves); columns of K
-q         free DOFs: kept and not slaves
+q         free DOFs: they exist, and are neither held nor slaves
 T         (6 nodes, free)
 ========  =====================================================================
 """
@@ -56,16 +55,12 @@ class Dofs:
 
     Attributes
     ----------
-    kept : (nodes, 6) number among the kept DOFs, -1 where there is none
     free : (free, 2): node and direction of each free DOF
     T : CSR (6 nodes, free): all displacements u, row 6 node + direction, from the free ones
-    slave : (kept,) whether the DOF follows others
     """
 
-    kept: Ints
     free: Ints
     T: sparse.csr_array
-    slave: Bools
 
     def name(self, q: int) -> str:
         """Readable name of the free DOF q."""
@@ -242,11 +237,9 @@ def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> D
     )
     refuse(slave[held.ravel()[slave]], "held by a support; put the support on the master")
 
-    free_mask = (exists & ~held).ravel()
-    kept_mask = free_mask.copy()
-    free_mask[slave] = False
-    kept = np.where(kept_mask, np.cumsum(kept_mask) - 1, -1)
-    q = np.flatnonzero(free_mask)
+    free = (exists & ~held).ravel()
+    free[slave] = False
+    q = np.flatnonzero(free)
     # Slaves of slaves: u_s = A u_s + B q is (1 + A + A^2 + ...) B q, where no chain is closed.
     A, B = weight[:, slave], weight[:, q]
     total, step = B, A
@@ -262,4 +255,4 @@ def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> D
     )
     T = sparse.csr_array(rows + place @ total)
     T.sort_indices()
-    return Dofs(kept.reshape(nodes, 6), np.stack(np.divmod(q, 6), 1), T, ~free_mask[kept_mask])
+    return Dofs(np.stack(np.divmod(q, 6), 1), T)

@@ -32,10 +32,10 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.fem.blocks import Block
 from modefront.fem.check import SAME_PLACE
 from modefront.fem.dofs import DIRECTIONS, Followers, rigid_motion
 from modefront.fem.elements.solid import SOLIDS
-from modefront.fem.scatter import Block
 from modefront.fem.section import FemError
 from modefront.linalg.factorisation import factorise
 from modefront.rounding import ACCUMULATED

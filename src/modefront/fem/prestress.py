@@ -13,7 +13,7 @@ symbol    meaning
 ========  ===============================================================
 f, u      forces and displacements (6 nodes,)
 a         acceleration of gravity
-K         kept DOFs, at theta = 1; T their motion by the free ones
+T         all displacements from the free ones q
 ========  ===============================================================
 """
 
@@ -25,17 +25,12 @@ import numpy as np
 from scipy import sparse
 
 from modefront._typing import Bools, Floats
+from modefront.fem.blocks import Block
 from modefront.fem.check import node_list
-from modefront.fem.dofs import DIRECTIONS, Dofs
-from modefront.fem.scatter import Block, Pattern
+from modefront.fem.dofs import DIRECTIONS
 from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Load
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError, factorise
-
-
-def strain(load: Load, name: str) -> float:
-    """Return the free strain of a group under a load."""
-    return load.strains.get(name, 0.0)
 
 
 def load_forces(
@@ -72,8 +67,8 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools, place: str) -> F
     for block in blocks:
         pull = np.tile(np.append(a, np.zeros(3))[list(block.directions)], block.cells.shape[1])
         parts = [part.matrices @ pull for part in block.matrices.mass]
-        if block.internal is not None and strain(load, block.name):
-            parts.append(block.internal().free_forces(strain(load, block.name)))
+        if block.internal is not None and (strain := load.strains.get(block.name, 0.0)):
+            parts.append(block.internal().free_forces(strain))
         for each in parts:
             np.add.at(out, block.dofs(), each)
     if not out.any():
@@ -82,7 +77,7 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools, place: str) -> F
 
 
 def static_state(
-    pattern: Pattern, K: Floats, dofs: Dofs, forces: Sequence[Floats], floating: bool
+    K: sparse.csr_array, T: sparse.csr_array, forces: Sequence[Floats], floating: bool
 ) -> list[Floats]:
     """Return the displacements (6 nodes,) under each of the forces.
 
@@ -93,27 +88,25 @@ def static_state(
     """
     if floating:
         raise FemError("load: expected a structure that is held, found a floating one")
-    factor = _factor(pattern, K, dofs)
-    if factor is None or factor.negative:
+    factor = _stable(K)
+    if factor is None:
         raise FemError("load: expected a structure that is stable without it, found another")
-    return [dofs.T @ factor.solve((dofs.T.T @ f)[:, None])[:, 0] for f in forces]
+    return [T @ factor.solve((T.T @ f)[:, None])[:, 0] for f in forces]
 
 
-def check_stability(pattern: Pattern, K: Floats, dofs: Dofs) -> None:
+def check_stability(K: sparse.csr_array) -> None:
     """Refuse loads under which the structure buckles."""
-    factor = _factor(pattern, K, dofs)
-    if factor is None or factor.negative:
+    if _stable(K) is None:
         raise FemError(
             "load: expected loads and forces below the critical ones, but under them the structure"
             " buckles"
         )
 
 
-def _factor(pattern: Pattern, data: Floats, dofs: Dofs) -> Factorisation | None:
-    """Return the factor of T^T K T; None where it is singular."""
-    T = dofs.T[np.flatnonzero(dofs.kept.ravel() >= 0)]
-    K = sparse.csr_array((data, pattern.indices, pattern.indptr), shape=(len(T.indptr) - 1,) * 2)
+def _stable(K: sparse.csr_array) -> Factorisation | None:
+    """Return the factor of K; None where it is not positive definite."""
     try:
-        return factorise(T.T @ K @ T)
+        factor = factorise(K)
     except SingularMatrixError:
         return None
+    return None if factor.negative else factor

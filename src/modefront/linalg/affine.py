@@ -389,17 +389,27 @@ def sparse_affine(
 
     The pattern is the union of theirs; entries that are zero in all of them are left out.
     """
-    matrices = [scipy.sparse.coo_array(A) for A in terms]
-    row = np.concatenate([A.row for A in matrices]).astype(np.intp)
-    column = np.concatenate([A.col for A in matrices]).astype(np.intp)
-    term = np.repeat(np.arange(len(matrices)), [A.nnz for A in matrices])
-    values = np.concatenate([A.data for A in matrices]).astype(float)
-    nonzero = values != 0
-    keys, position = np.unique((row * size + column)[nonzero], return_inverse=True)
-    entries = values[nonzero], (position, term[nonzero])
-    data = scipy.sparse.csc_array(entries, shape=(keys.size, len(matrices)))
-    indptr = np.searchsorted(keys, np.arange(size + 1) * size)
-    return SparseAffine(indptr.astype(np.int32), (keys % size).astype(np.int32), data, coefficients)
+    matrices = [scipy.sparse.csr_array(A, dtype=float, copy=True) for A in terms]
+    for A in matrices:
+        A.sum_duplicates()
+        A.eliminate_zeros()
+    keys = [_expand(A.indptr) * size + A.indices for A in matrices]
+    union = keys[0]
+    for each in keys[1:]:
+        # Ascending runs are merged, which is far quicker than sorting them.
+        merged = np.sort(np.concatenate([union, each]), kind="stable")
+        union = merged[np.append(True, merged[1:] != merged[:-1])[: merged.size]]
+    data = scipy.sparse.csc_array(
+        (
+            np.concatenate([A.data for A in matrices]),
+            np.concatenate([np.searchsorted(union, each) for each in keys]),
+            np.cumsum([0, *(each.size for each in keys)]),
+        ),
+        shape=(union.size, len(matrices)),
+    )
+    indptr = np.searchsorted(union, np.arange(size + 1) * size)
+    indices = (union % size).astype(np.int32)
+    return SparseAffine(indptr.astype(np.int32), indices, data, coefficients)
 
 
 def _in_a_row(dof: Ints, rows: Floats) -> tuple[slice | Ints, Floats]:

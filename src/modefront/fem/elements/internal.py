@@ -39,7 +39,7 @@ SURFACES = {
 
 @dataclass(frozen=True)
 class Stresses:
-    """Stresses of shells and solids, `modefront.fem.scatter.InternalForces`.
+    """Stresses of shells and solids.
 
     Attributes
     ----------
