@@ -5,8 +5,7 @@ from typing import Any
 
 import pytest
 
-from modefront.residuals.groups import Group
-from modefront.residuals.kinds import KINDS
+from modefront.residuals.groups import KINDS, Group
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,8 @@ equation (1) of Christodoulou et al. (2008, doi:10.1016/j.cma.2008.04.010). Ever
 unit is the same on both.
 
 A kind (`ResidualKind`) says which measured modes it can be formed of, makes the members of groups
-(`Member`) and evaluates the residuals of several members at once (`Stack`). Each kind is one file
-of this folder, named in `modefront.residuals.kinds`.
+(`Member`) and evaluates the residuals of several members at once (`Stack`). Kinds are named in
+`modefront.residuals.groups`.
 """
 
 from __future__ import annotations

@@ -8,10 +8,28 @@ from typing import Literal, get_args
 
 from modefront.data.modal import ModalData
 from modefront.errors import suggestion
+from modefront.families import Family
 from modefront.json_schema import WHOLE, any_of, array, whole_number
 from modefront.options import Requirement, plain
 from modefront.residuals.base import Member, ResidualKind, Scale, Stack
-from modefront.residuals.kinds import KINDS
+from modefront.residuals.frequency import FrequencyKind
+from modefront.residuals.shape import ShapeKind
+
+NEEDED = ("name", "plural", "usable_std", "measured", "has_usable_std", "members", "stack")
+"""What a kind has, see `ResidualKind`."""
+
+KINDS: Family[ResidualKind] = Family(
+    "modefront.residuals",
+    "a kind of residual, with what modefront.residuals.base.ResidualKind has",
+    lambda kind: not isinstance(kind, type) and all(hasattr(kind, name) for name in NEEDED),
+    lambda kind: kind.name,
+    (
+        FrequencyKind(),
+        ShapeKind("shape", "shapes", joint=False),
+        ShapeKind("subspace", "subspaces", joint=True),
+    ),
+)
+"""All kinds, in the order in which their residuals are stacked."""
 
 ModeNumbers = Sequence[int] | Literal["all"]
 """Numbers of measured modes, counted from 1, or all that were measured."""
@@ -27,7 +45,7 @@ MODE_NUMBERS = Requirement(
 class Group:
     """An objective J_i: the sum of the squares of the residuals of its members.
 
-    Each kind of residual (`modefront.residuals.kinds`) is a keyword that names its measured modes:
+    Each kind of residual (`KINDS`) is a keyword that names its measured modes:
     numbers, counted from 1, or ``"all"``. Kinds may be given by position too, in the order of their
     registration: frequencies, then shapes.
 

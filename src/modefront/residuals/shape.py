@@ -1,19 +1,27 @@
-r"""Residuals of mode shapes.
+r"""Residuals of mode shapes, and of the spans of close ones.
 
 For measured mode r, in each of the K data sets in which its shape was measured, with the
 :math:`N_0` components that the sensors measured,
 
-.. math:: r = \frac{\beta \varphi - \hat\varphi}{u \sqrt K}, \qquad
-    \beta = \frac{\psi^T \chi}{\|\chi\|^2}, \qquad
-    \beta' = (\psi^T \chi' - 2 \beta \chi^T \chi') / \|\chi\|^2,
+.. math:: r = X c - \psi, \qquad c = (X^T X)^{-1} X^T \psi, \qquad
+    \psi = \frac{\hat\varphi}{u \sqrt K}, \qquad X = \frac{\Phi}{u \sqrt K},
 
-where :math:`\psi = \hat\varphi / (u \sqrt K)` and :math:`\chi = \varphi / (u \sqrt K)`: the factor
-is the least squares one, since a mode has no scale. The unit u is
-:math:`\|\hat\varphi\| / \sqrt{N_0}`, as in equation (1), or the standard deviation of each
-component. A standard deviation that is 0 or rounding, such as that of the component to which a
-shape was normalised, is replaced by the median of the others in its shape.
+where :math:`\Phi` (components, m) is the shape of the paired mode, m = 1, since a mode has no
+scale, or those of all m modes of a cluster. Shapes of close modes turn into each other with small
+errors of model and data, and those of modes that coincide are any basis of their span, on which r
+does not depend. The unit u is :math:`\|\hat\varphi\| / \sqrt{N_0}`, as in equation (1), or the
+standard deviation of each component. A standard deviation that is 0 or rounding, such as that of
+the component to which a shape was normalised, is replaced by the median of the others in its shape.
 
-With the fit :math:`\pi = \beta \chi` of :math:`\psi`, and :math:`a = \psi^T \psi`, now over a unit
+From :math:`X^T r = 0` (Golub & Pereyra 1973, doi:10.1137/0710036)
+
+.. math:: c' = -(X^T X)^{-1} (X'^T r + X^T X' c), \qquad r' = X' c + X c',
+
+and what the modes give to the second derivatives of :math:`\|r\|^2` beyond those of Gauss and
+Newton, with :math:`\partial \|r\|^2 / \partial X = 2 r c^T` constant, is
+:math:`2 r^T (X'_i c'_j + X'_j c'_i)`.
+
+With the fit :math:`\pi = X c` of :math:`\psi`, and :math:`a = \psi^T \psi`, now over a unit
 that is given (the standard deviations, or 1), the objective of a data set is
 :math:`J = w (a - \pi^T \pi)` with :math:`w = 1` for standard deviations and :math:`w = N_0 / a` for
 equation (1). An error of measurement changes it by
@@ -30,6 +38,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -49,25 +58,6 @@ from modefront.residuals.base import (
     together,
     value_numbers,
 )
-from modefront.residuals.span import fitted
-
-
-@dataclass(frozen=True)
-class MeasuredShape:
-    """A shape as one data set has it.
-
-    Attributes
-    ----------
-    k : data set, counted from 0
-    sensors : (components,) sensors that measured it
-    weight : (components,) factors 1 / (u sqrt K)
-    psi : (components,) measured components times their factors
-    """
-
-    k: int
-    sensors: Ints
-    weight: Floats
-    psi: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,25 +66,29 @@ class _Components:
 
     Attributes
     ----------
-    sets, sensors, weight, psi : (components,) data set, sensor, and what `MeasuredShape` has
     sizes : (shapes,) number of components of each data set that has the shape
-    parts : (shapes,) where these are
+    sets, sensors : (components,) data set and sensor
+    weight : (components,) factors 1 / (u sqrt K)
+    psi : (components,) measured components times their factors
     """
 
-    sets: Ints
     sizes: Ints
-    parts: list[slice]
+    sets: Ints
     sensors: Ints
     weight: Floats
     psi: Floats
+
+    @property
+    def parts(self) -> list[slice]:
+        """Where the components of each shape are."""
+        return _runs(self.sizes)
 
 
 @dataclass(frozen=True, eq=False)
 class ShapeResiduals:
     """Residuals of the shape of the measured mode at position ``mode`` of the data.
 
-    With a ``cluster`` of positions, the shape is fitted by all model modes that belong to these
-    (`modefront.residuals.subspace`).
+    With a ``cluster`` of positions, the shape is fitted by all model modes that belong to these.
     """
 
     data: ModalData
@@ -103,16 +97,11 @@ class ShapeResiduals:
     cluster: tuple[int, ...] = ()
 
     @cached_property
-    def _measured(self) -> Bools:
-        """Which components were measured, shape (sets, sensors)."""
-        return np.isfinite(self.data.shape[:, self.mode])
-
-    @cached_property
     def components(self) -> _Components:
         """All components, those of one data set after those of the other."""
-        rows, sensors = np.nonzero(self._measured)
+        rows, sensors = np.nonzero(np.isfinite(self.data.shape[:, self.mode]))
         sizes = np.unique(rows, return_counts=True)[1]
-        parts = [slice(*each) for each in pairwise([0, *np.cumsum(sizes).tolist()])]
+        parts = _runs(sizes)
         values = self.data.shape[rows, self.mode, sensors]
         if self.scale == "measured":
             squares = np.array([values[part] @ values[part] for part in parts])
@@ -121,21 +110,7 @@ class ShapeResiduals:
             std = self.data.shape_std[rows, self.mode, sensors]
             weight = 1 / joined([without_negligible(std[part]) for part in parts] or [std])
         weight = weight / np.sqrt(sizes.size)
-        return _Components(rows, sizes, parts, sensors, weight, weight * values)
-
-    @cached_property
-    def shapes(self) -> list[MeasuredShape]:
-        """The shape in each data set that has it."""
-        x = self.components
-        return [
-            MeasuredShape(int(x.sets[part.start]), x.sensors[part], x.weight[part], x.psi[part])
-            for part in x.parts
-        ]
-
-    @cached_property
-    def _square(self) -> float:
-        psi = self.components.psi
-        return float(sum(psi[part] @ psi[part] for part in self.components.parts))
+        return _Components(sizes, rows, sensors, weight, weight * values)
 
     @property
     def count(self) -> float:
@@ -158,29 +133,30 @@ class ShapeResiduals:
 
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
-        return float(errors.shape[self.mode] ** 2 * self._square)
+        x = self.components
+        square = sum(x.psi[part] @ x.psi[part] for part in x.parts)
+        return float(errors.shape[self.mode] ** 2 * square)
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield the change of J by one standard deviation of each measured component."""
-        q = pairs.index[list(self.cluster or (self.mode,))]
-        for part in self.shapes:
-            std = self.data.shape_std[part.k, self.mode, part.sensors]
-            relative = self.scale == "measured"
+        x, q = self.components, pairs.index[list(self.cluster or (self.mode,))]
+        relative = self.scale == "measured"
+        for part in x.parts:
+            k, sensors = int(x.sets[part.start]), x.sensors[part]
+            std = self.data.shape_std[k, self.mode, sensors]
             unit = np.ones(std.size) if relative else without_negligible(std)
-            psi = self.data.shape[part.k, self.mode, part.sensors] / unit
-            places = np.ix_(part.sensors, q)
-            fit = fitted(
-                modes.phi[places] / unit[:, None], modes.dphi[places] / unit[:, None, None], psi
-            )
-            projection, dprojection = fit.r + psi, fit.dr
-            w, s, ds = 1.0, 1.0, np.zeros(fit.dr.shape[1])
+            psi, places = self.data.shape[k, self.mode, sensors] / unit, np.ix_(sensors, q)
+            X, dX = modes.phi[places] / unit[:, None], modes.dphi[places] / unit[:, None, None]
+            fit = _fitted(X[None], dX[None], psi[None])
+            projection, dprojection = fit.r[0] + psi, fit.dr[0]
+            w, s, ds = 1.0, 1.0, np.zeros(dX.shape[2])
             if relative:
                 a = psi @ psi
                 w, s = psi.size / a, projection @ projection / a
                 ds = 2 * projection @ dprojection / a
-            step = known_std(std) / len(self.shapes)
+            step = known_std(std) / x.sizes.size
             yield Sensitivity(
-                value_numbers(self.data, part.k, self.mode)[1:][part.sensors],
+                value_numbers(self.data, k, self.mode)[1:][sensors],
                 -2 * w * (projection - s * psi) / unit * step,
                 -2 * w * (dprojection - np.outer(psi, ds)) / unit[:, None] * step[:, None],
             )
@@ -217,7 +193,8 @@ class ShapeStack:
         """Return the sums of squares with each model mode, (measured modes, modes)."""
         out = np.zeros((count, modes.frequency.size))
         for block in self.blocks:
-            np.add.at(out, block.mode[:, 0], block.squares(modes))
+            if block.fitted.shape[1] == 1:  # no pair of modes alone has a residual from a span
+                np.add.at(out, block.fitted[:, 0], block.squares(modes))
         return out
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
@@ -241,11 +218,12 @@ class ShapeBlock:
 
     Attributes
     ----------
-    mode : (shapes, 1) position of the measured mode in the data
-    sensors, weight, psi : (shapes, components) those of each `MeasuredShape`
+    fitted : (shapes, m) positions in the data of the modes by which each is fitted
+    sensors, weight, psi : (shapes, components) of each: its sensors, the factors 1 / (u sqrt K),
+        and the measured components times these
     """
 
-    mode: Ints
+    fitted: Ints
     sensors: Ints
     weight: Floats
     psi: Floats
@@ -259,48 +237,73 @@ class ShapeBlock:
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""
-        chi, _, beta = self._scaled(modes, pairs)
-        return (beta * chi - self.psi).ravel()
+        X = self.weight[:, :, None] * modes.phi[self._places(pairs)]
+        c = _inverse(X) @ self.psi[:, :, None]
+        return ((X @ c)[:, :, 0] - self.psi).ravel()
 
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, (rows, p), which are 0 of a shape that is."""
-        r, dr, *_ = self._slopes(modes, pairs)
-        return r.ravel(), dr
+        fit, _ = self._fit(modes, pairs)
+        return fit.r.ravel(), fit.dr.reshape(fit.r.size, -1)
 
     def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
-        """Return these and what is needed of second derivatives, from chi^T r = 0."""
-        r, dr, beta, dchi, dbeta = self._slopes(modes, pairs)
-        v, own = np.zeros(modes.phi.shape), 2 * _times(r, dchi).T @ dbeta
-        np.add.at(v, (self.sensors, pairs.index[self.mode]), 2 * beta * self.weight * r)
-        return r.ravel(), dr, Curvature(np.zeros(modes.lam.size), v, own + own.T)
+        """Return these and what is needed of second derivatives."""
+        fit, dX = self._fit(modes, pairs)
+        of_dX = (fit.r[:, None] @ dX.reshape(*fit.r.shape, -1)).reshape(-1, dX.shape[3])
+        v, own = np.zeros(modes.phi.shape), 2 * of_dX.T @ fit.dc.reshape(of_dX.shape)
+        np.add.at(v, self._places(pairs), 2 * (self.weight * fit.r)[:, :, None] * fit.c[:, None])
+        curvature = Curvature(np.zeros(modes.lam.size), v, own + own.T)
+        return fit.r.ravel(), fit.dr.reshape(fit.r.size, -1), curvature
 
-    def _slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        """Return r (shapes, components), dr (rows, p), beta (shapes, 1), and dchi and dbeta."""
-        chi, b, beta = self._scaled(modes, pairs)
-        dchi = self.weight[:, :, None] * modes.dphi[self.sensors, pairs.index[self.mode]]
-        slope = _times(self.psi, dchi) - 2 * beta * _times(chi, dchi)
-        dbeta = np.divide(slope, b, out=np.zeros(slope.shape), where=b > 0)
-        dr = chi[:, :, None] * dbeta[:, None] + beta[:, :, None] * dchi
-        return beta * chi - self.psi, dr.reshape(-1, dr.shape[2]), beta, dchi, dbeta
+    def _places(self, pairs: Pairs) -> tuple[Ints, Ints]:
+        """Return sensors and model modes of the entries of X, (shapes, components, m)."""
+        return self.sensors[:, :, None], pairs.index[self.fitted][:, None]
 
-    def _scaled(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Floats]:
-        """Return chi (shapes, components), its squared length b and beta, (shapes, 1)."""
-        chi = self.weight * modes.phi[self.sensors, pairs.index[self.mode]]
-        b = np.vecdot(chi, chi)[:, None]
-        c = np.vecdot(self.psi, chi)[:, None]
-        return chi, b, np.divide(c, b, out=np.zeros(b.shape), where=b > 0)
+    def _fit(self, modes: Modes, pairs: Pairs) -> tuple[_Fit, Floats]:
+        """Return the fit, and dX (shapes, components, m, p)."""
+        places, weight = self._places(pairs), self.weight[:, :, None]
+        dX = weight[..., None] * modes.dphi[places]
+        return _fitted(weight * modes.phi[places], dX, self.psi), dX
 
 
-def _times(chi: Floats, dchi: Floats) -> Floats:
-    """Return each row of chi (shapes, components) times dchi (shapes, components, p)."""
-    return np.asarray((chi[:, None] @ dchi)[:, 0])
+class _Fit(NamedTuple):
+    """Fits X c of shapes: c (shapes, m), r = X c - psi (shapes, components), and by parameters."""
+
+    c: Floats
+    dc: Floats
+    r: Floats
+    dr: Floats
 
 
+def _inverse(X: Floats) -> Floats:
+    """Return the pseudoinverse (shapes, m, components) of X (shapes, components, m)."""
+    if X.shape[2] > 1:
+        return np.asarray(np.linalg.pinv(X), dtype=float)
+    b = np.vecdot(X[:, :, 0], X[:, :, 0])[:, None, None]
+    return np.divide(X, b, out=np.zeros(X.shape), where=b > 0).transpose(0, 2, 1)
+
+
+def _fitted(X: Floats, dX: Floats, psi: Floats) -> _Fit:
+    """Return the fits of psi (shapes, components) by X (shapes, components, m)."""
+    inverse, (n, rows, m, p) = _inverse(X), dX.shape
+    c = inverse @ psi[:, :, None]
+    r = X @ c - psi[:, :, None]
+    along = (c.transpose(0, 2, 1)[:, None] @ dX)[:, :, 0]
+    turned = (r.transpose(0, 2, 1) @ dX.reshape(n, rows, -1)).reshape(n, m, p)
+    dc = -inverse @ (along + inverse.transpose(0, 2, 1) @ turned)
+    return _Fit(c[:, :, 0], dc, r[:, :, 0], along + X @ dc)
+
+
+@dataclass(frozen=True)
 class ShapeKind:
-    """Mode shapes; see `modefront.residuals.base.ResidualKind`."""
+    """Mode shapes, or spans of close ones; see `modefront.residuals.base.ResidualKind`.
 
-    name = "shape"
-    plural = "shapes"
+    The members of a group under a kind that is ``joint`` are one cluster of measured modes.
+    """
+
+    name: str
+    plural: str
+    joint: bool
     usable_std = "standard deviations of all measured components, one of them above 0"
 
     def measured(self, data: ModalData) -> Bools:
@@ -319,13 +322,17 @@ class ShapeKind:
 
     def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
         """Return the residuals of the shape of each mode."""
-        return [ShapeResiduals(data, r, scale) for r in modes]
+        return [ShapeResiduals(data, r, scale, tuple(modes) if self.joint else ()) for r in modes]
 
     def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> ShapeStack:
         """Return the residuals of the shapes of some modes."""
         parts = [ShapeResiduals(data, r, scale).components for r in modes]
         sizes = np.concatenate([part.sizes for part in parts])
-        numbers = np.repeat(modes, [part.sizes.size for part in parts])[:, None]
+        fitted = np.repeat(
+            [modes] * len(modes) if self.joint else np.array(modes)[:, None],
+            [part.sizes.size for part in parts],
+            axis=0,
+        )
         columns = [
             np.concatenate([getattr(part, name) for part in parts])
             for name in ("sensors", "weight", "psi")
@@ -335,7 +342,7 @@ class ShapeKind:
         return ShapeStack(
             tuple(
                 ShapeBlock(
-                    numbers[first:last],
+                    fitted[first:last],
                     *(x[ends[first] : ends[last]].reshape(last - first, -1) for x in columns),
                 )
                 for first, last in pairwise([0, *changes.tolist(), sizes.size])
@@ -347,3 +354,7 @@ def without_negligible(std: Floats) -> Floats:
     """Return standard deviations with negligible ones replaced by the median of the others."""
     real = std > NEGLIGIBLE * std.max()
     return np.where(real, std, np.median(std[real]))
+
+
+def _runs(sizes: Ints) -> list[slice]:
+    return [slice(*each) for each in pairwise([0, *np.cumsum(sizes).tolist()])]

@@ -8,7 +8,7 @@ from modefront.errors import wrong
 from modefront.families import Family
 from modefront.front.methods import METHODS
 from modefront.predictions.registry import CLASSES
-from modefront.residuals.kinds import KINDS as RESIDUALS
+from modefront.residuals.groups import KINDS as RESIDUALS
 from modefront.study.kinds import KINDS as MODELS
 from modefront.study.measured import READERS
 from modefront.text import NAME, clean

@@ -25,8 +25,8 @@ from modefront.outputs import write_text
 from modefront.pairing.match import Pairing
 from modefront.predictions import CLASSES
 from modefront.predictions.ranges import SLACK
+from modefront.residuals.groups import KINDS as RESIDUALS
 from modefront.residuals.groups import MODE_NUMBERS
-from modefront.residuals.kinds import KINDS as RESIDUALS
 from modefront.study.definition import Study
 from modefront.study.kinds import KINDS
 from modefront.study.measured import FILE, PLACE, READERS

@@ -21,8 +21,8 @@ from modefront.options import each_once, one_of, options, text
 from modefront.predictions import CLASSES, Prediction
 from modefront.predictions.ranges import SLACK
 from modefront.residuals.base import Scale
+from modefront.residuals.groups import KINDS as RESIDUALS
 from modefront.residuals.groups import MODE_NUMBERS, Group, faults
-from modefront.residuals.kinds import KINDS as RESIDUALS
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import NAME, SEED
 from modefront.study.kinds import KINDS
