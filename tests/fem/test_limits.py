@@ -8,7 +8,7 @@ from structures import STEEL
 
 from modefront import fem
 from modefront._typing import Floats, Ints
-from modefront.fem.limits import limits_of
+from modefront.fem.check import limits_of
 
 PLATE, QUADS = fem.grids.plate(1.0, 1.0, 6, 6)
 BOX, BRICKS = fem.grids.box((1.0, 1.0, 1.0), (3, 3, 3))

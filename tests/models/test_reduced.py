@@ -365,7 +365,7 @@ def test_a_certificate_is_an_upper_bound_and_infinite_where_nothing_is_proved(
     def singular(*_: object) -> None:
         raise SingularMatrixError("pivot of zero")
 
-    monkeypatch.setattr("modefront.linalg.pencil.Pencil.factor", singular)
+    monkeypatch.setattr("modefront.linalg.factorisation.Pencil.factor", singular)
     (unknown,) = model.certifier().certify([(theta, requested)])
     assert np.isinf(unknown.eigenvalue).all(), "no number is better than a wrong one"
 

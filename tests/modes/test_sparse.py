@@ -18,7 +18,7 @@ from modefront import fem
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
-from modefront.linalg.pencil import Pencil, pencil
+from modefront.linalg.factorisation import Pencil, pencil
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.mesh import mesh_model
 from modefront.modes import dense, derivatives, sparse

@@ -25,10 +25,19 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 from scipy.linalg import block_diag
+from scipy.spatial import KDTree
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.blocks import Block, element_blocks, mass_blocks, spring_blocks
-from modefront.fem.check import axes_of, check_names, check_parameters, check_points, node_list
+from modefront.fem.check import (
+    SAME_PLACE,
+    axes_of,
+    check_names,
+    check_parameters,
+    check_points,
+    node_list,
+    unit_vector,
+)
 from modefront.fem.dofs import (
     Dofs,
     Followers,
@@ -42,8 +51,7 @@ from modefront.fem.elements.common import Part
 from modefront.fem.mechanism import check_mechanisms
 from modefront.fem.prestress import check_stability, load_forces, static_state
 from modefront.fem.section import Checks, FemError
-from modefront.fem.sensors import SensorPlaces, selection_matrix, sensor_places
-from modefront.fem.structure import Coupling, Link, Parameter, Structure, Support
+from modefront.fem.structure import Coupling, Link, Parameter, Sensor, Structure, Support
 from modefront.linalg.affine import Monomials, SparseAffine, sparse_affine
 
 
@@ -244,3 +252,89 @@ class _Terms:
         # Links sum the two halves in different orders: make them equal to the last digit.
         terms = [(self.terms[e] + self.terms[e].T) / 2 for e in order]
         return sparse_affine(terms, Monomials(exponents), self.T.shape[1])
+
+
+@dataclass(frozen=True)
+class SensorPlaces:
+    """Places and directions of sensors.
+
+    Attributes
+    ----------
+    nodes : (sensors,) nodes
+    directions : (sensors, 6) weights of x, y, z, rx, ry, rz
+    """
+
+    nodes: Ints
+    directions: Floats
+
+
+def sensor_places(
+    X: Floats, sensors: Sequence[Sensor], used: Ints, checks: Checks
+) -> SensorPlaces | None:
+    """Return nodes and directions of sensors; coordinates are looked for among the nodes `used`.
+
+    What is wrong with them is noted in ``checks``; None where something is.
+    """
+    tree = KDTree(X[used]) if used.size else None
+    diagonal = float(np.linalg.norm(np.ptp(X[used], axis=0))) if used.size else 0.0
+    rows = np.zeros((len(sensors), 6))
+    nodes = np.zeros(len(sensors), dtype=np.int64)
+    before = len(checks.messages)
+    for n, sensor in enumerate(sensors):
+        place = f"sensor {sensor.name!r}"
+        vector = checks.attempt(unit_vector, sensor.direction, place)
+        node = checks.attempt(_node, X, sensor, place, used, tree, diagonal)
+        if vector is not None and node is not None:
+            rows[n], nodes[n] = vector, node
+    return SensorPlaces(nodes, rows) if len(checks.messages) == before else None
+
+
+def selection_matrix(
+    sensors: Sequence[Sensor], places: SensorPlaces, dofs: Dofs
+) -> sparse.csr_array:
+    """Return L, CSR (sensors, free DOFs), with y = L q.
+
+    A sensor at node n along the unit vector a measures a . u_n = a . (T q)_n: one on a slave of a
+    rigid link measures what its master moves.
+
+    Raises
+    ------
+    FemError
+        With all sensors that measure what cannot move.
+    """
+    count, columns = len(sensors), 6 * places.nodes[:, None] + np.arange(6)
+    chosen = sparse.csr_array(
+        (places.directions.ravel(), (np.repeat(np.arange(count), 6), columns.ravel())),
+        shape=(count, dofs.T.shape[0]),
+    )
+    chosen.eliminate_zeros()
+    selection = (chosen @ dofs.T).tocsr()
+    still = [
+        f"sensor {sensors[n].name!r}: expected a direction that can move, but at node"
+        f" {places.nodes[n]} direction {sensors[n].direction!r} is held or has no stiffness"
+        for n in np.flatnonzero(abs(selection).sum(1) == 0).tolist()
+    ]
+    if still:
+        raise FemError(*still)
+    return selection
+
+
+def _node(
+    X: Floats, sensor: Sensor, place: str, used: Ints, tree: KDTree | None, diagonal: float
+) -> int:
+    if isinstance(sensor.at, int | np.integer):
+        return int(node_list(sensor.at, len(X), place)[0])
+    point = np.asarray(sensor.at, dtype=float)
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise FemError(f"{place}: expected a node or coordinates (3,), found {sensor.at!r}")
+    if tree is None:
+        raise FemError(f"{place}: expected a node of an element, found none at all")
+    distance, nearest = tree.query(point)
+    node = int(used[nearest])
+    tolerance = SAME_PLACE * diagonal if sensor.tolerance is None else sensor.tolerance
+    if distance > tolerance:
+        raise FemError(
+            f"{place}: no node within {tolerance:.3g} of {tuple(point.tolist())}; the nearest is"
+            f" node {node} at {tuple(X[node].tolist())}, {distance:.3g} away"
+        )
+    return node

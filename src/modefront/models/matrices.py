@@ -16,8 +16,7 @@ from modefront._typing import Floats
 from modefront.brief import as_html, brief_model
 from modefront.errors import Fault, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
-from modefront.linalg.factorisation import Factorisation, Symbolic
-from modefront.linalg.pencil import Pencil, pencil
+from modefront.linalg.factorisation import Factorisation, Pencil, Symbolic, pencil
 from modefront.linalg.products import gram
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
 from modefront.models.geometry import Geometry

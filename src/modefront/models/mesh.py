@@ -10,8 +10,7 @@ import scipy.sparse
 
 from modefront import fem
 from modefront.errors import wrong
-from modefront.fem.check import check_points
-from modefront.fem.limits import limits_of
+from modefront.fem.check import check_points, limits_of
 from modefront.linalg.affine import Monomials, SparseAffine
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import MatrixModel, affine_model

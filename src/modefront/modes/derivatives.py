@@ -48,8 +48,7 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
-from modefront.linalg.factorisation import Factorisation
-from modefront.linalg.pencil import Pencil
+from modefront.linalg.factorisation import Factorisation, Pencil
 from modefront.linalg.products import combine, gram, times
 from modefront.modes.second_derivatives import Solved
 from modefront.rounding import TINY

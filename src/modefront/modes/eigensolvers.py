@@ -24,7 +24,7 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, SparseAffine
-from modefront.linalg.pencil import Pencil
+from modefront.linalg.factorisation import Pencil
 from modefront.modes import dense, sparse
 from modefront.modes.result import Modes
 

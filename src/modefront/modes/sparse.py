@@ -37,8 +37,7 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
-from modefront.linalg.factorisation import Factorisation, SingularMatrixError
-from modefront.linalg.pencil import Pencil
+from modefront.linalg.factorisation import Factorisation, Pencil, SingularMatrixError
 from modefront.linalg.products import combine, gram, times
 from modefront.modes import dense
 from modefront.modes import derivatives as exact

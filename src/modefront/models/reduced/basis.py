@@ -30,7 +30,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.linalg.affine import DenseAffine
-from modefront.linalg.pencil import Pencil
+from modefront.linalg.factorisation import Pencil
 from modefront.linalg.products import combine, combine_all, gram
 from modefront.modes.dense import Decomposition, lowest
 from modefront.modes.tridiagonal import LowestModes

@@ -39,8 +39,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
-from modefront.linalg.factorisation import SingularMatrixError
-from modefront.linalg.pencil import Pencil
+from modefront.linalg.factorisation import Pencil, SingularMatrixError
 from modefront.linalg.products import combine, gram, times
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.basis import Basis

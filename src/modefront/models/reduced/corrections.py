@@ -32,8 +32,7 @@ from typing import TypeAlias
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.linalg.factorisation import Factorisation
-from modefront.linalg.pencil import Pencil
+from modefront.linalg.factorisation import Factorisation, Pencil
 from modefront.models.reduced.basis import Basis, extended, residuals
 from modefront.modes import dense
 
