@@ -11,7 +11,7 @@ from scipy.sparse.linalg import eigsh
 from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
-from modefront.fem.elements.common import ElementMatrices, elasticity
+from modefront.fem.elements.common import ByPower, ElementMatrices, elasticity
 from modefront.fem.elements.shapes import CUBE_EDGES, TETRAHEDRON_EDGES, WEDGE_EDGES, Edges
 from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import solid
@@ -125,9 +125,9 @@ ELEMENTS: dict[str, tuple[Floats, int, Callable[[Floats], ElementMatrices]]] = {
 }
 
 
-def total(parts: tuple[fem.elements.common.Part, ...]) -> Floats:
+def total(parts: ByPower) -> Floats:
     """Sum of the parts of the first element."""
-    return np.asarray(sum(part.matrices[0] for part in parts))
+    return np.asarray(sum(matrices[0] for matrices in parts.values()))
 
 
 def boundary(X: Floats, dims: tuple[int, ...]) -> Ints:

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from modefront.fem import grids as grids
     from modefront.fem.assembly import StructureMatrices as StructureMatrices
     from modefront.fem.assembly import assemble as assemble
-    from modefront.fem.dofs import DIRECTIONS as DIRECTIONS
     from modefront.fem.dofs import Dofs as Dofs
     from modefront.fem.mesh import Mesh as Mesh
     from modefront.fem.mesh import read_mesh as read_mesh
@@ -41,6 +40,7 @@ if TYPE_CHECKING:
     from modefront.fem.section import rectangle as rectangle
     from modefront.fem.section import tube as tube
     from modefront.fem.structure import ALL as ALL
+    from modefront.fem.structure import DIRECTIONS as DIRECTIONS
     from modefront.fem.structure import Beams as Beams
     from modefront.fem.structure import Coupling as Coupling
     from modefront.fem.structure import Direction as Direction

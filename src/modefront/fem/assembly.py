@@ -24,34 +24,17 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import block_diag
 from scipy.spatial import KDTree
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.fem.blocks import Block, element_blocks, mass_blocks, spring_blocks
-from modefront.fem.check import (
-    SAME_PLACE,
-    axes_of,
-    check_names,
-    check_parameters,
-    check_points,
-    node_list,
-    unit_vector,
-)
-from modefront.fem.dofs import (
-    Dofs,
-    Followers,
-    direction_indices,
-    hold,
-    mean_motion,
-    number_dofs,
-    rigid_link,
-)
-from modefront.fem.elements.common import Part
+from modefront.fem.blocks import Block, blocks_of
+from modefront.fem.check import SAME_PLACE, check_names, check_points, node_list, unit_vector
+from modefront.fem.dofs import Dofs, Followers, following_rows, hold, number_dofs
+from modefront.fem.elements.common import ByPower
 from modefront.fem.mechanism import check_mechanisms
 from modefront.fem.prestress import check_stability, load_forces, static_state
 from modefront.fem.section import Checks, FemError
-from modefront.fem.structure import Coupling, Link, Parameter, Sensor, Structure, Support
+from modefront.fem.structure import Parameter, Sensor, Structure
 from modefront.linalg.affine import Monomials, SparseAffine, sparse_affine
 
 
@@ -95,16 +78,11 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     """
     X, checks = check_points(structure.nodes), Checks()
     checks.attempt(check_names, structure)
-    checks.attempt(check_parameters, structure)
-    blocks = [
-        *element_blocks(X, structure.groups, structure.varied_thickness, checks),
-        *spring_blocks(X, structure.springs, checks),
-        *mass_blocks(X, structure.masses, checks),
-    ]
-    following = _following(X, structure, checks)
+    blocks = blocks_of(X, structure, checks)
+    following = following_rows(X, structure, checks)
     exists = _existing(X, blocks, following)
     held = np.zeros_like(exists)
-    following += _hold(X, structure, held, exists, checks)
+    following += hold(X, structure.supports, held, exists, checks)
     places = sensor_places(X, structure.sensors, np.flatnonzero(exists.any(1)), checks)
     forces = load_forces(structure.loads, blocks, exists, checks)
     dofs = checks.attempt(number_dofs, exists, held, following)
@@ -121,7 +99,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
         K.add(block, block.name, block.matrices.stiffness, ("E", "spring"))
         M.add(block, block.name, block.matrices.mass, ("density", "mass"))
         if block.prestress is not None:
-            K.add(block, block.name, (Part(0, block.prestress),), ("prestress",))
+            K.add(block, block.name, {0: block.prestress}, ("prestress",))
     if forces:
         for load, u in zip(
             structure.loads, static_state(K.total(), dofs.T, forces, floating), strict=True
@@ -130,7 +108,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
                 if block.internal is not None:
                     strain = load.strains.get(block.name, 0.0)
                     made = block.internal().stiffness(u[block.dofs()], strain)
-                    K.add(block, load.name, (Part(0, made),), ("prestress",))
+                    K.add(block, load.name, {0: made}, ("prestress",))
     if not floating and (forces or any(block.prestress is not None for block in blocks)):
         check_stability(K.total())
     return StructureMatrices(
@@ -144,63 +122,11 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     )
 
 
-def _following(X: Floats, structure: Structure, checks: Checks) -> list[Followers]:
-    """Return the rows of links and couplings in which nothing is wrong."""
-    rows = [
-        *(checks.attempt(_link, X, link, f"link {n}") for n, link in enumerate(structure.links)),
-        *(
-            checks.attempt(_coupling, X, coupling, f"coupling {n}")
-            for n, coupling in enumerate(structure.couplings)
-        ),
-    ]
-    return [row for row in rows if row is not None]
-
-
-def _link(X: Floats, link: Link, place: str) -> Followers:
-    master = node_list(link.master, len(X), place)
-    slaves = node_list(link.slaves, len(X), place)
-    slaves = slaves[slaves != master[0]]
-    return rigid_link(X, master[0], slaves, direction_indices(link.directions, place))
-
-
-def _coupling(X: Floats, coupling: Coupling, place: str) -> Followers:
-    node = node_list(coupling.node, len(X), place)[0]
-    of = node_list(coupling.of, len(X), place)
-    weights = np.asarray(coupling.weights, dtype=float)
-    if weights.shape not in ((), of.shape) or not (weights > 0).all() or node in of:
-        raise FemError(
-            f"{place}: expected other nodes than {node}, with a weight above 0 for each or for all,"
-            f" found nodes {of.tolist()} and weights {weights.tolist()}"
-        )
-    directions = direction_indices(coupling.directions, place)
-    return mean_motion(X, node, of, np.broadcast_to(weights, of.shape), directions, place)
-
-
-def _hold(
-    X: Floats, structure: Structure, held: Bools, exists: Bools, checks: Checks
-) -> list[Followers]:
-    """Hold what supports hold; return what follows where they are not along global axes."""
-    skew: list[tuple[Ints, Floats]] = []
-
-    def support(each: Support, place: str) -> None:
-        nodes = node_list(each.nodes, len(X), place)
-        directions = direction_indices(each.directions, place)
-        R = axes_of(each.axes, place)
-        if each.axes is None:
-            held[nodes[:, None], directions] = True
-        else:
-            skew.append((nodes, block_diag(R, R)[directions]))
-
-    for n, each in enumerate(structure.supports):
-        checks.attempt(support, each, f"support {n}")
-    return hold(held, exists, skew)
-
-
 def _existing(X: Floats, blocks: list[Block], following: list[Followers]) -> Bools:
     """Return the DOFs (nodes, 6) that anything gives stiffness or mass, or that links use."""
     exists = np.zeros((len(X), 6), dtype=bool)
     for block in blocks:
-        parts = [part.matrices for part in (*block.matrices.stiffness, *block.matrices.mass)]
+        parts = [*block.matrices.stiffness.values(), *block.matrices.mass.values()]
         if block.prestress is not None:
             parts.append(block.prestress)
         used = np.any([np.diagonal(part, axis1=1, axis2=2) != 0 for part in parts], axis=0)
@@ -218,22 +144,22 @@ class _Terms:
         self.T, self.parameters = T, parameters
         self.terms: dict[tuple[int, ...], sparse.csr_array] = {}
 
-    def add(self, block: Block, name: str, parts: Sequence[Part], linear: Sequence[str]) -> None:
+    def add(self, block: Block, name: str, parts: ByPower, linear: Sequence[str]) -> None:
         """Add parts of a block by the parameters of a name; `linear` ones are plain factors.
 
         T^T A T is summed element by element, in the same order on either side of the diagonal.
         """
         moved = self.T[block.dofs().ravel()]
-        for part in parts:
+        for power, matrices in parts.items():
             exponents = tuple(
-                (1 if p.quantity in linear else part.power if p.quantity == "thickness" else 0)
+                (1 if p.quantity in linear else power if p.quantity == "thickness" else 0)
                 * (name in p.of)
                 for p in self.parameters
             )
-            count, size = part.matrices.shape[:2]
+            count, size = matrices.shape[:2]
             columns = np.repeat(np.arange(count * size).reshape(count, size), size, axis=0)
             each = sparse.csr_array(
-                (part.matrices.ravel(), columns.ravel(), np.arange(count * size + 1) * size)
+                (matrices.ravel(), columns.ravel(), np.arange(count * size + 1) * size)
             )
             term = moved.T @ (each @ moved)
             known = self.terms.get(exponents)

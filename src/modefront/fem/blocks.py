@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence, Set
+from collections.abc import Callable, Set
 from dataclasses import dataclass
 from functools import partial
 
@@ -17,20 +17,26 @@ from modefront.fem.check import (
     cell_array,
     check_positive,
     check_sizes,
+    direction_indices,
     node_list,
     shell_sizes,
     solid_sizes,
     unit_vector,
 )
-from modefront.fem.dofs import direction_indices
 from modefront.fem.elements.beam import Axial, beam, truss
-from modefront.fem.elements.common import ElementMatrices, attachment, elasticity, ply
+from modefront.fem.elements.common import (
+    ElementMatrices,
+    attachment,
+    cross_matrix,
+    elasticity,
+    ply,
+    symmetric,
+)
 from modefront.fem.elements.internal import Stresses, centre_axes, shell_stresses, solid_stresses
-from modefront.fem.elements.point import lumped_mass, spring
 from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import SOLIDS, solid
 from modefront.fem.section import Checks, FemError, Material
-from modefront.fem.structure import Beams, Group, Mass, Shells, Solids, Spring, Trusses
+from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring, Structure, Trusses
 from modefront.rounding import TINY
 
 SYMMETRIC = 1e-9
@@ -70,29 +76,26 @@ class Block:
         return np.asarray(dofs.reshape(len(dofs), -1))
 
 
-def element_blocks(
-    X: Floats, groups: Sequence[Group], varied: Set[str], checks: Checks
-) -> list[Block]:
-    """One block for each group of elements in which nothing is wrong.
-
-    ``varied`` has the groups whose thickness is a parameter.
-    """
-    shells = [each for each in groups if isinstance(each, Shells)]
+def blocks_of(X: Floats, structure: Structure, checks: Checks) -> list[Block]:
+    """Return a block for each group, and set of springs or masses, in which nothing is wrong."""
+    shells = [each for each in structure.groups if isinstance(each, Shells)]
     cells = [checks.attempt(_shell_cells, X, each) for each in shells]
     sound = [each for each in cells if each is not None]
     shared = iter(zip(directors(X, sound), narrowness(X, sound), strict=True) if sound else ())
     blocks: list[Block | None] = [
-        checks.attempt(_shells, X, group, each, *next(shared), group.name in varied)
+        checks.attempt(_shells, X, group, each, *next(shared), structure.varied_thickness)
         for group, each in zip(shells, cells, strict=True)
         if each is not None
     ]
-    for group in groups:
+    for group in structure.groups:
         if isinstance(group, Beams):
             blocks.append(checks.attempt(_beams, X, group))
         elif isinstance(group, Trusses):
             blocks.append(checks.attempt(_trusses, X, group))
         elif isinstance(group, Solids):
             blocks.append(checks.attempt(_solids, X, group))
+    blocks += [checks.attempt(_springs, X, each) for each in structure.springs]
+    blocks += [checks.attempt(_masses, X, each) for each in structure.masses]
     return [block for block in blocks if block is not None]
 
 
@@ -168,11 +171,11 @@ def _shell_cells(X: Floats, group: Shells) -> Ints:
 
 # 6 arguments: those of a group, and what its elements share with others.
 def _shells(
-    X: Floats, group: Shells, cells: Ints, d: Floats, narrow: Floats, varied: bool
+    X: Floats, group: Shells, cells: Ints, d: Floats, narrow: Floats, varied: Set[str]
 ) -> Block:
     x, r, t = X[cells], group.offset * d, group.thickness
     m = _grain(x, group)
-    made = shell(x, d, narrow, m, group.material, t, group.offset, varied)
+    made = shell(x, d, narrow, m, group.material, t, group.offset, group.name in varied)
     internal = partial(shell_stresses, x, r, m, ply(group.material), t)
     return Block(group.name, cells, SIX, made, rigid=True, internal=internal)
 
@@ -210,13 +213,13 @@ def _solids(X: Floats, group: Solids) -> Block:
     return Block(group.name, cells, TRANSLATIONS, made, rigid=True, internal=internal)
 
 
-def spring_blocks(X: Floats, springs: Sequence[Spring], checks: Checks) -> list[Block]:
-    """One block for each named set of springs in which nothing is wrong."""
-    blocks = (checks.attempt(_springs, X, s, f"spring {s.name!r}") for s in springs)
-    return [block for block in blocks if block is not None]
+def _springs(X: Floats, member: Spring) -> Block:
+    """Return springs of stiffness k that store 1/2 k (s q)^2: K = sum k s^T s.
 
-
-def _springs(X: Floats, member: Spring, place: str) -> Block:
+    With a unit vector a on displacements or rotations of the nodes, s is (a, -a), or (a) to the
+    ground.
+    """
+    place = f"spring {member.name!r}"
     nodes = node_list(member.nodes, len(X), place)[:, None]
     if member.to is not None:
         to = node_list(member.to, len(X), place)
@@ -240,7 +243,8 @@ def _springs(X: Floats, member: Spring, place: str) -> Block:
         check_positive(k[0], "stiffness", place)
         axis = _spring_axis(X, member, nodes, gap, place)
         rows = np.concatenate([axis, -axis][: nodes.shape[1]], 1)[:, None]
-    return Block(member.name, nodes, SIX, spring(rows, k))
+    K = symmetric(np.swapaxes(rows, 1, 2) @ (k[:, None] * rows))
+    return Block(member.name, nodes, SIX, ElementMatrices({0: K}, {}))
 
 
 def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats, place: str) -> Floats:
@@ -265,13 +269,12 @@ def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats, place: str
     return axis
 
 
-def mass_blocks(X: Floats, masses: Sequence[Mass], checks: Checks) -> list[Block]:
-    """One block for each named set of lumped masses in which nothing is wrong."""
-    blocks = (checks.attempt(_masses, X, m, f"mass {m.name!r}") for m in masses)
-    return [block for block in blocks if block is not None]
+def _masses(X: Floats, member: Mass) -> Block:
+    """Return masses m of inertia I about their centres, at offset c from the nodes.
 
-
-def _masses(X: Floats, member: Mass, place: str) -> Block:
+    Their energy is 1/2 m |u + omega x c|^2 + 1/2 omega^T I omega, with an m for each direction.
+    """
+    place = f"mass {member.name!r}"
     nodes = node_list(member.nodes, len(X), place)[:, None]
     inertia, c = np.asarray(member.inertia, dtype=float), np.asarray(member.offset, dtype=float)
     m = np.asarray(member.mass, dtype=float)
@@ -284,14 +287,18 @@ def _masses(X: Floats, member: Mass, place: str) -> Block:
             f"{place}: expected mass () or (3,), inertia (3,) or (3, 3) and offset (3,), found"
             f" {m.shape}, {inertia.shape} and {c.shape}"
         )
-    symmetric = np.allclose(inertia, inertia.T, rtol=SYMMETRIC, atol=0)
+    even = np.allclose(inertia, inertia.T, rtol=SYMMETRIC, atol=0)
     if (
         not (m >= 0).all()
-        or not symmetric
+        or not even
         or np.linalg.eigvalsh(inertia)[0] < -SYMMETRIC * inertia.max()
     ):
         raise FemError(
             f"{place}: expected mass >= 0 and inertia symmetric and not negative, found"
             f" {member.mass!r} and {inertia.tolist()}"
         )
-    return Block(member.name, nodes, SIX, lumped_mass(m, inertia, c, len(nodes)))
+    centre = np.concatenate([np.eye(3), -cross_matrix(c)], 1)
+    M = centre.T @ (m[:, None] * centre)
+    M[3:, 3:] += inertia
+    matrices = ElementMatrices({}, {0: np.tile(symmetric(M), (len(nodes), 1, 1))})
+    return Block(member.name, nodes, SIX, matrices)

@@ -7,23 +7,23 @@ on an engineer should not trust a mesh; ``benchmarks/elements.py`` measures the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Sequence
 from difflib import get_close_matches
 
 import numpy as np
 import numpy.typing as npt
 
 from modefront._typing import Floats, Ints
-from modefront.fem.dofs import direction_indices
 from modefront.fem.elements.shapes import jacobian
 from modefront.fem.elements.shell import FOLD, corner_normals
 from modefront.fem.elements.solid import SOLIDS
-from modefront.fem.section import Checks, FemError
+from modefront.fem.section import FemError
 from modefront.fem.structure import (
+    DIRECTIONS,
     Axes,
     Beams,
     Direction,
-    Parameter,
     Shells,
     Solids,
     Structure,
@@ -82,6 +82,16 @@ def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int, place: 
         )
     check_range(array, count, place)
     return array.astype(np.int64)
+
+
+def direction_indices(directions: Sequence[str], place: str) -> list[int]:
+    """Columns of `directions`, of which there is one at least, in (x, y, z, rx, ry, rz)."""
+    for name in directions:
+        if name not in DIRECTIONS:
+            raise FemError(f"{place}: direction must be one of {DIRECTIONS}, found {name!r}")
+    if not directions:
+        raise FemError(f"{place}: no direction is given, expected some of {DIRECTIONS}")
+    return [DIRECTIONS.index(name) for name in directions]
 
 
 def unit_vector(direction: Direction, place: str) -> Floats:
@@ -156,77 +166,53 @@ def solid_sizes(X: Floats) -> Floats:
 
 
 def check_names(structure: Structure) -> None:
-    """Check that names of springs, masses, sensors and parameters are used once."""
-    kinds = {
-        "group": {g.name for g in structure.groups},
-        "spring": [s.name for s in structure.springs],
-        "mass": [m.name for m in structure.masses],
-        "load": [x.name for x in structure.loads],
-    }
-    members = [name for names in kinds.values() for name in names]
-    checks = Checks()
-    checks.attempt(_check_unique, members, "member")
-    checks.attempt(_check_unique, [s.name for s in structure.sensors], "sensor")
-    checks.attempt(_check_unique, [p.name for p in structure.parameters], "parameter")
-    for name in {g.name for g in structure.groups}:
-        checks.attempt(_check_kind, name, structure)
-    checks.close()
+    """Check that names are used once, and that parameters scale what the named members have.
 
-
-def _check_kind(name: str, structure: Structure) -> None:
-    classes = {type(g).__name__ for g in structure.groups if g.name == name}
-    if len(classes) > 1:
-        raise FemError(f"group {name!r}: expected one kind, found {sorted(classes)}")
-
-
-def _check_unique(names: Iterable[str], what: str) -> None:
-    seen: set[str] = set()
-    for name in names:
-        if name in seen:
-            raise FemError(f"{what} {name!r}: expected a name used once, found it twice")
-        seen.add(name)
-
-
-def check_parameters(structure: Structure) -> None:
-    """Every parameter scales something that the named members have."""
-    elements = {g.name for g in structure.groups}
+    Groups of one kind may share a name.
+    """
     has: dict[str, set[str]] = {
-        "E": elements,
-        "density": elements,
+        "E": {g.name for g in structure.groups},
+        "density": {g.name for g in structure.groups},
         "thickness": {g.name for g in structure.groups if isinstance(g, Shells)},
         "spring": {s.name for s in structure.springs},
         "mass": {m.name for m in structure.masses},
         "prestress": {x.name for x in structure.loads}
         | {g.name for g in structure.groups if isinstance(g, Beams | Trusses) and g.force},
     }
-    checks = Checks()
+    members = [s.name for s in structure.springs] + [m.name for m in structure.masses]
+    wrong = []
+    for what, names in (
+        ("member", [*has["E"], *members, *(x.name for x in structure.loads)]),
+        ("sensor", [s.name for s in structure.sensors]),
+        ("parameter", [p.name for p in structure.parameters]),
+    ):
+        wrong += [
+            f"{what} {name!r}: expected a name used once, found it twice"
+            for name, count in Counter(names).items()
+            if count > 1
+        ]
+    for name in sorted(has["E"]):
+        classes = sorted({type(g).__name__ for g in structure.groups if g.name == name})
+        if len(classes) > 1:
+            wrong.append(f"group {name!r}: expected one kind, found {classes}")
     for parameter in structure.parameters:
-        place = f"parameter {parameter.name!r}"
-        checks.attempt(_check_parameter, parameter, has, place)
-    checks.close()
-
-
-def _check_parameter(parameter: Parameter, has: dict[str, set[str]], place: str) -> None:
-    if parameter.quantity not in has:
-        raise FemError(
-            f"{place}: quantity must be one of {', '.join(has)}, found {parameter.quantity!r}"
-        )
-    if isinstance(parameter.of, str) or not parameter.of:
-        raise FemError(f"{place}: expected a list of names, found {parameter.of!r}")
-    checks = Checks()
-    for name in parameter.of:
-        checks.attempt(_check_known, name, has[parameter.quantity], parameter.quantity, place)
-    checks.close()
-
-
-def _check_known(name: str, known: set[str], quantity: str, place: str) -> None:
-    if name not in known:
-        close = get_close_matches(name, sorted(known), 1)
-        hint = f"; did you mean {close[0]!r}?" if close else ""
-        names = ", ".join(sorted(known)) or "none"
-        raise FemError(
-            f"{place}: nothing named {name!r} has a {quantity}; those that do: {names}{hint}"
-        )
+        place, quantity = f"parameter {parameter.name!r}", parameter.quantity
+        if quantity not in has:
+            wrong.append(f"{place}: quantity must be one of {', '.join(has)}, found {quantity!r}")
+        elif isinstance(parameter.of, str) or not parameter.of:
+            wrong.append(f"{place}: expected a list of names, found {parameter.of!r}")
+        else:
+            known = sorted(has[quantity])
+            for name in parameter.of:
+                if name not in known:
+                    close = get_close_matches(name, known, 1)
+                    wrong.append(
+                        f"{place}: nothing named {name!r} has a {quantity}; those that do:"
+                        f" {', '.join(known) or 'none'}"
+                        + "".join(f"; did you mean {each!r}?" for each in close)
+                    )
+    if wrong:
+        raise FemError(*wrong)
 
 
 DISTORTED = 0.3

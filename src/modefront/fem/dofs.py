@@ -24,29 +24,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
+from scipy.linalg import block_diag
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.fem.check import axes_of, direction_indices, node_list
 from modefront.fem.elements.common import cross_matrix
-from modefront.fem.section import FemError
+from modefront.fem.section import Checks, FemError
+from modefront.fem.structure import DIRECTIONS, Coupling, Link, Structure, Support
 from modefront.rounding import ACCUMULATED
-
-DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
-
-
-def direction_indices(directions: Sequence[str], place: str) -> list[int]:
-    """Columns of `directions` in (x, y, z, rx, ry, rz).
-
-    Raises
-    ------
-    FemError
-        If a name is not one of them, or there is none.
-    """
-    for name in directions:
-        if name not in DIRECTIONS:
-            raise FemError(f"{place}: direction must be one of {DIRECTIONS}, found {name!r}")
-    if not directions:
-        raise FemError(f"{place}: no direction is given, expected some of {DIRECTIONS}")
-    return [DIRECTIONS.index(name) for name in directions]
 
 
 @dataclass(frozen=True)
@@ -82,7 +67,57 @@ class Followers:
     weight: sparse.csr_array
 
 
-def followers(
+def following_rows(X: Floats, structure: Structure, checks: Checks) -> list[Followers]:
+    """Return the rows of links and couplings in which nothing is wrong."""
+    rows = [checks.attempt(_link, X, x, f"link {n}") for n, x in enumerate(structure.links)]
+    rows += [
+        checks.attempt(_coupling, X, x, f"coupling {n}") for n, x in enumerate(structure.couplings)
+    ]
+    return [row for row in rows if row is not None]
+
+
+def _link(X: Floats, link: Link, place: str) -> Followers:
+    master = node_list(link.master, len(X), place)
+    slaves = node_list(link.slaves, len(X), place)
+    slaves = slaves[slaves != master[0]]
+    motion = rigid_motion(X[slaves] - X[master])
+    directions = direction_indices(link.directions, place)
+    return _followers(X, slaves, np.tile(master, (len(slaves), 1)), motion[:, :, None], directions)
+
+
+def _coupling(X: Floats, coupling: Coupling, place: str) -> Followers:
+    """Return the rows of a node with the mean motion of others.
+
+    With the displacement P_i q of node i in the rigid motion q of `node`, least squares of
+    sum_i w_i |u_i - P_i q|^2 are q = (sum_i w_i P_i^T P_i)^-1 sum_i w_i P_i^T u_i.
+    """
+    node = node_list(coupling.node, len(X), place)
+    of = node_list(coupling.of, len(X), place)
+    weights = np.asarray(coupling.weights, dtype=float)
+    if weights.shape not in ((), of.shape) or not (weights > 0).all() or node[0] in of:
+        raise FemError(
+            f"{place}: expected other nodes than {node[0]}, with a weight above 0 for each or for"
+            f" all, found nodes {of.tolist()} and weights {weights.tolist()}"
+        )
+    directions = direction_indices(coupling.directions, place)
+    size = np.ptp(X[of], axis=0).max() or 1.0
+    P = rigid_motion(X[of] - X[node])[:, :3] * np.repeat([1, 1 / size], 3)
+    weighted = np.broadcast_to(weights, of.shape)[:, None, None] * P
+    normal = np.einsum("ndi,ndj->ij", weighted, P)
+    inverse = np.linalg.pinv(normal, rcond=UNDETERMINED, hermitian=True)
+    lost = [d for d in directions if abs(inverse[d] @ normal - np.eye(6)[d]).max() > UNDETERMINED]
+    if lost:
+        raise FemError(
+            f"{place}: the nodes do not determine {', '.join(DIRECTIONS[d] for d in lost)} of node"
+            f" {node[0]}; expected nodes that are not on one line, or fewer directions"
+        )
+    factors = np.zeros((1, 6, len(of), 6))
+    factors[0, :, :, :3] = np.einsum("ij,ndj->ind", inverse, weighted)
+    factors[0, 3:] /= size
+    return _followers(X, node, of[None], factors, directions)
+
+
+def _followers(
     X: Floats, slaves: Ints, masters: Ints, weight: Floats, directions: Sequence[int]
 ) -> Followers:
     """Return the rows of the given directions of slaves (slaves,).
@@ -103,44 +138,6 @@ def followers(
     return Followers((6 * slaves[:, None] + np.array(directions)).ravel(), rows)
 
 
-def rigid_link(X: Floats, master: int, slaves: Ints, directions: Sequence[int]) -> Followers:
-    """Return the rows of a rigid link from `master` to `slaves` in the given directions."""
-    motion = rigid_motion(X[slaves] - X[master])
-    masters = np.full((len(slaves), 1), master)
-    return followers(X, slaves, masters, motion[:, :, None], directions)
-
-
-def mean_motion(
-    X: Floats, node: int, of: Ints, weights: Floats, directions: Sequence[int], place: str
-) -> Followers:
-    """Return the rows of a node with the mean motion of others.
-
-    With the displacement P_i q of node i in the rigid motion q of `node`, least squares of
-    sum_i w_i |u_i - P_i q|^2 are q = (sum_i w_i P_i^T P_i)^-1 sum_i w_i P_i^T u_i.
-
-    Raises
-    ------
-    FemError
-        If the others do not determine the motion, such as a rotation about their line.
-    """
-    arms = X[of] - X[node]
-    size = np.ptp(X[of], axis=0).max() or 1.0
-    P = rigid_motion(arms)[:, :3] * np.repeat([1, 1 / size], 3)
-    weighted = weights[:, None, None] * P
-    normal = np.einsum("ndi,ndj->ij", weighted, P)
-    inverse = np.linalg.pinv(normal, rcond=UNDETERMINED, hermitian=True)
-    lost = [d for d in directions if abs(inverse[d] @ normal - np.eye(6)[d]).max() > UNDETERMINED]
-    if lost:
-        raise FemError(
-            f"{place}: the nodes do not determine {', '.join(DIRECTIONS[d] for d in lost)} of node"
-            f" {node}; expected nodes that are not on one line, or fewer directions"
-        )
-    factors = np.zeros((1, 6, len(of), 6))
-    factors[0, :, :, :3] = np.einsum("ij,ndj->ind", inverse, weighted)
-    factors[0, 3:] /= size
-    return followers(X, np.array([node]), of[None], factors, directions)
-
-
 UNDETERMINED = 1e-9
 """Eigenvalue of the normal equations of a mean motion, over the greatest, that is rounding."""
 
@@ -152,39 +149,41 @@ def rigid_motion(arms: Floats) -> Floats:
     return P
 
 
-def hold(held: Bools, exists: Bools, skew: Sequence[tuple[Ints, Floats]]) -> list[Followers]:
-    """Hold nodes along directions that are not global; return what of their motion follows.
+def hold(
+    X: Floats, supports: Sequence[Support], held: Bools, exists: Bools, checks: Checks
+) -> list[Followers]:
+    """Hold what supports hold; return what follows where they are not along global axes.
 
-    The rows C u = 0 of a node are solved for as many of its DOFs, by complete pivoting.
-
-    Parameters
-    ----------
-    held, exists : (nodes, 6); what is held altogether is added to ``held``
-    skew : nodes (n,) and rows (m, 6) that each of them has
+    Rows C u = 0 of a node that are not along global axes are solved for as many of its DOFs, by
+    complete pivoting. What is held altogether is added to ``held`` (nodes, 6).
     """
-    rows: dict[int, list[Floats]] = {}
-    for nodes, C in skew:
+    skew: dict[int, list[Floats]] = {}
+
+    def support(each: Support, place: str) -> None:
+        nodes = node_list(each.nodes, len(X), place)
+        directions = direction_indices(each.directions, place)
+        R = axes_of(each.axes, place)
+        if each.axes is None:
+            held[nodes[:, None], directions] = True
+            return
         for node in nodes.tolist():
-            rows.setdefault(node, []).append(C)
+            skew.setdefault(node, []).append(block_diag(R, R)[directions])
+
+    for n, each in enumerate(supports):
+        checks.attempt(support, each, f"support {n}")
     slaves, weights = [], []
-    for node, several in rows.items():
+    for node, several in skew.items():
         C = np.concatenate([np.eye(6)[held[node]], *several]) * exists[node]
         for pivot, row in _solved(C):
             if row.any():
-                slaves.append(6 * node + pivot)
-                weights.append(row)
+                slaves.append([node, pivot])
+                weights.append(np.outer(np.eye(6)[pivot], row))
             else:
                 held[node, pivot] = True
-    if not slaves:
-        return []
-    slave = np.array(slaves)
-    columns = 6 * (slave // 6)[:, None] + np.arange(6)
-    weight = sparse.csr_array(
-        (np.ravel(weights), columns.ravel(), 6 * np.arange(len(slave) + 1)),
-        shape=(len(slave), exists.size),
-    )
-    weight.eliminate_zeros()
-    return [Followers(slave, weight)]
+    return [
+        _followers(X, np.array([node]), np.array([[node]]), weight[None, :, None], [pivot])
+        for (node, pivot), weight in zip(slaves, weights, strict=True)
+    ]
 
 
 def _solved(C: Floats) -> list[tuple[int, Floats]]:

@@ -34,9 +34,10 @@ from scipy.spatial import KDTree
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.blocks import Block
 from modefront.fem.check import SAME_PLACE
-from modefront.fem.dofs import DIRECTIONS, Followers, rigid_motion
+from modefront.fem.dofs import Followers, rigid_motion
 from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.section import FemError
+from modefront.fem.structure import DIRECTIONS
 from modefront.linalg.factorisation import factorise
 from modefront.rounding import ACCUMULATED
 
@@ -178,7 +179,7 @@ def _motions(
 
 def _resisted(block: Block, size: int) -> sparse.csr_array:
     """Return the rows (.., 6 nodes) of displacements that elements of a block resist."""
-    K = block.matrices.stiffness[0].matrices
+    K = next(iter(block.matrices.stiffness.values()))
     if block.prestress is not None:
         K = K + block.prestress
     scale = np.sqrt(np.diagonal(K, axis1=1, axis2=2).clip(0))
@@ -264,11 +265,9 @@ def _common_motions(bodies: Bodies, inside: Ints) -> Floats:
     size = float(np.max(np.linalg.norm(bodies.centre[inside] - origin, axis=1)))
     size = max(size, float(bodies.extent[inside].max()))
     motions = np.zeros((len(bodies.extent), 6, 6))
-    for d in range(3):
-        motions[inside, d, d] = 1
-        turn = np.eye(3)[d]
-        motions[inside, :3, 3 + d] = np.cross(turn, bodies.centre[inside] - origin) / size
-        motions[inside, 3 + d, 3 + d] = bodies.extent[inside] / size
+    motions[inside] = rigid_motion(bodies.centre[inside] - origin)
+    motions[:, :, 3:] /= size
+    motions[:, 3:] *= bodies.extent[:, None, None]
     return motions.reshape(-1, 6)
 
 

@@ -15,7 +15,7 @@ import importlib.util
 import io
 import re
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -39,7 +39,7 @@ CELL_TYPES: Mapping[Kind, tuple[str, ...]] = {
     "solid": ("hexahedron", "tetra10", "wedge15", "hexahedron20"),
 }
 
-DIVISIONS: Mapping[str, list[list[tuple[int, ...]]]] = {
+DIVISIONS: Mapping[str, list[list[Sequence[int]]]] = {
     "triangle6": [[(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]],
     "quad8": [[(4, 5, 6, 7)], [(0, 4, 7), (4, 1, 5), (5, 2, 6), (7, 6, 3)]],
     "quad9": [[(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]],
@@ -113,7 +113,11 @@ class Mesh:
                     f"mesh: group {group!r} has cells of the type {block.type}; a {kind} can be"
                     f" made of: {', '.join(CELL_TYPES[kind])}"
                 )
-        return tuple(cells for block in blocks for cells in _divided(block))
+        return tuple(
+            np.concatenate([block.cells[:, part] for part in parts])
+            for block in blocks
+            for parts in DIVISIONS.get(block.type, [[range(block.cells.shape[1])]])
+        )
 
     def nodes_of(self, name: str) -> Ints:
         """Nodes of a set, or of the cells of a group, ascending.
@@ -133,15 +137,6 @@ class Mesh:
                 f" {', '.join(names) or 'none'}"
             )
         return np.unique(np.concatenate(blocks))
-
-
-def _divided(block: CellBlock) -> list[Ints]:
-    """Return the cells, those of shells of more than 4 nodes divided, an array for each type."""
-    if block.type not in DIVISIONS:
-        return [block.cells]
-    return [
-        np.concatenate([block.cells[:, part] for part in parts]) for parts in DIVISIONS[block.type]
-    ]
 
 
 def read_mesh(path: str | Path) -> Mesh:

@@ -27,9 +27,8 @@ from scipy import sparse
 from modefront._typing import Bools, Floats
 from modefront.fem.blocks import Block
 from modefront.fem.check import node_list
-from modefront.fem.dofs import DIRECTIONS
 from modefront.fem.section import Checks, FemError
-from modefront.fem.structure import Load
+from modefront.fem.structure import DIRECTIONS, Load
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError, factorise
 
 
@@ -66,7 +65,7 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools, place: str) -> F
         )
     for block in blocks:
         pull = np.tile(np.append(a, np.zeros(3))[list(block.directions)], block.cells.shape[1])
-        parts = [part.matrices @ pull for part in block.matrices.mass]
+        parts = [M @ pull for M in block.matrices.mass.values()]
         if block.internal is not None and (strain := load.strains.get(block.name, 0.0)):
             parts.append(block.internal().free_forces(strain))
         for each in parts:

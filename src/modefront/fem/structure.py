@@ -12,7 +12,6 @@ from typing import Literal
 
 import numpy.typing as npt
 
-from modefront.fem.dofs import DIRECTIONS
 from modefront.fem.section import Material, Orthotropic, Section
 
 Direction = str | Sequence[float]
@@ -20,6 +19,7 @@ Axes = tuple[Sequence[float], Sequence[float]]
 """Local axes: the local x axis, and a vector in the local x-y plane."""
 
 Quantity = Literal["E", "density", "thickness", "spring", "mass", "prestress"]
+DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 ALL = DIRECTIONS
 
 

@@ -13,7 +13,7 @@ import scipy.sparse
 
 from modefront._typing import Floats, Ints
 from modefront.errors import reason
-from modefront.fem.dofs import DIRECTIONS
+from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import ended_column, file_size, wrong
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED

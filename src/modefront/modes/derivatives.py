@@ -1,23 +1,10 @@
 r"""Exact derivatives of modes, seen by sensors, from the modes below a gap and two factors.
 
-With the forces :math:`f_{ri} = (K_i' - \lambda_r M_i') \varphi_r` and known modes
-:math:`\varphi_j`,
-
-.. math::
-    \lambda_r' &= \varphi_r^T f_{ri} \\
-    \varphi_r' &= \sum_{j \ne r} \varphi_j \frac{\varphi_j^T f_{ri}}{\lambda_r - \lambda_j}
-        - \tfrac12 \varphi_r\, \varphi_r^T M_i' \varphi_r - (K - \lambda_r M)^+ f_{ri}
-
-where the last term, the pseudoinverse on the M-complement of the known modes, is all that is left
-to solve. There :math:`K - \lambda_r M` is positive definite, and with the factor of
-:math:`B = K - \sigma M`
-
-.. math::
-    (K - \lambda_r M)^+ = (I + \tau_r T)^{-1} P B^{-1}, \quad
-    T = P B^{-1} M, \quad \tau_r = \sigma - \lambda_r
-
-with P the projection onto the complement. T is self-adjoint in B, so that Lanczos iteration from
-each right-hand side, :math:`B^{-1}b = \beta_1 q_1`,
+The equations are those of ``docs/methods/derivatives.md``: a sum over the known modes, and
+:math:`(K - \lambda_r M)^+ f_{ri}`, the pseudoinverse on the M-complement of these, for the forces
+:math:`f_{ri} = (K_i' - \lambda_r M_i') \varphi_r`. With the factor of :math:`B = K - \sigma M`,
+:math:`T = P B^{-1} M` and :math:`\tau_r = \sigma - \lambda_r`, Lanczos iteration from each
+right-hand side, :math:`B^{-1}b = \beta_1 q_1`,
 
 .. math:: T q_k = \beta_k q_{k-1} + \alpha_k q_k + \beta_{k+1} q_{k+1}
 

@@ -103,10 +103,8 @@ def modes(
     if not derivatives:
         return Modes(spectrum.lam[:count], phi)
     dlam, dphi, coincident = exact.at_sensors(pencil, sensors, theta, spectrum, count)
-    lam, solve = (
-        spectrum.lam[:count],
-        partial(exact.everywhere, pencil, sensors, theta, spectrum, count),
-    )
+    lam = spectrum.lam[:count]
+    solve = partial(exact.everywhere, pencil, sensors, theta, spectrum, count)
     # Mode by mode, to bound the memory.
     second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solve, 1)
     return Modes(lam, phi, ModeDerivatives(dlam, dphi, coincident, second))
@@ -197,16 +195,8 @@ def regular_factor(pencil: Pencil, theta: Floats) -> Factorisation | None:
     Motions that strain nothing leave an energy of rounding, over that of the diagonal; the softest
     motion of a slender structure of many elements comes near to it, but not that near.
     """
-    K = pencil.K.at(theta)
-    try:
-        factor = pencil.factor(K.data, pencil.M.at(theta).data, 0.0)
-    except SingularMatrixError:
-        return None
-    right = np.random.default_rng(0).standard_normal((pencil.size, BLOCK))
-    X = factor.solve(right)
-    energy = np.einsum("nb,nb->b", X, right)
-    rounding = np.finfo(float).eps * (K.diagonal() @ X**2)
-    return factor if factor.negative == 0 and not (energy < rounding).any() else None
+    K, right = pencil.K.at(theta), np.random.default_rng(0).standard_normal((pencil.size, BLOCK))
+    return _regular(pencil, K, pencil.M.at(theta), 0.0, right, float(np.finfo(float).eps))[0]
 
 
 def _gap(lam: Floats, known: int, count: int, s: float, complete: bool) -> tuple[int, float] | None:
@@ -263,16 +253,19 @@ def _positive_definite(
         s = target
 
 
+# 6 arguments: the matrices, the right-hand sides and the tolerance.
 def _regular(
     pencil: Pencil,
     K: scipy.sparse.csr_array,
     M: scipy.sparse.csr_array,
     s: float,
     right: Floats,
+    singular: float = SINGULAR,
 ) -> tuple[Factorisation | None, Floats]:
     """Return the factor of A = K + s M and A^-1 right, or None unless A is positive definite.
 
-    The solution then shows where A is singular; it is empty where A is indefinite.
+    The solution then shows where A is singular; it is empty where A is indefinite. ``singular`` is
+    x^T A x over x^T diag(A) x, below which A counts as singular.
     """
     diagonal = K.diagonal() + s * M.diagonal()
     try:
@@ -283,7 +276,7 @@ def _regular(
         return None, np.zeros((0, right.shape[1]))
     X = factor.solve(right)
     energy = np.einsum("nb,nb->b", X, right)
-    if (energy < SINGULAR * (diagonal @ X**2)).any():
+    if (energy < singular * (diagonal @ X**2)).any():
         return None, X
     return factor, X
 

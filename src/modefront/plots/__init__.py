@@ -31,7 +31,7 @@ PLOTS: Mapping[str, str] = {
     "mac": "quantities",
     "modes": "modes",
     "predictions": "predictions",
-    "uncertainty": "uncertainty",
+    "uncertainty": "quantities",
     "minima": "quantities",
 }
 """Pictures in the order of their files, each a function of this name in a module of the package."""

@@ -34,6 +34,9 @@ from modefront.predictions.registry import predictions_in
 Studies = Sequence[tuple[str, xr.Dataset]]
 """Results with a name each."""
 
+Curves = list[tuple[int, Floats]]
+"""Values (points,) of some studies, by their numbers."""
+
 MARKERS = "os^Dv"
 """Marks of the studies, beside their colours."""
 
@@ -58,16 +61,51 @@ def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
             expected = f"as many parameters as in the first study, {count}"
             faults.append(Fault(name, "--figures", expected, str(data.sizes["parameter"])))
     refuse(faults)
-    yield "figure-2", fronts(studies)
-    yield "figure-3", planes(studies)
-    yield "figure-4", parameters(studies)
-    yield "figure-5", modes(studies)
+    yield "figure-2", _fronts(studies)
+    yield "figure-3", _planes(studies)
+    numbered = list(enumerate(data for _, data in studies))
+    names = [plain(name) for name in studies[0][1]["parameter"].values]
+    curves = [[(k, x["theta"].values[:, j]) for k, x in numbered] for j in range(count)]
+    yield "figure-4", _along(studies, names, curves)
+    numbers = studies[0][1]["mode"].values
+    curves = []
+    for of in (_errors, lambda data: data["mac"].values):
+        for r in range(len(numbers)):
+            curves.append([(k, of(x)[:, r]) for k, x in numbered if r < x.sizes["mode"]])
+    titles = [*(f"mode {number}" for number in numbers), *([""] * len(numbers))]
+    figure = _along(studies, titles, curves, len(numbers))
+    for axes in figure.axes[: len(numbers)]:
+        axes.axhline(0, color="k", ls="--", lw=0.8)
+    figure.axes[0].set_ylabel("error of the frequency, %")
+    figure.axes[len(numbers)].set_ylabel("MAC")
+    yield "figure-5", figure
     for number, dimension in ((6, "frf"), (7, "failure")):
-        if figure := predictions(studies, dimension):
+        rows = [
+            (k, data, each.kind.ranged[0], i)
+            for k, data in numbered
+            for each in predictions_in(data)
+            for i in each.positions
+            if each.kind.dimension == dimension
+        ]
+        of_places: dict[str, Curves] = {}
+        for k, data, variable, i in rows:
+            values = data[variable.name].values[:, i]
+            shown = np.where(values > 0, values, np.nan) if variable.logarithmic else values
+            of_places.setdefault(str(data[dimension].values[i]), []).append((k, shown))
+        if rows:
+            figure = _along(studies, list(of_places), list(of_places.values()))
+            for axes in figure.axes:
+                axes.set_yscale("log" if rows[0][2].logarithmic else "linear")
+            figure.axes[0].set_ylabel(rows[0][2].key)
             yield f"figure-{number}", figure
 
 
-def fronts(studies: Studies) -> Picture:
+def _errors(data: xr.Dataset) -> Floats:
+    error: Floats = 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
+    return error
+
+
+def _fronts(studies: Studies) -> Picture:
     """Return figure 2: the fronts in the space of errors, with numbers at their points."""
     figure = picture(5.6, 4.2)
     axes = figure.add_subplot()
@@ -94,7 +132,7 @@ def fronts(studies: Studies) -> Picture:
     return figure
 
 
-def planes(studies: Studies) -> Picture:
+def _planes(studies: Studies) -> Picture:
     """Return figure 3: the models in the planes of each two parameters."""
     names = [plain(name) for name in studies[0][1]["parameter"].values]
     pairs = list(combinations(range(len(names)), 2)) or [(0, 0)]
@@ -107,69 +145,25 @@ def planes(studies: Studies) -> Picture:
     return figure
 
 
-def parameters(studies: Studies) -> Picture:
-    """Return figure 4: the parameters along the front, a panel each."""
-    names = [plain(name) for name in studies[0][1]["parameter"].values]
-    figure, grid = _grid(len(names))
-    for j, (axes, name) in enumerate(zip(grid, names, strict=True)):
-        for k, (study, data) in enumerate(studies):
-            _along(axes, data, data["theta"].values[:, j], k, study)
-        titled(axes, name)
-    legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
-    return figure
-
-
-def modes(studies: Studies) -> Picture:
-    """Return figure 5: errors of the frequencies above, MAC below, a column a mode."""
-    numbers = studies[0][1]["mode"].values
-    figure = picture(2.5 * len(numbers) + 0.6, 4.6)
-    grid = figure.subplots(2, len(numbers), squeeze=False, sharex=True)
-    for r, number in enumerate(numbers):
-        for k, (name, data) in enumerate(studies):
-            if r >= data.sizes["mode"]:
-                continue
-            error = 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
-            _along(grid[0][r], data, error[:, r], k, name)
-            _along(grid[1][r], data, data["mac"].values[:, r], k, name)
-        grid[0][r].axhline(0, color="k", ls="--", lw=0.8)
-        titled(grid[0][r], f"mode {number}")
-        grid[1][r].set_xlabel("point of the front")
-    grid[0][0].set_ylabel("error of the frequency, %")
-    grid[1][0].set_ylabel("MAC")
-    legend(figure, grid[0][0], "outside lower center", min(len(studies) + 2, 4))
-    return figure
-
-
-def predictions(studies: Studies, dimension: str) -> Picture | None:
-    """Return figure 6 or 7: predictions of one kind along the front; None without any."""
-    rows = []
-    for k, (study, data) in enumerate(studies):
-        for each in predictions_in(data):
-            if each.kind.dimension == dimension:
-                rows += [(k, study, data, each.kind.ranged[0], i) for i in each.positions]
-    places = list(dict.fromkeys(str(data[dimension].values[i]) for _, _, data, _, i in rows))
-    if not places:
-        return None
-    figure, grid = _grid(len(places))
-    for k, study, data, variable, i in rows:
-        axes = grid[places.index(str(data[dimension].values[i]))]
-        values = data[variable.name].values[:, i]
-        if variable.logarithmic:
-            values = np.where(values > 0, values, np.nan)
-            axes.set_yscale("log")
-        _along(axes, data, values, k, study)
-        titled(axes, data[dimension].values[i])
-    grid[0].set_ylabel(rows[0][3].key)
-    legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
-    return figure
-
-
-def _grid(count: int) -> tuple[Picture, list[Axes]]:
-    """Return a figure with so many panels along the front."""
-    figure, grid = panels(count)
-    for axes in grid[-COLUMNS:]:
+def _along(
+    studies: Studies, titles: Sequence[str], curves: Sequence[Curves], columns: int = COLUMNS
+) -> Picture:
+    """Return a figure with a panel for each title, of values along the front of some studies."""
+    figure, grid = panels(len(titles), columns)
+    for axes, title, chosen in zip(grid, titles, curves, strict=True):
+        titled(axes, title)
+        for k, values in chosen:
+            name, data = studies[k]
+            front, pareto = front_of(data), data["pareto"].values.astype(bool)
+            x, y = np.full(values.shape, np.nan), np.where(pareto, values, np.nan)[front]
+            x[front] = np.arange(1, front.size + 1)
+            axes.plot(x[front], y, "-", color=_colour(k), lw=0.8, alpha=0.6)
+            _front(axes, data, np.column_stack([x, values]), k, name, 3.5)
+            axes.set_xticks([1, *range(5, front.size + 1, 5)])
+    for axes in grid[-columns:]:
         axes.set_xlabel("point of the front")
-    return figure, grid
+    legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
+    return figure
 
 
 def _colour(k: int) -> str:
@@ -177,23 +171,18 @@ def _colour(k: int) -> str:
 
 
 def _points(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> None:
-    """Draw pairs of values (points, 2): hollow where dominated, the weighted models larger."""
-    front, pareto = front_of(data), data["pareto"].values.astype(bool)
-    marker, colour = MARKERS[k % len(MARKERS)], _colour(k)
-    best, others = front[pareto[front]], front[~pareto[front]]
-    axes.plot(*values[best].T, marker, color=colour, ms=4, ls="", label=plain(name))
-    axes.plot(*values[others].T, marker, mfc="w", mec=colour, ms=4, ls="")
+    """Draw pairs of values (points, 2) of the front, and larger those of weighted models."""
+    _front(axes, data, values, k, name, 4)
     for kind, sign, size in (("equal-weights", EQUAL, 8), ("optimal-weights", OPTIMAL, 12)):
-        chosen = data["kind"].values == kind
-        axes.plot(*values[chosen].T, sign, color=colour, mec="k", mew=0.6, ms=size, ls="")
+        chosen = values[data["kind"].values == kind]
+        axes.plot(*chosen.T, sign, color=_colour(k), mec="k", mew=0.6, ms=size, ls="")
 
 
-def _along(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> None:
-    """Draw values (points,) along the front, hollow where dominated."""
+# 6 arguments: the values, and how they are marked.
+def _front(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str, size: float) -> None:
+    """Draw pairs of values (points, 2) of the front, hollow where dominated."""
     front, pareto = front_of(data), data["pareto"].values.astype(bool)
-    x, y, best = np.arange(1, front.size + 1), values[front], pareto[front]
     marker, colour = MARKERS[k % len(MARKERS)], _colour(k)
-    axes.plot(x, np.where(best, y, np.nan), "-", color=colour, lw=0.8, alpha=0.6)
-    axes.plot(x[best], y[best], marker, color=colour, ms=3.5, ls="", label=plain(name))
-    axes.plot(x[~best], y[~best], marker, mfc="w", mec=colour, ms=3.5, ls="")
-    axes.set_xticks([1, *range(5, front.size + 1, 5)])
+    best, others = values[front[pareto[front]]], values[front[~pareto[front]]]
+    axes.plot(*best.T, marker, color=colour, ms=size, ls="", label=plain(name))
+    axes.plot(*others.T, marker, mfc="w", mec=colour, ms=size, ls="")

@@ -16,7 +16,7 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.brief import as_html, brief
 from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion
-from modefront.fem.dofs import DIRECTIONS
+from modefront.fem.structure import DIRECTIONS
 from modefront.models.dofs import number_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.terms import exponents_of, form_of

@@ -42,7 +42,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.common import ElementMatrices, Part, attachment, congruence, symmetric
+from modefront.fem.elements.common import ElementMatrices, attachment, congruence, symmetric
 from modefront.fem.section import FemError, Material, Section
 
 U, V, W, TWIST, PSI_Y, PSI_Z = range(6)
@@ -202,7 +202,7 @@ def beam(
         a = release(K, released) @ a
     elongation = L[:, None] * (df[:, :1, U] @ a)[:, 0]
     K, M, K_G = (congruence(a, each) for each in (K, M, K_G))
-    return ElementMatrices((Part(0, K),), (Part(0, M),)), Axial(elongation, L, E * A, K_G)
+    return ElementMatrices({0: K}, {0: M}), Axial(elongation, L, E * A, K_G)
 
 
 def truss(X: Floats, material: Material, area: float) -> tuple[ElementMatrices, Axial]:
@@ -215,5 +215,5 @@ def truss(X: Floats, material: Material, area: float) -> tuple[ElementMatrices, 
     M = (mass * L)[:, None] * np.kron(np.array([[2.0, 1], [1, 2]]) / 6, np.eye(3))
     M += (mass * L / 12)[:, None] * row[:, :, None] * row[:, None, :]
     across = np.kron(np.array([[1.0, -1], [-1, 1]]), np.eye(3)) - row[:, :, None] * row[:, None, :]
-    matrices = ElementMatrices((Part(0, symmetric(K)),), (Part(0, M),))
+    matrices = ElementMatrices({0: symmetric(K)}, {0: M})
     return matrices, Axial(row, L[:, 0], EA, symmetric(across / L[:, None]))

@@ -26,27 +26,17 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.fem.section import Material, Orthotropic
 
-
-@dataclass(frozen=True)
-class Part:
-    """Element matrices that all grow with the same power of the thickness.
-
-    Attributes
-    ----------
-    power : exponent of the thickness; 0 where there is none
-    matrices : (elements, dof, dof), symmetric, in global axes; DOFs node by node
-    """
-
-    power: int
-    matrices: Floats
+ByPower = dict[int, Floats]
+"""Element matrices (elements, dof, dof), symmetric, in global axes, DOFs node by node, by the power
+of the thickness with which they grow; 0 where there is none, or it does not vary."""
 
 
 @dataclass(frozen=True)
 class ElementMatrices:
     """Stiffness, linear in Young's modulus, and mass, linear in density."""
 
-    stiffness: tuple[Part, ...]
-    mass: tuple[Part, ...]
+    stiffness: ByPower
+    mass: ByPower
 
 
 def symmetric(K: Floats) -> Floats:
@@ -174,7 +164,4 @@ def solid_mass(N: Floats, weight: Floats) -> Floats:
     count, nodes = len(weight), N.shape[1]
     products = (N[:, :, None] * N[:, None, :]).reshape(len(N), -1)
     m = symmetric((weight @ products).reshape(count, nodes, nodes))
-    M = np.zeros((count, nodes, 3, nodes, 3))
-    for d in range(3):
-        M[:, :, d, :, d] = m
-    return M.reshape(count, 3 * nodes, 3 * nodes)
+    return np.einsum("enm,ij->enimj", m, np.eye(3)).reshape(count, 3 * nodes, 3 * nodes)

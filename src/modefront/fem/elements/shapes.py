@@ -39,7 +39,6 @@ CUBE_EDGES = (
 )
 WEDGE_EDGES = ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5))
 TRIANGLE_EDGES = TETRAHEDRON_EDGES[:3]
-SQUARE_EDGES = CUBE_EDGES[:4]
 
 Edges = Sequence[tuple[int, int]]
 
@@ -98,8 +97,7 @@ def _wedge(edges: Edges) -> Cell:
     return _cell(corners, powers, edges)
 
 
-SQUARE_4, SQUARE_8 = _box(2), _box(2, SQUARE_EDGES)
-CUBE_8, CUBE_20 = _box(3), _box(3, CUBE_EDGES)
+SQUARE_4, CUBE_8, CUBE_20 = _box(2), _box(3), _box(3, CUBE_EDGES)
 TRIANGLE_3, TRIANGLE_6 = _simplex(2), _simplex(2, TRIANGLE_EDGES)
 TETRAHEDRON_10 = _simplex(3, TETRAHEDRON_EDGES)
 WEDGE_15 = _wedge(WEDGE_EDGES)

@@ -32,8 +32,8 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.common import (
+    ByPower,
     ElementMatrices,
-    Part,
     attachment,
     cross_matrix,
     ply,
@@ -144,14 +144,10 @@ def shell(
         for some in (slice(first, first + AT_ONCE) for first in range(0, len(X), AT_ONCE))
     ]
     K, M = (
-        tuple(Part(power, np.concatenate([piece[power] for piece in each])) for power in each[0])
+        {power: np.concatenate([piece[power] for piece in each]) for power in each[0]}
         for each in zip(*pieces, strict=True)
     )
     return ElementMatrices(K, M)
-
-
-ByPower = dict[int, Floats]
-"""Matrices (elements, n, n) by the power of the thickness; of 0 where that does not vary."""
 
 
 # 8 arguments: those of `shell`.

@@ -32,7 +32,6 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.fem.elements.common import (
     ElementMatrices,
-    Part,
     condense,
     solid_mass,
     solid_stiffness,
@@ -111,4 +110,4 @@ def solid(X: Floats, rho: float, C: Floats) -> ElementMatrices:
     xi, w = kind.mass
     N, dN = kind.cell.shape(xi)
     M = rho * solid_mass(N, np.linalg.det(jacobian(X, dN)) * w)
-    return ElementMatrices((Part(0, condense(K, size) if len(K[0]) > size else K),), (Part(0, M),))
+    return ElementMatrices({0: condense(K, size) if len(K[0]) > size else K}, {0: M})

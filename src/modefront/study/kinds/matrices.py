@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront.errors import InputError, suggestion
-from modefront.fem.dofs import DIRECTIONS
+from modefront.fem.structure import DIRECTIONS
 from modefront.json_schema import any_of, array, closed, file_name, table_of
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs

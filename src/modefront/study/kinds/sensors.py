@@ -10,7 +10,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.csv import is_reserved
-from modefront.fem.dofs import DIRECTIONS
+from modefront.fem.structure import DIRECTIONS
 from modefront.json_schema import (
     NUMBER,
     WHOLE,
