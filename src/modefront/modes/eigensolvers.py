@@ -15,7 +15,8 @@ leaves in it is that of a rigid-body mode, and is zero.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 import scipy.linalg
@@ -75,53 +76,66 @@ class FullModes:
     static: Floats | None
 
 
-def without_rounding(lam: Floats, Phi: Floats, diagonal: Floats) -> Floats:
-    """Return the eigenvalues, with those that are nothing but rounding set to zero."""
-    out: Floats = np.where(lam < sparse.SINGULAR * (diagonal @ Phi**2), 0.0, lam)
-    return out
-
-
 @dataclass(frozen=True, eq=False)
-class DenseEigensolver:
-    """Solves eigenproblems of dense matrices.
+class Eigensolver:
+    """Solves the eigenproblems of one model, by dense or sparse matrices, as its own are.
+
+    The pattern of sparse ones is analysed with the first eigenproblem.
 
     Attributes
     ----------
-    K, M : affine matrices, N x N
-    selection : (sensors, N) weights of the degrees of freedom at each sensor
+    model : its matrices
     """
 
-    K: DenseAffine
-    M: DenseAffine
-    selection: Floats
+    model: AffineMatrices
+
+    @cached_property
+    def _dense(self) -> tuple[DenseAffine, DenseAffine, Floats] | None:
+        """Dense matrices, and weights (sensors, N) of the degrees of freedom at each sensor."""
+        K, M = self.model.stiffness, self.model.mass
+        if isinstance(K, DenseAffine) and isinstance(M, DenseAffine):
+            return K, M, self.model.selection.toarray()
+        return None
 
     @property
     def footprint(self) -> float:
-        """Bytes that an eigensolution takes, estimated."""
-        return 8.0 * ARRAYS * self.K.size**2
+        """Bytes that an eigensolution takes, estimated; factors of solids fill in the most."""
+        N = self.model.stiffness.size
+        return 8.0 * (ARRAYS * N**2 if self._dense else FACTOR * N ** (4 / 3))
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool) -> Modes:
         """Return the ``count`` lowest modes at the sensors, shape (sensors, count), ascending.
 
-        Raises ModelError where K or M is indefinite, or where there are fewer modes with a finite
-        frequency than asked for.
+        Raises ModelError where K or M is indefinite, where there are fewer modes with a finite
+        frequency than asked for, and, of sparse matrices, where K and M are singular together or
+        where it cannot be proved that no mode was missed.
         """
-        return dense.modes(self.K, self.M, self.selection, theta, count, derivatives)
+        if self._dense:
+            return dense.modes(*self._dense, theta, count, derivatives)
+        return sparse.modes(self.model.pencil, self.model.selection, theta, count, derivatives)
 
     def full_modes(self, theta: Floats, count: int, loads: Floats) -> FullModes:
         """Return the ``count`` lowest modes and the static response to loads (N, loads).
 
         Raises ModelError as `modes`.
         """
-        Kt = self.K.at(theta)
-        decomposition = dense.decompose(Kt, self.M.at(theta), count)
-        lam, Phi = decomposition.lam, decomposition.Phi
-        dense.refuse_fewer(lam.size, count)
-        lam = without_rounding(lam, Phi, np.diag(Kt))
+        K = self.model.stiffness.at(theta)
+        if self._dense:
+            decomposition = dense.decompose(K, self.model.mass.at(theta), count)
+            lam, Phi = decomposition.lam, decomposition.Phi
+            dense.refuse_fewer(lam.size, count)
+            below = None
+        else:
+            spectrum = sparse.lowest(self.model.pencil, theta, count)
+            lam, Phi, below = spectrum.lam, spectrum.Phi, spectrum.factors[0]
+        lam = np.where(lam < sparse.SINGULAR * (K.diagonal() @ Phi**2), 0.0, lam)
         static = None
-        if lam[0] > 0:
+        if below is not None:
+            if below.sigma == 0 and lam[0] > 0:  # factors take one right-hand side at least
+                static = below.factor.solve(np.ascontiguousarray(loads)) if loads.size else loads
+        elif lam[0] > 0:
             try:
-                static = scipy.linalg.cho_solve(scipy.linalg.cho_factor(Kt), loads)
+                static = scipy.linalg.cho_solve(scipy.linalg.cho_factor(K), loads)
             except np.linalg.LinAlgError:
                 text = "the stiffness matrix is singular to working precision"
                 raise ModelError(text) from None
@@ -129,59 +143,13 @@ class DenseEigensolver:
 
     def is_singular(self, theta: Floats) -> bool:
         """Return whether K(theta) is singular to working precision."""
-        return dense.is_singular(self.K.at(theta))
-
-
-@dataclass(frozen=True, eq=False)
-class SparseEigensolver:
-    """Solves eigenproblems of sparse matrices; their pattern is analysed with the first one.
-
-    Attributes
-    ----------
-    model : its pencil is that of the eigenproblems
-    """
-
-    model: AffineMatrices
-
-    @property
-    def footprint(self) -> float:
-        """Bytes that an eigensolution takes, estimated; factors of solids fill in the most."""
-        return 8.0 * FACTOR * self.model.stiffness.size ** (4 / 3)
-
-    def modes(self, theta: Floats, count: int, *, derivatives: bool) -> Modes:
-        """Return the ``count`` lowest modes at the sensors, as `DenseEigensolver.modes`.
-
-        Raises ModelError too where K and M are singular together, and where it cannot be proved
-        that no mode was missed.
-        """
-        return sparse.modes(self.model.pencil, self.model.selection, theta, count, derivatives)
-
-    def full_modes(self, theta: Floats, count: int, loads: Floats) -> FullModes:
-        """Return the ``count`` lowest modes, as `DenseEigensolver.full_modes`."""
-        pencil = self.model.pencil
-        spectrum = sparse.lowest(pencil, theta, count)
-        lam = without_rounding(spectrum.lam, spectrum.Phi, pencil.K.at(theta).diagonal())
-        below = spectrum.factors[0]
-        regular = below.sigma == 0 and lam[0] > 0
-        static = None
-        if regular:  # the factors take one right-hand side at least
-            static = below.factor.solve(np.ascontiguousarray(loads)) if loads.size else loads
-        return FullModes(lam[:count], spectrum.Phi[:, :count], static)
-
-    def is_singular(self, theta: Floats) -> bool:
-        """Return whether K(theta) is singular to working precision."""
+        if self._dense:
+            return dense.is_singular(self._dense[0].at(theta))
         return sparse.is_singular(self.model.pencil, theta)
-
-
-Eigensolver: TypeAlias = DenseEigensolver | SparseEigensolver
-"""Solves the eigenproblems of one model."""
 
 
 def eigensolver(model: AffineMatrices) -> Eigensolver:
     """Return the eigensolver of a model; raises TypeError where none takes its matrices."""
-    K, M = model.stiffness, model.mass
-    if isinstance(K, DenseAffine) and isinstance(M, DenseAffine):
-        return DenseEigensolver(K, M, model.selection.toarray())
-    if isinstance(K, SparseAffine) and isinstance(M, SparseAffine):
-        return SparseEigensolver(model)
-    raise TypeError("stiffness and mass have to be both dense or both sparse")
+    if isinstance(model.stiffness, DenseAffine) != isinstance(model.mass, DenseAffine):
+        raise TypeError("stiffness and mass have to be both dense or both sparse")
+    return Eigensolver(model)

@@ -112,6 +112,8 @@ class LowestModes:
     def beyond(self, right: Floats, lam: Floats) -> Floats:
         """Return P z_r for g_r (N, m, p) and eigenvalues (m,) among the known ones, (N, m, p)."""
         N, modes, p = right.shape
+        if not right.size:
+            return right
         S, flat = self.S, right.reshape(N, -1)
         g = (flat - S @ (S.T @ flat)).reshape(right.shape).transpose(1, 0, 2).reshape(-1, p)
         lam = lam[:, None]

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from modefront.identification.indicators import complex_indicators, multivariate_indicators
 from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
-from modefront.plots.canvas import COLOURS, plain
+from modefront.plots.canvas import COLOURS, Picture, panels, picture, plain
 
 MOST_PANELS = 12
 """Functions in a picture, at most: more are too small to read."""
@@ -21,7 +20,7 @@ SHORT = 40
 
 def figures(
     names: Sequence[str], identified: Sequence[Identification]
-) -> Iterator[tuple[str, Figure]]:
+) -> Iterator[tuple[str, Picture]]:
     """Yield names and four pictures of every data set."""
     kinds = {
         "stabilisation": _stabilisation,
@@ -31,90 +30,76 @@ def figures(
     }
     for name, identification in zip(names, identified, strict=True):
         for kind, draw in kinds.items():
-            figure = Figure(layout="constrained")
-            draw(figure, identification)
-            yield f"{name[:SHORT]}-{kind}", figure
+            yield f"{name[:SHORT]}-{kind}", draw(identification)
 
 
-def _stabilisation(figure: Figure, identification: Identification) -> None:
-    figure.set_size_inches(7.0, 4.0)
+def _stabilisation(identification: Identification) -> Picture:
+    figure, diagram = picture(7.0, 4.0), identification.diagram
     axes = figure.add_subplot()
-    diagram = identification.diagram
     for stable, marker, colour, label in (
         (False, "x", "0.7", "unstable"),
         (True, "o", COLOURS[0], "stable"),
     ):
         chosen = diagram.stable == stable
-        axes.plot(
-            *(diagram.frequency[chosen], diagram.order[chosen], marker),
-            color=colour,
-            markersize=3,
-            label=label,
-        )
+        x, y = diagram.frequency[chosen], diagram.order[chosen]
+        axes.plot(x, y, marker, color=colour, ms=3, label=label)
     for k, mode in enumerate(identification.modes):
-        axes.axvline(
-            mode.frequency, color=COLOURS[2], linewidth=0.8, label="" if k else "accepted mode"
-        )
+        label = "" if k else "accepted mode"
+        axes.axvline(mode.frequency, color=COLOURS[2], lw=0.8, label=label)
     axes.set(xlabel="frequency in Hz", ylabel="order", title="stabilisation diagram")
     axes.set_xlim(*identification.band)
     behind = axes.twinx()
     with np.errstate(divide="ignore"):
         level = 10 * np.log10(np.nanmean(np.abs(identification.functions.data.H) ** 2, axis=(0, 1)))
-    behind.plot(identification.functions.data.frequency, level, color="0.6", linewidth=0.6)
+    behind.plot(identification.functions.data.frequency, level, color="0.6", lw=0.6)
     behind.set_ylabel(f"mean {identification.functions.data.quantity} in dB")
     axes.legend(loc="upper right")
+    return figure
 
 
-def _indicators(figure: Figure, identification: Identification) -> None:
+def _indicators(identification: Identification) -> Picture:
     """Draw the complex mode indicator functions, and the multivariate ones of hammer tests."""
     data = identification.functions.data
     curves = [("CMIF", "log", complex_indicators(data))]
     if np.any(np.nan_to_num(data.H).imag):  # spectral densities of ambient tests have no phase
         curves.append(("multivariate MIF", "linear", multivariate_indicators(data)))
-    figure.set_size_inches(7.0, 1.0 + 2.2 * len(curves))
-    panels = figure.subplots(len(curves), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, (label, scale, values) in zip(panels, curves, strict=True):
+    figure = picture(7.0, 1.0 + 2.2 * len(curves))
+    rows = figure.subplots(len(curves), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, (label, scale, values) in zip(rows, curves, strict=True):
         for k, row in enumerate(values):
             axes.plot(data.frequency, row, color=COLOURS[k % len(COLOURS)], linewidth=0.8)
         for mode in identification.modes:
             axes.axvline(mode.frequency, color="0.7", linewidth=0.6, zorder=0)
         axes.set(ylabel=label, yscale=scale)
-    panels[0].set_title("mode indicator functions")
-    panels[-1].set_xlabel("frequency in Hz")
-    panels[-1].set_xlim(*identification.band)
+    rows[0].set_title("mode indicator functions")
+    rows[-1].set_xlabel("frequency in Hz")
+    rows[-1].set_xlim(*identification.band)
+    return figure
 
 
-def _functions(figure: Figure, identification: Identification) -> None:
+def _functions(identification: Identification) -> Picture:
     """Draw synthesised over measured functions, those with the greatest residuals first."""
     fitted = identification.functions
     share = np.where(np.isfinite(fitted.residuals.share), fitted.residuals.share, -1.0)
-    listed = [position for position in np.argsort(-share.ravel()) if share.ravel()[position] >= 0][
-        :MOST_PANELS
-    ]
-    columns = min(3, max(len(listed), 1))
-    rows = -(-max(len(listed), 1) // columns)
-    figure.set_size_inches(3.0 * columns, 2.2 * rows)
-    for panel, position in enumerate(listed):
+    listed = np.argsort(-share.ravel())[: int((share >= 0).sum())][:MOST_PANELS]
+    figure, grid = panels(listed.size)
+    for axes, position in zip(grid, listed, strict=True):
         j, i = np.unravel_index(position, share.shape)
-        axes = figure.add_subplot(rows, columns, panel + 1)
-        f = fitted.data.frequency
-        axes.semilogy(f, np.abs(fitted.data.H[j, i]), color="0.6", linewidth=0.8, label="measured")
-        axes.semilogy(
-            f,
-            np.abs(fitted.synthesised[j, i]),
-            color=COLOURS[1],
-            linewidth=0.8,
-            label="synthesised",
-        )
+        f, lines = fitted.data.frequency, (fitted.data.H, fitted.synthesised)
+        for H, colour, label in zip(
+            lines, ("0.6", COLOURS[1]), ("measured", "synthesised"), strict=True
+        ):
+            axes.semilogy(f, np.abs(H[j, i]), color=colour, lw=0.8, label=label)
         pair = f"{fitted.data.references[j]} to {fitted.data.responses[i]}"
         axes.set_title(f"{plain(pair)}: residual {share[j, i]:.1%}")
         axes.set_xlabel("frequency in Hz")
-        if not panel:
+        if axes is grid[0]:
             axes.legend()
+    return figure
 
 
-def _auto_mac(figure: Figure, identification: Identification) -> None:
-    figure.set_size_inches(3.6, 3.2)
+def _auto_mac(identification: Identification) -> Picture:
+    figure = picture(3.6, 3.2)
     axes = figure.add_subplot()
     mac = auto_mac(np.array([mode.shape.complex_shape for mode in identification.modes]))
     ticks = [f"{mode.frequency:.4g}" for mode in identification.modes]
@@ -127,3 +112,4 @@ def _auto_mac(figure: Figure, identification: Identification) -> None:
         axes.text(s, r, f"{value:.2f}", ha="center", va="center", fontsize=6, color=colour)
     axes.set(title="auto-MAC", xlabel="frequency in Hz", ylabel="frequency in Hz")
     figure.colorbar(image)
+    return figure
