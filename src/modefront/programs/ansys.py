@@ -32,28 +32,9 @@ from modefront.inputs import counted, wrong
 from modefront.models.dofs import DofTable
 from modefront.models.files import read_entries
 from modefront.programs.base import JobOptions
-from modefront.programs.reading import (
-    Entries,
-    Listed,
-    existing,
-    given_table,
-    unlabelled,
-)
+from modefront.programs.reading import Entries, Listed, existing, given_table, unlabelled
 
-INTEGERS = 0x80
-"""Bit of the flags (their highest byte) for integers."""
-
-PLAIN = (INTEGERS, 0)
-"""Flags of integers and of doubles that are not compressed."""
-
-HEADER = 103
-"""Word at which the header begins."""
-
-SUFFIXES = (".mmf", ".mtx", ".mmx", ".txt")
 MATRICES = {"stiffness": ("_K", "K", "_stiff", "_STIFF"), "mass": ("_M", "M", "_mass", "_MASS")}
-
-IDENTIFIERS = {name: k for k, name in enumerate(("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"), 1)}
-"""Names of degrees of freedom in a mapping file."""
 
 ADVICE = "a modal analysis writes file.full (WRFULL,1 stops there), *EXPORT,…,MMF job_K.mmf"
 
@@ -86,7 +67,7 @@ class _Words:
         ):
             raise wrong(self.path, "whole records of Ansys", "a file that is cut off, or another")
         flags = (int(self.words[start + 1]) >> 24) & 0xFF
-        if flags not in PLAIN:
+        if flags not in (0x80, 0):  # integers, or doubles
             raise wrong(self.path, "records that are not compressed (/FCOMP,FULL,0)", "others")
         return self.words[start + 2 : start + 2 + count], start + count + 3
 
@@ -98,7 +79,7 @@ class _Words:
 def _from_full(path: Path) -> Listed:
     data = np.fromfile(path, dtype=np.uint8)
     words = _Words(path, data[: data.size // 4 * 4].view("<i4"))
-    header, position = words.record(HEADER)
+    header, position = words.record(103)
     if words.words[0] != 100 or header.size < 64 or header[0] >= 0:
         raise wrong(path, "an assembled matrix of Ansys (.full)", "another file")
     if header[13]:
@@ -162,9 +143,9 @@ def _diagonal(words: _Words, position: int, size: int) -> Entries:
 
 
 def _from_market(path: Path, options: JobOptions) -> Listed:
-    files, matrices = [], []
+    files, matrices, suffixes = [], [], (".mmf", ".mtx", ".mmx", ".txt")
     for what, endings in MATRICES.items():
-        names = [path.with_name(path.name + end + suffix) for end in endings for suffix in SUFFIXES]
+        names = [path.with_name(path.name + end + suffix) for end in endings for suffix in suffixes]
         file = next((name for name in names if name.is_file()), names[0])
         matrices.append(read_entries(existing(file, f"the {what} of Ansys", ADVICE), form=".mtx"))
         files.append(file)
@@ -193,11 +174,12 @@ def _labels(path: Path, size: int) -> DofTable:
 
 def _mapping(path: Path) -> DofTable:
     rows: list[tuple[int, int, int]] = []
+    directions = {x: k for k, x in enumerate(("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"), 1)}
     with path.open(encoding="utf-8", errors="replace", newline="") as stream:
         for row in csv.reader(stream, delimiter=" ", skipinitialspace=True):
             items = [item for item in row if item]
             if len(items) >= 3 and items[0].isdigit() and items[1].isdigit():
-                rows.append((int(items[0]), int(items[1]), IDENTIFIERS.get(items[2].upper(), 0)))
+                rows.append((int(items[0]), int(items[1]), directions.get(items[2].upper(), 0)))
     table = np.array(sorted(rows), dtype=np.intp).reshape(-1, 3)
     if not np.array_equal(table[:, 0], np.arange(1, len(table) + 1)):
         raise wrong(path, "one line for each equation: equation, node, direction", "others")

@@ -35,9 +35,6 @@ _ELEMENTS = {  # field where nodes begin, number of corners and of nodes, cell, 
     "CPYRAM": (3, 5, 13, "pyramid", "solid"),
 }
 
-FLAT = 1e-8
-"""Stiffness of a direction, over the greatest at its node, below which AUTOSPC holds it."""
-
 EMPTY = [""] * 8
 
 Dof = tuple[int, int]
@@ -119,7 +116,7 @@ class Bulk:
         for n, blocks in stiff.items():
             for part, block in enumerate(blocks):
                 values, vectors = np.linalg.eigh(block)
-                soft = vectors[:, values <= FLAT * max(values[-1], 1.0)]
+                soft = vectors[:, values <= 1e-8 * max(values[-1], 1.0)]
                 for _ in range(soft.shape[1]):  # the component closest to what is soft, one by one
                     component = int(np.argmax((soft**2).sum(axis=1)))
                     out.add((n, 3 * part + component + 1))

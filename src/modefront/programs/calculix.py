@@ -26,18 +26,9 @@ from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.programs.base import JobOptions
 from modefront.programs.inp import Deck, deck_of
-from modefront.programs.reading import (
-    Entries,
-    Listed,
-    columns,
-    coordinates,
-    existing,
-)
+from modefront.programs.reading import Entries, Listed, columns, coordinates, existing
 
 SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
-
-PRECISION = 1e-13
-"""Relative error of numbers with 14 digits."""
 
 ADVICE = (
     "the deck needs *FREQUENCY, SOLVER=MATRIXSTORAGE; look for *ERROR in what ccx prints, as it "
@@ -54,8 +45,7 @@ def read(path: Path, options: JobOptions) -> Listed:
     labels = columns(files[".dof"], ".", "ii", comment="#")
     node, direction = (column.astype(np.intp) for column in labels)
     entries = {
-        suffix: replace(coordinates(files[suffix]), precision=PRECISION)
-        for suffix in (".sti", ".mas")
+        suffix: replace(coordinates(files[suffix]), precision=1e-13) for suffix in (".sti", ".mas")
     }
     _refuse_cut_off(files, entries, node.size)
     notes: list[str] = []

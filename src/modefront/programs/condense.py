@@ -23,9 +23,7 @@ from modefront.errors import Fault, InputError
 from modefront.models.dofs import DofTable
 from modefront.programs.base import Matrix, whole
 from modefront.programs.differences import Term, Terms
-
-SINGULAR = 1e-12
-"""Least over greatest singular value of a block from which on it can be inverted."""
+from modefront.rounding import ACCUMULATED
 
 
 def condensed(terms: Terms) -> tuple[Terms, int, int]:
@@ -104,7 +102,7 @@ def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]
         source = members.ravel()[entries.row]
         blocks[position[source], place[source], place[entries.col]] = entries.data
         singular = np.linalg.svd(blocks, compute_uv=False)
-        good = singular[:, -1] > SINGULAR * singular[:, 0]
+        good = singular[:, -1] > ACCUMULATED * singular[:, 0]
         inverse, members = np.linalg.inv(blocks[good]), members[good]
         done[members] = True
         rows.append(np.repeat(members, size, axis=1).ravel())

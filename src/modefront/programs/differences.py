@@ -9,10 +9,8 @@ With the parameters as factors of their nominal values, so that all are 1 in the
 which the runs r solve for the terms; the base is what is left of the nominal run. A parameter in
 which the matrices are linear takes one run, at any factor; one with the functions t and t³ two.
 
-Differences of large numbers are noise where nothing has changed. Dropped is what is below 1e-13 of
-the greatest entry and no more than 1e-10 of what joins the same degrees of freedom (so that the
-penalties of some programs hide nothing), and what is below the rounding of the file. Terms of few
-degrees of freedom keep the rank that they have above the rounding: a spring's is 1.
+Differences of large numbers are noise where nothing has changed: ``docs/import.md`` says what is
+dropped. Terms of few degrees of freedom keep the rank that they have above the rounding.
 
 ========  ==========================================================
 symbol    meaning
@@ -27,6 +25,7 @@ E         A of a run for checking, minus that of the terms
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -36,16 +35,10 @@ import scipy.sparse
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import InputError, wrong
 from modefront.linalg.affine import Monomials
-from modefront.models.dofs import DofTable
+from modefront.models.dofs import DofTable, name_of
 from modefront.models.terms import BASE, term_exponents
 from modefront.programs.base import Job, Matrix, Quantity, whole
 from modefront.rounding import ACCUMULATED
-
-DROPPED = 1e-13
-"""Entries of a difference below it, over the greatest entry of the matrix, are dropped."""
-
-LOCAL = 1e-10
-"""They are kept if they are more than this of the diagonal entries of their row and column."""
 
 AFFINE = 1e-10
 """Greatest error of the terms at other values of the parameters, over the change."""
@@ -55,9 +48,6 @@ ROUNDING = 20.0
 
 CANCELLED = 1e-14
 """Size over the greatest of what has cancelled: some fifty roundings of one operation."""
-
-SMALL = 60
-"""Degrees of freedom up to which the rank of a term is found."""
 
 COVERED = 0.99
 """Share of an error within the terms of a parameter, from which it may come from it."""
@@ -128,7 +118,7 @@ class Differences:
         for quantity, A in self.nominal.matrices.items():
             D = scipy.sparse.coo_array(reordered(job.matrices[quantity], order) - A)
             size, greatest = np.abs(D.data), np.abs(A.data).max(initial=0.0)
-            noise = (size <= DROPPED * greatest) & (size <= LOCAL * _joint(D, A))
+            noise = (size <= 1e-13 * greatest) & (size <= 1e-10 * _joint(D, A))
             differences[quantity] = _with(D, ~noise & (D.data != 0))
         if not any(D.nnz for D in differences.values()):
             changed = self._changed(values)
@@ -265,43 +255,26 @@ def matching(nominal: Job, job: Job, label: str) -> Ints | None:
     They are matched by node and direction, and those of the same label in their order. Raises
     InputError where there are others.
     """
-    before, after = nominal.dofs, job.dofs
-    if before.size != after.size and not (nominal.labelled and job.labelled):
-        raise wrong(
-            label, f"{before.size} degrees of freedom, as '{nominal.name}' has", f"{after.size}"
-        )
+    tables = nominal.dofs, job.dofs
     if not (nominal.labelled and job.labelled):
+        if nominal.size != job.size:
+            expected = f"{nominal.size} degrees of freedom, as '{nominal.name}' has"
+            raise wrong(label, expected, job.size)
         return None
-    same = np.array_equal(before.node, after.node) and np.array_equal(
-        before.direction, after.direction
-    )
-    if same:
-        return None
-    orders = [np.lexsort((table.direction, table.node)) for table in (before, after)]
-    sorted_labels = [
-        np.column_stack([table.node[order], table.direction[order]])
-        for table, order in zip((before, after), orders, strict=True)
+    orders = [np.lexsort((table.direction, table.node)) for table in tables]
+    known = [
+        np.column_stack([table.node, table.direction])[order]
+        for table, order in zip(tables, orders, strict=True)
     ]
-    if before.size != after.size or (sorted_labels[0] != sorted_labels[1]).any():
-        raise _unmatched(nominal, job, label)
-    out = np.zeros(before.size, np.intp)
+    if not np.array_equal(known[0], known[1]):
+        expected = f"the degrees of freedom of '{nominal.name}' ({nominal.size})"
+        before, after = (Counter(map(tuple, labels.tolist())) for labels in known)
+        node, direction = min((before - after) or (after - before))
+        found = f"{after[node, direction] or 'none'} at node {node} {name_of(direction)}"
+        raise wrong(label, expected, f"{found}, {job.size} in all")
+    out = np.zeros(nominal.size, np.intp)
     out[orders[1]] = orders[0]
     return out
-
-
-def _unmatched(nominal: Job, job: Job, label: str) -> InputError:
-    """Return the error that names the first degree of freedom that only one of two jobs has."""
-    tables = [
-        {(int(n), int(d)): k for k, (n, d) in enumerate(zip(t.node, t.direction, strict=True))}
-        for t in (nominal.dofs, job.dofs)
-    ]
-    missing, more = (sorted(tables[a].keys() - tables[b].keys()) for a, b in ((0, 1), (1, 0)))
-    expected = f"the degrees of freedom of '{nominal.name}' ({nominal.size})"
-    if missing:
-        return wrong(label, expected, f"none at {nominal.dofs.label(tables[0][missing[0]])}")
-    if more:
-        return wrong(label, expected, f"one at {job.dofs.label(tables[1][more[0]])}, {job.size}")
-    return wrong(label, expected, f"{job.size}, other numbers of them at the same nodes")
 
 
 def reordered(A: Matrix, order: Ints | None) -> Matrix:
@@ -345,7 +318,7 @@ def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]
     None is returned for the rank of a term of many degrees of freedom, which is left as it is.
     """
     dofs = _support(term)
-    if dofs.size == 0 or dofs.size > SMALL:
+    if dofs.size == 0 or dofs.size > 60:  # decomposing many takes long
         return term, None if dofs.size else 0
     dense = whole(term)[dofs][:, dofs].toarray()
     values, vectors = np.linalg.eigh(dense)

@@ -19,10 +19,6 @@ from modefront._typing import Floats, Ints
 from modefront.errors import reason
 from modefront.inputs import ended, fortran, wrong
 
-COMPLEX = (3, 4)
-"""Types of complex numbers in the header."""
-
-
 DmigMatrix: TypeAlias = tuple[Ints, Floats, float]
 """Labels (entries, 4) of rows and columns, each a node and a component; values (entries,); and the
 relative error of these."""
@@ -45,7 +41,7 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
                     expected = f"the header 'DMIG {header}' once, before its columns"
                     raise wrong(path, expected, "one after them", place)
                 kind = line[32:40].strip()
-                if kind.isdigit() and int(kind) in COMPLEX:
+                if kind.isdigit() and int(kind) in (3, 4):
                     raise wrong(path, "real numbers", f"type {int(kind)} (complex)", place)
             elif line.startswith("DMIG*"):
                 name = line[8:24].strip()

@@ -22,22 +22,13 @@ from modefront.programs.bulk import Bulk, read_bulk
 from modefront.programs.dmig import read_dmig
 from modefront.programs.mesh import ProgramMesh
 from modefront.programs.op4 import read_op4
-from modefront.programs.reading import (
-    Entries,
-    Listed,
-    existing,
-    given_table,
-    unlabelled,
-)
+from modefront.programs.reading import Entries, Listed, existing, given_table, unlabelled
 
 DECKS = (".dat", ".bdf", ".nas", ".inp")
 MATRICES = (".op4", ".pch")
 
 SETS = ("AA", "AAX", "LL", "XX", "HH", "GG", "JJ", "2GG", "")
 """Names of pairs of matrices behind K and M, the first that there is being taken."""
-
-EQUILIBRIUM = 1e-6
-"""Force of a rigid-body translation, over the forces that cancel, that passes for rounding."""
 
 ADVICE = "OUTPUT4 KAA,MAA,,,//-1/21 writes an .op4 file, EXTSEOUT or PARAM,EXTOUT,DMIGPCH a .pch"
 
@@ -150,7 +141,7 @@ def _check_labels(path: Path, deck: Bulk, triangle: Matrix, dofs: DofTable, free
     for direction in (1, 2, 3):
         r = (free & (dofs.direction == direction)).astype(float)
         force, size = K @ r, abs(K) @ r
-        bad = (np.abs(force) > EQUILIBRIUM * size) & (size > 0) & strained
+        bad = (np.abs(force) > 1e-6 * size) & (size > 0) & strained  # less is rounding
         if bad.any():
             k = int(np.argmax(np.abs(force) * bad))
             raise wrong(

@@ -25,9 +25,6 @@ from modefront.programs.base import JobOptions, Matrix
 from modefront.programs.mesh import ProgramMesh, arrays_of
 from modefront.rounding import LARGEST, SYMMETRY
 
-DOUBLE = 1e-15
-"""Relative error of numbers that are written as binary doubles: a few roundings of the program."""
-
 
 @dataclass(frozen=True, eq=False)
 class Entries:
@@ -38,14 +35,14 @@ class Entries:
     row, column : (entries,) from 0
     value : (entries,)
     shape : numbers of rows and columns, where the file tells them
-    precision : relative error of the values
+    precision : relative error of the values, that of binary doubles unless given
     """
 
     row: Ints
     column: Ints
     value: Floats = field(repr=False)
     shape: tuple[int, int] | None = None
-    precision: float = DOUBLE
+    precision: float = 1e-15
 
 
 @dataclass(frozen=True, eq=False)

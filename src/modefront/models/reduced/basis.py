@@ -1,25 +1,10 @@
-r"""The space in which a reduced model looks for its modes.
-
-At a snapshot :math:`\theta_s` the modes and their exact derivatives span, to first order, all
-modes near it. By Rayleigh and Ritz, an eigenvalue from such a space is wrong by the square of what
-a mode lacks:
-
-.. math::
-    \varphi(\theta) = \varphi + \sum_i (\theta_i - \theta_{si})\,\partial_i \varphi + O(h^2)
-    \quad\Longrightarrow\quad \lambda - \lambda^* = O(h^4).
+r"""The space V in which a reduced model looks for its modes; ``docs/reduced.md`` says why.
 
 The basis is orthonormal in the norm of :math:`A = K(\theta_1) + s M(\theta_1)`, with s = 0 unless
 K is singular (rigid-body modes). A is positive definite also where M is not (massless degrees of
 freedom), and its norm is that of energy: a mode of unit energy that lacks a part of length d has
 an eigenvalue wrong by :math:`d^2`, relative. Derivatives are taken times half the range of their
 parameter over the length of their mode, and directions shorter than d are left out.
-
-========  ======================================================================
-symbol    meaning
-========  ======================================================================
-V         (N, n) basis, :math:`V^T A V = I`
-K, M      affine as in the full model, with the terms :math:`V^T K_j V`
-========  ======================================================================
 """
 
 from __future__ import annotations
@@ -34,9 +19,6 @@ from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, combine_all, gram
 from modefront.modes.dense import Decomposition, lowest
 from modefront.modes.tridiagonal import LowestModes
-
-UNSOUND = 0.3
-"""Length of a direction that should have the length 1, below which it is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +70,7 @@ def extended(
     the projected matrices only the new rows and columns are computed.
     """
     W = vectors
-    for least in (shortest, UNSOUND):  # what rounding leaves of the basis goes the second time
+    for least in (shortest, 0.3):  # what rounding leaves of the basis goes the second time
         theta, sigma = np.tile(basis.theta, (W.shape[1], 1)), np.full(W.shape[1], basis.sigma)
         AW = residuals(pencil, theta, sigma, W)
         if basis.columns:

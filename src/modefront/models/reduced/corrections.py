@@ -1,26 +1,14 @@
 r"""What modes and their derivatives lack in a basis, with the factor of another model.
 
-For a Ritz pair :math:`(\lambda, \varphi)`, :math:`\varphi^T M \varphi = 1`, the part
-:math:`\delta` that the mode lacks solves, to leading order (Jacobi's correction),
-
-.. math:: C \delta = -r, \qquad r = C \varphi, \qquad C = K - \lambda M
-
-on the M-complement of the low Ritz modes. What a derivative :math:`\varphi'` of the reduced
-problem lacks solves the same equation with
+``docs/reduced.md`` has the equation, in which :math:`r = C \varphi, C = K - \lambda M`. What a
+derivative :math:`\varphi'` of the reduced problem lacks solves the same one with
 
 .. math:: r = C \varphi' + (K' - \lambda M' - \lambda' M) \varphi .
 
-With the factor of an earlier :math:`A = K + s M`, the space is extended by :math:`A^{-1} r`, the
-modes or derivatives are those of the reduced problem in the new space, and so on (Davidson's
-method). Of several models each profits from the others: where the stiffness of some parts of a
-structure changes by factors, most eigenvalues of :math:`A^{-1} C` are 1 or one of these. What is
-kept of the space is the modes or derivatives themselves.
-
-A step is worth :math:`r^T A^{-1} r`, the square of the length that was lacking but for the
-condition of :math:`A^{-1} C`.
-
-Sources: Sleijpen & Van der Vorst 1996, doi:10.1137/S0895479894270427 (correction); Morgan & Scott
-1986, doi:10.1137/0907054 (Davidson's method with other preconditioners).
+Of several models each profits from the others: where the stiffness of some parts of a structure
+changes by factors, most eigenvalues of :math:`A^{-1} C` are 1 or one of these. What is kept of the
+space is the modes or derivatives themselves. A step is worth :math:`r^T A^{-1} r`, the square of
+the length that was lacking but for the condition of :math:`A^{-1} C`.
 """
 
 from __future__ import annotations
@@ -37,18 +25,11 @@ from modefront.linalg.pencil import Pencil
 from modefront.models.reduced.basis import Basis, extended, residuals
 from modefront.modes import dense
 
-SLOWEST = 0.5
-"""Ratio of steps at most that what is left is extrapolated with."""
-
-ENTRIES = 2**19
-"""Entries of the right-hand sides that are solved together, but for `FEWEST` columns."""
-
-FEWEST = 64
-"""Right-hand sides that are solved together however large the model is, if there are as many: the
-factors take 32 at a time, and the part of these that is left takes as long as all."""
-
 STEPS = 30
 """Steps, after which a full solution is better."""
+
+SLOWEST = 0.5
+"""Ratio of steps at most that what is left is extrapolated with."""
 
 
 @dataclass(frozen=True)
@@ -227,5 +208,5 @@ def _shares(pencil: Pencil, thetas: Sequence[Floats], count: int) -> list[Sequen
 
 
 def _together(pencil: Pencil) -> int:
-    """Return how many right-hand sides are solved together."""
-    return max(FEWEST, ENTRIES // pencil.size)
+    """Return how many right-hand sides are solved together; factors take 32 at a time."""
+    return max(64, 2**19 // pencil.size)

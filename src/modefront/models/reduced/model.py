@@ -34,21 +34,8 @@ from modefront.modes.sparse import lowest
 from modefront.work.costs import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
 
-SHORTEST = 0.1
-"""Length of the shortest direction of the basis, over the square root of the tolerance."""
-
 SPARE = 2
 """Modes in the basis beyond those that are used, without derivatives: they may enter later."""
-
-WIDE = 2
-"""Modes of the first snapshot over those that are used: certificates need a level above these, and
-below the next one."""
-
-PROBES = 24
-"""Factorisations at most that seek modes which enter where two parameters drop together."""
-
-COARSE = 3e-3
-"""Length of the shortest direction of the basis that stands for the bounds."""
 
 SHARE = 0.1
 """Remainder of a correction over all of it, where it need not be exact."""
@@ -56,17 +43,8 @@ SHARE = 0.1
 FAR = 30.0
 """Condition of K over that of the factor up to which a snapshot has no factor of its own."""
 
-HALVINGS = 4
-"""Number of times that a bound is moved halfway to the model."""
-
 WORST = 6
 """Models of a snapshot that are corrected at once, the worst ones."""
-
-UNSTABLE = 3
-"""Directions of negative stiffness that are sought together."""
-
-NEGATIVE = 1e-8
-"""Stiffness of a direction, over that of the factor, that is no rounding."""
 
 TOLERANCE = 1e-8
 """Default relative error of eigenvalues."""
@@ -190,6 +168,8 @@ class ReducedModel:
 
     unused = passed_on("full", "unused")
 
+    selection = passed_on("full", "selection")
+
     @property
     def capacity(self) -> int:
         """Columns that the basis may have: as many modes as are asked for, at least."""
@@ -280,7 +260,7 @@ class ReducedModel:
                 lam = basis.lowest(theta, count + LATER).lam
                 if lam.size > count:
                     doubtful.append((-lam[count - 1], pair, theta, lam))
-        chosen = sorted(doubtful, key=lambda entry: entry[:2])[:PROBES]
+        chosen = sorted(doubtful, key=lambda entry: entry[:2])[:24]  # each takes a factorisation
         return [theta for *_, theta, lam in chosen if self._lacks(basis, theta, lam, count)]
 
     @property
@@ -419,7 +399,8 @@ class ReducedModel:
         if known is None:  # as many more as there are
             count = min(max(count, self.count), self.size)
             with suppress(ModelError):
-                spectrum = lowest(pencil, theta, min(WIDE * count, self.size))
+                # Certificates need a level above the modes in question, and below the next one.
+                spectrum = lowest(pencil, theta, min(2 * count, self.size))
         spectrum = spectrum or lowest(pencil, theta, count)
         below = spectrum.factors[0]
         vectors = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
@@ -450,8 +431,8 @@ class ReducedModel:
         for theta in models:
             start = np.random.default_rng(0).standard_normal(self.size)
             options = {"which": "SA", "v0": start, "tol": SHARE**2, "Minv": inverse}
-            nu, X = scipy.sparse.linalg.eigsh(pencil.K.at(theta), UNSTABLE, A, **options)
-            found.append(X[:, nu < -NEGATIVE])
+            nu, X = scipy.sparse.linalg.eigsh(pencil.K.at(theta), 3, A, **options)
+            found.append(X[:, nu < -1e-8])  # less is rounding
         vectors = np.hstack(found)
         if not vectors.shape[1]:
             raise ModelError("no direction of negative stiffness is found")
@@ -474,7 +455,7 @@ class ReducedModel:
         bounds = []
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
             for end in ends:
-                for halving in range(HALVINGS + 1):
+                for halving in range(5):
                     nearby = theta.copy()
                     nearby[i] += (end - theta[i]) / 2**halving
                     if _condition(basis, nearby) <= FAR:
@@ -483,7 +464,7 @@ class ReducedModel:
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
-        request = CorrectionRequest(SHARE, COARSE, (basis.columns + self.capacity) // 2)
+        request = CorrectionRequest(SHARE, 3e-3, (basis.columns + self.capacity) // 2)
         for some in (bounds, *([theta] for theta in bounds)):
             # A larger space may see that a matrix is indefinite at one of them: then each alone.
             with suppress(ModelError):
@@ -496,7 +477,7 @@ class ReducedModel:
 
     @property
     def _shortest(self) -> float:
-        return SHORTEST * float(np.sqrt(self.tolerance))
+        return 0.1 * float(np.sqrt(self.tolerance))  # an error is the square of what is lacking
 
 
 def _condition(basis: Basis, theta: Floats) -> float:
