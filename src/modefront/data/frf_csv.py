@@ -11,7 +11,7 @@ measured. Separators and decimal commas are those of modal data (`modefront.data
 from __future__ import annotations
 
 import csv
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -30,12 +30,6 @@ PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))
 """Endings of the two columns of a function, in each of its forms."""
 
 ENDINGS = ("_re", "_im", "_magnitude", "_rad", "_deg", COHERENCE)
-
-HALF_TURN = 3.15
-"""Greatest size of a phase that seems to be in radians, where it should be in degrees."""
-
-MOST_RADIANS = 100.0
-"""Greatest size of a phase in radians, beyond which it seems to be in degrees."""
 
 MOST_FAULTS = 5
 """Faults that are listed of one file."""
@@ -91,7 +85,7 @@ def _function(
         place = f"column {name + pair[0]!r}"
         faults.append(Fault(str(path), place, "magnitudes of 0 or more", found))
     degrees = pair[1] == "_deg"
-    if (1 < most <= HALF_TURN) if degrees else most > MOST_RADIANS:
+    if (1 < most <= 3.15) if degrees else most > 100:  # half a turn in radians, or many of them
         unit = "degrees" if degrees else "radians"
         expected = f"a phase in {unit} (NAME_deg is in degrees, NAME_rad in radians)"
         found = f"{most:g} at most"
@@ -158,34 +152,23 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
             return header, values
     except ValueError:
         pass
-    fields = [(number, row.split(separator)) for number, row in numbered]
+    fields = [(number, [x.strip() for x in row.split(separator)]) for number, row in numbered]
     whole = [row for _, row in fields if len(row) == len(header)]
-    empty = {k for k in range(len(header)) if not any(row[k].strip() for row in whole)}
-    values, faults = _one_by_one(file, header, fields, empty)
-    refuse(faults[:MOST_FAULTS])
-    last = max(k for k in range(len(header)) if k not in empty)
-    ended_column(path, (row[last] for row in whole))
-    return header, values
-
-
-def _one_by_one(
-    file: str, header: Sequence[str], rows: Sequence[tuple[int, list[str]]], empty: Collection[int]
-) -> tuple[Floats, list[Fault]]:
-    """Return numbered rows of numbers, and what is wrong with them; NaN in empty columns."""
-    faults: list[Fault] = []
-    values = np.full((len(rows), len(header)), np.nan)
-    for position, (number, fields) in enumerate(rows):
-        if len(fields) != len(header):
+    full = [k for k in range(len(header)) if any(row[k] for row in whole)]
+    values, faults = np.full((len(fields), len(header)), np.nan), list[Fault]()
+    for position, (number, row) in enumerate(fields):
+        if len(row) != len(header):
             expected = f"{len(header)} fields, as in the header"
-            faults.append(Fault(file, f"line {number}", expected, str(len(fields))))
+            faults.append(Fault(file, f"line {number}", expected, str(len(row))))
             continue
-        for k, field in enumerate(fields):
-            text = field.strip()
-            if NUMBER.fullmatch(text) and abs(float(text)) <= LARGEST:
-                values[position, k] = float(text)
-            elif k not in empty:
-                place = f"line {number}, column {header[k]!r}"
-                faults.append(Fault(file, place, f"a finite number up to {LARGEST:g}", repr(text)))
+        for k in full:
+            if NUMBER.fullmatch(row[k]) and abs(float(row[k])) <= LARGEST:
+                values[position, k] = float(row[k])
+            else:
+                place, expected = f"column {header[k]!r}", f"a finite number up to {LARGEST:g}"
+                faults.append(Fault(file, f"line {number}, {place}", expected, repr(row[k])))
         if len(faults) >= MOST_FAULTS:
             break
-    return values, faults
+    refuse(faults[:MOST_FAULTS])
+    ended_column(path, (row[full[-1]] for row in whole))
+    return header, values
