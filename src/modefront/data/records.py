@@ -27,14 +27,7 @@ from modefront.rounding import LARGEST
 ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """Number of differentiations of the displacement in each quantity."""
 
-UNEVEN = 0.3
-"""Distance of a sample from its even place, over a step, that digits of times may make."""
-
-ARRAYS = (".npy", ".mat")
-"""Endings of files that hold arrays alone."""
-
 WHAT = "a file with records in time"
-READER = "modefront.data.records:read_arrays"
 
 
 @dataclass(frozen=True)
@@ -130,7 +123,7 @@ def read_records(setup: RecordedFiles, quantity: str) -> Records:
 def _of_file(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, float]:
     """Return names, records (sensors, samples) and samples per second of one file."""
     ending = path.suffix.lower()
-    if ending in ARRAYS:
+    if ending in (".npy", ".mat"):
         return _of_array(path, setup)
     if ending == ".csv":
         own, values = read_numbers(path, WHAT)
@@ -142,7 +135,7 @@ def _of_file(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, f
         names = [name for name in header if name != TIME]
         rows = np.nan_to_num(np.delete(values, column, axis=1).T, nan=0.0)  # empty columns
         return names, rows, _rate(path, values[:, column])
-    functions = [x for _, x in read_functions(path) if x.kind == OF_TIME]
+    functions = [x for x in read_functions(path) if x.kind == OF_TIME]
     if not functions:
         expected = "records in time (functions of type 1) in dataset 58"
         raise wrong(path, expected, "none", "dataset 58")
@@ -175,7 +168,7 @@ def _of_array(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, 
         expected = "'rate' and 'sensors' in its [[set]], which the file does not say"
         raise wrong(path, expected, "nothing", "records")
     try:
-        read, _ = isolated(READER, path)
+        read, _ = isolated(f"{__name__}:read_arrays", path)
     except IsolatedError as error:
         raise wrong(path, "an array of numbers", str(error)) from None
     arrays, count = list(read.values()), len(setup.sensors)
@@ -193,8 +186,9 @@ def _rate(path: Path, time: Floats) -> float:
     count, length = len(time) - 1, float(time[-1] - time[0])
     if count < 2 or length <= 0:
         raise wrong(path, "ascending times", "others", "time")
+    # Digits of times may move a sample by a part of a step.
     off = np.abs(time - time[0] - np.arange(count + 1) * (length / count)).max()
-    if off > UNEVEN * length / count:
+    if off > 0.3 * length / count:
         found = f"times off by up to {off:.3g} s, steps of {length / count:.3g} s"
         raise wrong(path, "a time axis of even steps", found, "time")
     return count / length

@@ -10,26 +10,27 @@ Formats*, datasets 55, 58 and 58b.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from modefront._typing import Complexes, Floats
 from modefront.data.blows import Blow, Contents
 from modefront.data.channels import Channel
-from modefront.errors import Fault, InputError, reason
-from modefront.inputs import MOST_DATA, counted, fortran, read_text_bytes
+from modefront.errors import InputError, reason
+from modefront.inputs import MOST_DATA, counted, fortran, read_text_bytes, wrong
 from modefront.outputs import write_text
+
+T = TypeVar("T")
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
 
-FORCES = (9, 13)
-"""Data types of the force of a hammer: reaction force, excitation force."""
+CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 
 QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 """Quantities of the numerator: displacement, velocity, acceleration."""
@@ -37,52 +38,34 @@ QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
 """Directions by their numbers in universal files."""
 
+KNOWN = (15, 55, 58, 2411, 2420)
+"""Datasets that are read, whose numbers may have blanks before them as no other line has."""
+
 OPENING = re.compile(
     rb"(?:\xef\xbb\xbf)?\s*^[ ]{4}-1[ \t]*\r?\n[ ]*([0-9]{1,5})(b?)(?!\S)([^\n]*)(?:\n|\Z)",
     re.MULTILINE,
 )
-CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
-END_OF_BINARY = re.compile(rb"\r?\n?[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
-
-KNOWN = (15, 55, 58, 2411, 2420)
-"""Datasets that are read, whose numbers may have blanks before them as no other line has."""
-
-BLANK = b" \t\r\n\0\x1a"
-"""Bytes that may stand behind the last dataset."""
-
-NEXT = re.compile(r"(?<=[0-9.])(?=[+-][0-9]*\.)")
-"""Beginning of a number that follows on another one without a blank."""
-
-NUMERIC = b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"
-"""Bytes of numbers, of nan and infinity among them, and of what separates them."""
-
 HEADER, RECORD_7 = 11, 6
 """Lines of dataset 58 before its numbers; the one with their kind and number, from 0."""
-
-FIELDS_6 = (0, 5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
-"""Columns of the fields of record 6 of dataset 58."""
-
-KINDS = {2: "f4", 4: "f8", 5: "c8", 6: "c16"}
-"""Types of values in dataset 58, as NumPy knows them."""
 
 WHAT = "a universal file with frequency response functions or records of blows (dataset 58)"
 
 
 @dataclass(frozen=True)
 class Block:
-    """One dataset of a universal file: its number, the line where it begins, its bytes.
+    """One dataset of a universal file.
 
     Attributes
     ----------
-    number, line : its number, and the line where it begins
-    start, end : bytes behind its number, and before the line that ends it
+    file, number, line : its file, its number, and the line where it begins
+    body : what it holds, behind its number
     binary : the words behind the number of a binary dataset; None for one of text
     """
 
+    file: Path
     number: int
     line: int
-    start: int
-    end: int
+    body: bytes
     binary: list[str] | None
 
     @property
@@ -91,44 +74,34 @@ class Block:
         return f"line {self.line}, dataset {self.number}"
 
 
-def read_uff(path: Path) -> Contents:
-    """Return the frequency response functions of a universal file, with their coherence.
-
-    Where it has none, the records of blows: of the force and of the responses in time. Raises
-    InputError where the file holds neither, is cut off or cannot be decoded.
-    """
-    file, decoded = str(path), read_functions(path)
-    kinds = {values.kind for _, values in decoded}
-    if FRF in kinds:
-        return Contents(channels=tuple(_channels(decoded, file)))
-    blows = _blows(decoded, file) if TIME in kinds else []
-    if not blows:
-        expected = (
-            "frequency response functions (type 4), or records in time (type 1) of the excitation "
-            "force and of responses, among the functions of dataset 58"
-        )
-        found = f"functions of type {', '.join(map(str, sorted(kinds)))} only"
-        if TIME in kinds:
-            found += ", none of them a force and its responses"
-        raise InputError(Fault(file, "dataset 58", expected, found))
-    return Contents(blows=tuple(blows))
+def datasets(path: Path, what: str, number: int) -> list[Block]:
+    """Return all datasets of a universal file; raises InputError where none has a number."""
+    out = blocks(read_text_bytes(path, what, MOST_DATA), path)
+    if not any(block.number == number for block in out):
+        numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in out))
+        raise wrong(path, what, f"datasets {numbers} only", "datasets")
+    return out
 
 
-def read_functions(path: Path) -> list[tuple[Block, Function]]:
-    """Return all datasets 58 of a universal file; raises InputError where it has none."""
-    file, content = str(path), read_text_bytes(path, WHAT, MOST_DATA)
-    datasets = blocks(content, file)
-    functions = [block for block in datasets if block.number == 58]
-    if not functions:
-        numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in datasets))
-        raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
-    return [(block, _function(content, block, file)) for block in functions]
+def each(datasets: Iterable[Block], read: Callable[[Block], T], *numbers: int) -> list[T]:
+    """Return what is read of the datasets with some numbers; raises InputError for broken ones."""
+    out = []
+    for block in (block for block in datasets if block.number in numbers):
+        try:
+            out.append(read(block))
+        except InputError:
+            raise
+        except (ValueError, IndexError, KeyError, OverflowError) as error:
+            expected = f"a dataset {block.number}"
+            raise wrong(block.file, expected, reason(error), block.place) from None
+    return out
 
 
 @dataclass(frozen=True, eq=False)
 class Function:
     """A dataset 58: its type, what it is of, its degrees of freedom, abscissae and values."""
 
+    block: Block
     kind: int
     ordinate: int
     response: tuple[str, int]
@@ -137,63 +110,64 @@ class Function:
     data: Floats | Complexes
 
 
-def _channels(decoded: Sequence[tuple[Block, Function]], file: str) -> list[Channel]:
-    channels, coherences = [], {}
-    for block, values in decoded:
-        if values.kind == FRF:
-            channels.append(_channel(values, block, file))
-        elif values.kind == COHERENCE:
-            coherence = _channel(values, block, file)
-            coherences[coherence.reference, coherence.response] = np.abs(coherence.H)
-    return [
-        replace(channel, coherence=coherences.get((channel.reference, channel.response)))
-        for channel in channels
-    ]
+def read_functions(path: Path) -> list[Function]:
+    """Return all datasets 58 of a universal file; raises InputError where it has none."""
+    return each(datasets(path, WHAT, 58), _function, 58)
 
 
-def _blows(decoded: Sequence[tuple[Block, Function]], file: str) -> list[Blow]:
-    """Return the blows of records in time.
+def read_uff(path: Path) -> Contents:
+    """Return the frequency response functions of a universal file, with their coherence.
 
-    A blow ends where one of its channels comes again, or another force.
+    Where it has none, the records of blows: of the force and of the responses in time. Raises
+    InputError where the file holds neither, is cut off or cannot be decoded.
     """
-    groups: list[dict[str, tuple[Block, Function]]] = [{}]
-    for block, values in decoded:
-        if values.kind != TIME:
-            continue
-        key = "" if values.ordinate in FORCES else values.response[0]
+    functions = read_functions(path)
+    kinds = {each.kind for each in functions}
+    if FRF in kinds:
+        coherence = {}
+        for channel in (_channel(each) for each in functions if each.kind == COHERENCE):
+            coherence[channel.reference, channel.response] = np.abs(channel.H)
+        channels = [_channel(each) for each in functions if each.kind == FRF]
+        of_channels = [coherence.get((x.reference, x.response)) for x in channels]
+        pairs = zip(channels, of_channels, strict=True)
+        return Contents(tuple(replace(channel, coherence=each) for channel, each in pairs))
+    # A blow ends where one of its channels comes again, or another force.
+    groups: list[dict[str, Function]] = [{}]
+    for record in (each for each in functions if each.kind == TIME):
+        # The ordinates of a hammer are a reaction force, and an excitation force.
+        key = "" if record.ordinate in (9, 13) else record.response[0]
         if key in groups[-1]:
             groups.append({})
-        groups[-1][key] = block, values
-    return [_blow(group, file) for group in groups if "" in group and len(group) > 1]
+        groups[-1][key] = record
+    if blows := [_blow(group) for group in groups if "" in group and len(group) > 1]:
+        return Contents(blows=tuple(blows))
+    expected = (
+        "frequency response functions (type 4), or records in time (type 1) of the excitation "
+        "force and of responses, among the functions of dataset 58"
+    )
+    found = f"functions of type {', '.join(map(str, sorted(kinds)))} only"
+    found += ", none of them a force and its responses" * (TIME in kinds)
+    raise wrong(path, expected, found, "dataset 58")
 
 
-def _blow(group: Mapping[str, tuple[Block, Function]], file: str) -> Blow:
-    block, force = group[""]
-    records, quantities = {}, set()
-    for name, (of_record, values) in group.items():
-        records[name] = values.response[1] * np.asarray(values.data, float)
+def _blow(group: Mapping[str, Function]) -> Blow:
+    force, records, quantities = group[""], {}, set()
+    block = force.block
+    for name, record in group.items():
+        records[name] = record.response[1] * np.asarray(record.data, float)
         if len(records[name]) != len(force.data):
-            place = f"line {of_record.line}, dataset 58"
             expected = f"{len(force.data)} samples, as the force of line {block.line}"
-            raise InputError(Fault(file, place, expected, str(len(records[name]))))
+            raise wrong(block.file, expected, str(len(records[name])), record.block.place)
         if name:
-            quantities.add(QUANTITIES.get(values.ordinate, ""))
+            quantities.add(QUANTITIES.get(record.ordinate, ""))
     if len(quantities) > 1:
         found = ", ".join(sorted(quantity or "others" for quantity in quantities))
-        expected = "responses of one quantity"
-        raise InputError(Fault(file, f"line {block.line}, dataset 58", expected, found))
-    return Blow(
-        file,
-        f"line {block.line}, dataset 58",
-        force.response[0],
-        force.x,
-        records.pop(""),
-        records,
-        quantities.pop(),
-    )
+        raise wrong(block.file, "responses of one quantity", found, block.place)
+    where, x, name = force.response[0], force.x, quantities.pop()
+    return Blow(str(block.file), block.place, where, x, records.pop(""), records, name)
 
 
-def blocks(content: bytes, file: str) -> list[Block]:
+def blocks(content: bytes, file: Path) -> list[Block]:
     """Return the datasets of a universal file; raises InputError for other files and torn ones."""
     out: list[Block] = []
     after, line, seen = 0, 1, 0
@@ -201,28 +175,29 @@ def blocks(content: bytes, file: str) -> list[Block]:
         line += content.count(b"\n", seen, opening.start(1)) - 1
         seen = content.rfind(b"\n", 0, opening.start(1))
         number, binary = int(opening[1]), bool(opening[2])
-        if number not in KNOWN and opening.end(1) - content.rfind(b"\n", 0, opening.start(1)) != 7:
+        if number not in KNOWN and opening.end(1) - seen != 7:
             expected = "the number of a dataset, which ends in column 6"
             found = repr(opening[0].splitlines()[-1].decode("latin-1"))
-            raise InputError(Fault(file, f"line {line + 1}", expected, found))
+            raise wrong(file, expected, found, f"line {line + 1}")
         if binary:
             closing = _end_of_binary(content, opening[3], opening.end())
         else:
             closing = CLOSING.search(content, opening.end())
         if not closing:
             expected = f"the end of dataset {number}, a line with -1"
-            raise InputError(Fault(file, f"line {line}", expected, "the end of the file"))
+            raise wrong(file, expected, "the end of the file", f"line {line}")
         words = opening[3].decode("latin-1").split()
-        out.append(Block(number, line, opening.end(), closing.start(), words if binary else None))
+        body = content[opening.end() : closing.start()]
+        out.append(Block(file, number, line, body, words if binary else None))
         after = closing.end()
     if not out:
         expected = "datasets between lines with -1 in columns 5 and 6"
-        raise InputError(Fault(file, "file", expected, "none: this is no universal file"))
-    if rest := content[after:].strip(BLANK):
+        raise wrong(file, expected, "none: this is no universal file")
+    if rest := content[after:].strip(b" \t\r\n\0\x1a"):
         line = content.count(b"\n", 0, content.find(rest, after)) + 1
         expected = "a dataset: a line with -1 in columns 5 and 6, then one with its number"
         found = rest[:40].partition(b"\n")[0].decode("latin-1").strip()
-        raise InputError(Fault(file, f"line {line}", expected, repr(found)))
+        raise wrong(file, expected, repr(found), f"line {line}")
     return out
 
 
@@ -244,8 +219,9 @@ def _end_of_binary(content: bytes, header: bytes, start: int) -> re.Match[bytes]
         start = content.find(b"\n", start) + 1
         if not start:
             return None
+    end = re.compile(rb"\r?\n?[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
     for size in [*sizes, *_sizes(record)]:
-        if closing := END_OF_BINARY.match(content, start + size):
+        if closing := end.match(content, start + size):
             return closing
     return None
 
@@ -262,68 +238,61 @@ def _sizes(record: Sequence[bytes]) -> list[int]:
     return [count * (1 + values) * size, count * (4 + values * size)]
 
 
-def text_lines(content: bytes, block: Block) -> list[str]:
-    """Return the lines of a dataset behind the one with its number."""
-    return content[block.start : block.end].decode("utf-8", "replace").splitlines()
-
-
 def reals(text: str) -> list[float]:
     """Return numbers as Fortran writes them; raises ValueError for anything else.
 
     >>> reals(" 1.5D+00-2.50000E+00 1.00000-100")
     [1.5, -2.5, 1e-100]
     """
-    return [fortran(word) for word in NEXT.sub(" ", text).split()]
+    # A number may follow on another one without a blank.
+    return [fortran(word) for word in re.sub(r"(?<=[0-9.])(?=[+-][0-9]*\.)", " ", text).split()]
 
 
-def _function(content: bytes, block: Block, file: str) -> Function:
-    """Return a dataset 58 that holds as many values as its header says."""
-    *lines, body = content[block.start : block.end].split(b"\n", HEADER)
+def _function(block: Block) -> Function:
+    *lines, body = block.body.split(b"\n", HEADER)
     head = [line.decode("utf-8", "replace") for line in lines]
-    try:
-        six = [head[5][a:b].strip() for a, b in pairwise(FIELDS_6)]
-        form, count, even = (int(head[RECORD_7][k : k + 10]) for k in (0, 10, 20))
-        first, step = (reals(head[RECORD_7][k : k + 13])[0] for k in (30, 43))
-        if even not in (0, 1):
-            raise ValueError(f"abscissae of the kind {even}")
-        x, data = _values(file, block, body, (form, count, even))
-        return Function(
-            int(six[0]),
-            int(head[8][:10]),
-            _degree_of_freedom(six[5], six[6]),
-            _degree_of_freedom(six[8], six[9]),
-            np.asarray(first + np.arange(count) * step) if even else x,
-            data,
-        )
-    except (ValueError, IndexError, KeyError, OverflowError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(Fault(file, block.place, "a dataset 58", reason(error))) from None
+    columns = (0, 5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
+    six = [head[5][a:b].strip() for a, b in pairwise(columns)]
+    form, count, even = (int(head[RECORD_7][k : k + 10]) for k in (0, 10, 20))
+    first, step = (reals(head[RECORD_7][k : k + 13])[0] for k in (30, 43))
+    if even not in (0, 1):
+        raise ValueError(f"abscissae of the kind {even}")
+    x, data = _values(block, body, (form, count, even))
+    return Function(
+        block,
+        int(six[0]),
+        int(head[8][:10]),
+        _degree_of_freedom(six[5], six[6]),
+        _degree_of_freedom(six[8], six[9]),
+        np.asarray(first + np.arange(count) * step) if even else x,
+        data,
+    )
 
 
 def _values(
-    file: str, block: Block, body: bytes, record: tuple[int, int, int]
+    block: Block, body: bytes, record: tuple[int, int, int]
 ) -> tuple[Floats, Floats | Complexes]:
     """Return abscissae, none where these are even, and values, of the form, number and spacing."""
     form, count, even = record
     is_complex = form in (5, 6)
     if block.binary is not None:
         order = "<" if block.binary[:1] == ["1"] else ">"
-        y, x = order + KINDS[form], order + ("f4" if form in (2, 5) else "f8")
+        y = order + {2: "f4", 4: "f8", 5: "c8", 6: "c16"}[form]
+        x = order + ("f4" if form in (2, 5) else "f8")
         kinds = [np.dtype([("x", each), ("y", y)][even:]) for each in (x, order + "f4")]
         kind = next((each for each in kinds if len(body) == count * each.itemsize), kinds[0])
-        counted(file, block.place, "bytes of values", count * kind.itemsize, len(body))
+        counted(block.file, block.place, "bytes of values", count * kind.itemsize, len(body))
         table = np.frombuffer(body, kind)
         of_x = np.zeros(0) if even else table["x"].astype(float)
         return of_x, table["y"].astype(complex if is_complex else float)
-    if other := body.translate(None, NUMERIC):
+    if other := body.translate(None, b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"):
         raise ValueError(f"the byte {other[:1]!r} among the values")
     try:
         numbers = np.array(body.split(), dtype=float)
     except ValueError:
         numbers = np.array(reals(body.decode("ascii")))
     columns = (1 - even) + (2 if is_complex else 1)
-    counted(file, block.place, "values", count, numbers.size / columns)
+    counted(block.file, block.place, "values", count, numbers.size / columns)
     points = [line.count(b".") for line in body.rstrip().split(b"\n")]
     if sum(points) == numbers.size and max(points[1:], default=0) > min(points[:-1], default=0):
         raise ValueError("a line with fewer values than one behind it")
@@ -332,13 +301,12 @@ def _values(
     return rows[0], of_y[0] + 1j * of_y[1] if is_complex else of_y[0]
 
 
-def _channel(values: Function, block: Block, file: str) -> Channel:
-    (response, sign), (reference, other) = values.response, values.reference
-    place = f"{block.place} of {reference} to {response}"
-    H = sign * other * np.asarray(values.data, complex)
-    return Channel(
-        file, place, reference, response, values.x, H, QUANTITIES.get(values.ordinate, "")
-    )
+def _channel(function: Function) -> Channel:
+    (response, sign), (reference, other) = function.response, function.reference
+    place = f"{function.block.place} of {reference} to {response}"
+    H, quantity = np.asarray(function.data, complex), QUANTITIES.get(function.ordinate, "")
+    file = str(function.block.file)
+    return Channel(file, place, reference, response, function.x, sign * other * H, quantity)
 
 
 def _degree_of_freedom(node: str, direction: str) -> tuple[str, int]:
@@ -362,9 +330,11 @@ def write_uff55(
     that are named by node and direction keep both, others are numbered from 1, in X. ``pairs``
     holds positions of modes of one pole, for every data set; none unless given.
     """
-    places = [_place(name, i) for i, name in enumerate(sensors)]
-    nodes = list(dict.fromkeys(node for node, _ in places))
-    rows, axes = [nodes.index(node) for node, _ in places], [axis for _, axis in places]
+    matches = [re.fullmatch(r"([0-9]+)([XYZ])", name) for name in sensors]
+    numbers = [int(match[1]) if match else i for i, match in enumerate(matches, start=1)]
+    axes = ["XYZ".index(match[2]) if match else 0 for match in matches]
+    nodes = list(dict.fromkeys(numbers))
+    rows = [nodes.index(number) for number in numbers]
     written = []
     for name, listed, paired in zip(sets, modes, pairs or [()] * len(sets), strict=True):
         other = {a + 1: b + 1 for pair in paired for a, b in (pair, pair[::-1])}
@@ -402,8 +372,3 @@ def dataset_55(
     for node, row in zip(nodes, rows, strict=True):
         lines += [f"{node:10d}", "".join(f"{x:13.5E}" for x in row)]
     return "\n".join(lines) + "\n"
-
-
-def _place(name: str, index: int) -> tuple[int, int]:
-    matched = re.fullmatch(r"([0-9]+)([XYZ])", name)
-    return (int(matched[1]), "XYZ".index(matched[2])) if matched else (index + 1, 0)

@@ -17,54 +17,35 @@ and ``pair with mode NUMBER`` at the end of one that both shapes are a basis of 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 
 from modefront._typing import Complexes, Floats, Ints
 from modefront.data.modal import ModalData
-from modefront.data.uff import AXES, Block, blocks, reals, text_lines
-from modefront.errors import Fault, InputError, reason
-from modefront.inputs import MOST_DATA, counted, once, read_text_bytes
+from modefront.data.uff import AXES, Block, datasets, each, reals
+from modefront.errors import Fault, refuse
+from modefront.inputs import counted, once, wrong
 from modefront.rounding import LARGEST
 
 SUFFIXES = (".uff", ".unv", ".uf")
 """Ends of names of universal files."""
-
-GEOMETRY = (15, 2411)
-"""Datasets of nodes."""
-
-SYSTEMS = 2420
-"""Dataset of coordinate systems."""
 
 CARTESIAN, CYLINDRICAL = 0, 1
 """Types of coordinate systems."""
 
 WHAT = "a universal file with modes (dataset 55)"
 
-NORMAL, COMPLEX = 2, (3, 7)
-"""Analysis types of normal and of complex modes."""
-
 REAL, COMPONENTS = {2: 1, 5: 2}, (3, 6)
 """Numbers of a value by the type of data, and values a node: three translations, or all six."""
-
-PER_LINE = 6
-"""Values in a line."""
 
 HEAD = 8
 """Lines of dataset 55 before those of its nodes."""
 
-ALONG = 1e-6
-"""Component of a unit vector, below which it is the rounding of the axes in a file."""
-
 NAMES = tuple(AXES.values())
 """Directions in the order of the components."""
-
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +78,7 @@ class NodalModes:
     def local(self, node: int, direction: Floats) -> Floats:
         """Return a direction (6,) of space along the axes of a node, by position."""
         out = np.concatenate([self.axes[node] @ half for half in (direction[:3], direction[3:])])
-        return np.asarray(np.where(np.abs(out) > ALONG, out, 0.0))
+        return np.asarray(np.where(np.abs(out) > 1e-6, out, 0.0))  # less is rounding in the file
 
     def in_space(self, node: int, direction: Floats) -> Floats:
         """Return a direction (6,) along the axes of a node, by position, in space."""
@@ -159,31 +140,16 @@ def read_uff55(path: Path) -> NodalModes:
 
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
-    file, content = str(path), read_text_bytes(path, WHAT, MOST_DATA)
-    sections = blocks(content, file)
-    if not any(block.number == 55 for block in sections):
-        numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in sections))
-        raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
+    known = datasets(path, WHAT, 55)
+    points = [point for part in each(known, _nodes, 15, 2411) for point in part]
+    once(path, "nodes", "each node", (node for node, _, _ in points))
+    systems = dict(pair for part in each(known, _systems, 2420) for pair in part)
+    return _assembled(path, each(known, _mode, 55), points, systems)
 
-    def each(read: Callable[[str, Block, list[str]], T], *numbers: int) -> list[T]:
-        out = []
-        for block in (block for block in sections if block.number in numbers):
-            lines = text_lines(content, block)
-            while lines and not lines[-1].strip():
-                lines.pop()
-            try:
-                out.append(read(file, block, lines))
-            except InputError:
-                raise
-            except (ValueError, IndexError, OverflowError) as error:
-                expected = f"a dataset {block.number}"
-                raise InputError(Fault(file, block.place, expected, reason(error))) from None
-        return out
 
-    points = [point for part in each(_nodes, *GEOMETRY) for point in part]
-    once(file, "nodes", "each node", (node for node, _, _ in points))
-    systems = dict(pair for part in each(_systems, SYSTEMS) for pair in part)
-    return _assembled(file, each(_mode, 55), points, systems)
+def _lines(block: Block) -> list[str]:
+    """Return the lines of a dataset, without blank ones at its end."""
+    return block.body.decode("utf-8", "replace").rstrip().splitlines()
 
 
 def _integers(line: str, count: int) -> list[int]:
@@ -211,58 +177,56 @@ class _Mode:
     other: int
 
 
-def _mode(file: str, block: Block, lines: list[str]) -> _Mode:
+def _mode(block: Block) -> _Mode:
     """Return the mode of a dataset 55, whose values are as many a node as its header says."""
-    place = block.place
+    file, place, lines = block.file, block.place, _lines(block)
     _, kind, _, _, data, size = _integers(lines[5], 6)
     integers, real, _, number = (int(word) for word in lines[6].split()[:4])
     counted(file, place, "whole numbers in record 7", integers, len(lines[6].split()) - 2)
     parameters = reals(lines[7])
     counted(file, place, "numbers in record 8", real, len(parameters))
-    if kind == NORMAL:
+    if kind == 2:  # a normal mode
         frequency, damping = parameters[0], sum(parameters[2:3])
-    elif kind in COMPLEX:
+    elif kind in (3, 7):
         eigenvalue = complex(*parameters[:2])
         frequency = abs(eigenvalue) / (2 * np.pi)
         damping = -eigenvalue.real / abs(eigenvalue) if eigenvalue else 0.0
     else:
         expected = "normal modes (analysis type 2) or complex ones (3 or 7)"
-        raise InputError(Fault(file, place, expected, f"type {kind}"))
+        raise wrong(file, expected, f"type {kind}", place)
     if size not in COMPONENTS or data not in REAL:
         expected = "3 or 6 values a node, of the type 2 (real) or 5 (complex)"
-        raise InputError(Fault(file, place, expected, f"{size} values of the type {data}"))
-    nodes, parts = _values(file, block, lines[HEAD:], size * REAL[data])
+        raise wrong(file, expected, f"{size} values of the type {data}", place)
+    nodes, parts = _values(block, lines[HEAD:], size * REAL[data])
     phi = parts[:, 0::2] + 1j * parts[:, 1::2] if REAL[data] == 2 else parts.astype(complex)
     shape = np.zeros((nodes.size, 6))
     shape[:, :size] = real_shape(phi)
-    wrong = [
+    checks = [
         (not frequency > 0, "a frequency above 0 Hz", f"{frequency:g}"),
         (not 0 <= damping < 1, "a damping ratio from 0 to below 1", f"{damping:g}"),
         (not (np.abs(shape) <= LARGEST).all(), f"components up to {LARGEST:g}", "others"),
         (not shape.any(), "a mode shape that is not zero at all nodes", "only zeros"),
     ]
-    faults = [Fault(file, place, expected, text) for is_wrong, expected, text in wrong if is_wrong]
-    if faults:
-        raise InputError(faults)
-    named = [m for m in (re.match(r"\s*set (\S.*?)\s*$", line) for line in lines[:5]) if m]
-    name = named[0][1] if named else ""
-    paired = [
-        m for m in (re.search(r"pair with mode (\d{1,9})\s*$", line) for line in lines[:5]) if m
-    ]
-    other = int(paired[0][1]) if paired else 0
-    return _Mode(name, number, frequency, damping, nodes, shape, place, other)
+    refuse(
+        Fault(str(file), place, expected, found) for is_wrong, expected, found in checks if is_wrong
+    )
+    text = "\n".join(lines[:5])
+    name = re.search(r"^\s*set (\S.*?)\s*$", text, re.MULTILINE)
+    other = re.search(r"pair with mode (\d{1,9})\s*$", text, re.MULTILINE)
+    known = name[1] if name else "", number, frequency, damping
+    return _Mode(*known, nodes, shape, place, int(other[1]) if other else 0)
 
 
-def _values(file: str, block: Block, lines: list[str], size: int) -> tuple[Ints, Floats]:
+def _values(block: Block, lines: list[str], size: int) -> tuple[Ints, Floats]:
     nodes: list[int] = []
     values: list[list[float]] = []
-    step = 1 + -(-size // PER_LINE)
+    step = 1 + -(-size // 6)
     for k in range(0, len(lines), step):
         nodes += _integers(lines[k], 1)
         values.append(reals(" ".join(lines[k + 1 : k + step])))
         place = f"line {block.line + 2 + HEAD + k}, dataset 55, node {nodes[-1]}"
-        counted(file, place, "numbers", size, len(values[-1]))
-    once(file, block.place, "each node", nodes)
+        counted(block.file, place, "numbers", size, len(values[-1]))
+    once(block.file, block.place, "each node", nodes)
     return np.array(nodes, dtype=np.int64), np.array(values).reshape(-1, size)
 
 
@@ -280,8 +244,9 @@ Point = tuple[int, int, Floats]
 """A node: its number, its displacement system, and its coordinates (3,)."""
 
 
-def _nodes(file: str, block: Block, lines: list[str]) -> list[Point]:
+def _nodes(block: Block) -> list[Point]:
     """Return the nodes of a dataset 15, a line each, or 2411, two lines each."""
+    lines = _lines(block)
     step = 1 if block.number == 15 else 2
     if not lines or len(lines) % step:
         raise ValueError(f"{len(lines)} lines of nodes, {step} each")
@@ -290,13 +255,14 @@ def _nodes(file: str, block: Block, lines: list[str]) -> list[Point]:
         words = lines[k].split()
         node, _, system, _ = _integers(" ".join(words[:4]), 4)
         point = reals(" ".join([*words[4:], *lines[k + 1 : k + step]]))
-        counted(file, f"{block.place}, node {node}", "coordinates", 3, len(point))
+        counted(block.file, f"{block.place}, node {node}", "coordinates", 3, len(point))
         out.append((node, system, np.array(point)))
     return out
 
 
-def _systems(file: str, block: Block, lines: list[str]) -> list[tuple[int, tuple[int, Floats]]]:
+def _systems(block: Block) -> list[tuple[int, tuple[int, Floats]]]:
     """Return the systems of a dataset 2420, six lines each behind two: number, type and axes."""
+    lines = _lines(block)
     if len(lines) % 6 != 2:
         raise ValueError(f"{len(lines)} lines: two, and six a system")
     out = []
@@ -304,7 +270,7 @@ def _systems(file: str, block: Block, lines: list[str]) -> list[tuple[int, tuple
         label, kind, _ = _integers(lines[k], 3)
         rows = [reals(line) for line in lines[k + 2 : k + 6]]
         out.append((label, (kind, np.array(rows).reshape(4, 3))))
-    once(file, block.place, "each system", (label for label, _ in out))
+    once(block.file, block.place, "each system", (label for label, _ in out))
     return out
 
 
@@ -324,7 +290,7 @@ def _axes_at(point: Floats, system: tuple[int, Floats] | None) -> Floats:
 
 
 def _assembled(
-    file: str,
+    file: Path,
     rows: Sequence[_Mode],
     points: Sequence[Point],
     systems: Mapping[int, tuple[int, Floats]],
@@ -337,7 +303,7 @@ def _assembled(
         free = [name for name in names if (name, number) not in placed]
         if not free:
             expected = "each mode of a data set once"
-            raise InputError(Fault(file, row.place, expected, f"mode {number} of {row.set} again"))
+            raise wrong(file, expected, f"mode {number} of {row.set} again", row.place)
         placed[free[0], number] = row
         _check_nodes(file, row, next(x for (name, _), x in placed.items() if name == free[0]).nodes)
     sets = tuple(dict.fromkeys(name for name, _ in placed))
@@ -366,15 +332,15 @@ def _assembled(
     of_nodes = np.array([axes.get(int(node), np.eye(3)) for node in nodes])
     pairs = {(number, row.other) for (_, number), row in placed.items() if number < row.other}
     return NodalModes(
-        *(file, sets, modes, nodes, places, of_nodes, frequency, damping, shape),
+        *(str(file), sets, modes, nodes, places, of_nodes, frequency, damping, shape),
         tuple(sorted(pair for pair in pairs if pair[1] in modes)),
     )
 
 
-def _check_nodes(file: str, row: _Mode, nodes: Ints) -> None:
+def _check_nodes(file: Path, row: _Mode, nodes: Ints) -> None:
     """Raise InputError where a mode has other nodes than these, those of the file or its set."""
     odd = np.setxor1d(row.nodes, nodes)
     if odd.size:
         expected = "the same nodes in the geometry and in all modes of a data set"
         found = f"node {odd[0]} in one of them, and not in another"
-        raise InputError(Fault(file, row.place, expected, found))
+        raise wrong(file, expected, found, row.place)
