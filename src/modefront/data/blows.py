@@ -15,7 +15,7 @@ from modefront._typing import Floats
 from modefront.data.channels import EXPECTED, Channel
 from modefront.data.impact import ImpactResponses, Windows, impact_responses
 from modefront.data.responses import ForceNoise
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, refuse
 from modefront.rounding import LARGEST
 
 TIME, FORCE = "time", "force"
@@ -23,9 +23,6 @@ TIME, FORCE = "time", "force"
 
 EVEN = 1e-3
 """Relative difference within which steps of time are even: files hold few digits."""
-
-REMAINING = 0.05
-"""Size of the windowed responses at the end, over the greatest, that leaks: a warning is given."""
 
 
 @dataclass(frozen=True)
@@ -80,8 +77,7 @@ def blow_of_columns(file: str, header: Sequence[str], values: Floats, reference:
     if not names:
         expected = "columns of at least one response"
         faults.append(Fault(file, "line 1", expected, ", ".join(header)))
-    if faults:
-        raise InputError(faults)
+    refuse(faults)
     column = dict(zip(header, values.T, strict=True))
     responses = {name: np.nan_to_num(column[name], nan=0.0) for name in names}  # empty columns
     return Blow(file, "columns", reference, column[TIME], column[FORCE], responses)
@@ -125,8 +121,7 @@ def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Av
         for blow, why in zip(group, result.left_out, strict=True):
             if why:
                 warnings.append(f"{blow.file}: {blow.place}: the blow is left out: {why}")
-        worst = result.remaining.max()
-        if worst > REMAINING:
+        if (worst := result.remaining.max()) > 0.05:  # more leaks
             warnings.append(
                 f"{group[0].file}: responses still have {worst:.0%} of their size at the end of "
                 "the record: expect errors of leakage; [impact] exponential takes a shorter time "
@@ -136,8 +131,7 @@ def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Av
 
 
 def _check_time(blows: Sequence[Blow]) -> None:
-    first = blows[0].time
-    faults = []
+    first, faults = blows[0].time, list[Fault]()
     for blow in blows:
         steps = np.diff(blow.time)
         if len(steps) < 2 or steps.min() <= 0 or np.ptp(steps) > EVEN * steps.mean():
@@ -147,8 +141,7 @@ def _check_time(blows: Sequence[Blow]) -> None:
             faults.append(Fault(blow.file, blow.place, expected, _extent(blow.time)))
         elif not all((np.abs(x) <= LARGEST).all() for x in (blow.force, *blow.responses.values())):
             faults.append(Fault(blow.file, blow.place, EXPECTED, "others"))
-    if faults:
-        raise InputError(faults[:5])
+    refuse(faults[:5])
 
 
 def _extent(time: Floats) -> str:
@@ -179,27 +172,16 @@ def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
 def _channels(first: Blow, averaged: ImpactResponses, quantity: str) -> list[Channel]:
     """Return the functions; those of responses that never move are zeros."""
     data = averaged.data
-    still = np.zeros(len(data.frequency), complex)
-    variance = data.variance
-    moving = [
-        Channel(
-            first.file,
-            f"response {name!r}",
-            first.reference,
-            name,
-            data.frequency,
-            data.H[0, i],
-            first.quantity or quantity,
-            averaged.coherence[i] if variance is not None else None,
-            None if variance is None else variance[0, i],
-        )
-        for i, name in enumerate(data.responses)
-    ]
-    return moving + [
-        Channel(
-            *(first.file, f"response {name!r}", first.reference, name, data.frequency, still),
-            first.quantity or quantity,
-        )
-        for name in first.responses
-        if name not in data.responses
-    ]
+    out = []
+    for name in dict.fromkeys([*data.responses, *first.responses]):
+        H = np.zeros(len(data.frequency), complex)
+        coherence = variance = None
+        if name in data.responses:
+            i = data.responses.index(name)
+            H = data.H[0, i]
+            if data.variance is not None:
+                coherence, variance = averaged.coherence[i], data.variance[0, i]
+        where = first.file, f"response {name!r}", first.reference, name
+        kind = first.quantity or quantity
+        out.append(Channel(*where, data.frequency, H, kind, coherence, variance))
+    return out

@@ -15,28 +15,18 @@ import numpy as np
 
 from modefront._typing import Bools, Complexes, Floats
 from modefront.data.responses import ORDERS, FrequencyResponses, frequency_responses
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, refuse
 from modefront.rounding import LARGEST
 
 EXPECTED = f"finite numbers up to {LARGEST:g}"
 """What values of functions and records are."""
 
-SAME_LINES = 1e-6
-"""Relative difference within which two lines of a frequency axis are the same."""
-
 STRAY = 300.0
 """Ratio of sizes from which on two channels seem to have different units."""
-
-COHERENT = 0.9
-"""Correlation of two reciprocal functions over the lines from which on their sizes are compared:
-noise of one of them then changes the ratio by up to 1 / 0.9."""
 
 UNEQUAL = 1.3
 """Ratio of reciprocal functions from which on their sensors have different units: more than
 calibrations and mounted masses leave."""
-
-GRAVITY = 9.80665
-"""One g in m/s²."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +53,10 @@ class Channel:
     quantity: str = ""
     coherence: Floats | None = None
     variance: Floats | None = None
+
+    def fault(self, expected: str, found: str) -> Fault:
+        """Return the fault of the function."""
+        return Fault(self.file, self.place, expected, found)
 
 
 _Groups: TypeAlias = dict[tuple[int, int], list[Channel]]
@@ -126,41 +120,32 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
 
 
 def _check_axes(channels: Sequence[Channel]) -> None:
-    first = channels[0]
-    faults = []
-    for channel in channels:
+    first, faults = channels[0], list[Fault]()
+    ends = [f"{x.frequency[0]:g} to {x.frequency[-1]:g} Hz" for x in channels if len(x.frequency)]
+    for k, channel in enumerate(channels):
         f = channel.frequency
         if not (np.isfinite(f).all() and (np.diff(f) > 0).all() and (f >= 0).all()):
             expected = "frequencies in Hz that ascend from zero or above"
-            faults.append(Fault(channel.file, channel.place, expected, "others"))
+            faults.append(channel.fault(expected, "others"))
         elif len(f) != len(first.frequency):
             expected = f"{len(first.frequency)} lines, as in {first.file}"
-            faults.append(Fault(channel.file, channel.place, expected, f"{len(f)} lines"))
-        elif np.abs(f - first.frequency).max() > SAME_LINES * first.frequency[-1]:
-            expected = f"the frequency axis of {first.file}, {_axis(first.frequency)}"
-            faults.append(Fault(channel.file, channel.place, expected, _axis(f)))
-    if faults:
-        raise InputError(faults)
-
-
-def _axis(f: Floats) -> str:
-    return f"{f[0]:g} to {f[-1]:g} Hz"
+            faults.append(channel.fault(expected, f"{len(f)} lines"))
+        elif np.abs(f - first.frequency).max() > 1e-6 * first.frequency[-1]:
+            expected = f"the frequency axis of {first.file}, {ends[0]}"
+            faults.append(channel.fault(expected, ends[k]))
+    refuse(faults)
 
 
 def _quantity(channels: Sequence[Channel], declared: str) -> str:
-    faults = []
-    known = declared
+    known, faults = declared, list[Fault]()
     for channel in channels:
         if not channel.quantity and not declared:
             expected = "quantity = 'receptance', 'mobility' or 'accelerance' in [test]"
-            found = "a file that does not say it"
-            faults.append(Fault(channel.file, channel.place, expected, found))
+            faults.append(channel.fault(expected, "a file that does not say it"))
         elif channel.quantity and known and channel.quantity != known:
-            expected = f"{known}, as in the others"
-            faults.append(Fault(channel.file, channel.place, expected, channel.quantity))
+            faults.append(channel.fault(f"{known}, as in the others", channel.quantity))
         known = known or channel.quantity
-    if faults:
-        raise InputError(faults[:5])
+    refuse(faults[:5])
     return known
 
 
@@ -171,13 +156,11 @@ def _check_values(channels: Sequence[Channel]) -> None:
         if len(bad):
             found = f"{channel.H[bad[0]].real:g} at {channel.frequency[bad[0]]:g} Hz"
             found += f" and {len(bad) - 1} more" * (len(bad) > 1)
-            faults.append(Fault(channel.file, channel.place, EXPECTED, found))
+            faults.append(channel.fault(EXPECTED, found))
     if all(not np.any(channel.H[0] != channel.H) for channel in channels) and not faults:
-        expected = "functions that are not the same at all lines"
         found = "one number" if np.any(channels[0].H) else "only zeros"
-        faults.append(Fault(channels[0].file, channels[0].place, expected, found))
-    if faults:
-        raise InputError(faults[:5])
+        faults.append(channels[0].fault("functions that are not the same at all lines", found))
+    refuse(faults[:5])
 
 
 def _units(
@@ -249,7 +232,8 @@ def _reciprocity(
                 f"set {name!r}: the functions {first}-{second} and {second}-{first} have opposite "
                 "signs: check the direction of a sensor"
             )
-        if abs(inner) > COHERENT:  # a was measured by the sensor at the second point, or turned
+        if abs(inner) > 0.9:  # else noise may change the ratio
+            # The first was measured by the sensor at the second point, or turned.
             sensor, other = (first, second) if turned else (second, first)
             factors.setdefault(sensor, {})[other] = ratio
             factors.setdefault(other, {})[sensor] = 1 / ratio
@@ -273,7 +257,7 @@ def _sensors_of_other_units(name: str, factors: dict[str, dict[str, float]]) -> 
         says += f"with {', '.join(others)} says"
         if alone:
             says += f", or {partner} is {1 / factor:.3g} times"
-        if abs(abs(np.log(factor)) - np.log(GRAVITY)) < np.log(1.05):
+        if abs(abs(np.log(factor)) - np.log(9.80665)) < np.log(1.05):
             says += "; 9.81 is between g and m/s²"
         yield says + ": check its unit and calibration"
 

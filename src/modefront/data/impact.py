@@ -28,7 +28,7 @@ from typing import Literal, get_args
 import numpy as np
 import scipy.fft
 
-from modefront._typing import Bools, Complexes, Floats
+from modefront._typing import Complexes, Floats
 from modefront.data.responses import ForceNoise, FrequencyResponses, frequency_responses
 from modefront.rounding import ACCUMULATED
 
@@ -41,15 +41,8 @@ SECOND = 0.1
 SAME = 1e-9
 """Difference of two samples, over the greatest, that is none: converters have 24 bits."""
 
-CLIPPED = 3
-"""Samples in a row at the greatest value that may be an overload."""
-
 TAPER = 0.1
 """Share of the force window over which it falls to zero."""
-
-
-LEAST_SHARE = 1e-4
-"""Energy of the window of the force over the greatest, from which on its noise counts."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +125,12 @@ def impact_responses(
     if force.ndim != 2 or response.ndim != 3 or response.shape[::2] != force.shape:
         expected = "force (blows, samples) and response (blows, responses, samples)"
         raise ValueError(f"expected {expected}, found {force.shape} and {response.shape}")
-    reasons, used = _good_blows(force, response, rate, windows.force_window)
+    blows = zip(force, response, strict=True)
+    reasons = tuple(_reason(x, y, rate, windows.force_window) for x, y in blows)
+    if all(reasons):
+        faults = "; ".join(f"blow {b}: {why}" for b, why in enumerate(reasons, start=1))
+        raise ValueError(f"expected at least one good blow, found none: {faults}")
+    used = np.array([not why for why in reasons])
     force, response = force[used], response[used]
     t = np.arange(force.shape[1]) / rate
     decay = windows.decay(t)
@@ -149,19 +147,11 @@ def impact_responses(
     )
     noise = _force_noise(force, window, X, t)
     data = replace(data, decay=decay, force_noise=noise)
-    return ImpactResponses(data, coherence, reasons, _remaining(y))
-
-
-def _good_blows(
-    force: Floats, response: Floats, rate: float, force_window: float | None
-) -> tuple[tuple[str, ...], Bools]:
-    """Return why each blow is left out, and which ones are not; raise ValueError for none."""
-    reasons = [_reason(x, y, rate, force_window) for x, y in zip(force, response, strict=True)]
-    used = np.array([not why for why in reasons])
-    if not used.any():
-        faults = "; ".join(f"blow {b + 1}: {why}" for b, why in enumerate(reasons))
-        raise ValueError(f"expected at least one good blow, found none: {faults}")
-    return tuple(reasons), used
+    size = max(y.shape[-1] // 20, 1)
+    parts = y[..., : y.shape[-1] // size * size].reshape(*y.shape[:2], -1, size)
+    rms = np.sqrt(np.mean(parts**2, axis=(0, 3)))
+    remaining = rms[:, -1] / np.maximum(rms.max(axis=1), np.finfo(float).tiny)
+    return ImpactResponses(data, coherence, reasons, remaining)
 
 
 def _estimates(X: Complexes, Y: Complexes, estimator: Estimator) -> tuple[Complexes, Floats]:
@@ -206,7 +196,7 @@ def _force_noise(force: Floats, window: Floats, X: Complexes, t: Floats) -> Forc
     power = np.abs(X) ** 2
     of_blows = (level * energy.sum(axis=1))[:, None]
     variance = _over(np.sum(power * of_blows, axis=0), np.sum(power, axis=0) ** 2).real
-    kept = energy[0] > LEAST_SHARE * energy[0].max()
+    kept = energy[0] > 1e-4 * energy[0].max()
     times = t[kept] - t[np.abs(force[0]).argmax()]
     share = energy[0, kept] / energy[0, kept].sum()
     return ForceNoise(np.sqrt(np.nan_to_num(variance))[None], (times,), (share,))
@@ -258,15 +248,6 @@ def _clipped(x: Floats) -> bool:
     for start, end in zip(edges[::2], edges[1::2], strict=True):
         leaps = [steps[start - 1]] if start else []
         leaps += [steps[end - 1]] if end < len(x) else []
-        if end - start >= CLIPPED and max(leaps, default=0.0) > 2 * least:
+        if end - start >= 3 and max(leaps, default=0.0) > 2 * least:
             return True
     return False
-
-
-def _remaining(y: Floats) -> Floats:
-    """Return the rms of the last twentieth of records over the greatest, (responses,)."""
-    size = max(y.shape[-1] // 20, 1)
-    parts = y[..., : y.shape[-1] // size * size].reshape(*y.shape[:2], -1, size)
-    rms = np.sqrt(np.mean(parts**2, axis=(0, 3)))
-    out: Floats = rms[:, -1] / np.maximum(rms.max(axis=1), np.finfo(float).tiny)
-    return out

@@ -23,7 +23,8 @@ from modefront.data.records import ORDERS as RECORDED
 from modefront.data.records import RecordedFiles, Records, read_records
 from modefront.data.responses import ORDERS, joined
 from modefront.data.uff import read_uff
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import Fault, InputError, refuse, suggestion
+from modefront.inputs import wrong
 from modefront.json_schema import NOT_NEGATIVE, array
 from modefront.options import is_name, numbers, repeated, rising
 from modefront.toml import Table, read_toml
@@ -31,7 +32,6 @@ from modefront.toml import Table, read_toml
 KINDS = ("hammer", "ambient")
 """Kinds of tests."""
 
-UFF_ENDINGS = (".uff", ".unv", ".uf", ".bunv", ".ufb")
 MOST_MODES = 200
 """Modes that a test file may ask for."""
 
@@ -104,7 +104,7 @@ def read_test(path: Path) -> ModalTest:
     else:
         expected = "a universal file (.uff), a CSV file (.csv) or a test file (.toml)"
         found = "no such file" if not path.exists() else "none of these"
-        raise InputError(Fault(str(path), "file", expected, found))
+        raise wrong(path, expected, found)
     assembled = _assembled(contents, path.stem, settings)
     if path.suffix.lower() == ".csv":
         note = f"{path}: the file does not say its quantity: taken for accelerance"
@@ -114,7 +114,7 @@ def read_test(path: Path) -> ModalTest:
 
 def is_universal(path: Path) -> bool:
     """Return whether a file is taken for a universal file, by its ending or its first line."""
-    if path.suffix.lower() in UFF_ENDINGS:
+    if path.suffix.lower() in (".uff", ".unv", ".uf", ".bunv", ".ufb"):
         return True
     try:
         if not path.is_file():
@@ -136,8 +136,7 @@ def _from_toml(path: Path) -> ModalTest:
     places = _geometry_table(root)
     sets = _set_tables(root, path.parent)
     root.close()
-    if faults:
-        raise InputError(faults)
+    refuse(faults)
     data_sets = []
     for label, files, references, decay, columns in sets:
         contents = [
@@ -147,8 +146,7 @@ def _from_toml(path: Path) -> ModalTest:
         for unused in sorted(frozenset.intersection(*(x.unused for x in contents))):
             expected = "a column of the CSV files of the set"
             root.fault(f"[[set]] {label!r} columns", expected, repr(unused))
-        if faults:
-            raise InputError(faults)
+        refuse(faults)
         its_own = replace(settings, decay=decay)
         data_sets.append(DataSet(label, _assembled(contents, label, its_own, root)))
     _check_places(root, places, (r for part in data_sets for r in part.assembled.data.responses))
@@ -177,8 +175,7 @@ def _ambient(root: Table, name: str, settings: _Settings) -> ModalTest:
     for label in repeated(setup.name for setup in setups):
         root.fault("[[set]]", "a name for each data set", f"{label!r} twice")
     root.close()
-    if root.faults:
-        raise InputError(root.faults)
+    refuse(root.faults)
     records = [read_records(setup, settings.quantity or "acceleration") for setup in setups]
     joined_to = set(records[0].sensors)
     for each in records[1:]:
@@ -260,8 +257,7 @@ def _check_places(root: Table, places: Iterable[str], sensors: Iterable[str]) ->
     for name in places:
         if name not in known:
             root.fault(f"[geometry] {name}", "a sensor of the files", suggestion(name, known))
-    if root.faults:
-        raise InputError(root.faults)
+    refuse(root.faults)
 
 
 def _impact_table(root: Table) -> Windows | None:

@@ -207,9 +207,7 @@ def _mode(block: Block) -> _Mode:
         (not (np.abs(shape) <= LARGEST).all(), f"components up to {LARGEST:g}", "others"),
         (not shape.any(), "a mode shape that is not zero at all nodes", "only zeros"),
     ]
-    refuse(
-        Fault(str(file), place, expected, found) for is_wrong, expected, found in checks if is_wrong
-    )
+    refuse(Fault(str(file), place, *said) for is_wrong, *said in checks if is_wrong)
     text = "\n".join(lines[:5])
     name = re.search(r"^\s*set (\S.*?)\s*$", text, re.MULTILINE)
     other = re.search(r"pair with mode (\d{1,9})\s*$", text, re.MULTILINE)

@@ -103,7 +103,14 @@ def _from_full(path: Path) -> Listed:
     if terms == 0:
         raise wrong(path, "a mass matrix (ANTYPE,MODAL)", "none")
     position = words.long(header, 27, 28)
-    mass = _diagonal(words, position, size) if header[10] else _rows(words, position, terms, size)
+    if header[10]:  # lumped
+        value, _ = words.record(position)
+        if value.size != 2 * size:
+            raise wrong(path, f"{size} lumped masses", f"{value.size // 2}")
+        diagonal = np.arange(size)
+        mass = Entries(diagonal, diagonal, np.ascontiguousarray(value).view("<f8"))
+    else:
+        mass = _rows(words, position, terms, size)
     notes = ["there is a damping matrix, which is left out"] if int(header[34]) else []
     return Listed((path, path), (stiffness, mass), dofs, identifiers > 0, notes=notes)
 
@@ -129,17 +136,6 @@ def _rows(words: _Words, position: int, terms: int, size: int) -> Entries:
         raise wrong(words.path, "rows in their order, each to its diagonal", "others")
     row = np.repeat(diagonal, length)
     return Entries(row, column, np.concatenate(values).view("<f8"))
-
-
-def _diagonal(words: _Words, position: int, size: int) -> Entries:
-    value, _ = words.record(position)
-    if value.size != 2 * size:
-        raise wrong(words.path, f"{size} lumped masses", f"{value.size // 2}")
-    place = np.arange(size)
-    return Entries(place, place, np.ascontiguousarray(value).view("<f8"))
-
-
-# *EXPORT, MMF
 
 
 def _from_market(path: Path, options: JobOptions) -> Listed:

@@ -14,8 +14,6 @@ from modefront.isolated import IsolatedError, isolated
 from modefront.models.dofs import DofTable
 from modefront.programs.mesh import ProgramMesh, mesh_from
 
-READER = "modefront.programs.reading:read_job"
-
 Matrix: TypeAlias = scipy.sparse.csr_array
 
 Quantity = Literal["stiffness", "mass"]
@@ -96,8 +94,9 @@ class Program:
         """Return a job; raises InputError where its files cannot be read, whatever the cause."""
         texts = (options.stiffness, options.mass, options.dofs, options.deck)
         arguments = (self.module, *(str(text or "") for text in texts))
+        reader = "modefront.programs.reading:read_job"
         try:
-            arrays, (name, precision, notes) = isolated(READER, path, arguments=arguments)
+            arrays, (name, precision, notes) = isolated(reader, path, arguments=arguments)
         except IsolatedError as error:
             raise wrong(path, f"a job of {self.name}", str(error)) from None
         dofs = DofTable(*(arrays.pop(part) for part in ("node", "direction", "weight")))

@@ -21,7 +21,6 @@ from pathlib import Path
 
 import numpy as np
 
-from modefront._typing import Ints
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.programs.base import JobOptions
@@ -103,11 +102,13 @@ def _table(labels: DofTable, deck: Deck | None) -> DofTable:
     keys = np.column_stack([labels.node, direction])[order]
     starts = np.flatnonzero(np.append(True, (keys[1:] != keys[:-1]).any(axis=1)))
     groups = np.split(order, starts[1:])
-    parts = [_own_first(group, blocks.get(int(labels.node[group[0]]))) for group in groups]
-    most: dict[int, int] = {}
-    for group, (_, made) in zip(groups, parts, strict=True):
+    parts, most = [], dict[int, int]()
+    for group in groups:  # those of the node itself, and those that were made of it
         number = int(labels.node[group[0]])
-        most[number] = max(most.get(number, 0), made.size)
+        first, behind = blocks.get(number, (0, 0))
+        inside = (group >= first) & (group < behind)
+        parts.append((group[inside], group[~inside]))
+        most[number] = max(most.get(number, 0), int((~inside).sum()))
     follow = _followers(labels, deck, blocks, most, leading)
     for group, (itself, made) in zip(groups, parts, strict=True):
         number, along = int(labels.node[group[0]]), int(direction[group[0]])
@@ -119,14 +120,6 @@ def _table(labels: DofTable, deck: Deck | None) -> DofTable:
         elif made.size == most[number]:  # else the program eliminated one: the mean of all is held
             weight[made] = 1.0 / made.size
     return DofTable(node, direction, weight)
-
-
-def _own_first(group: Ints, block: tuple[int, int] | None) -> tuple[Ints, Ints]:
-    """Return those of the degrees of freedom of a node that are its own, and all others."""
-    if block is None:
-        return group[:0], group
-    inside = (group >= block[0]) & (group < block[1])
-    return group[inside], group[~inside]
 
 
 def _followers(

@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from modefront.errors import Fault, InputError, reason
-from modefront.inputs import file_size, fortran
+from modefront.errors import reason
+from modefront.inputs import file_size, fortran, wrong
 from modefront.outputs import write_text
 
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
@@ -175,4 +175,4 @@ def read_changes(path: Path) -> list[Change]:
             for each in json.loads(path.read_text(encoding="utf-8"))
         ]
     except (OSError, ValueError, TypeError, KeyError) as error:
-        raise InputError(Fault(str(path), "file", "changes of a deck", reason(error))) from None
+        raise wrong(path, "changes of a deck", reason(error)) from None

@@ -308,8 +308,7 @@ def _with(entries: scipy.sparse.coo_array, chosen: Bools) -> Matrix:
 
 
 def _support(term: Matrix) -> Ints:
-    entries = scipy.sparse.coo_array(term)
-    return np.unique(np.concatenate([entries.row, entries.col]))
+    return np.unique(np.concatenate(term.nonzero()))
 
 
 def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]:

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.errors import Fault, InputError, reason
-from modefront.inputs import file_size
+from modefront.errors import reason
+from modefront.inputs import file_size, wrong
 from modefront.outputs import output
 
 CORNERS: Mapping[str, int] = {
@@ -60,8 +60,7 @@ def refuse_unknown_nodes(path: Path, known: Collection[int], nodes: Iterable[int
     """Raise InputError where an element has a node that is not in its file."""
     missing = next((node for node in nodes if node not in known), None)
     if missing is not None:
-        expected = "all nodes of its elements"
-        raise InputError(Fault(str(path), "nodes", expected, f"no node {missing}"))
+        raise wrong(path, "all nodes of its elements", f"no node {missing}", "nodes")
 
 
 def arrays_of(mesh: ProgramMesh) -> dict[str, Any]:
@@ -78,11 +77,10 @@ def mesh_from(arrays: Mapping[str, Any]) -> ProgramMesh:
         for name, table in arrays.items()
         if name not in ("number", "coordinates")
     }
-    right = coordinates.shape == (number.size, 3) and all(
+    if coordinates.shape != (number.size, 3) or not all(
         table.shape[1:] == (CORNERS[kind],) and np.isin(table, number).all()
         for kind, table in cells.items()
-    )
-    if not right:
+    ):
         raise ValueError("arrays that do not belong together")
     return ProgramMesh(number.astype(np.intp), coordinates.astype(float), cells)
 
@@ -103,5 +101,4 @@ def read_mesh(path: Path) -> ProgramMesh:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             return mesh_from({name: file[name] for name in file.files})
     except Exception as error:  # what NumPy raises for a damaged file is not documented
-        found = reason(error)
-    raise InputError(Fault(str(path), "file", "nodes and elements (mesh.npz)", found))
+        raise wrong(path, "nodes and elements (mesh.npz)", reason(error)) from None
