@@ -14,10 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.blows import EVEN, TIME
-from modefront.data.channels import EXPECTED
-from modefront.data.csv import renamed
-from modefront.data.frf_csv import read_numbers
+from modefront.data.csv import read_numbers, renamed
+from modefront.data.impact import EVEN, TIME
+from modefront.data.responses import EXPECTED
 from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import read_functions
 from modefront.inputs import MOST_DATA, file_size, wrong
@@ -68,28 +67,32 @@ class Records:
 
 
 @dataclass(frozen=True)
-class RecordedFiles:
-    """The files of one setup, measured at once, and what they do not say themselves.
+class SetFiles:
+    """The files of one data set, and what they do not say themselves.
 
     Attributes
     ----------
-    name : of the setup
+    name : of the data set
     files : paths
-    rate : samples per second, for arrays
-    sensors : names of the channels of arrays
     columns : names of columns in CSV files and what they are here
     channels : names by node and direction in universal files, such as 1Z or 1-Z
+    rate : samples per second, for arrays
+    sensors : names of the channels of arrays
+    references : one a file of functions, empty where it says its own
+    decay : what an exponential window added to the decay of the functions, in 1/s
     """
 
     name: str
     files: tuple[Path, ...]
-    rate: float | None
-    sensors: tuple[str, ...]
     columns: Mapping[str, str]
     channels: Mapping[str, str]
+    rate: float | None = None
+    sensors: tuple[str, ...] = ()
+    references: tuple[str, ...] = ()
+    decay: float = 0.0
 
 
-def read_records(setup: RecordedFiles, quantity: str) -> Records:
+def read_records(setup: SetFiles, quantity: str) -> Records:
     """Return the records of a setup; raises InputError with what is wrong."""
     names: list[str] = []
     rows: list[Floats] = []
@@ -120,7 +123,7 @@ def read_records(setup: RecordedFiles, quantity: str) -> Records:
     )
 
 
-def _of_file(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, float]:
+def _of_file(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]:
     """Return names, records (sensors, samples) and samples per second of one file."""
     ending = path.suffix.lower()
     if ending in (".npy", ".mat"):
@@ -162,7 +165,7 @@ def read_arrays(path: Path) -> Read:
     return {name: x for name, x in named.items() if x.dtype.kind in "fiuc"}, None
 
 
-def _of_array(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, float]:
+def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]:
     file_size(path, WHAT, MOST_DATA)
     if setup.rate is None or not setup.sensors:
         expected = "'rate' and 'sensors' in its [[set]], which the file does not say"

@@ -19,8 +19,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from modefront._typing import Complexes, Floats
-from modefront.data.blows import Blow, Contents
-from modefront.data.channels import Channel
+from modefront.data.impact import Blow, Contents
+from modefront.data.responses import Channel
 from modefront.errors import InputError, reason
 from modefront.inputs import MOST_DATA, counted, fortran, read_text_bytes, wrong
 from modefront.outputs import write_text

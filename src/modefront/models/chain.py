@@ -18,7 +18,7 @@ from modefront._typing import Floats
 from modefront.errors import Fault, refuse, wrong
 from modefront.models.geometry import chain_geometry
 from modefront.models.matrices import MatrixModel, SensorSpec, matrices
-from modefront.models.terms import BASE
+from modefront.models.parameters import BASE
 
 _Terms = dict[str, dict[tuple[int, int], float]]
 """Entries of each term by its name, and by row and column."""

@@ -21,8 +21,14 @@ from modefront.linalg.pencil import Pencil, pencil
 from modefront.linalg.products import gram
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
 from modefront.models.geometry import Geometry
-from modefront.models.parameters import Parameter
-from modefront.models.terms import BASE, above_zero, exponents_of, form_of, term_exponents
+from modefront.models.parameters import (
+    BASE,
+    Parameter,
+    above_zero,
+    exponents_of,
+    form_of,
+    term_exponents,
+)
 from modefront.modes.eigensolvers import Eigensolver, FullModes, eigensolver
 from modefront.modes.result import Modes
 from modefront.rounding import LARGEST, SYMMETRY
@@ -343,7 +349,7 @@ def affine_model(
 
 
 def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) -> SparseAffine:
-    """Return base + sum_k c_k(theta) A_k for terms named as `modefront.models.terms` says."""
+    """Return base + sum_k c_k(theta) A_k for terms named as `modefront.models.parameters` says."""
     exponents = term_exponents(list(terms), parameters)
     sparse_terms = [scipy.sparse.coo_array(A) for A in terms.values()]
     return sparse_affine(sparse_terms, Monomials(exponents), size)

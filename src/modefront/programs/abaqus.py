@@ -2,7 +2,7 @@
 
 In the format MATRIX INPUT a line is ``node, direction, node, direction, value``; in the format
 COORDINATE it is ``row column value``. Either triangle is listed, or both. Nodes that Abaqus makes
-itself have negative numbers: they are a part of the model, and `modefront.programs.condense`
+itself have negative numbers: they are a part of the model, and `modefront.programs.differences`
 eliminates them where that is exact. Supports are diagonal entries of 1e36: these rows are left out.
 """
 

@@ -19,7 +19,7 @@ from scipy.linalg import null_space
 from modefront._typing import Floats
 from modefront.errors import reason
 from modefront.inputs import fortran, wrong
-from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
+from modefront.programs.base import ProgramMesh, mesh_of, refuse_unknown_nodes
 
 _ELEMENTS = {  # field where nodes begin, number of corners and of nodes, cell, what it makes stiff
     **dict.fromkeys(("CQUAD4", "CQUADR", "CSHEAR"), (3, 4, 4, "quad", "shell")),

@@ -27,16 +27,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse
+from scipy.sparse.csgraph import connected_components
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.errors import InputError, wrong
+from modefront.errors import Fault, InputError, wrong
 from modefront.linalg.affine import Monomials
 from modefront.models.dofs import DofTable, name_of
-from modefront.models.terms import BASE, term_exponents
+from modefront.models.parameters import BASE, term_exponents
 from modefront.programs.base import Job, Matrix, Quantity, whole
 from modefront.rounding import ACCUMULATED
 
@@ -59,7 +60,7 @@ class Term:
 
     Attributes
     ----------
-    name : as `modefront.models.terms` has it
+    name : as `modefront.models.parameters` has it
     matrices : upper triangles by quantity; only those that are not zero
     dofs : number of degrees of freedom on which the term acts
     rank : of the stiffness, or of the mass where there is no stiffness; None where not found
@@ -331,3 +332,93 @@ def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]
     small = scipy.sparse.coo_array(np.triu(part))
     places = dofs[small.row], dofs[small.col]
     return scipy.sparse.coo_array((small.data, places), shape=term.shape).tocsr(), rank
+
+
+def condensed(terms: Terms) -> tuple[Terms, int, int]:
+    """Return the terms without internal degrees of freedom, and how many went and stayed.
+
+    Raises InputError for Lagrange multipliers: constraints cannot be eliminated so.
+    """
+    internal = np.flatnonzero(terms.dofs.node < 0)
+    if internal.size == 0:
+        return terms, 0, 0
+    stiffness = {name: whole(A) for name, A in terms.of("stiffness").items()}
+    mass = terms.of("mass")
+    acting = [abs(A[internal][:, internal]) for A in stiffness.values()]
+    _, groups = connected_components(sum(acting[1:], acting[0]), directed=False)
+    owner = _owners(stiffness, mass, internal, groups)
+    diagonal = sum(np.abs(A.diagonal()[internal]) for A in stiffness.values())
+    zero = np.flatnonzero(diagonal == 0)
+    if zero.size:
+        label = f"node {terms.dofs.node[internal[zero[0]]]}"
+        expected = "degrees of freedom with stiffness; constraints with Lagrange multipliers "
+        expected += "(contact, connectors, incompressible elements) cannot be imported"
+        raise InputError(Fault("", label, expected, f"none at {zero.size} of the program's own"))
+    gone = np.zeros(internal.size, bool)
+    for name in stiffness:
+        part = owner[groups] == list(stiffness).index(name)
+        if part.any():
+            stiffness[name], done = _eliminated(stiffness[name], internal[part], groups[part])
+            gone[part] = done
+    kept = np.setdiff1d(np.arange(terms.dofs.size), internal[gone])
+
+    def restricted(term: Term) -> Term:
+        both = {
+            x: stiffness[term.name] if x == "stiffness" else A for x, A in term.matrices.items()
+        }
+        rows = {x: scipy.sparse.triu(A[kept][:, kept], format="csr") for x, A in both.items()}
+        return replace(term, matrices={x: A for x, A in rows.items() if A.nnz})
+
+    dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
+    reduced = Terms(
+        terms.parameters, restricted(terms.base), tuple(map(restricted, terms.terms)), dofs
+    )
+    return reduced, int(gone.sum()), int((~gone).sum())
+
+
+def _owners(
+    stiffness: Mapping[str, Matrix], mass: Mapping[str, Matrix], internal: Ints, groups: Ints
+) -> Ints:
+    """Return for each group the only term that acts on it; -1 where several do, or mass."""
+    count = int(groups.max()) + 1
+    acting = np.zeros((count, len(stiffness)), bool)
+    for column, A in enumerate(stiffness.values()):
+        entries = abs(A[internal]).sum(axis=1) > 0
+        acting[groups[entries], column] = True
+    heavy = np.zeros(count, bool)
+    for M in mass.values():
+        heavy[groups[abs(whole(M)[internal]).sum(axis=1) > 0]] = True
+    alone = (acting.sum(axis=1) == 1) & ~heavy
+    return np.where(alone, acting.argmax(axis=1), -1)
+
+
+def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]:
+    """Return a matrix with the effect of internal degrees of freedom in it, and which went."""
+    order = np.argsort(groups, kind="stable")
+    _, starts, sizes = np.unique(groups[order], return_index=True, return_counts=True)
+    rows, columns, values = [], [], []
+    done = np.zeros(internal.size, bool)
+    dense = A[internal][:, internal].tocsr()
+    for size in np.unique(sizes).tolist():
+        members = order[starts[sizes == size][:, None] + np.arange(size)]
+        blocks = np.zeros((len(members), size, size))
+        position = np.full(internal.size, -1)
+        position[members] = np.arange(len(members))[:, None]
+        place = np.zeros(internal.size, np.intp)
+        place[members] = np.arange(size)
+        entries = dense[members.ravel()].tocoo()
+        source = members.ravel()[entries.row]
+        blocks[position[source], place[source], place[entries.col]] = entries.data
+        singular = np.linalg.svd(blocks, compute_uv=False)
+        good = singular[:, -1] > ACCUMULATED * singular[:, 0]
+        inverse, members = np.linalg.inv(blocks[good]), members[good]
+        done[members] = True
+        rows.append(np.repeat(members, size, axis=1).ravel())
+        columns.append(np.tile(members, (1, size)).ravel())
+        values.append(inverse.ravel())
+    triplets = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+    inverse = scipy.sparse.csr_array(triplets, shape=(internal.size, internal.size))
+    others = np.ones(A.shape[0])
+    others[internal[done]] = 0.0
+    coupling = A[internal] @ scipy.sparse.diags_array(others)
+    return (A - coupling.T @ inverse @ coupling).tocsr(), done

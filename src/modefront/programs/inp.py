@@ -13,7 +13,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.errors import reason
 from modefront.inputs import ended, wrong
-from modefront.programs.mesh import CORNERS, ProgramMesh, mesh_of, refuse_unknown_nodes
+from modefront.programs.base import CORNERS, ProgramMesh, mesh_of, refuse_unknown_nodes
 
 DEEPEST = 20
 """Decks that include each other, one in the other, at most."""

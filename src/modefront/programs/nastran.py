@@ -17,11 +17,9 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.errors import reason
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
-from modefront.programs.base import JobOptions, Matrix, whole
+from modefront.programs.base import JobOptions, Matrix, ProgramMesh, whole
 from modefront.programs.bulk import Bulk, read_bulk
-from modefront.programs.dmig import read_dmig
-from modefront.programs.mesh import ProgramMesh
-from modefront.programs.op4 import read_op4
+from modefront.programs.nastran_files import read_dmig, read_op4
 from modefront.programs.reading import Entries, Listed, existing, given_table, unlabelled
 
 DECKS = (".dat", ".bdf", ".nas", ".inp")

@@ -21,8 +21,7 @@ from modefront.errors import reason
 from modefront.inputs import ended, file_size, first_repeated, fortran, wrong
 from modefront.isolated import Read
 from modefront.models.dofs import DofTable, read_dofs
-from modefront.programs.base import JobOptions, Matrix
-from modefront.programs.mesh import ProgramMesh, arrays_of
+from modefront.programs.base import JobOptions, Matrix, ProgramMesh, arrays_of
 from modefront.rounding import LARGEST, SYMMETRY
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
@@ -16,17 +16,18 @@ from modefront._typing import Floats
 from modefront.brief import as_html, brief_model
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
-from modefront.linalg.factorisation import Factorisation
 from modefront.models.base import passed_on
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.basis import Basis, empty, extended
-from modefront.models.reduced.certificate import LATER, Certifier, level
-from modefront.models.reduced.corrections import (
+from modefront.models.reduced.basis import (
+    Basis,
     CorrectionRequest,
+    empty,
+    extended,
     lacking_lengths,
     with_derivatives,
     with_modes,
 )
+from modefront.models.reduced.certificate import LATER, Certifier, level
 from modefront.modes import dense
 from modefront.modes.eigensolvers import FullModes
 from modefront.modes.result import Modes
@@ -93,7 +94,7 @@ class _Projected:
     sensed: Floats
 
 
-# 13 fields: eight describe the basis, five are its state.
+# 12 fields: eight describe the basis, four are its state.
 @shared
 @dataclass(eq=False, repr=False)
 class ReducedModel:
@@ -124,7 +125,6 @@ class ReducedModel:
     _requested: tuple[SnapshotRequest, ...] = ()
     _taken: tuple[tuple[SnapshotRequest, Costs, float], ...] = ()
     _basis: Basis | None = None
-    _factor: Factorisation | None = None
     _small: _Projected | None = None
 
     __repr__ = brief_model
@@ -136,7 +136,7 @@ class ReducedModel:
         Modes need no more; for anything else, snapshots are taken again when needed.
         """
         small = self._projected() if self._is_at_hand else None
-        lost = {"_taken": (), "_basis": None, "_factor": None, "_small": small}
+        lost = {"_taken": (), "_basis": None, "_small": small}
         return {**vars(self), **lost}
 
     @property
@@ -295,7 +295,7 @@ class ReducedModel:
     def _compute(self) -> None:
         """Make the basis that of the requested snapshots; only those not in it are computed."""
         if not self._begins:
-            self._taken, self._basis, self._factor = (), None, None
+            self._taken, self._basis = (), None
         with uncounted():  # `take` counts a snapshot, once
             for what in self._requested[len(self._taken) :]:
                 with counted() as costs:
@@ -310,13 +310,13 @@ class ReducedModel:
         have no modes are left out; raises ModelError where all of them have none.
         """
         models, error = what.models, 0.0
-        if self._basis is None or self._factor is None:
+        if self._basis is None:
             basis = self._solved(None, models.pop(0), what.modes)
             return (self._added_to(basis, models, what)[0] if models else basis), np.inf
         if what.modes == 0:
-            return self._excluding(self._basis, self._factor, models), np.inf
+            return self._excluding(self._basis, models), np.inf
         if what.enough:
-            models, error = self._worst(self._basis, self._factor, what)
+            models, error = self._worst(self._basis, what)
         return self._added_to(self._basis, models, what) if models else (self._basis, error)
 
     def _added_to(
@@ -337,9 +337,7 @@ class ReducedModel:
             raise ModelError("none of the models of a snapshot has modes")
         return basis, error
 
-    def _worst(
-        self, basis: Basis, factor: Factorisation, what: SnapshotRequest
-    ) -> tuple[list[Floats], float]:
+    def _worst(self, basis: Basis, what: SnapshotRequest) -> tuple[list[Floats], float]:
         """Return the models of a snapshot that the basis knows least, and its error there."""
         models = []
         for theta in what.models:
@@ -348,7 +346,7 @@ class ReducedModel:
                     models.append(theta)
         if not models:
             return what.models[:WORST], np.inf
-        lengths = lacking_lengths(self.full.pencil, basis, factor, models, what.modes)
+        lengths = lacking_lengths(basis, models, what.modes)
         ranked = np.argsort(-lengths, kind="stable")[:WORST]
         return [models[k] for k in ranked if lengths[k] >= what.enough], float(lengths.max())
 
@@ -374,12 +372,10 @@ class ReducedModel:
 
         None where the models need factors of their own.
         """
-        started, factor = time.perf_counter(), self._factor
-        if factor is None:
-            return None
+        started = time.perf_counter()
         request = CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
         try:
-            known = with_modes(self.full.pencil, basis, factor, near, what.modes, request)
+            known = with_modes(basis, near, what.modes, request)
         except ModelError:
             return None  # a larger space sees that a matrix is indefinite
         if known is None:
@@ -388,7 +384,7 @@ class ReducedModel:
         count = int((errors >= what.enough).sum())
         if count:
             worst = near[int(errors.argmax())]
-            basis = self._with_derivatives(basis, factor, worst, what.modes)
+            basis = self._with_derivatives(basis, worst, what.modes)
         spend(Costs(corrected=count, corrected_time=time.perf_counter() - started))
         return basis, float(errors.max())
 
@@ -406,18 +402,19 @@ class ReducedModel:
         vectors = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
         del spectrum  # the other factor
         vectors = vectors[:, : self.capacity]  # of directions of equal length, the lowest ones
-        basis = known or empty(pencil, theta, below.sigma)
-        basis = extended(pencil, basis, vectors, self._shortest, self.capacity)
+        basis = known or empty(pencil, below.factor, theta, below.sigma)
+        basis = extended(basis, vectors, self._shortest, self.capacity)
         solved = time.perf_counter()
         spend(Costs(eigenproblems=1, full_time=solved - started))
-        basis = self._with_derivatives(basis, below.factor, theta, modes)
+        # Of its derivatives the model's own factor knows more.
+        own = self._with_derivatives(replace(basis, factor=below.factor), theta, modes)
+        basis = replace(own, factor=basis.factor)
         if known is None:
-            self._factor = below.factor
-            basis = self._at_bounds(basis, below.factor, theta)
+            basis = self._at_bounds(basis, theta)
         spend(Costs(corrected_time=time.perf_counter() - solved))
         return basis
 
-    def _excluding(self, basis: Basis, factor: Factorisation, models: list[Floats]) -> Basis:
+    def _excluding(self, basis: Basis, models: list[Floats]) -> Basis:
         """Return the basis with directions in which the stiffness of some models is negative.
 
         Raises ModelError where none is found.
@@ -425,7 +422,7 @@ class ReducedModel:
         pencil = self.full.pencil
         A = pencil.K.at(basis.theta) - basis.sigma * pencil.M.at(basis.theta)
         inverse = scipy.sparse.linalg.LinearOperator(
-            A.shape, matvec=lambda x: factor.solve(x.reshape(-1, 1))[:, 0], dtype=float
+            A.shape, matvec=lambda x: basis.factor.solve(x.reshape(-1, 1))[:, 0], dtype=float
         )
         found = []
         for theta in models:
@@ -436,18 +433,16 @@ class ReducedModel:
         vectors = np.hstack(found)
         if not vectors.shape[1]:
             raise ModelError("no direction of negative stiffness is found")
-        return extended(pencil, basis, vectors, self._shortest, self.capacity)
+        return extended(basis, vectors, self._shortest, self.capacity)
 
-    def _with_derivatives(
-        self, basis: Basis, factor: Factorisation, theta: Floats, modes: int
-    ) -> Basis:
+    def _with_derivatives(self, basis: Basis, theta: Floats, modes: int) -> Basis:
         count, half = min(modes, basis.columns - 1), (self.upper - self.lower) / 2
         request = CorrectionRequest(SHARE, self._shortest, self.capacity)
         if count < 1:
             return basis
-        return with_derivatives(self.full.pencil, basis, factor, theta, count, half, request)
+        return with_derivatives(basis, theta, count, half, request)
 
-    def _at_bounds(self, basis: Basis, factor: Factorisation, theta: Floats) -> Basis:
+    def _at_bounds(self, basis: Basis, theta: Floats) -> Basis:
         """Return the basis with the modes where one parameter is at a bound, or nearer to theta.
 
         They are for the global search, and take no more than half of what is left of the memory.
@@ -468,7 +463,7 @@ class ReducedModel:
         for some in (bounds, *([theta] for theta in bounds)):
             # A larger space may see that a matrix is indefinite at one of them: then each alone.
             with suppress(ModelError):
-                known = with_modes(self.full.pencil, basis, factor, some, count, request)
+                known = with_modes(basis, some, count, request)
                 basis = known[0] if known else basis
                 spend(Costs(corrected=len(some)))
                 if some is bounds:
