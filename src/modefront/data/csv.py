@@ -226,7 +226,6 @@ def opened(path: Path, what: str) -> Iterator[tuple[TextIO, str, int]]:
 def _repeated(
     file: str, keys: Sequence[tuple[int, str, int]], *, has_sets: bool
 ) -> Iterator[Fault]:
-    """Yield the rows, given by line, set and mode, of modes that a data set has already."""
     place, expected = "columns 'set' and 'mode'", "each mode of a data set once"
     if not has_sets:
         place = "column 'mode'"
@@ -339,7 +338,6 @@ def _assemble(
 def _pairs(
     path: Path, keys: Sequence[tuple[int, str, int]], other: Floats
 ) -> tuple[tuple[int, int], ...]:
-    """Return the pairs of modes; raises InputError where the rows of both do not say so."""
     named = {(name, mode): x for (_, name, mode), x in zip(keys, other, strict=True) if x == x}
     lines = {(name, mode): line for line, name, mode in keys}
     faults = [

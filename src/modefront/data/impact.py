@@ -163,7 +163,6 @@ def impact_responses(
 
 
 def _estimates(X: Complexes, Y: Complexes, estimator: Estimator) -> tuple[Complexes, Floats]:
-    """Return the functions and the coherence, (responses, lines), of spectra of all blows."""
     S_xx = np.sum(np.abs(X) ** 2, axis=0)
     S_yx = np.sum(Y * X[:, None].conj(), axis=0)
     S_yy = np.sum(np.abs(Y) ** 2, axis=0)
@@ -218,7 +217,6 @@ def _over(a: Complexes | Floats, b: Complexes | Floats) -> Complexes:
 
 
 def _reason(x: Floats, y: Floats, rate: float, force_window: float | None) -> str:
-    """Return the fault of one blow; empty for a good one."""
     if not (np.isfinite(x).all() and np.isfinite(y).all()):
         return "not all samples are numbers"
     if not np.any(x):
@@ -413,7 +411,6 @@ def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
 
 
 def _channels(first: Blow, averaged: ImpactResponses, quantity: str) -> list[Channel]:
-    """Return the functions; those of responses that never move are zeros."""
     data = averaged.data
     out = []
     for name in dict.fromkeys([*data.responses, *first.responses]):

@@ -4,14 +4,6 @@ A test is a table of frequency response functions :math:`H_{ji}(\omega_k)` betwe
 *j* and *responses* *i* at common lines :math:`f_k`. In a hammer test one side stays and the other
 roves; by Maxwell's reciprocity, :math:`H_{ji} = H_{ij}`, either side can be called the
 responses: mode shapes are identified at the side called so. What was not measured is NaN.
-
-==========================  ==============================================================
-symbol                      meaning
-==========================  ==============================================================
-``frequency`` :math:`f_k`   lines in Hz, ascending, (lines,)
-``H``                       :math:`H_{ji}(\omega_k)`, (references, responses, lines)
-``variance``                :math:`E|H - E H|^2`, the same shape; None where nothing is known
-==========================  ==============================================================
 """
 
 from __future__ import annotations

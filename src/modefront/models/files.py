@@ -104,7 +104,6 @@ def entries(path: Path, form: str, name: str, square: str) -> Read:
 
 
 def _check_shape(path: Path, shape: tuple[int, ...], square: str = "square") -> None:
-    """Raise InputError for other than matrices, and for such as cannot be solved."""
     if len(shape) != 2 or (square and shape[0] != shape[1]) or 0 in shape:
         found = " x ".join(map(str, shape)) or "a single number"
         raise wrong(path, "a square matrix", found)
@@ -160,7 +159,6 @@ def _numpy_npy(path: Path, _: str) -> Any:
 
 
 def _scipy_npz(path: Path, _: str) -> Any:
-    """Return a sparse matrix that `scipy.sparse.save_npz` has written."""
     with zipfile.ZipFile(path) as file:
         for part in file.infolist():
             if part.file_size > max(64 * 10**6, 200 * part.compress_size):
@@ -175,7 +173,6 @@ def _scipy_npz(path: Path, _: str) -> Any:
 
 
 def _matlab(path: Path, name: str) -> Any:
-    """Return a variable of a file of MATLAB, of version 5 to 7.2, or of 7.3, which is HDF5."""
     if is_hdf5(path):
         from modefront import hdf5  # takes time to import
 

@@ -129,7 +129,6 @@ class CheckedFunction:
                     raise wrong(place, expected, wrong_entry)
 
     def _complex_step(self, theta: Floats, i: int, size: int) -> tuple[Any, Any]:
-        """Return the derivatives of K and M with respect to parameter i."""
         # The square of the step drowns in rounding, and division by it is exact.
         h = 2.0 ** (float(np.frexp(theta[i])[1]) - 70)
         moved = theta.astype(complex)
@@ -157,7 +156,6 @@ class CheckedFunction:
         )
 
     def _call(self, theta: NDArray[Any], place: str, expected: str) -> Any:
-        """Return K and M, with their derivatives where the function returns these."""
         try:
             returned = self.function(theta)
         except (ModelError, InputError):
@@ -195,9 +193,7 @@ class FunctionModel:
     _repr_html_ = as_html
 
     parameters = passed_on("nominal", "parameters")
-
     sensors = passed_on("nominal", "sensors")
-
     size = passed_on("nominal", "size")
 
     @property
@@ -216,9 +212,7 @@ class FunctionModel:
         return ()
 
     places = passed_on("nominal", "places")
-
     directions = passed_on("nominal", "directions")
-
     selection = passed_on("nominal", "selection")
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
@@ -333,7 +327,6 @@ def _affine(known: Tangent, theta: Floats) -> DenseAffine | SparseAffine:
 
 
 def _real(value: Matrix, place: str, size: int | None) -> Any:
-    """Return a real symmetric matrix, symmetrised; raises InputError where it is not one."""
     A = _checked(value, place, size)
     if A.dtype.kind == "c":
         raise wrong(place, "real numbers for real parameters", "complex numbers")

@@ -46,8 +46,6 @@ Matrix: TypeAlias = Floats | scipy.sparse.sparray
 
 @dataclass(frozen=True)
 class _Counted:
-    """An analysis that counts its factorisations."""
-
     symbolic: Symbolic
 
     def factor(self, values: Floats) -> Factorisation:
@@ -57,7 +55,6 @@ class _Counted:
 
 @contextmanager
 def _eigenproblem() -> Iterator[None]:
-    """Count an eigenproblem, and the time that it takes, also where it has no solution."""
     spend(Costs(eigenproblems=1))
     started = time.perf_counter()
     try:

@@ -52,8 +52,6 @@ def read(path: Path, options: JobOptions) -> Listed:
 
 @dataclass(frozen=True, eq=False)
 class _Words:
-    """A file as words of 4 bytes."""
-
     path: Path
     words: np.ndarray
 
@@ -154,7 +152,6 @@ def _from_market(path: Path, options: JobOptions) -> Listed:
 
 
 def _labels(path: Path, size: int) -> DofTable:
-    """Return nodes and directions of a mapping of HBMAT, or the vectors of the file, if any."""
     mapping = path.with_name(path.name + ".mapping")
     maps = [path.with_name(f"{path.name}_{name}.mmf") for name in ("nod2bcs", "back")]
     if mapping.is_file():

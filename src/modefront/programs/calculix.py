@@ -15,7 +15,6 @@ modes) moves with the model, and belongs to no node.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -25,7 +24,7 @@ from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.programs.base import JobOptions
 from modefront.programs.inp import Deck, deck_of
-from modefront.programs.reading import Entries, Listed, columns, coordinates, existing
+from modefront.programs.reading import Entries, Listed, columns, existing
 
 SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
 
@@ -43,9 +42,10 @@ def read(path: Path, options: JobOptions) -> Listed:
         existing(file, "a matrix or table of CalculiX", ADVICE)
     labels = columns(files[".dof"], ".", "ii", comment="#")
     node, direction = (column.astype(np.intp) for column in labels)
-    entries = {
-        suffix: replace(coordinates(files[suffix]), precision=1e-13) for suffix in (".sti", ".mas")
-    }
+    entries = {}
+    for suffix in (".sti", ".mas"):
+        row, column, value = columns(files[suffix], r"\s+", "iif", comment="#")
+        entries[suffix] = Entries(row - 1, column - 1, value, precision=1e-13)
     _refuse_cut_off(files, entries, node.size)
     notes: list[str] = []
     own = job.with_name(job.name + ".inp")

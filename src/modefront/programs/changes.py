@@ -164,15 +164,9 @@ def read_changes(path: Path) -> list[Change]:
     """Return the changes in a file; raises InputError for any other file."""
     file_size(path, "changes of a deck")
     try:
-        return [
-            Change(
-                str(each["parameter"]),
-                str(each["file"]),
-                int(each["line"]),
-                str(each["text"]),
-                tuple((int(a), int(b)) for a, b in each["spans"]),
-            )
-            for each in json.loads(path.read_text(encoding="utf-8"))
-        ]
+        listed = json.loads(path.read_text(encoding="utf-8"))
+        spans = [tuple((int(a), int(b)) for a, b in each["spans"]) for each in listed]
+        pairs = zip(listed, spans, strict=True)
+        return [Change(**{**each, "spans": of_line}) for each, of_line in pairs]
     except (OSError, ValueError, TypeError, KeyError) as error:
         raise wrong(path, "changes of a deck", reason(error)) from None

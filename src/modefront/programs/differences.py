@@ -173,7 +173,6 @@ class Differences:
         return Terms(self.parameters, Term(BASE, base), tuple(found), self.nominal.dofs)
 
     def _refuse_undetermined(self, c: Floats) -> None:
-        """Refuse terms that no combination of runs can tell apart."""
         for i, name in enumerate(self.parameters):
             of_parameter = np.flatnonzero(self.coefficients.exponents[:, i] != 0)
             if np.linalg.matrix_rank(c[:, of_parameter]) < of_parameter.size:

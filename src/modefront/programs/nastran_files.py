@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
+from scipy.io import FortranEOFError, FortranFile
 
 from modefront._typing import Floats, Ints
 from modefront.errors import reason
@@ -51,7 +52,7 @@ def read_op4(path: Path) -> Mapping[str, Entries]:
     for order in "<>":
         length = int(np.frombuffer(data, order + "i4", 1)[0])
         if length in (24, 48):
-            return dict(_binary(path, data, order, length // 6))
+            return dict(_binary(path, order, length // 6))
     return dict(_text(path, [line.rstrip() for line in data.split(b"\n")]))
 
 
@@ -88,46 +89,42 @@ class _Pieces:
         return self.name, entries
 
 
-def _binary(path: Path, data: bytes, order: str, word: int) -> Iterator[tuple[str, Entries]]:
-    position, integer = 0, f"{order}i{word}"
+def _binary(path: Path, order: str, word: int) -> Iterator[tuple[str, Entries]]:
+    integer = f"{order}i{word}"
+    with FortranFile(path, header_dtype=order + "u4") as file:
 
-    def record() -> bytes:
-        """Return the record of Fortran at the position, and move this behind it."""
-        nonlocal position
-        lengths, end = [np.frombuffer(data[position : position + 4], order + "i4")], position
-        if len(data) >= position + 4 and (size := int(lengths[0][0])) >= 0:
-            end = position + 4 + size
-        if end == position or len(data) < end + 4:
-            raise wrong(path, "whole matrices, each with its end", "a file that is cut off")
-        if np.frombuffer(data[end : end + 4], order + "i4")[0] != size:
-            raise wrong(path, f"records of Fortran ({EXPECTED})", "lengths that differ")
-        content, position = data[position + 4 : end], end + 4
-        return content
+        def record() -> bytes:
+            try:
+                return bytes(file.read_record("u1"))
+            except FortranEOFError:
+                return b""
+            except (OSError, ValueError) as error:
+                expected = f"whole records of Fortran ({EXPECTED})"
+                raise wrong(path, expected, f"a file that is cut off: {reason(error)}") from None
 
-    while position < len(data):
-        head = record()
-        if len(head) != 6 * word:
-            raise wrong(path, "the header of a matrix", f"a record of {len(head)} bytes")
-        name = head[4 * word :].decode("latin-1").strip().upper()
-        header = np.frombuffer(head, integer, 4).tolist()
-        pieces, values = _Pieces(path, name, header), [np.zeros(0)]
-        real = np.dtype(f"{order}f{8 if word == 8 or header[3] == 2 else 4}")
-        while True:
-            content = record()
-            if len(content) < 3 * word:
-                found = f"a record of {len(content)} bytes in '{name}'"
-                raise wrong(path, "columns of a matrix", found)
-            column, row, count = np.frombuffer(content, integer, 3).tolist()
-            if not pieces.begin(column):
-                break
-            body = content[3 * word :]
-            counted(path, f"column {column} of '{name}'", "words", count, len(body) / word)
-            if row > 0:
-                values.append(np.frombuffer(body, real))
-                pieces.places.append((column, row, values[-1].size))
-            else:
-                values.append(_strings(pieces, np.frombuffer(body, integer), real))
-        yield pieces.matrix(np.concatenate(values))
+        while head := record():
+            if len(head) != 6 * word:
+                raise wrong(path, "the header of a matrix", f"a record of {len(head)} bytes")
+            name = head[4 * word :].decode("latin-1").strip().upper()
+            header = np.frombuffer(head, integer, 4).tolist()
+            pieces, values = _Pieces(path, name, header), [np.zeros(0)]
+            real = np.dtype(f"{order}f{8 if word == 8 or header[3] == 2 else 4}")
+            while True:
+                content = record()
+                if len(content) < 3 * word:
+                    found = f"a record of {len(content)} bytes in '{name}'; is it cut off?"
+                    raise wrong(path, "columns of a matrix, and its end", found)
+                column, row, count = np.frombuffer(content, integer, 3).tolist()
+                if not pieces.begin(column):
+                    break
+                body = content[3 * word :]
+                counted(path, f"column {column} of '{name}'", "words", count, len(body) / word)
+                if row > 0:
+                    values.append(np.frombuffer(body, real))
+                    pieces.places.append((column, row, values[-1].size))
+                else:
+                    values.append(_strings(pieces, np.frombuffer(body, integer), real))
+            yield pieces.matrix(np.concatenate(values))
 
 
 def _strings(pieces: _Pieces, body: np.ndarray, real: np.dtype[np.floating]) -> np.ndarray:

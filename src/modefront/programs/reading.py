@@ -70,15 +70,13 @@ class Listed:
 
 def unlabelled(size: int) -> DofTable:
     """Return the table of degrees of freedom that belong to no node."""
-    return DofTable(np.zeros(size, np.intp), np.zeros(size, np.intp), np.ones(size))
+    return DofTable(*np.zeros((2, size), np.intp), np.ones(size))
 
 
 def given_table(options: JobOptions, size: int) -> DofTable | None:
     """Return the table of degrees of freedom of ``--dofs``, if any; it has to have so many rows."""
-    if options.dofs is None:
-        return None
-    table = read_dofs(options.dofs)
-    if table.size != size:
+    table = read_dofs(options.dofs) if options.dofs else None
+    if options.dofs and table and table.size != size:
         raise wrong(options.dofs, f"{size} rows, one a degree of freedom", str(table.size))
     return table
 
@@ -169,15 +167,6 @@ def existing(path: Path, expected: str, advice: str) -> Path:
     if file_size(path, f"{expected} ({advice})") > 0:
         return path
     raise wrong(path, f"{expected} ({advice})", "an empty one")
-
-
-def coordinates(path: Path) -> Entries:
-    """Return the entries of a file of lines ``row column value``, counted from 1.
-
-    Raises InputError where a line is none, or is cut off.
-    """
-    row, column, value = columns(path, r"\s+", "iif", comment="#")
-    return Entries(row - 1, column - 1, value)
 
 
 def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.ndarray]:

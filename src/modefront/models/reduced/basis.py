@@ -276,11 +276,9 @@ def _with(
 
 
 def _shares(basis: Basis, thetas: Sequence[Floats], count: int) -> list[Sequence[Floats]]:
-    """Return the models in shares whose modes are corrected together."""
     width = max(1, _together(basis) // count)
     return [thetas[first : first + width] for first in range(0, len(thetas), width)]
 
 
 def _together(basis: Basis) -> int:
-    """Return how many right-hand sides are solved together; factors take 32 at a time."""
     return max(64, 2**19 // basis.pencil.size)

@@ -76,11 +76,6 @@ class Certifier:
     basis: Basis
 
     @property
-    def version(self) -> int:
-        """Always the same: nothing in it changes."""
-        return 0
-
-    @property
     def footprint(self) -> float:
         """Bytes that the basis takes, and an eigensolution of the full model."""
         return self.full.footprint + sum(block.nbytes for block in self.basis.blocks)
@@ -128,9 +123,12 @@ class Certifier:
         R = times(K, X) - times(M, X) * rho
         Z = above.factor.solve(R)
         room = above.sigma - rho  # the diagonal of S
-        P = _bounding(gram(R, Z), room)
-        if P is None:
+        E, unit = gram(R, Z), np.sqrt(np.outer(room, room))
+        values, U = np.linalg.eigh((E + E.T) / 2 / unit)
+        if values[-1] >= 1:  # E < S does not hold
             return None
+        values = np.maximum(values, 0.0)  # but for rounding
+        P = (U * (values / (1 - values))) @ U.T * unit
         noise = np.finfo(float).eps * (K.diagonal() @ X**2)
         forms = gram(X, R)  # should vanish; what is beyond rounding is an error of the projection
         forms[np.abs(forms) <= 100 * np.sqrt(np.outer(noise, noise))] = 0.0
@@ -169,14 +167,3 @@ def level(pencil: Pencil, theta: Floats, lam: Floats, count: int, shift: float) 
     except SingularMatrixError:
         return None
     return Shifted(sigma, factor) if factor.negative == k else None
-
-
-def _bounding(E: Floats, room: Floats) -> Floats | None:
-    """Return P for E and the diagonal of S; None where E < S does not hold."""
-    unit = np.sqrt(np.outer(room, room))
-    values, U = np.linalg.eigh((E + E.T) / 2 / unit)
-    if values[-1] >= 1:
-        return None
-    values = np.maximum(values, 0.0)  # but for rounding
-    P: Floats = (U * (values / (1 - values))) @ U.T * unit
-    return P

@@ -112,6 +112,7 @@ class ReducedModel:
     tolerance : relative error of eigenvalues that is aimed at
     memory : GiB that the basis may take; one mode is always allowed
     spare : how many of the modes are only there to tell the others from them
+    snapshots : those in use
     """
 
     full: MatrixModel
@@ -122,7 +123,7 @@ class ReducedModel:
     tolerance: float = TOLERANCE
     memory: float = MEMORY
     spare: int = 0
-    _requested: tuple[SnapshotRequest, ...] = ()
+    snapshots: tuple[SnapshotRequest, ...] = ()
     _taken: tuple[tuple[SnapshotRequest, Costs, float], ...] = ()
     _basis: Basis | None = None
     _small: _Projected | None = None
@@ -142,7 +143,7 @@ class ReducedModel:
     @property
     def version(self) -> tuple[tuple[bytes, int, float], ...]:
         """Snapshots in use."""
-        return tuple(what.key for what in self._requested)
+        return tuple(what.key for what in self.snapshots)
 
     @property
     def parts(self) -> tuple[MatrixModel]:
@@ -155,19 +156,12 @@ class ReducedModel:
         return 8.0 * 8 * self._projected().K.size ** 2 if self._is_at_hand else 0.0
 
     parameters = passed_on("full", "parameters")
-
     sensors = passed_on("full", "sensors")
-
     size = passed_on("full", "size")
-
     places = passed_on("full", "places")
-
     directions = passed_on("full", "directions")
-
     transfer = passed_on("full", "transfer")
-
     unused = passed_on("full", "unused")
-
     selection = passed_on("full", "selection")
 
     @property
@@ -185,18 +179,13 @@ class ReducedModel:
         """The first snapshot, unless another one is taken before it."""
         return SnapshotRequest(self.nominal, self.count - self.spare)
 
-    @property
-    def snapshots(self) -> tuple[SnapshotRequest, ...]:
-        """The snapshots in use."""
-        return self._requested
-
     def restart(self) -> None:
         """Use no snapshots. Those at hand are not computed again, but count when taken again."""
-        self._requested = ()
+        self.snapshots = ()
 
     def resume(self, snapshots: Sequence[SnapshotRequest]) -> None:
         """Use these snapshots, which were counted before; they are computed when needed."""
-        self._requested = tuple(snapshots)
+        self.snapshots = tuple(snapshots)
 
     def take(self, what: SnapshotRequest) -> float:
         """Add a snapshot and return the greatest relative error of an eigenvalue before it.
@@ -204,12 +193,12 @@ class ReducedModel:
         The error is an estimate, and infinite where the model had to be solved in full. Raises
         ModelError where the model has no modes there.
         """
-        before = self._requested
-        self._requested = (*before, what)
+        before = self.snapshots
+        self.snapshots = (*before, what)
         try:
             self._compute()
         except ModelError:
-            self._requested = before
+            self.snapshots = before
             raise
         _, costs, error = self._taken[len(before)]
         spend(costs)
@@ -266,7 +255,7 @@ class ReducedModel:
     @property
     def basis(self) -> Basis:
         """The basis of the snapshots in use; the nominal one is taken where there is none."""
-        if not self._requested:
+        if not self.snapshots:
             self.take(self.first)
         self._compute()
         if self._basis is None:
@@ -276,9 +265,9 @@ class ReducedModel:
     @property
     def _is_at_hand(self) -> bool:
         """Whether nothing has to be solved in full for the snapshots in use."""
-        if self._small is not None and self._small.snapshots is self._requested:
+        if self._small is not None and self._small.snapshots is self.snapshots:
             return True
-        return len(self._taken) == len(self._requested) > 0 and self._begins
+        return len(self._taken) == len(self.snapshots) > 0 and self._begins
 
     @property
     def _begins(self) -> bool:
@@ -286,10 +275,10 @@ class ReducedModel:
         return self.version[: len(self._taken)] == tuple(what.key for what, *_ in self._taken)
 
     def _projected(self) -> _Projected:
-        if self._small is None or self._small.snapshots is not self._requested:
+        if self._small is None or self._small.snapshots is not self.snapshots:
             basis = self.basis
             sensed = np.hstack([self.full.selection @ block for block in basis.blocks])
-            self._small = _Projected(self._requested, basis.K, basis.M, sensed)
+            self._small = _Projected(self.snapshots, basis.K, basis.M, sensed)
         return self._small
 
     def _compute(self) -> None:
@@ -297,7 +286,7 @@ class ReducedModel:
         if not self._begins:
             self._taken, self._basis = (), None
         with uncounted():  # `take` counts a snapshot, once
-            for what in self._requested[len(self._taken) :]:
+            for what in self.snapshots[len(self._taken) :]:
                 with counted() as costs:
                     basis, error = self._added(what)
                 self._basis = basis
