@@ -11,8 +11,8 @@ Printed are, in processor time:
 - ``evaluations`` of the work, and ``setup``: seconds of snapshots and certificates;
 - ``gain``: the time with full solutions over that with the basis, both without what the solvers
   take on top, which is the same: evaluations * full over setup + evaluations * reduced;
-- what the cost model estimates of it (`modefront.models.reduced.cost`), and ``loss``: the time of
-  the choice that it makes over that of the better one.
+- what the estimate of costs says of it (`modefront.models.reduced.options`), and ``loss``: the time
+  of the choice that it makes over that of the better one.
 
 With ``--both`` the work is done with full solutions too, and ``measured`` is the ratio of both.
 The constants of the model are those of the machine on which this was last run; what counts are
@@ -33,8 +33,8 @@ import modefront as mf
 from modefront.identifiability.options import Identifiability
 from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.models.matrices import MatrixModel, affine_model
-from modefront.models.reduced.cost import estimate
 from modefront.models.reduced.model import ReducedModel
+from modefront.models.reduced.options import estimate
 from modefront.work.costs import counted
 
 BOUNDS = 0.4, 2.5

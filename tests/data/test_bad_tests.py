@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from modefront._typing import Complexes, Floats
-from modefront.data.frf_csv import read_test_csv
+from modefront.data.csv import read_test_csv
 from modefront.data.modal_test import read_test
 from modefront.errors import InputError
 from modefront.identification.methods.hammer import weighting

@@ -129,7 +129,7 @@ def test_other_files_are_answered(tmp_path: Path, content: str, message: str) ->
     ],
 )
 def test_datasets_of_real_files_are_found(name: str, first: int, count: int) -> None:
-    result = blocks((UFF / name).read_bytes(), name)
+    result = blocks((UFF / name).read_bytes(), UFF / name)
     assert result[0].number == first
     assert len(result) >= count
     with pytest.raises(InputError, match="frequency response functions"):

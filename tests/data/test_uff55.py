@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from modefront.data.uff import write_uff55
-from modefront.data.uff55 import NodalModes, read_uff55
+from modefront.data.uff import NodalModes, read_uff55, write_uff55
 from modefront.errors import InputError
 from modefront.study.check import check
 from modefront.study.examples import write_example

@@ -9,8 +9,7 @@ from simulation import accelerance, blows
 from modefront._typing import Floats
 from modefront.data.csv import read_csv, write_csv
 from modefront.data.responses import frequency_responses
-from modefront.data.uff import write_uff55
-from modefront.data.uff55 import read_uff55
+from modefront.data.uff import read_uff55, write_uff55
 from modefront.errors import InputError
 from modefront.identification.methods.hammer import identify
 from modefront.identification.record import Identification

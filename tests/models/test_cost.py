@@ -11,9 +11,8 @@ import scipy.sparse
 import modefront as mf
 from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.cost import Estimate, estimate
 from modefront.models.reduced.model import ReducedModel
-from modefront.models.reduced.options import SMALLEST
+from modefront.models.reduced.options import SMALLEST, Estimate, estimate
 
 
 def chain(size: int, members: int) -> MatrixModel:

@@ -253,7 +253,7 @@ def test_what_takes_too_many_steps_is_solved_in_full_where_it_must_be_exact(
     monkeypatch: pytest.MonkeyPatch,
     costs: Costs,
 ) -> None:
-    monkeypatch.setattr("modefront.models.reduced.corrections.STEPS", 1)
+    monkeypatch.setattr("modefront.models.reduced.basis.STEPS", 1)
     full, corner = plate(), np.array([0.4, 2.5, 0.4])
     model = reduced(full)
     model.modes(np.ones(3), 8)

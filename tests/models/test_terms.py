@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import modefront as mf
-from modefront.models.terms import exponents_of
+from modefront.models.parameters import exponents_of
 
 NAMES = ("E", "t", "a*b", "k 1", "1/x")
 

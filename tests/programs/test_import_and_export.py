@@ -24,8 +24,7 @@ from modefront.errors import InputError
 from modefront.models.dofs import read_dofs
 from modefront.models.matrices import MatrixModel
 from modefront.programs import PROGRAMS
-from modefront.programs.base import JobOptions, whole
-from modefront.programs.mesh import read_mesh
+from modefront.programs.base import JobOptions, read_mesh, whole
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.check import check
 from modefront.study.examples import write_example

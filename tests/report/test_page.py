@@ -16,7 +16,7 @@ from pages import HOSTILE, ROOT, chain, content, hostile, mesh, plate, three_gro
 
 import modefront as mf
 from modefront.cli.main import main
-from modefront.models.local import geometry_of
+from modefront.models.base import geometry_of
 from modefront.reports.page import page
 from modefront.reports.payload import payload
 from modefront.reports.words import topics

@@ -35,7 +35,7 @@ from program_files import (
 
 from modefront.data.csv import read_csv
 from modefront.data.modal_test import read_test
-from modefront.data.uff55 import read_uff55
+from modefront.data.uff import read_uff55
 from modefront.fem.mesh import read_with_meshio
 from modefront.models.files import read_matrix
 from modefront.programs import PROGRAMS

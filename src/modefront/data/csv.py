@@ -1,16 +1,9 @@
-"""Modal data in CSV: ``set, mode, frequency, damping``, then one column a sensor.
+"""Tables in CSV: modal data, frequency response functions, and the records of blows.
 
-One row is one mode of one data set; frequencies are in Hz and damping is the ratio to critical.
-An empty field is not measured. The columns ``set`` and ``damping`` may be left out. Standard
-deviations, where known, are in columns of the same name with ``_std`` behind it; that of damping
-is checked, and used by nothing so far.
-
-Columns are separated by commas, semicolons or tabs, whichever the header has most of, or as a
-line ``sep=;`` before it says. Where they are not separated by commas, numbers may have decimal
-commas, as spreadsheets write them. Empty columns without names at the end are left out.
-
-Two modes of one frequency have any basis of a plane as their shapes. A column ``pair`` says so, by
-the number of the other mode.
+``docs/study-file.md`` and ``docs/identification.md`` describe them. Commas, semicolons or tabs
+separate the columns, whichever the header has most of, or as a line ``sep=;`` before it says. Where
+they are no commas, numbers may have decimal commas, as spreadsheets write them. Empty columns
+without names at the end are left out.
 """
 
 from __future__ import annotations
@@ -27,23 +20,20 @@ from typing import TextIO
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Complexes, Floats
+from modefront.data.impact import TIME, Contents, blow_of_columns
 from modefront.data.modal import ModalData
+from modefront.data.responses import Channel
 from modefront.errors import Fault, InputError, reason, refuse, suggestion
 from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, refuse_holes
 from modefront.outputs import write_table
+from modefront.rounding import LARGEST
 from modefront.rounding import LARGEST as LARGEST_NUMBER
 from modefront.text import NAME, clean
 
 KEYS = ("set", "mode")
 QUANTITIES = ("frequency", "damping")
 PAIR = "pair"
-
-OPTIONAL = ("set", "damping")
-"""Columns that may be left out: all rows are of one data set then, no damping is measured."""
-
-ONLY_SET = "1"
-"""Name of the data set of a file that names none."""
 
 SEPARATORS = ",;\t"
 
@@ -55,31 +45,8 @@ NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORE
 DECIMAL_COMMA = re.compile(r"^(\s*[+-]?[0-9]*),([0-9]*(?:e[+-]?[0-9]+)?\s*)$", re.IGNORECASE)
 """A number with a decimal comma, before and behind it."""
 
-SEPARATOR_LINE = re.compile(r'"?sep=(?P<separator>[,;\t])"?[,;\t \r\n]*', re.IGNORECASE)
-"""First line by which spreadsheets say what separates the columns."""
-
-MODE = re.compile("[0-9]{1,9}")
-
-LONGEST_LINE = 10**6
-"""Characters of the header in which separators are counted."""
-
-MOST_MODES = 10**6
-"""Modes of all data sets, at most: chosen against slips that fill the memory."""
-
-MOST_COLUMNS = 20_000
-"""Columns, at most: chosen against files that fill the memory."""
-
 MOST_FAULTS = 100
 """Faults of rows after which the rest is not looked at."""
-
-SUGGESTED = 20
-"""Unknown columns for which a known one is sought."""
-
-FREQUENCIES = 1e-9, 1e12
-"""Frequencies in Hz beyond which a number must be a slip."""
-
-SHAPES = 1 / LARGEST_NUMBER, LARGEST_NUMBER
-"""Greatest components of a mode shape of which the squares are still numbers."""
 
 
 def is_reserved(name: str, sensors: Collection[str]) -> bool:
@@ -147,8 +114,8 @@ def read_csv(
         rows = ((k, row if any(map(str.strip, row[width:])) else row[:width]) for k, row in rows)
         if not header:
             raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
-        if len(header) > MOST_COLUMNS:
-            expected = f"up to {MOST_COLUMNS} columns"
+        if len(header) > 20_000:
+            expected = "up to 20000 columns"
             raise InputError(Fault(file, f"line {first}", expected, str(len(header))))
         if sensors is None:
             sensors = [
@@ -156,9 +123,8 @@ def read_csv(
                 for name in dict.fromkeys(header)
                 if name.isprintable() and name and not is_reserved(name, set(header))
             ]
-        faults = [_fault(file, first, *found) for found in _header_faults(header, sensors)]
-        if faults:
-            raise InputError(faults)
+        refuse(_fault(file, first, *found) for found in _header_faults(header, sensors))
+        faults: list[Fault] = []
         keys: list[tuple[int, str, int]] = []
         table: list[list[float]] = []
         last: list[str] = []
@@ -171,18 +137,16 @@ def read_csv(
                 faults.append(_fault(file, number, None, expected, str(len(fields))))
                 continue
             texts = map(str.strip, fields)
-            key, values, found = _row(dict(zip(header, texts, strict=True)))
+            key, values, found = _row(dict(zip(header, texts, strict=True)), sensors)
             if key is not None:
                 keys.append((number, *key))
                 table.append(list(values.values()))
-                found = found or _empty_faults(values, sensors)
             faults += [_fault(file, number, *each) for each in found]
     if not last:
         raise InputError(Fault(file, "line 2", "a row for each measured mode", "the end"))
     repeated = _repeated(file, keys, has_sets="set" in header)
     faults += [] if len(faults) > MOST_FAULTS else list(islice(repeated, MOST_FAULTS))
-    if faults:
-        raise InputError(faults)
+    refuse(faults)
     ended_column(path, last)
     values_of = dict(zip((x for x in header if x not in KEYS), np.array(table).T, strict=True))
     return _assemble(path, keys, values_of, tuple(sensors))
@@ -244,32 +208,24 @@ def opened(path: Path, what: str) -> Iterator[tuple[TextIO, str, int]]:
     try:
         refuse_holes(path, what, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:
-            yield stream, *_find_separator(stream)
+            lines, first = 1, stream.readline(10**6)
+            while first and not first.strip(SEPARATORS + " \r\n"):
+                lines, first = lines + 1, stream.readline(10**6)
+            declared = re.fullmatch(r'"?sep=([,;\t])"?[,;\t \r\n]*', first, re.IGNORECASE)
+            if declared:  # as spreadsheets say what separates the columns
+                yield stream, declared[1], lines
+            else:
+                stream.seek(0)
+                yield stream, max(SEPARATORS, key=first.count), 0
     except InputError:
         raise
     except (OSError, ValueError, csv.Error) as error:
         raise InputError(Fault(str(path), "file", "CSV in UTF-8", reason(error))) from None
 
 
-def _find_separator(stream: TextIO) -> tuple[str, int]:
-    """Return the separator of the columns, and the number of lines before the header that name it.
-
-    The stream is left at the first line that counts.
-    """
-    lines, first = 1, stream.readline(LONGEST_LINE)
-    while first and not first.strip(SEPARATORS + " \r\n"):
-        lines, first = lines + 1, stream.readline(LONGEST_LINE)
-    declared = SEPARATOR_LINE.fullmatch(first)
-    if declared:
-        return declared["separator"], lines
-    stream.seek(0)
-    return max(SEPARATORS, key=first.count), 0
-
-
 def _repeated(
     file: str, keys: Sequence[tuple[int, str, int]], *, has_sets: bool
 ) -> Iterator[Fault]:
-    """Yield the rows, given by line, set and mode, of modes that a data set has already."""
     place, expected = "columns 'set' and 'mode'", "each mode of a data set once"
     if not has_sets:
         place = "column 'mode'"
@@ -285,50 +241,47 @@ def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[
     """Return (column, expected, found) for everything that is wrong with the header."""
     required = (*KEYS, *QUANTITIES, *sensors)
     known = dict.fromkeys((*required, PAIR, *(name + STD for name in (*QUANTITIES, *sensors))))
-    counts = Counter(header)
-    expected = "the name of a quantity or of a sensor of the model"
-    unknown = [name for name in counts if name not in known]
-    faults = [(name, expected, suggestion(name, known)) for name in unknown[:SUGGESTED]]
-    faults += [(name, expected, repr(clean(name, NAME))) for name in unknown[SUGGESTED:]]
-    faults += [
-        (name, "this column", "no such column")
-        for name in required
-        if name not in counts and name not in OPTIONAL
-    ]
-    faults += [
-        (name, "each column once", f"{count} of this name")
-        for name, count in counts.items()
-        if count > 1
-    ]
-    return faults
+    counts, faults = Counter(header), []
+    for k, name in enumerate(name for name in counts if name not in known):
+        found = suggestion(name, known) if k < 20 else repr(clean(name, NAME))  # takes time
+        faults.append((name, "the name of a quantity or of a sensor of the model", found))
+    missing = [name for name in required if name not in (*counts, "set", "damping")]
+    faults += [(name, "this column", "no such column") for name in missing]
+    several = [(name, count) for name, count in counts.items() if count > 1]
+    return faults + [(name, "each column once", f"{n} of this name") for name, n in several]
 
 
-def _row(
-    texts: dict[str, str],
-) -> tuple[tuple[str, int] | None, dict[str, float], list[tuple[str, str, str]]]:
-    """Return the key (set, mode), the values and the faults of one row."""
+_Row = tuple[tuple[str, int] | None, dict[str, float], list[tuple[str, str, str]]]
+"""The key (set, mode) of a row, None for a wrong one, its values, and its faults."""
+
+
+def _row(texts: dict[str, str], sensors: Sequence[str]) -> _Row:
     faults: list[tuple[str, str, str]] = []
     values: dict[str, float] = {}
-    name, mode = texts.get("set", ONLY_SET), texts["mode"]
+    name, mode = texts.get("set", "1"), texts["mode"]
     if not name or not name.isprintable():
         faults.append(("set", "the name of a data set", repr(name)))
-    if not MODE.fullmatch(mode) or not 1 <= int(mode) <= MOST_MODES:
-        faults.append(("mode", f"a whole number from 1 to {MOST_MODES}", repr(mode)))
+    if not re.fullmatch("[0-9]{1,9}", mode) or not 1 <= int(mode) <= 10**6:
+        faults.append(("mode", f"a whole number from 1 to {10**6}", repr(mode)))
     key = None if faults else (name, int(mode))
     for column, text in texts.items():
-        if column in KEYS:
-            continue
-        values[column] = math.nan
-        if not text:
-            continue
-        if not NUMBER.fullmatch(text):
-            faults.append((column, "a finite number or an empty field", repr(text)))
-            continue
-        value = float(text)
-        expected = _range(column, value)
-        if expected:
-            faults.append((column, expected, text))
-        values[column] = value
+        if column not in KEYS:
+            is_number = NUMBER.fullmatch(text) is not None
+            values[column] = float(text) if is_number else math.nan
+            if text and (expected := _range(column, values[column])):
+                faults.append((column, expected, text if is_number else repr(text)))
+    if key is None or faults:
+        return key, values, faults
+    shape = [values[name] for name in sensors if not math.isnan(values[name])]
+    greatest = max(map(abs, shape), default=1.0)
+    if not greatest:
+        faults.append((sensors[0], "a mode shape that is not zero at all sensors", "only zeros"))
+    elif not 1 / LARGEST_NUMBER <= greatest <= LARGEST_NUMBER:  # squares have to be numbers
+        ends = f"from {1 / LARGEST_NUMBER:g} to {LARGEST_NUMBER:g}"
+        expected = f"a mode shape with its greatest component {ends}"
+        faults.append((sensors[0], expected, f"{greatest:g}"))
+    elif not shape and math.isnan(values["frequency"]):
+        faults.append(("frequency", "a frequency or a mode shape", "neither"))
     return key, values, faults
 
 
@@ -336,29 +289,12 @@ def _range(column: str, value: float) -> str:
     """Return the range expected of a value that is out of it; empty for a value within."""
     if not math.isfinite(value):
         return "a finite number or an empty field"
-    least, most = FREQUENCIES
-    if column == "frequency" and not least <= value <= most:
-        return f"a frequency above 0 Hz, from {least:g} to {most:g}"
+    if column == "frequency" and not 1e-9 <= value <= 1e12:
+        return "a frequency above 0 Hz, from 1e-09 to 1e+12"
     if column == "damping" and not 0 <= value < 1:
         percent = f" (if {value:g} % is meant: {value / 100:g})" if 1 <= value <= 100 else ""
         return f"a damping ratio from 0 to below 1{percent}"
-    if column.endswith(STD) and value < 0:
-        return "a standard deviation of 0 or more"
-    return ""
-
-
-def _empty_faults(values: dict[str, float], sensors: Sequence[str]) -> list[tuple[str, str, str]]:
-    """Return faults of rows in which nothing is measured or the shape vanishes."""
-    shape = [values[name] for name in sensors if not math.isnan(values[name])]
-    if shape and not any(shape):
-        return [(sensors[0], "a mode shape that is not zero at all sensors", "only zeros")]
-    greatest = max(map(abs, shape), default=1.0)
-    if math.isfinite(greatest) and not SHAPES[0] <= greatest <= SHAPES[1]:
-        expected = f"a mode shape with its greatest component from {SHAPES[0]:g} to {SHAPES[1]:g}"
-        return [(sensors[0], expected, f"{greatest:g}")]
-    if not shape and math.isnan(values["frequency"]):
-        return [("frequency", "a frequency or a mode shape", "neither")]
-    return []
+    return "a standard deviation of 0 or more" if column.endswith(STD) and value < 0 else ""
 
 
 def _assemble(
@@ -402,7 +338,6 @@ def _assemble(
 def _pairs(
     path: Path, keys: Sequence[tuple[int, str, int]], other: Floats
 ) -> tuple[tuple[int, int], ...]:
-    """Return the pairs of modes; raises InputError where the rows of both do not say so."""
     named = {(name, mode): x for (_, name, mode), x in zip(keys, other, strict=True) if x == x}
     lines = {(name, mode): line for line, name, mode in keys}
     faults = [
@@ -418,3 +353,153 @@ def _pairs(
         faults.append(Fault(str(path), f"column {PAIR!r}", expected, f"mode {twice} in two"))
     refuse(faults)
     return tuple(sorted((a, b) for a, b in pairs))
+
+
+FREQUENCY, COHERENCE = "frequency", "_coherence"
+
+PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))
+"""Endings of the two columns of a function, in each of its forms."""
+
+ENDINGS = ("_re", "_im", "_magnitude", "_rad", "_deg", COHERENCE)
+
+LISTED = 5
+"""Faults that are listed of one file."""
+
+
+def read_test_csv(path: Path, reference: str, columns: Mapping[str, str] | None = None) -> Contents:
+    """Return the functions or the blow of one file.
+
+    ``columns`` maps names of the file to those above: of a column, or of a response without the
+    endings of its columns. Raises InputError with what is wrong.
+    """
+    own, values = read_numbers(path, "a file of frequency response functions or records")
+    header, used = renamed(own, columns or {}, ENDINGS)
+    unused = frozenset((columns or {}).keys() - used)
+    if TIME in header and FREQUENCY not in header:
+        blow = blow_of_columns(str(path), header, values, reference)
+        return Contents(blows=(blow,), unused=unused)
+    forms = _forms(path, header)
+    column = dict(zip(header, values.T, strict=True))
+    given = {name for name, x in column.items() if np.isfinite(x).all()}
+    channels = (
+        Channel(
+            str(path),
+            f"columns {name + pair[0]!r} and {name + pair[1]!r}",
+            reference,
+            name,
+            column[FREQUENCY],
+            _function(path, name, pair, (column[name + pair[0]], column[name + pair[1]])),
+            coherence=column[name + COHERENCE] if name + COHERENCE in given else None,
+        )
+        for name, pair in forms.items()
+    )
+    return Contents(tuple(channels), unused=unused)
+
+
+def _function(
+    path: Path, name: str, pair: tuple[str, str], parts: tuple[Floats, Floats]
+) -> Complexes:
+    """Return the function of two columns; raises InputError for a phase of another unit."""
+    first, second = parts
+    empty = [bool(np.isnan(part).any()) for part in parts]
+    if all(empty):
+        return np.zeros(first.shape, complex)
+    if any(empty):
+        place = f"column {name + pair[empty.index(True)]!r}"
+        raise InputError(Fault(str(path), place, "numbers, as in the other column", "an empty one"))
+    if pair == PAIRS[0]:
+        return np.asarray(first + 1j * second)
+    most = float(np.abs(second).max())
+    faults = []
+    if first.min() < 0:
+        found = f"{first.min():g}: are these dB?"
+        place = f"column {name + pair[0]!r}"
+        faults.append(Fault(str(path), place, "magnitudes of 0 or more", found))
+    degrees = pair[1] == "_deg"
+    if (1 < most <= 3.15) if degrees else most > 100:  # half a turn in radians, or many of them
+        unit = "degrees" if degrees else "radians"
+        expected = f"a phase in {unit} (NAME_deg is in degrees, NAME_rad in radians)"
+        found = f"{most:g} at most"
+        faults.append(Fault(str(path), f"column {name + pair[1]!r}", expected, found))
+    refuse(faults)
+    phase = np.radians(second) if degrees else second
+    return np.asarray(first * np.exp(1j * phase))
+
+
+def _forms(path: Path, header: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Return the endings of the two columns of every response, in the order of the columns."""
+    file = str(path)
+    faults = []
+    if FREQUENCY not in header:
+        found = "no such column"
+        faults.append(Fault(file, f"line 1, column {FREQUENCY!r}", "this column", found))
+    forms: dict[str, tuple[str, str]] = {}
+    for first in dict.fromkeys(pair[0] for pair in PAIRS):
+        for name in (x.removesuffix(first) for x in header if x.endswith(first)):
+            whole = [pair for pair in PAIRS if pair[0] == first and name + pair[1] in header]
+            if len(whole) != 1 or name in forms:
+                wanted = " or ".join(repr(name + b) for a, b in PAIRS if a == first)
+                has = "both" if whole else "no such column"
+                faults.append(Fault(file, f"line 1, column {wanted}", "this column", has))
+            forms[name] = whole[0] if whole else (first, first)
+    known = {FREQUENCY, *(n + end for n, pair in forms.items() for end in (*pair, COHERENCE))}
+    for name in dict.fromkeys(header):
+        if header.count(name) > 1:
+            faults.append(Fault(file, f"line 1, column {name!r}", "each column once", "another"))
+        if name not in known:
+            expected = "frequency, or NAME_re and NAME_im, NAME_magnitude and NAME_rad or NAME_deg,"
+            expected += " or NAME_coherence of a response; 'columns' in [[set]] renames others"
+            found = suggestion(name, known)
+            faults.append(Fault(file, f"line 1, column {name!r}", expected, found))
+    if not forms:
+        expected = "columns NAME_re and NAME_im of at least one response"
+        faults.append(Fault(file, "line 1", expected, ", ".join(header[:6])))
+    refuse(faults[:LISTED])
+    return forms
+
+
+def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
+    """Return the header and the rows of a CSV file of numbers; NaN in columns that are empty.
+
+    Raises InputError.
+    """
+    file = str(path)
+    with opened(path, what) as (stream, separator, before):
+        header = [field.strip() for field in next(csv.reader(stream, delimiter=separator), [])]
+        rows = stream.read().splitlines()
+    if separator != ",":
+        rows = [row.replace(",", ".") for row in rows]
+    start = before + 2
+    numbered = [(k, row) for k, row in enumerate(rows, start) if row.strip(SEPARATORS + " ")]
+    if not any(header):
+        raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
+    if not numbered:
+        raise InputError(Fault(file, "line 2", "a row for each line of frequency", "the end"))
+    texts = [row for _, row in numbered]
+    try:
+        values = np.loadtxt(texts, delimiter=separator, comments=None, ndmin=2)
+        if values.shape == (len(numbered), len(header)) and (np.abs(values) <= LARGEST).all():
+            ended_column(path, (row.rpartition(separator)[2] for row in texts))
+            return header, values
+    except ValueError:
+        pass
+    fields = [(number, [x.strip() for x in row.split(separator)]) for number, row in numbered]
+    whole = [row for _, row in fields if len(row) == len(header)]
+    full = [k for k in range(len(header)) if any(row[k] for row in whole)]
+    values, faults = np.full((len(fields), len(header)), np.nan), list[Fault]()
+    for position, (number, row) in enumerate(fields):
+        if len(row) != len(header):
+            expected = f"{len(header)} fields, as in the header"
+            faults.append(Fault(file, f"line {number}", expected, str(len(row))))
+            continue
+        for k in full:
+            if NUMBER.fullmatch(row[k]) and abs(float(row[k])) <= LARGEST:
+                values[position, k] = float(row[k])
+            else:
+                place, expected = f"column {header[k]!r}", f"a finite number up to {LARGEST:g}"
+                faults.append(Fault(file, f"line {number}, {place}", expected, repr(row[k])))
+        if len(faults) >= LISTED:
+            break
+    refuse(faults[:LISTED])
+    ended_column(path, (row[full[-1]] for row in whole))
+    return header, values

@@ -8,22 +8,21 @@ test of one set.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.blows import Averaged, Contents, averaged_blows
-from modefront.data.channels import Assembled, Channel, assemble
-from modefront.data.frf_csv import read_test_csv
-from modefront.data.impact import ESTIMATORS, Windows
+from modefront.data.csv import read_test_csv
+from modefront.data.impact import ESTIMATORS, Averaged, Contents, Windows, averaged_blows
 from modefront.data.records import ORDERS as RECORDED
-from modefront.data.records import RecordedFiles, Records, read_records
-from modefront.data.responses import ORDERS, joined
+from modefront.data.records import Records, SetFiles, read_records
+from modefront.data.responses import ORDERS, Assembled, Channel, assemble, joined
 from modefront.data.uff import read_uff
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import Fault, InputError, refuse, suggestion
+from modefront.inputs import wrong
 from modefront.json_schema import NOT_NEGATIVE, array
 from modefront.options import is_name, numbers, repeated, rising
 from modefront.toml import Table, read_toml
@@ -31,7 +30,6 @@ from modefront.toml import Table, read_toml
 KINDS = ("hammer", "ambient")
 """Kinds of tests."""
 
-UFF_ENDINGS = (".uff", ".unv", ".uf", ".bunv", ".ufb")
 MOST_MODES = 200
 """Modes that a test file may ask for."""
 
@@ -104,7 +102,7 @@ def read_test(path: Path) -> ModalTest:
     else:
         expected = "a universal file (.uff), a CSV file (.csv) or a test file (.toml)"
         found = "no such file" if not path.exists() else "none of these"
-        raise InputError(Fault(str(path), "file", expected, found))
+        raise wrong(path, expected, found)
     assembled = _assembled(contents, path.stem, settings)
     if path.suffix.lower() == ".csv":
         note = f"{path}: the file does not say its quantity: taken for accelerance"
@@ -114,7 +112,7 @@ def read_test(path: Path) -> ModalTest:
 
 def is_universal(path: Path) -> bool:
     """Return whether a file is taken for a universal file, by its ending or its first line."""
-    if path.suffix.lower() in UFF_ENDINGS:
+    if path.suffix.lower() in (".uff", ".unv", ".uf", ".bunv", ".ufb"):
         return True
     try:
         if not path.is_file():
@@ -127,68 +125,52 @@ def is_universal(path: Path) -> bool:
 
 def _from_toml(path: Path) -> ModalTest:
     root, _ = read_toml(path, "a test file")
-    faults = root.faults
     name, ambient, settings = _test_table(root)
+    if not ambient:
+        settings = replace(settings, windows=_impact_table(root))
+    band, modes, chosen = _identify_table(root)
+    places = _geometry_table(root)
+    sets = _set_tables(root, settings.sensors, ambient)
+    root.close()
+    refuse(root.faults)
+    data_sets: list[DataSet] = []
+    setups: list[Records] = []
     if ambient:
-        return _ambient(root, name or path.stem, settings)
-    settings = replace(settings, windows=_impact_table(root))
-    band, modes, chosen = _identify_table(root)
-    places = _geometry_table(root)
-    sets = _set_tables(root, path.parent)
-    root.close()
-    if faults:
-        raise InputError(faults)
-    data_sets = []
-    for label, files, references, decay, columns in sets:
-        contents = [
-            _contents(root, path.parent / file, reference, columns)
-            for file, reference in zip(files, references, strict=True)
-        ]
-        for unused in sorted(frozenset.intersection(*(x.unused for x in contents))):
-            expected = "a column of the CSV files of the set"
-            root.fault(f"[[set]] {label!r} columns", expected, repr(unused))
-        if faults:
-            raise InputError(faults)
-        its_own = replace(settings, decay=decay)
-        data_sets.append(DataSet(label, _assembled(contents, label, its_own, root)))
-    _check_places(root, places, (r for part in data_sets for r in part.assembled.data.responses))
-    return ModalTest(name or path.stem, band, modes, tuple(data_sets), chosen=chosen, places=places)
+        setups = _records(root, sets, settings.quantity or "acceleration")
+        sensors = [sensor for each in setups for sensor in each.sensors]
+    else:
+        data_sets = [_data_set(root, each, settings) for each in sets]
+        sensors = [sensor for each in data_sets for sensor in each.assembled.data.responses]
+    for place in places:
+        if place not in sensors:
+            root.fault(f"[geometry] {place}", "a sensor of the files", suggestion(place, sensors))
+    refuse(root.faults)
+    parts = tuple(data_sets), tuple(setups), chosen, places
+    return ModalTest(name or path.stem, band, modes, *parts)
 
 
-def _ambient(root: Table, name: str, settings: _Settings) -> ModalTest:
-    """Return an ambient test, of which every set is a setup."""
-    band, modes, chosen = _identify_table(root)
-    places = _geometry_table(root)
-    folder, setups = Path(root.file).parent, []
-    for number, table in enumerate(root.tables("set", required=True), start=1):
-        files = table.take("files", "a list of files", _are_names, ...) or []
-        setup = RecordedFiles(
-            table.text("name", default=str(number)) or str(number),
-            tuple(folder / file for file in files),
-            table.number("rate", "samples per s, above zero", None, above=0),
-            tuple(table.take("sensors", "a list of names", _are_names, [])),
-            table.names("columns"),
-            settings.sensors,
-        )
-        for sensor in repeated(setup.sensors):
-            table.fault("sensors", "each sensor once", f"{sensor!r} twice")
-        table.close()
-        setups.append(setup)
-    for label in repeated(setup.name for setup in setups):
-        root.fault("[[set]]", "a name for each data set", f"{label!r} twice")
-    root.close()
-    if root.faults:
-        raise InputError(root.faults)
-    records = [read_records(setup, settings.quantity or "acceleration") for setup in setups]
-    joined_to = set(records[0].sensors)
-    for each in records[1:]:
+def _records(root: Table, sets: Sequence[SetFiles], quantity: str) -> list[Records]:
+    """Return the records of an ambient test, of which every set is a setup."""
+    out = [read_records(each, quantity) for each in sets]
+    joined_to = set(out[0].sensors)
+    for each in out[1:]:
         if joined_to.isdisjoint(each.sensors):
             expected = f"a sensor that another set has: {', '.join(sorted(joined_to)[:8])}"
             found = ", ".join(each.sensors[:8])
             raise InputError(Fault(root.file, f"[[set]] {each.name!r}", expected, found))
         joined_to.update(each.sensors)
-    _check_places(root, places, joined_to)
-    return ModalTest(name, band, modes, (), tuple(records), chosen, places)
+    return out
+
+
+def _data_set(root: Table, known: SetFiles, settings: _Settings) -> DataSet:
+    pairs = zip(known.files, known.references, strict=True)
+    contents = [_contents(root, file, reference, known.columns) for file, reference in pairs]
+    for unused in sorted(frozenset.intersection(*(x.unused for x in contents))):
+        expected = "a column of the CSV files of the set"
+        root.fault(f"[[set]] {known.name!r} columns", expected, repr(unused))
+    refuse(root.faults)
+    its_own = replace(settings, decay=known.decay)
+    return DataSet(known.name, _assembled(contents, known.name, its_own, root))
 
 
 def _test_table(root: Table) -> tuple[str, bool, _Settings]:
@@ -237,31 +219,16 @@ def _identify_table(root: Table) -> tuple[tuple[float, float] | None, int | None
 
 def _geometry_table(root: Table) -> dict[str, tuple[Floats, Floats]]:
     """Return the places of ``[geometry]``: sensor = [x, y, z, direction, of three numbers too]."""
-    table = root.table("geometry", default=None)
-    if not table:
-        return {}
-    out = {}
+    table, out = root.table("geometry", default=None), {}
     six = numbers("x, y, z and a direction, six numbers", array({"type": "number"}, 6, 6))
-    for name in table.values:
-        values = table.value(name, six)
-        if values is None:
-            continue
-        place = np.array(values)
-        size = float(np.linalg.norm(place[3:]))
-        if not size:
-            table.fault(name, "a direction that is not zero", "zeros")
-        out[name] = place[:3], place[3:] / (size or 1.0)
-    table.close()
+    for name in table.values if table else ():
+        if table and (values := table.value(name, six)) is not None:
+            place = np.array(values)
+            size = float(np.linalg.norm(place[3:]))
+            if not size:
+                table.fault(name, "a direction that is not zero", "zeros")
+            out[name] = place[:3], place[3:] / (size or 1.0)
     return out
-
-
-def _check_places(root: Table, places: Iterable[str], sensors: Iterable[str]) -> None:
-    known = list(dict.fromkeys(sensors))
-    for name in places:
-        if name not in known:
-            root.fault(f"[geometry] {name}", "a sensor of the files", suggestion(name, known))
-    if root.faults:
-        raise InputError(root.faults)
 
 
 def _impact_table(root: Table) -> Windows | None:
@@ -282,38 +249,48 @@ def _impact_table(root: Table) -> Windows | None:
     return windows
 
 
-def _set_tables(
-    root: Table, folder: Path
-) -> list[tuple[str, list[str], list[str], float, dict[str, str]]]:
-    """Return all data sets: name, files with a reference each, decay in 1/s, names of columns.
-
-    The decay is what the exponential window of functions added to that of their poles.
-    """
+def _set_tables(root: Table, channels: Mapping[str, str], ambient: bool) -> list[SetFiles]:
     out = []
     for number, table in enumerate(root.tables("set", required=True), start=1):
         name = table.text("name", default=str(number)) or str(number)
-        files = table.take("files", "a list of files", _are_names, ...) or []
-        references = table.take("reference", "one reference a file", _are_names, None)
-        if references is None:
-            references = [""] * len(files)
-            for file in files:
-                if not is_universal(folder / file):
-                    table.fault("reference", f"the reference of {file}", "nothing")
-        elif len(references) != len(files):
-            found = f"{len(references)} for {len(files)} files"
-            table.fault("reference", "one reference a file", found)
-            references = [""] * len(files)
-        decay = 0.0
-        if window := table.table("window", "a table { exponential = time constant in s }", None):
-            expected = "a time constant in s above zero"
-            tau = window.number("exponential", expected, above=0)
-            window.close()
-            decay = 1 / tau if tau else 0.0
-        out.append((name, files, references, decay, table.names("columns")))
+        names = table.take("files", "a list of files", _are_names, ...) or []
+        files = tuple(Path(root.file).parent / file for file in names)
+        known = SetFiles(name, files, table.names("columns"), channels)
+        if ambient:
+            rate = table.number("rate", "samples per s, above zero", None, above=0)
+            sensors = tuple(table.take("sensors", "a list of names", _are_names, []))
+            for sensor in repeated(sensors):
+                table.fault("sensors", "each sensor once", f"{sensor!r} twice")
+            known = replace(known, rate=rate, sensors=sensors)
+        else:
+            known = replace(known, references=_references(table, files), decay=_decay(table))
         table.close()
-    for name in repeated(name for name, *_ in out):
+        out.append(known)
+    for name in repeated(known.name for known in out):
         root.fault("[[set]]", "a name for each data set", f"{name!r} twice")
     return out
+
+
+def _references(table: Table, files: Sequence[Path]) -> tuple[str, ...]:
+    references = table.take("reference", "one reference a file", _are_names, None)
+    if references is not None and len(references) == len(files):
+        return tuple(references)
+    if references is not None:
+        found = f"{len(references)} for {len(files)} files"
+        table.fault("reference", "one reference a file", found)
+    for file in files if references is None else ():
+        if not is_universal(file):
+            table.fault("reference", f"the reference of {file.name}", "nothing")
+    return ("",) * len(files)
+
+
+def _decay(table: Table) -> float:
+    window = table.table("window", "a table { exponential = time constant in s }", None)
+    if window is None:
+        return 0.0
+    tau = window.number("exponential", "a time constant in s above zero", above=0)
+    window.close()
+    return 1 / tau if tau else 0.0
 
 
 def _are_names(value: object) -> bool:

@@ -14,10 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.blows import EVEN, TIME
-from modefront.data.channels import EXPECTED
-from modefront.data.csv import renamed
-from modefront.data.frf_csv import read_numbers
+from modefront.data.csv import read_numbers, renamed
+from modefront.data.impact import EVEN, TIME
+from modefront.data.responses import EXPECTED
 from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import read_functions
 from modefront.inputs import MOST_DATA, file_size, wrong
@@ -27,14 +26,7 @@ from modefront.rounding import LARGEST
 ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """Number of differentiations of the displacement in each quantity."""
 
-UNEVEN = 0.3
-"""Distance of a sample from its even place, over a step, that digits of times may make."""
-
-ARRAYS = (".npy", ".mat")
-"""Endings of files that hold arrays alone."""
-
 WHAT = "a file with records in time"
-READER = "modefront.data.records:read_arrays"
 
 
 @dataclass(frozen=True)
@@ -75,28 +67,32 @@ class Records:
 
 
 @dataclass(frozen=True)
-class RecordedFiles:
-    """The files of one setup, measured at once, and what they do not say themselves.
+class SetFiles:
+    """The files of one data set, and what they do not say themselves.
 
     Attributes
     ----------
-    name : of the setup
+    name : of the data set
     files : paths
-    rate : samples per second, for arrays
-    sensors : names of the channels of arrays
     columns : names of columns in CSV files and what they are here
     channels : names by node and direction in universal files, such as 1Z or 1-Z
+    rate : samples per second, for arrays
+    sensors : names of the channels of arrays
+    references : one a file of functions, empty where it says its own
+    decay : what an exponential window added to the decay of the functions, in 1/s
     """
 
     name: str
     files: tuple[Path, ...]
-    rate: float | None
-    sensors: tuple[str, ...]
     columns: Mapping[str, str]
     channels: Mapping[str, str]
+    rate: float | None = None
+    sensors: tuple[str, ...] = ()
+    references: tuple[str, ...] = ()
+    decay: float = 0.0
 
 
-def read_records(setup: RecordedFiles, quantity: str) -> Records:
+def read_records(setup: SetFiles, quantity: str) -> Records:
     """Return the records of a setup; raises InputError with what is wrong."""
     names: list[str] = []
     rows: list[Floats] = []
@@ -127,10 +123,10 @@ def read_records(setup: RecordedFiles, quantity: str) -> Records:
     )
 
 
-def _of_file(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, float]:
+def _of_file(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]:
     """Return names, records (sensors, samples) and samples per second of one file."""
     ending = path.suffix.lower()
-    if ending in ARRAYS:
+    if ending in (".npy", ".mat"):
         return _of_array(path, setup)
     if ending == ".csv":
         own, values = read_numbers(path, WHAT)
@@ -142,7 +138,7 @@ def _of_file(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, f
         names = [name for name in header if name != TIME]
         rows = np.nan_to_num(np.delete(values, column, axis=1).T, nan=0.0)  # empty columns
         return names, rows, _rate(path, values[:, column])
-    functions = [x for _, x in read_functions(path) if x.kind == OF_TIME]
+    functions = [x for x in read_functions(path) if x.kind == OF_TIME]
     if not functions:
         expected = "records in time (functions of type 1) in dataset 58"
         raise wrong(path, expected, "none", "dataset 58")
@@ -169,13 +165,13 @@ def read_arrays(path: Path) -> Read:
     return {name: x for name, x in named.items() if x.dtype.kind in "fiuc"}, None
 
 
-def _of_array(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, float]:
+def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]:
     file_size(path, WHAT, MOST_DATA)
     if setup.rate is None or not setup.sensors:
         expected = "'rate' and 'sensors' in its [[set]], which the file does not say"
         raise wrong(path, expected, "nothing", "records")
     try:
-        read, _ = isolated(READER, path)
+        read, _ = isolated(f"{__name__}:read_arrays", path)
     except IsolatedError as error:
         raise wrong(path, "an array of numbers", str(error)) from None
     arrays, count = list(read.values()), len(setup.sensors)
@@ -193,8 +189,9 @@ def _rate(path: Path, time: Floats) -> float:
     count, length = len(time) - 1, float(time[-1] - time[0])
     if count < 2 or length <= 0:
         raise wrong(path, "ascending times", "others", "time")
+    # Digits of times may move a sample by a part of a step.
     off = np.abs(time - time[0] - np.arange(count + 1) * (length / count)).max()
-    if off > UNEVEN * length / count:
+    if off > 0.3 * length / count:
         found = f"times off by up to {off:.3g} s, steps of {length / count:.3g} s"
         raise wrong(path, "a time axis of even steps", found, "time")
     return count / length

@@ -4,24 +4,20 @@ A test is a table of frequency response functions :math:`H_{ji}(\omega_k)` betwe
 *j* and *responses* *i* at common lines :math:`f_k`. In a hammer test one side stays and the other
 roves; by Maxwell's reciprocity, :math:`H_{ji} = H_{ij}`, either side can be called the
 responses: mode shapes are identified at the side called so. What was not measured is NaN.
-
-==========================  ==============================================================
-symbol                      meaning
-==========================  ==============================================================
-``frequency`` :math:`f_k`   lines in Hz, ascending, (lines,)
-``H``                       :math:`H_{ji}(\omega_k)`, (references, responses, lines)
-``variance``                :math:`E|H - E H|^2`, the same shape; None where nothing is known
-==========================  ==============================================================
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import TypeAlias
 
 import numpy as np
 
 from modefront._typing import Bools, Complexes, Floats
+from modefront.errors import Fault, refuse
+from modefront.rounding import LARGEST
 
 ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}
 """Number of differentiations of the displacement in each quantity."""
@@ -179,3 +175,270 @@ def frequency_responses(
         None if variance is None else np.asarray(variance, float).reshape(H.shape),
         scaled,
     )
+
+
+EXPECTED = f"finite numbers up to {LARGEST:g}"
+"""What values of functions and records are."""
+
+STRAY = 300.0
+"""Ratio of sizes from which on two channels seem to have different units."""
+
+UNEQUAL = 1.3
+"""Ratio of reciprocal functions from which on their sensors have different units: more than
+calibrations and mounted masses leave."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One measured function.
+
+    Attributes
+    ----------
+    file, place : where it was read
+    reference, response : names; the reference is empty where the file does not say
+    frequency : (lines,) in Hz
+    H : (lines,) complex
+    quantity : what it is; empty where the file does not say
+    coherence : (lines,), or None
+    variance : (lines,) of the mean, where it is known, or None
+    """
+
+    file: str
+    place: str
+    reference: str
+    response: str
+    frequency: Floats
+    H: Complexes
+    quantity: str = ""
+    coherence: Floats | None = None
+    variance: Floats | None = None
+
+    def fault(self, expected: str, found: str) -> Fault:
+        """Return the fault of the function."""
+        return Fault(self.file, self.place, expected, found)
+
+
+_Groups: TypeAlias = dict[tuple[int, int], list[Channel]]
+"""Channels by the positions of their reference and response."""
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """The functions of one data set, with warnings."""
+
+    data: FrequencyResponses
+    warnings: tuple[str, ...]
+
+
+def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool) -> Assembled:
+    """Return one data set from its channels.
+
+    ``quantity`` is what the test file says, or empty; ``turned`` makes the points of the hammer
+    the responses, by reciprocity. Raises InputError with everything that is wrong.
+    """
+    _check_axes(channels)
+    quantity = _quantity(channels, quantity)
+    _check_values(channels)
+    if turned:
+        channels = [replace(x, reference=x.response, response=x.reference) for x in channels]
+    references = tuple(dict.fromkeys(channel.reference for channel in channels))
+    responses = tuple(dict.fromkeys(channel.response for channel in channels))
+    groups: _Groups = {}
+    for channel in channels:
+        key = references.index(channel.reference), responses.index(channel.response)
+        groups.setdefault(key, []).append(channel)
+    blows = max(map(len, groups.values()))
+    frequency = channels[0].frequency
+    H = np.full((blows, len(references), len(responses), len(frequency)), np.nan, complex)
+    coherence, variance = np.full(H.shape[1:], np.nan), np.full(H.shape[1:], np.nan)
+    for (j, i), group in groups.items():
+        for b, channel in enumerate(group):
+            H[b, j, i] = channel.H
+            if channel.coherence is not None:
+                coherence[j, i] = channel.coherence
+            if channel.variance is not None:
+                variance[j, i] = channel.variance
+    dead = (np.nan_to_num(H) == np.nan_to_num(H[..., :1])).all(axis=(0, 3))
+    H[:, dead] = np.nan
+    mean = np.nanmean(H, axis=0) if len(H) > 1 else H[0]
+    warnings = [
+        *_units(name, frequency, mean, groups, dead),
+        *_reciprocity(name, mean, references, responses, turned),
+        *_driving_points(H, frequency, quantity, groups),
+    ]
+    data = frequency_responses(
+        frequency,
+        H if blows > 1 else H[0],
+        quantity,
+        references=references,
+        responses=responses,
+        coherence=coherence if blows == 1 and np.isfinite(coherence).any() else None,
+        variance=variance if blows == 1 and np.isfinite(variance).any() else None,
+    )
+    return Assembled(data, tuple(warnings))
+
+
+def _check_axes(channels: Sequence[Channel]) -> None:
+    first, faults = channels[0], list[Fault]()
+    ends = [f"{x.frequency[0]:g} to {x.frequency[-1]:g} Hz" for x in channels if len(x.frequency)]
+    for k, channel in enumerate(channels):
+        f = channel.frequency
+        if not (np.isfinite(f).all() and (np.diff(f) > 0).all() and (f >= 0).all()):
+            expected = "frequencies in Hz that ascend from zero or above"
+            faults.append(channel.fault(expected, "others"))
+        elif len(f) != len(first.frequency):
+            expected = f"{len(first.frequency)} lines, as in {first.file}"
+            faults.append(channel.fault(expected, f"{len(f)} lines"))
+        elif np.abs(f - first.frequency).max() > 1e-6 * first.frequency[-1]:
+            expected = f"the frequency axis of {first.file}, {ends[0]}"
+            faults.append(channel.fault(expected, ends[k]))
+    refuse(faults)
+
+
+def _quantity(channels: Sequence[Channel], declared: str) -> str:
+    known, faults = declared, list[Fault]()
+    for channel in channels:
+        if not channel.quantity and not declared:
+            expected = "quantity = 'receptance', 'mobility' or 'accelerance' in [test]"
+            faults.append(channel.fault(expected, "a file that does not say it"))
+        elif channel.quantity and known and channel.quantity != known:
+            faults.append(channel.fault(f"{known}, as in the others", channel.quantity))
+        known = known or channel.quantity
+    refuse(faults[:5])
+    return known
+
+
+def _check_values(channels: Sequence[Channel]) -> None:
+    faults = []
+    for channel in channels:
+        bad = np.flatnonzero(~(np.abs(channel.H) <= LARGEST))
+        if len(bad):
+            found = f"{channel.H[bad[0]].real:g} at {channel.frequency[bad[0]]:g} Hz"
+            found += f" and {len(bad) - 1} more" * (len(bad) > 1)
+            faults.append(channel.fault(EXPECTED, found))
+    if all(not np.any(channel.H[0] != channel.H) for channel in channels) and not faults:
+        found = "one number" if np.any(channels[0].H) else "only zeros"
+        faults.append(channels[0].fault("functions that are not the same at all lines", found))
+    refuse(faults[:5])
+
+
+def _units(
+    name: str, frequency: Floats, mean: Complexes, groups: _Groups, dead: Bools
+) -> Iterator[str]:
+    """Warn of an axis in rad/s, of dead channels, and of functions far from the others in size.
+
+    Dead (references, responses) are those that are zero, or one number at all lines.
+    """
+    if looks_like_circular(frequency):
+        yield (
+            f"set {name!r}: the frequency axis looks like rad/s: its lines are "
+            f"{frequency[1] - frequency[0]:.6g} apart, 2π times a round number; expected Hz"
+        )
+    size = np.sqrt(np.mean(np.abs(np.where(np.isfinite(mean), mean, 0)) ** 2, axis=2))
+    living = size[~dead & (size > 0)]
+    middle = float(np.median(living)) if len(living) else 0.0
+    stray = []
+    for (j, i), (first, *_) in groups.items():
+        ratio = size[j, i] / middle if middle else 1.0
+        if dead[j, i]:
+            what = "one number at all lines" if first.H.any() else "empty or only zeros"
+            yield f"{first.file}: {first.place}: {what}; the channel is left out"
+        elif size[j, i] > 0 and not 1 / STRAY < ratio < STRAY:
+            stray.append(
+                f"{first.file}: {first.place}: {ratio:.3g} times as great as the other "
+                "functions are: check its unit"
+            )
+    yield from stray
+
+
+def _driving_points(
+    H: Complexes,
+    frequency: Floats,
+    quantity: str,
+    groups: _Groups,
+) -> list[str]:
+    """Return where a driving point gives energy back: its mobility has a negative real part."""
+    out = []
+    lines = frequency > 0
+    s = 2j * np.pi * frequency[lines]
+    for (j, i), (first, *_) in groups.items():
+        if first.reference != first.response:
+            continue
+        power = (H[0, j, i, lines] * s ** (1 - ORDERS[quantity])).real
+        if np.isfinite(power).all() and power.sum() < -0.5 * np.abs(power).sum():
+            out.append(
+                f"{first.file}: {first.place}: the driving point has the wrong sign: check the "
+                "directions of hammer and sensor, and the quantity"
+            )
+    return out
+
+
+def _reciprocity(
+    name: str, H: Complexes, references: tuple[str, ...], responses: tuple[str, ...], turned: bool
+) -> Iterator[str]:
+    """Yield where H_ji and H_ij differ by a sign, and which sensors differ by a factor."""
+    factors: dict[str, dict[str, float]] = {}
+    for (j, first), (k, second) in combinations(enumerate(references), 2):
+        if first not in responses or second not in responses:
+            continue
+        a, b = H[j, responses.index(second)], H[k, responses.index(first)]
+        if not (np.isfinite(a).all() and np.isfinite(b).all() and np.any(a) and np.any(b)):
+            continue
+        ratio = float(np.linalg.norm(a) / np.linalg.norm(b))
+        inner = np.vdot(b, a) / (np.linalg.norm(a) * np.linalg.norm(b))
+        if inner.real < -0.5:
+            yield (
+                f"set {name!r}: the functions {first}-{second} and {second}-{first} have opposite "
+                "signs: check the direction of a sensor"
+            )
+        if abs(inner) > 0.9:  # else noise may change the ratio
+            # The first was measured by the sensor at the second point, or turned.
+            sensor, other = (first, second) if turned else (second, first)
+            factors.setdefault(sensor, {})[other] = ratio
+            factors.setdefault(other, {})[sensor] = 1 / ratio
+    yield from _sensors_of_other_units(name, factors)
+
+
+def _sensors_of_other_units(name: str, factors: dict[str, dict[str, float]]) -> Iterator[str]:
+    """Yield the sensors that differ from every other one with which reciprocity compares them.
+
+    ``factors`` holds the size of each sensor over that of the others. Where it compares two sensors
+    only, either may be the wrong one; the one with the smaller numbers comes first.
+    """
+    for sensor, others in sorted(factors.items(), key=lambda x: min(x[1].values())):
+        if any(1 / UNEQUAL < factor < UNEQUAL for factor in others.values()):
+            continue
+        partner, factor = sorted(others.items(), key=lambda x: x[1])[len(others) // 2]
+        alone = len(others) == len(factors[partner]) == 1
+        if alone and factor > 1:
+            continue
+        says = f"set {name!r}: the channel {sensor} is {factor:.3g} times as great as reciprocity "
+        says += f"with {', '.join(others)} says"
+        if alone:
+            says += f", or {partner} is {1 / factor:.3g} times"
+        if abs(abs(np.log(factor)) - np.log(9.80665)) < np.log(1.05):
+            says += "; 9.81 is between g and m/s²"
+        yield says + ": check its unit and calibration"
+
+
+def looks_like_circular(frequency: Floats) -> bool:
+    """Return whether the distance of lines is 2 pi times a round number, and not round itself.
+
+    >>> looks_like_circular(2 * np.pi * np.arange(0, 100, 0.25))
+    True
+    >>> looks_like_circular(np.arange(0, 100, 0.25))
+    False
+    """
+    if len(frequency) < 3:
+        return False
+    step = float(frequency[-1] - frequency[0]) / (len(frequency) - 1)
+
+    def is_round(x: float) -> bool:
+        digits = x / 10 ** np.floor(np.log10(x))
+        return bool(
+            abs(digits * 1e3 - round(digits * 1e3)) < 1e-3
+            or any(abs(1 / x - round(1 / x, k)) < 1e-6 / x for k in (0, 1))
+            or any(abs(x * 2**k - round(x * 2**k)) < 1e-6 * x * 2**k for k in range(14))
+        )
+
+    return is_round(step / (2 * np.pi)) and not is_round(step)

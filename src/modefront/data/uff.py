@@ -1,35 +1,45 @@
-"""Universal files: functions or records of blows from dataset 58, modes into dataset 55.
+r"""Universal files: functions or records of blows in dataset 58, modes of a test in dataset 55.
 
-Modes are read in `modefront.data.uff55`. A dataset stands between two lines with -1; what it
-declares is compared with what it holds.
+A dataset stands between two lines with -1; what it declares is compared with what it holds.
+``docs/study-file.md`` says how modes are read; of a complex one with the eigenvalue
+:math:`\lambda`,
+
+.. math:: f = |\lambda| / 2 \pi, \quad \zeta = -\operatorname{Re} \lambda / |\lambda| .
+
+``pair with mode NUMBER`` at the end of one of the first lines of a dataset 55 says that both shapes
+are a basis of a plane.
 
 Format: Structural Dynamics Research Laboratory, University of Cincinnati, *Universal File
-Formats*, datasets 55, 58 and 58b.
+Formats*, datasets 15, 55, 58, 58b, 2411 and 2420.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from modefront._typing import Complexes, Floats
-from modefront.data.blows import Blow, Contents
-from modefront.data.channels import Channel
-from modefront.errors import Fault, InputError, reason
-from modefront.inputs import MOST_DATA, counted, fortran, read_text_bytes
+from modefront._typing import Complexes, Floats, Ints
+from modefront.data.impact import Blow, Contents
+from modefront.data.modal import ModalData
+from modefront.data.responses import Channel
+from modefront.errors import Fault, InputError, reason, refuse
+from modefront.inputs import MOST_DATA, counted, fortran, once, read_text_bytes, wrong
 from modefront.outputs import write_text
+from modefront.rounding import LARGEST
+
+T = TypeVar("T")
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
 
-FORCES = (9, 13)
-"""Data types of the force of a hammer: reaction force, excitation force."""
+CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 
 QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 """Quantities of the numerator: displacement, velocity, acceleration."""
@@ -37,52 +47,34 @@ QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
 """Directions by their numbers in universal files."""
 
+KNOWN = (15, 55, 58, 2411, 2420)
+"""Datasets that are read, whose numbers may have blanks before them as no other line has."""
+
 OPENING = re.compile(
     rb"(?:\xef\xbb\xbf)?\s*^[ ]{4}-1[ \t]*\r?\n[ ]*([0-9]{1,5})(b?)(?!\S)([^\n]*)(?:\n|\Z)",
     re.MULTILINE,
 )
-CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
-END_OF_BINARY = re.compile(rb"\r?\n?[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
-
-KNOWN = (15, 55, 58, 2411, 2420)
-"""Datasets that are read, whose numbers may have blanks before them as no other line has."""
-
-BLANK = b" \t\r\n\0\x1a"
-"""Bytes that may stand behind the last dataset."""
-
-NEXT = re.compile(r"(?<=[0-9.])(?=[+-][0-9]*\.)")
-"""Beginning of a number that follows on another one without a blank."""
-
-NUMERIC = b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"
-"""Bytes of numbers, of nan and infinity among them, and of what separates them."""
-
 HEADER, RECORD_7 = 11, 6
 """Lines of dataset 58 before its numbers; the one with their kind and number, from 0."""
-
-FIELDS_6 = (0, 5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
-"""Columns of the fields of record 6 of dataset 58."""
-
-KINDS = {2: "f4", 4: "f8", 5: "c8", 6: "c16"}
-"""Types of values in dataset 58, as NumPy knows them."""
 
 WHAT = "a universal file with frequency response functions or records of blows (dataset 58)"
 
 
 @dataclass(frozen=True)
 class Block:
-    """One dataset of a universal file: its number, the line where it begins, its bytes.
+    """One dataset of a universal file.
 
     Attributes
     ----------
-    number, line : its number, and the line where it begins
-    start, end : bytes behind its number, and before the line that ends it
+    file, number, line : its file, its number, and the line where it begins
+    body : what it holds, behind its number
     binary : the words behind the number of a binary dataset; None for one of text
     """
 
+    file: Path
     number: int
     line: int
-    start: int
-    end: int
+    body: bytes
     binary: list[str] | None
 
     @property
@@ -91,44 +83,34 @@ class Block:
         return f"line {self.line}, dataset {self.number}"
 
 
-def read_uff(path: Path) -> Contents:
-    """Return the frequency response functions of a universal file, with their coherence.
-
-    Where it has none, the records of blows: of the force and of the responses in time. Raises
-    InputError where the file holds neither, is cut off or cannot be decoded.
-    """
-    file, decoded = str(path), read_functions(path)
-    kinds = {values.kind for _, values in decoded}
-    if FRF in kinds:
-        return Contents(channels=tuple(_channels(decoded, file)))
-    blows = _blows(decoded, file) if TIME in kinds else []
-    if not blows:
-        expected = (
-            "frequency response functions (type 4), or records in time (type 1) of the excitation "
-            "force and of responses, among the functions of dataset 58"
-        )
-        found = f"functions of type {', '.join(map(str, sorted(kinds)))} only"
-        if TIME in kinds:
-            found += ", none of them a force and its responses"
-        raise InputError(Fault(file, "dataset 58", expected, found))
-    return Contents(blows=tuple(blows))
+def datasets(path: Path, what: str, number: int) -> list[Block]:
+    """Return all datasets of a universal file; raises InputError where none has a number."""
+    out = blocks(read_text_bytes(path, what, MOST_DATA), path)
+    if not any(block.number == number for block in out):
+        numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in out))
+        raise wrong(path, what, f"datasets {numbers} only", "datasets")
+    return out
 
 
-def read_functions(path: Path) -> list[tuple[Block, Function]]:
-    """Return all datasets 58 of a universal file; raises InputError where it has none."""
-    file, content = str(path), read_text_bytes(path, WHAT, MOST_DATA)
-    datasets = blocks(content, file)
-    functions = [block for block in datasets if block.number == 58]
-    if not functions:
-        numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in datasets))
-        raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
-    return [(block, _function(content, block, file)) for block in functions]
+def decoded(datasets: Iterable[Block], read: Callable[[Block], T], *numbers: int) -> list[T]:
+    """Return what is read of the datasets with some numbers; raises InputError for broken ones."""
+    out = []
+    for block in (block for block in datasets if block.number in numbers):
+        try:
+            out.append(read(block))
+        except InputError:
+            raise
+        except (ValueError, IndexError, KeyError, OverflowError) as error:
+            expected = f"a dataset {block.number}"
+            raise wrong(block.file, expected, reason(error), block.place) from None
+    return out
 
 
 @dataclass(frozen=True, eq=False)
 class Function:
     """A dataset 58: its type, what it is of, its degrees of freedom, abscissae and values."""
 
+    block: Block
     kind: int
     ordinate: int
     response: tuple[str, int]
@@ -137,63 +119,64 @@ class Function:
     data: Floats | Complexes
 
 
-def _channels(decoded: Sequence[tuple[Block, Function]], file: str) -> list[Channel]:
-    channels, coherences = [], {}
-    for block, values in decoded:
-        if values.kind == FRF:
-            channels.append(_channel(values, block, file))
-        elif values.kind == COHERENCE:
-            coherence = _channel(values, block, file)
-            coherences[coherence.reference, coherence.response] = np.abs(coherence.H)
-    return [
-        replace(channel, coherence=coherences.get((channel.reference, channel.response)))
-        for channel in channels
-    ]
+def read_functions(path: Path) -> list[Function]:
+    """Return all datasets 58 of a universal file; raises InputError where it has none."""
+    return decoded(datasets(path, WHAT, 58), _function, 58)
 
 
-def _blows(decoded: Sequence[tuple[Block, Function]], file: str) -> list[Blow]:
-    """Return the blows of records in time.
+def read_uff(path: Path) -> Contents:
+    """Return the frequency response functions of a universal file, with their coherence.
 
-    A blow ends where one of its channels comes again, or another force.
+    Where it has none, the records of blows: of the force and of the responses in time. Raises
+    InputError where the file holds neither, is cut off or cannot be decoded.
     """
-    groups: list[dict[str, tuple[Block, Function]]] = [{}]
-    for block, values in decoded:
-        if values.kind != TIME:
-            continue
-        key = "" if values.ordinate in FORCES else values.response[0]
+    functions = read_functions(path)
+    kinds = {each.kind for each in functions}
+    if FRF in kinds:
+        coherence = {}
+        for channel in (_channel(each) for each in functions if each.kind == COHERENCE):
+            coherence[channel.reference, channel.response] = np.abs(channel.H)
+        channels = [_channel(each) for each in functions if each.kind == FRF]
+        of_channels = [coherence.get((x.reference, x.response)) for x in channels]
+        pairs = zip(channels, of_channels, strict=True)
+        return Contents(tuple(replace(channel, coherence=each) for channel, each in pairs))
+    # A blow ends where one of its channels comes again, or another force.
+    groups: list[dict[str, Function]] = [{}]
+    for record in (each for each in functions if each.kind == TIME):
+        # The ordinates of a hammer are a reaction force, and an excitation force.
+        key = "" if record.ordinate in (9, 13) else record.response[0]
         if key in groups[-1]:
             groups.append({})
-        groups[-1][key] = block, values
-    return [_blow(group, file) for group in groups if "" in group and len(group) > 1]
+        groups[-1][key] = record
+    if blows := [_blow(group) for group in groups if "" in group and len(group) > 1]:
+        return Contents(blows=tuple(blows))
+    expected = (
+        "frequency response functions (type 4), or records in time (type 1) of the excitation "
+        "force and of responses, among the functions of dataset 58"
+    )
+    found = f"functions of type {', '.join(map(str, sorted(kinds)))} only"
+    found += ", none of them a force and its responses" * (TIME in kinds)
+    raise wrong(path, expected, found, "dataset 58")
 
 
-def _blow(group: Mapping[str, tuple[Block, Function]], file: str) -> Blow:
-    block, force = group[""]
-    records, quantities = {}, set()
-    for name, (of_record, values) in group.items():
-        records[name] = values.response[1] * np.asarray(values.data, float)
+def _blow(group: Mapping[str, Function]) -> Blow:
+    force, records, quantities = group[""], {}, set()
+    block = force.block
+    for name, record in group.items():
+        records[name] = record.response[1] * np.asarray(record.data, float)
         if len(records[name]) != len(force.data):
-            place = f"line {of_record.line}, dataset 58"
             expected = f"{len(force.data)} samples, as the force of line {block.line}"
-            raise InputError(Fault(file, place, expected, str(len(records[name]))))
+            raise wrong(block.file, expected, str(len(records[name])), record.block.place)
         if name:
-            quantities.add(QUANTITIES.get(values.ordinate, ""))
+            quantities.add(QUANTITIES.get(record.ordinate, ""))
     if len(quantities) > 1:
         found = ", ".join(sorted(quantity or "others" for quantity in quantities))
-        expected = "responses of one quantity"
-        raise InputError(Fault(file, f"line {block.line}, dataset 58", expected, found))
-    return Blow(
-        file,
-        f"line {block.line}, dataset 58",
-        force.response[0],
-        force.x,
-        records.pop(""),
-        records,
-        quantities.pop(),
-    )
+        raise wrong(block.file, "responses of one quantity", found, block.place)
+    where, x, name = force.response[0], force.x, quantities.pop()
+    return Blow(str(block.file), block.place, where, x, records.pop(""), records, name)
 
 
-def blocks(content: bytes, file: str) -> list[Block]:
+def blocks(content: bytes, file: Path) -> list[Block]:
     """Return the datasets of a universal file; raises InputError for other files and torn ones."""
     out: list[Block] = []
     after, line, seen = 0, 1, 0
@@ -201,28 +184,29 @@ def blocks(content: bytes, file: str) -> list[Block]:
         line += content.count(b"\n", seen, opening.start(1)) - 1
         seen = content.rfind(b"\n", 0, opening.start(1))
         number, binary = int(opening[1]), bool(opening[2])
-        if number not in KNOWN and opening.end(1) - content.rfind(b"\n", 0, opening.start(1)) != 7:
+        if number not in KNOWN and opening.end(1) - seen != 7:
             expected = "the number of a dataset, which ends in column 6"
             found = repr(opening[0].splitlines()[-1].decode("latin-1"))
-            raise InputError(Fault(file, f"line {line + 1}", expected, found))
+            raise wrong(file, expected, found, f"line {line + 1}")
         if binary:
             closing = _end_of_binary(content, opening[3], opening.end())
         else:
             closing = CLOSING.search(content, opening.end())
         if not closing:
             expected = f"the end of dataset {number}, a line with -1"
-            raise InputError(Fault(file, f"line {line}", expected, "the end of the file"))
+            raise wrong(file, expected, "the end of the file", f"line {line}")
         words = opening[3].decode("latin-1").split()
-        out.append(Block(number, line, opening.end(), closing.start(), words if binary else None))
+        body = content[opening.end() : closing.start()]
+        out.append(Block(file, number, line, body, words if binary else None))
         after = closing.end()
     if not out:
         expected = "datasets between lines with -1 in columns 5 and 6"
-        raise InputError(Fault(file, "file", expected, "none: this is no universal file"))
-    if rest := content[after:].strip(BLANK):
+        raise wrong(file, expected, "none: this is no universal file")
+    if rest := content[after:].strip(b" \t\r\n\0\x1a"):
         line = content.count(b"\n", 0, content.find(rest, after)) + 1
         expected = "a dataset: a line with -1 in columns 5 and 6, then one with its number"
         found = rest[:40].partition(b"\n")[0].decode("latin-1").strip()
-        raise InputError(Fault(file, f"line {line}", expected, repr(found)))
+        raise wrong(file, expected, repr(found), f"line {line}")
     return out
 
 
@@ -244,27 +228,14 @@ def _end_of_binary(content: bytes, header: bytes, start: int) -> re.Match[bytes]
         start = content.find(b"\n", start) + 1
         if not start:
             return None
-    for size in [*sizes, *_sizes(record)]:
-        if closing := END_OF_BINARY.match(content, start + size):
-            return closing
-    return None
-
-
-def _sizes(record: Sequence[bytes]) -> list[int]:
-    """Return bytes that the values may take, from the first three numbers of record 7."""
-    try:
+    with suppress(ValueError):  # of record 7
         kind, count, even = map(int, record)
-    except ValueError:
-        return []
-    size, values = (8 if kind in (4, 6) else 4), (2 if kind in (5, 6) else 1)
-    if even:
-        return [count * values * size]
-    return [count * (1 + values) * size, count * (4 + values * size)]
-
-
-def text_lines(content: bytes, block: Block) -> list[str]:
-    """Return the lines of a dataset behind the one with its number."""
-    return content[block.start : block.end].decode("utf-8", "replace").splitlines()
+        size, values = (8 if kind in (4, 6) else 4), (2 if kind in (5, 6) else 1)
+        sizes += [count * values * size] if even else []
+        sizes += [] if even else [count * (1 + values) * size, count * (4 + values * size)]
+    end = re.compile(rb"\r?\n?[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
+    closings = (end.match(content, start + size) for size in sizes)
+    return next((closing for closing in closings if closing), None)
 
 
 def reals(text: str) -> list[float]:
@@ -273,57 +244,55 @@ def reals(text: str) -> list[float]:
     >>> reals(" 1.5D+00-2.50000E+00 1.00000-100")
     [1.5, -2.5, 1e-100]
     """
-    return [fortran(word) for word in NEXT.sub(" ", text).split()]
+    # A number may follow on another one without a blank.
+    return [fortran(word) for word in re.sub(r"(?<=[0-9.])(?=[+-][0-9]*\.)", " ", text).split()]
 
 
-def _function(content: bytes, block: Block, file: str) -> Function:
-    """Return a dataset 58 that holds as many values as its header says."""
-    *lines, body = content[block.start : block.end].split(b"\n", HEADER)
+def _function(block: Block) -> Function:
+    *lines, body = block.body.split(b"\n", HEADER)
     head = [line.decode("utf-8", "replace") for line in lines]
-    try:
-        six = [head[5][a:b].strip() for a, b in pairwise(FIELDS_6)]
-        form, count, even = (int(head[RECORD_7][k : k + 10]) for k in (0, 10, 20))
-        first, step = (reals(head[RECORD_7][k : k + 13])[0] for k in (30, 43))
-        if even not in (0, 1):
-            raise ValueError(f"abscissae of the kind {even}")
-        x, data = _values(file, block, body, (form, count, even))
-        return Function(
-            int(six[0]),
-            int(head[8][:10]),
-            _degree_of_freedom(six[5], six[6]),
-            _degree_of_freedom(six[8], six[9]),
-            np.asarray(first + np.arange(count) * step) if even else x,
-            data,
-        )
-    except (ValueError, IndexError, KeyError, OverflowError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(Fault(file, block.place, "a dataset 58", reason(error))) from None
+    columns = (0, 5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
+    six = [head[5][a:b].strip() for a, b in pairwise(columns)]
+    form, count, even = (int(head[RECORD_7][k : k + 10]) for k in (0, 10, 20))
+    first, step = (reals(head[RECORD_7][k : k + 13])[0] for k in (30, 43))
+    if even not in (0, 1):
+        raise ValueError(f"abscissae of the kind {even}")
+    x, data = _values(block, body, (form, count, even))
+    return Function(
+        block,
+        int(six[0]),
+        int(head[8][:10]),
+        _degree_of_freedom(six[5], six[6]),
+        _degree_of_freedom(six[8], six[9]),
+        np.asarray(first + np.arange(count) * step) if even else x,
+        data,
+    )
 
 
 def _values(
-    file: str, block: Block, body: bytes, record: tuple[int, int, int]
+    block: Block, body: bytes, record: tuple[int, int, int]
 ) -> tuple[Floats, Floats | Complexes]:
     """Return abscissae, none where these are even, and values, of the form, number and spacing."""
     form, count, even = record
     is_complex = form in (5, 6)
     if block.binary is not None:
         order = "<" if block.binary[:1] == ["1"] else ">"
-        y, x = order + KINDS[form], order + ("f4" if form in (2, 5) else "f8")
+        y = order + {2: "f4", 4: "f8", 5: "c8", 6: "c16"}[form]
+        x = order + ("f4" if form in (2, 5) else "f8")
         kinds = [np.dtype([("x", each), ("y", y)][even:]) for each in (x, order + "f4")]
         kind = next((each for each in kinds if len(body) == count * each.itemsize), kinds[0])
-        counted(file, block.place, "bytes of values", count * kind.itemsize, len(body))
+        counted(block.file, block.place, "bytes of values", count * kind.itemsize, len(body))
         table = np.frombuffer(body, kind)
         of_x = np.zeros(0) if even else table["x"].astype(float)
         return of_x, table["y"].astype(complex if is_complex else float)
-    if other := body.translate(None, NUMERIC):
+    if other := body.translate(None, b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"):
         raise ValueError(f"the byte {other[:1]!r} among the values")
     try:
         numbers = np.array(body.split(), dtype=float)
     except ValueError:
         numbers = np.array(reals(body.decode("ascii")))
     columns = (1 - even) + (2 if is_complex else 1)
-    counted(file, block.place, "values", count, numbers.size / columns)
+    counted(block.file, block.place, "values", count, numbers.size / columns)
     points = [line.count(b".") for line in body.rstrip().split(b"\n")]
     if sum(points) == numbers.size and max(points[1:], default=0) > min(points[:-1], default=0):
         raise ValueError("a line with fewer values than one behind it")
@@ -332,13 +301,12 @@ def _values(
     return rows[0], of_y[0] + 1j * of_y[1] if is_complex else of_y[0]
 
 
-def _channel(values: Function, block: Block, file: str) -> Channel:
-    (response, sign), (reference, other) = values.response, values.reference
-    place = f"{block.place} of {reference} to {response}"
-    H = sign * other * np.asarray(values.data, complex)
-    return Channel(
-        file, place, reference, response, values.x, H, QUANTITIES.get(values.ordinate, "")
-    )
+def _channel(function: Function) -> Channel:
+    (response, sign), (reference, other) = function.response, function.reference
+    place = f"{function.block.place} of {reference} to {response}"
+    H, quantity = np.asarray(function.data, complex), QUANTITIES.get(function.ordinate, "")
+    file = str(function.block.file)
+    return Channel(file, place, reference, response, function.x, sign * other * H, quantity)
 
 
 def _degree_of_freedom(node: str, direction: str) -> tuple[str, int]:
@@ -362,9 +330,11 @@ def write_uff55(
     that are named by node and direction keep both, others are numbered from 1, in X. ``pairs``
     holds positions of modes of one pole, for every data set; none unless given.
     """
-    places = [_place(name, i) for i, name in enumerate(sensors)]
-    nodes = list(dict.fromkeys(node for node, _ in places))
-    rows, axes = [nodes.index(node) for node, _ in places], [axis for _, axis in places]
+    matches = [re.fullmatch(r"([0-9]+)([XYZ])", name) for name in sensors]
+    numbers = [int(match[1]) if match else i for i, match in enumerate(matches, start=1)]
+    axes = ["XYZ".index(match[2]) if match else 0 for match in matches]
+    nodes = list(dict.fromkeys(numbers))
+    rows = [nodes.index(number) for number in numbers]
     written = []
     for name, listed, paired in zip(sets, modes, pairs or [()] * len(sets), strict=True):
         other = {a + 1: b + 1 for pair in paired for a, b in (pair, pair[::-1])}
@@ -404,6 +374,312 @@ def dataset_55(
     return "\n".join(lines) + "\n"
 
 
-def _place(name: str, index: int) -> tuple[int, int]:
-    matched = re.fullmatch(r"([0-9]+)([XYZ])", name)
-    return (int(matched[1]), "XYZ".index(matched[2])) if matched else (index + 1, 0)
+SUFFIXES = (".uff", ".unv", ".uf")
+"""Ends of names of universal files."""
+
+CARTESIAN, CYLINDRICAL = 0, 1
+"""Types of coordinate systems."""
+
+MODES = "a universal file with modes (dataset 55)"
+
+REAL, COMPONENTS = {2: 1, 5: 2}, (3, 6)
+"""Numbers of a value by the type of data, and values a node: three translations, or all six."""
+
+HEAD = 8
+"""Lines of dataset 55 before those of its nodes."""
+
+NAMES = tuple(AXES.values())
+"""Directions in the order of the components."""
+
+
+@dataclass(frozen=True, eq=False)
+class NodalModes:
+    """Modes at the nodes of a test.
+
+    Attributes
+    ----------
+    file : where they were read
+    sets, modes : names of the data sets, numbers of the modes
+    nodes : (nodes,) their numbers
+    position : (nodes, 3) coordinates; NaN where the file has none
+    axes : (nodes, 3, 3) axes of the components, in rows; NaN where the file does not tell them
+    frequency, damping : (sets, modes) in Hz, and ratios; NaN where none
+    shape : (sets, modes, nodes, 6) components along X, Y, Z, RX, RY and RZ; NaN if not measured
+    pairs : numbers of modes of one frequency
+    """
+
+    file: str
+    sets: tuple[str, ...]
+    modes: tuple[int, ...]
+    nodes: Ints
+    position: Floats
+    axes: Floats
+    frequency: Floats
+    damping: Floats
+    shape: Floats
+    pairs: tuple[tuple[int, int], ...] = ()
+
+    def local(self, node: int, direction: Floats) -> Floats:
+        """Return a direction (6,) of space along the axes of a node, by position."""
+        out = np.concatenate([self.axes[node] @ half for half in (direction[:3], direction[3:])])
+        return np.asarray(np.where(np.abs(out) > 1e-6, out, 0.0))  # less is rounding in the file
+
+    def in_space(self, node: int, direction: Floats) -> Floats:
+        """Return a direction (6,) along the axes of a node, by position, in space."""
+        halves = (direction[:3], direction[3:])
+        return np.concatenate([half @ self.axes[node] for half in halves])
+
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """Names of the measured degrees of freedom, such as ``12Z``."""
+        observed = np.asarray(np.isfinite(self.shape).any(axis=(0, 1)))
+        return tuple(
+            f"{node}{NAMES[axis]}"
+            for node, row in zip(self.nodes.tolist(), observed, strict=True)
+            for axis in np.flatnonzero(row).tolist()
+        )
+
+    def along(self, node: int, direction: Floats) -> Floats:
+        """Return the components (sets, modes) of a node, by position, along a vector (6,).
+
+        NaN where a component along it was not measured.
+        """
+        used = np.flatnonzero(direction)
+        return np.asarray(self.shape[:, :, node, used] @ direction[used])
+
+    def at(self, sensors: Mapping[str, tuple[int, Floats]]) -> ModalData:
+        """Return the modal data of sensors, each a position among the nodes and a vector (6,)."""
+        columns = [self.along(node, direction) for node, direction in sensors.values()]
+        shape = np.stack(columns, axis=-1)
+        nothing = np.full(shape.shape, np.nan)
+        return ModalData(
+            *(self.sets, self.modes, tuple(sensors), self.frequency, self.damping, shape),
+            *(nothing[..., 0], nothing, self.pairs),
+        )
+
+    def place(self, name: str) -> tuple[int, Floats] | None:
+        """Return the node, by position, and the direction (6,) of a name such as ``-3X``.
+
+        None for other names and nodes that there are not.
+        """
+        matched = re.fullmatch(r"([+-]?)([0-9]{1,9}) ?([+-]?)(R?[XYZ])", name.upper())
+        if not matched:
+            return None
+        positions = np.flatnonzero(self.nodes == int(matched[2]))
+        if not positions.size:
+            return None
+        direction = np.zeros(6)
+        sign = -1.0 if (matched[1] == "-") != (matched[3] == "-") else 1.0
+        direction[NAMES.index(matched[4])] = sign
+        return int(positions[0]), direction
+
+
+def is_universal(name: str) -> bool:
+    """Return whether a file is a universal file by its name."""
+    return name.lower().endswith(SUFFIXES)
+
+
+def read_uff55(path: Path) -> NodalModes:
+    """Return the modes of a universal file.
+
+    Raises InputError where the file holds none, is cut off or cannot be decoded.
+    """
+    known = datasets(path, MODES, 55)
+    points = [point for part in decoded(known, _nodes, 15, 2411) for point in part]
+    once(path, "nodes", "each node", (node for node, _, _ in points))
+    systems = dict(pair for part in decoded(known, _systems, 2420) for pair in part)
+    return _assembled(path, decoded(known, _mode, 55), points, systems)
+
+
+def _lines(block: Block) -> list[str]:
+    """Return the lines of a dataset, without blank ones at its end."""
+    return block.body.decode("utf-8", "replace").rstrip().splitlines()
+
+
+def _integers(line: str, count: int) -> list[int]:
+    """Return the whole numbers of a line; raises ValueError where it has others, or not so many."""
+    numbers = [int(word) for word in line.split()]
+    if len(numbers) != count:
+        raise ValueError(f"{len(numbers)} numbers in {line.strip()!r} instead of {count}")
+    return numbers
+
+
+@dataclass(frozen=True, eq=False)
+class _Mode:
+    """One dataset 55: its data set (empty if not given), number, values, and place in the file.
+
+    ``other`` is the number of the other mode of a pair, 0 for none.
+    """
+
+    set: str
+    number: int
+    frequency: float
+    damping: float
+    nodes: Ints
+    shape: Floats
+    place: str
+    other: int
+
+
+def _mode(block: Block) -> _Mode:
+    """Return the mode of a dataset 55, whose values are as many a node as its header says."""
+    file, place, lines = block.file, block.place, _lines(block)
+    _, kind, _, _, data, size = _integers(lines[5], 6)
+    integers, real, _, number = (int(word) for word in lines[6].split()[:4])
+    counted(file, place, "whole numbers in record 7", integers, len(lines[6].split()) - 2)
+    parameters = reals(lines[7])
+    counted(file, place, "numbers in record 8", real, len(parameters))
+    if kind == 2:  # a normal mode
+        frequency, damping = parameters[0], sum(parameters[2:3])
+    elif kind in (3, 7):
+        eigenvalue = complex(*parameters[:2])
+        frequency = abs(eigenvalue) / (2 * np.pi)
+        damping = -eigenvalue.real / abs(eigenvalue) if eigenvalue else 0.0
+    else:
+        expected = "normal modes (analysis type 2) or complex ones (3 or 7)"
+        raise wrong(file, expected, f"type {kind}", place)
+    if size not in COMPONENTS or data not in REAL:
+        expected = "3 or 6 values a node, of the type 2 (real) or 5 (complex)"
+        raise wrong(file, expected, f"{size} values of the type {data}", place)
+    nodes, parts = _rows(block, lines[HEAD:], size * REAL[data])
+    phi = parts[:, 0::2] + 1j * parts[:, 1::2] if REAL[data] == 2 else parts.astype(complex)
+    shape = np.zeros((nodes.size, 6))
+    shape[:, :size] = real_shape(phi)
+    checks = [
+        (not frequency > 0, "a frequency above 0 Hz", f"{frequency:g}"),
+        (not 0 <= damping < 1, "a damping ratio from 0 to below 1", f"{damping:g}"),
+        (not (np.abs(shape) <= LARGEST).all(), f"components up to {LARGEST:g}", "others"),
+        (not shape.any(), "a mode shape that is not zero at all nodes", "only zeros"),
+    ]
+    refuse(Fault(str(file), place, *said) for is_wrong, *said in checks if is_wrong)
+    text = "\n".join(lines[:5])
+    name = re.search(r"^\s*set (\S.*?)\s*$", text, re.MULTILINE)
+    other = re.search(r"pair with mode (\d{1,9})\s*$", text, re.MULTILINE)
+    known = name[1] if name else "", number, frequency, damping
+    return _Mode(*known, nodes, shape, place, int(other[1]) if other else 0)
+
+
+def _rows(block: Block, lines: list[str], size: int) -> tuple[Ints, Floats]:
+    nodes: list[int] = []
+    values: list[list[float]] = []
+    step = 1 + -(-size // 6)
+    for k in range(0, len(lines), step):
+        nodes += _integers(lines[k], 1)
+        values.append(reals(" ".join(lines[k + 1 : k + step])))
+        place = f"line {block.line + 2 + HEAD + k}, dataset 55, node {nodes[-1]}"
+        counted(block.file, place, "numbers", size, len(values[-1]))
+    once(block.file, block.place, "each node", nodes)
+    return np.array(nodes, dtype=np.int64), np.array(values).reshape(-1, size)
+
+
+def real_shape(phi: Complexes) -> Floats:
+    """Return the real shape nearest to a complex one, up to its sign.
+
+    >>> real_shape(np.array([[1j], [-2j]])).round(12).tolist()
+    [[1.0], [-2.0]]
+    """
+    turn = np.exp(-0.5j * np.angle((phi**2).sum()))
+    return np.asarray((phi * turn).real)
+
+
+Point = tuple[int, int, Floats]
+"""A node: its number, its displacement system, and its coordinates (3,)."""
+
+
+def _nodes(block: Block) -> list[Point]:
+    lines = _lines(block)
+    step = 1 if block.number == 15 else 2
+    if not lines or len(lines) % step:
+        raise ValueError(f"{len(lines)} lines of nodes, {step} each")
+    out = []
+    for k in range(0, len(lines), step):
+        words = lines[k].split()
+        node, _, system, _ = _integers(" ".join(words[:4]), 4)
+        point = reals(" ".join([*words[4:], *lines[k + 1 : k + step]]))
+        counted(block.file, f"{block.place}, node {node}", "coordinates", 3, len(point))
+        out.append((node, system, np.array(point)))
+    return out
+
+
+def _systems(block: Block) -> list[tuple[int, tuple[int, Floats]]]:
+    lines = _lines(block)
+    if len(lines) % 6 != 2:
+        raise ValueError(f"{len(lines)} lines: two, and six a system")
+    out = []
+    for k in range(2, len(lines), 6):
+        label, kind, _ = _integers(lines[k], 3)
+        rows = [reals(line) for line in lines[k + 2 : k + 6]]
+        out.append((label, (kind, np.array(rows).reshape(4, 3))))
+    once(block.file, block.place, "each system", (label for label, _ in out))
+    return out
+
+
+def _axes_at(point: Floats, system: tuple[int, Floats] | None) -> Floats:
+    """Return the axes (3, 3) of a coordinate system at a point; NaN where they are not known."""
+    if system is None or system[0] not in (CARTESIAN, CYLINDRICAL):
+        return np.full((3, 3), np.nan)
+    kind, matrix = system
+    axes, origin = matrix[:3], matrix[3]
+    axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
+    if kind == CARTESIAN:
+        return np.asarray(axes)
+    x, y, _ = axes @ (point - origin)
+    radius = float(np.hypot(x, y))
+    c, s = (x / radius, y / radius) if radius > 0 else (1.0, 0.0)
+    return np.asarray(np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ axes)
+
+
+def _assembled(
+    file: Path,
+    rows: Sequence[_Mode],
+    points: Sequence[Point],
+    systems: Mapping[int, tuple[int, Floats]],
+) -> NodalModes:
+    """Return all modes as arrays; modes of the same number are those of a further data set."""
+    placed: dict[tuple[str, int], _Mode] = {}
+    for position, row in enumerate(rows):
+        number = row.number or position + 1
+        names = [row.set] if row.set else [str(k) for k in range(1, len(rows) + 1)]
+        free = [name for name in names if (name, number) not in placed]
+        if not free:
+            expected = "each mode of a data set once"
+            raise wrong(file, expected, f"mode {number} of {row.set} again", row.place)
+        placed[free[0], number] = row
+        _check_nodes(file, row, next(x for (name, _), x in placed.items() if name == free[0]).nodes)
+    sets = tuple(dict.fromkeys(name for name, _ in placed))
+    modes = tuple(sorted({number for _, number in placed}))
+    nodes = np.unique(np.concatenate([row.nodes for row in rows]))
+    frequency = np.full((len(sets), len(modes)), np.nan)
+    damping = frequency.copy()
+    shape = np.full((*frequency.shape, nodes.size, 6), np.nan)
+    for (name, number), row in placed.items():
+        k, r = sets.index(name), modes.index(number)
+        frequency[k, r] = row.frequency
+        damping[k, r] = row.damping if row.damping > 0 else np.nan
+        shape[k, r, np.searchsorted(nodes, row.nodes)] = row.shape
+    for values in shape:
+        values[:, ~(np.nan_to_num(values) != 0).any(axis=0)] = np.nan
+    positions = {node: point for node, _, point in points}
+    axes = {  # without a dataset 2420 that says what the systems are, they are those of the file
+        node: _axes_at(point, systems.get(label))
+        for node, label, point in points
+        if systems and label != 0
+    }
+    if positions:
+        for row in rows:
+            _check_nodes(file, row, np.intersect1d(row.nodes, list(positions)))
+    places = np.array([positions.get(int(node), np.full(3, np.nan)) for node in nodes])
+    of_nodes = np.array([axes.get(int(node), np.eye(3)) for node in nodes])
+    pairs = {(number, row.other) for (_, number), row in placed.items() if number < row.other}
+    return NodalModes(
+        *(str(file), sets, modes, nodes, places, of_nodes, frequency, damping, shape),
+        tuple(sorted(pair for pair in pairs if pair[1] in modes)),
+    )
+
+
+def _check_nodes(file: Path, row: _Mode, nodes: Ints) -> None:
+    odd = np.setxor1d(row.nodes, nodes)
+    if odd.size:
+        expected = "the same nodes in the geometry and in all modes of a data set"
+        found = f"node {odd[0]} in one of them, and not in another"
+        raise wrong(file, expected, found, row.place)

@@ -11,8 +11,7 @@ from modefront._typing import Floats
 from modefront.data.modal import MEASURED, ModalData
 from modefront.diagnosis.measured import Measured, measured
 from modefront.errors import ModelError
-from modefront.models.base import Model, full_of
-from modefront.models.local import matrices_at
+from modefront.models.base import Model, full_of, matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.pairing.match import Pairs, match, modes_needed
 from modefront.residuals.problem import UpdatingProblem

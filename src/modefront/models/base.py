@@ -16,10 +16,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from modefront._typing import Floats
 from modefront.modes.result import Modes
+
+if TYPE_CHECKING:
+    from modefront.models.geometry import Geometry
+    from modefront.models.matrices import MatrixModel
 
 NamedWeights = Mapping[str, float]
 """Weights by the name of a sensor or output: a force of that size, or a term of a sum."""
@@ -104,9 +108,8 @@ class Model(Protocol):
 
 def passed_on(inner: str, name: str) -> Any:
     """Return the property of a class of models that is one of the model that it keeps as inner."""
-    return property(
-        lambda model: getattr(getattr(model, inner), name), doc=getattr(Model, name).__doc__
-    )
+    text = getattr(Model, name, property()).__doc__
+    return property(lambda model: getattr(getattr(model, inner), name), doc=text)
 
 
 def full_of(model: Model) -> Model:
@@ -117,3 +120,32 @@ def full_of(model: Model) -> Model:
 def is_reduced(model: Model) -> bool:
     """Return whether a model stands for another one that is solved in full."""
     return full_of(model) is not model
+
+
+def matrices_at(model: Model, theta: Floats) -> MatrixModel | None:
+    """Return the model with the matrices, and their derivatives, that a model has at ``theta``.
+
+    A reduced model has those of the full one; None for a model that has no matrices.
+    """
+    full: Any = full_of(model)
+    return full.at(theta) if hasattr(full, "at") else None
+
+
+def geometry_of(model: Model) -> Geometry | None:
+    """Return where the degrees of freedom of a model are; None where that is not known."""
+    return getattr(full_of(model), "geometry", None)
+
+
+def shapes_at(model: Model, theta: Floats, count: int) -> tuple[Floats, Floats, Floats | None]:
+    """Return the ``count`` lowest modes at ``theta``, those of a reduced model in its basis.
+
+    They are eigenvalues omega**2 in (rad/s)**2, (modes,), and mode shapes of arbitrary sign at the
+    sensors, (sensors, modes), and at all degrees of freedom, (N, modes), None for a model without
+    matrices. Raises ModelError where the model has no such modes.
+    """
+    known: Any = model
+    if hasattr(known, "full_modes"):
+        lowest = known.full_modes(theta, count)
+        return lowest.lam, known.selection @ lowest.Phi, lowest.Phi
+    modes = model.modes(theta, count, derivatives=False)
+    return modes.lam, modes.phi, None

@@ -18,13 +18,10 @@ from modefront._typing import Floats
 from modefront.errors import Fault, refuse, wrong
 from modefront.models.geometry import chain_geometry
 from modefront.models.matrices import MatrixModel, SensorSpec, matrices
-from modefront.models.terms import BASE
+from modefront.models.parameters import BASE
 
 _Terms = dict[str, dict[tuple[int, int], float]]
 """Entries of each term by its name, and by row and column."""
-
-BASE_DIRECTION = "x"
-"""The one direction in which the masses, and the ground, can move."""
 
 
 # 8 arguments: the members of a chain and their parameters, by keyword.
@@ -94,7 +91,7 @@ def chain(
         _add(M, name or BASE, (i, i), m)
     if sensors is None:
         sensors = {f"floor{i + 1}": i for i in range(n)}
-    base = {BASE_DIRECTION: [(i, 1.0) for i in range(n)]}
+    base = {"x": [(i, 1.0) for i in range(n)]}
     model = matrices(
         parameters, _matrices(K, n), _matrices(M, n), sensors, outputs=outputs, base=base
     )
@@ -102,7 +99,6 @@ def chain(
 
 
 def _add(terms: _Terms, name: str, place: tuple[int, int], value: float) -> None:
-    """Add to an entry of a term, which is made where there is none."""
     term = terms.setdefault(name, {})
     term[place] = term.get(place, 0.0) + value
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -20,9 +20,6 @@ from modefront.rounding import ACCUMULATED
 
 COLUMNS = ("node", "direction", "weight")
 """Header of a file of degrees of freedom."""
-
-FEW = 6
-"""Nodes and directions that a message names."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,17 +80,15 @@ class DofTable:
         dofs = self.of_node(node) if node > 0 else np.zeros(0, np.intp)
         if dofs.size == 0:
             nodes = np.unique(self.node[self.node > 0])
-            near = nodes[np.argsort(np.abs(nodes - node), kind="stable")[:FEW]]
-            named = ", ".join(map(str, np.sort(near).tolist())) + ", …" * (nodes.size > FEW)
+            near = nodes[np.argsort(np.abs(nodes - node), kind="stable")[:6]]
+            named = ", ".join(map(str, np.sort(near).tolist())) + ", …" * (nodes.size > 6)
             raise LookupError(f"a node with degrees of freedom, {named}", str(node))
         out: dict[int, float] = {}
         for number, factor in _components(direction):
             chosen = dofs[(self.direction[dofs] == number) & (self.weight[dofs] != 0)]
             if chosen.size == 0:
-                known = {
-                    n for n, w in zip(self.direction[dofs], self.weight[dofs], strict=True) if w
-                }
-                names = ", ".join(name_of(n) for n in sorted(known)) or "none, all are held"
+                known = np.unique(self.direction[dofs[self.weight[dofs] != 0]]).tolist()
+                names = ", ".join(map(name_of, known)) or "none, all are held"
                 expected = f"a direction in which node {node} can move ({names})"
                 raise LookupError(expected, f"{name_of(number)}, which is held or not in the model")
             for dof in chosen.tolist():
@@ -176,27 +171,21 @@ def read_dofs(path: Path) -> DofTable:
         expected = "node,direction or node,direction,weight"
         raise wrong(path, expected, ",".join(names), "header")
     ended_column(path, (row[-1] for row in rows if row))
-    node, direction = np.zeros(len(rows), np.intp), np.zeros(len(rows), np.intp)
-    weight = np.ones(len(rows))
+    table = DofTable(*np.zeros((2, len(rows)), np.intp), np.ones(len(rows)))
     numbers = {name: number_of(name) for name in DIRECTIONS} | {str(k): k for k in range(-1, 1000)}
     for k, row in enumerate(rows):
         try:
-            if len(row) != len(names):
-                raise ValueError
-            node[k], direction[k] = int(row[0]), numbers[row[1].strip()]
-            weight[k] = float(row[2]) if len(row) > 2 else 1.0
-            if not np.isfinite(weight[k]):
+            label, direction, *weight = map(str.strip, row)
+            table.node[k], table.direction[k] = int(label), numbers[direction]
+            table.weight[k : k + len(weight)] = [float(x) for x in weight]
+            if len(row) != len(names) or not np.isfinite(table.weight[k]):
                 raise ValueError
         except (ValueError, KeyError, OverflowError):
             expected = f"a node, a direction ({', '.join(DIRECTIONS)})"
             expected += " and a weight" if len(names) > 2 else ""
             raise wrong(path, expected, ",".join(row), f"line {k + 2}") from None
-    table = DofTable(node, direction, weight)
-    return table if len(names) > 2 else shared(table)
-
-
-def shared(dofs: DofTable) -> DofTable:
-    """Return the table in which degrees of freedom of the same label have equal shares of 1."""
-    labels = np.column_stack([dofs.node, dofs.direction])
+    if len(names) > 2:
+        return table
+    labels = np.column_stack([table.node, table.direction])
     _, inverse, counts = np.unique(labels, axis=0, return_inverse=True, return_counts=True)
-    return DofTable(dofs.node, dofs.direction, 1.0 / counts[inverse.ravel()])
+    return replace(table, weight=1.0 / counts[inverse.ravel()])

@@ -15,7 +15,6 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
-from modefront._typing import Bools
 from modefront.errors import Fault, InputError, suggestion
 from modefront.inputs import (
     available_memory,
@@ -27,25 +26,7 @@ from modefront.inputs import (
     wrong,
 )
 from modefront.isolated import IsolatedError, Read, isolated
-from modefront.rounding import LARGEST, SYMMETRY
-
-NAMED = (".mat",)
-"""Endings of files that hold several matrices with names."""
-
-NUMERIC = b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"
-"""Bytes of numbers, of nan and infinity among them, and of what separates them."""
-
-RATIO, LARGE = 200, 64 * 10**6
-"""Growth of compressed content, and the size in bytes, beyond which both are too much."""
-
-MOST = 2**31 - 1
-"""Degrees of freedom, as many as indices of 32 bits can count."""
-
-PER_ENTRY = 64
-"""Bytes that a matrix takes an entry and a row while it is read and made symmetric."""
-
-LONGEST, COMMENTS, CHUNK = 2**16, 10**5, 2**24
-"""Characters of a line of the header, lines of comments, and bytes that are checked at once."""
+from modefront.models.matrices import symmetrised
 
 
 def read_entries(
@@ -59,7 +40,7 @@ def read_entries(
     form = form or path.suffix
     if form not in READERS:
         raise wrong(path, f"a name that ends in {', '.join(READERS)}", f"'{path.name}'")
-    if name is not None and form not in NAMED:
+    if name is not None and form != ".mat":
         expected = "a .mat file, as only these have names for matrices"
         raise wrong(path, expected, f"'{path.name}'")
     file_size(path, "a matrix")
@@ -91,29 +72,9 @@ def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_a
     path = Path(path)
     A = read_entries(path, name)
     A.sum_duplicates()
-    _check_entries(path, A, ~np.isfinite(A.data), "finite numbers")
-    _check_entries(path, A, np.abs(A.data) > LARGEST, f"numbers up to {LARGEST:g}")
-    difference = scipy.sparse.coo_array(A - A.T)
-    if np.abs(difference.data).max(initial=0) > SYMMETRY * np.abs(A.data).max(initial=0):
-        worst = int(np.argmax(np.abs(difference.data)))
-        i, j = int(difference.row[worst]), int(difference.col[worst])
-        rows = A.tocsr()
-        raise wrong(
-            path,
-            "a symmetric matrix",
-            f"{rows[i, j]:.6g}, and {rows[j, i]:.6g} across the diagonal",
-            f"row {i}, column {j} (from 0)",
-        )
-    symmetric = scipy.sparse.coo_array((A + A.T) / 2)
+    symmetric = scipy.sparse.coo_array(symmetrised(A.tocsr(), str(path), "file"))
     symmetric.eliminate_zeros()
     return symmetric
-
-
-def _check_entries(path: Path, A: scipy.sparse.coo_array, refused: Bools, expected: str) -> None:
-    if refused.any():
-        first = int(np.argmax(refused))
-        place = f"row {A.row[first]}, column {A.col[first]} (from 0)"
-        raise wrong(path, expected, f"{A.data[first]:g}", place)
 
 
 # In the process that reads files
@@ -134,7 +95,7 @@ def entries(path: Path, form: str, name: str, square: str) -> Read:
     if isinstance(matrix, np.ndarray):
         matrix = matrix.astype(float)  # of any order and precision
     A = scipy.sparse.coo_array(matrix)
-    need, free = PER_ENTRY * (A.nnz + A.shape[0]), available_memory()
+    need, free = 64 * (A.nnz + A.shape[0]), available_memory()  # bytes, to be made symmetric
     if need > free:
         expected = f"a matrix that fits into the {free / 1e9:.3g} GB of memory that are free"
         found = f"{A.nnz} entries in {A.shape[0]} rows, which take {need / 1e9:.3g} GB"
@@ -143,29 +104,28 @@ def entries(path: Path, form: str, name: str, square: str) -> Read:
 
 
 def _check_shape(path: Path, shape: tuple[int, ...], square: str = "square") -> None:
-    """Raise InputError for other than matrices, and for such as cannot be solved."""
     if len(shape) != 2 or (square and shape[0] != shape[1]) or 0 in shape:
         found = " x ".join(map(str, shape)) or "a single number"
         raise wrong(path, "a square matrix", found)
-    if shape[0] > MOST:
-        raise ValueError(f"{shape[0]} rows, more than {MOST}")
+    if shape[0] >= 2**31:
+        raise ValueError(f"{shape[0]} rows, more than indices of 32 bits can count")
 
 
 def _matrix_market(path: Path, _: str) -> Any:
     with path.open("rb") as stream:
-        header = [stream.readline(LONGEST)]
+        header = [stream.readline(2**16)]
         if not header[0].startswith(b"%%MatrixMarket"):
             raise ValueError("no line '%%MatrixMarket matrix ...'")
         ended(path)
-        while len(header) < COMMENTS and (header[-1][:1] == b"%" or not header[-1].strip()):
-            header.append(stream.readline(LONGEST))
+        while len(header) < 10**5 and (header[-1][:1] == b"%" or not header[-1].strip()):
+            header.append(stream.readline(2**16))
             if not header[-1]:
                 raise ValueError("the end of the file in its header")
         words, before = 0, b" "
-        while chunk := stream.read(CHUNK):
+        while chunk := stream.read(2**24):
             words += len(chunk.split()) - (len((before + chunk[:1]).strip()) == 2)
             before = chunk[-1:]
-            if other := chunk.translate(None, NUMERIC):
+            if other := chunk.translate(None, b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"):
                 raise ValueError(f"the byte {other[:1]!r} among the entries")
     rows, columns, _, layout, numbers, symmetry = scipy.io.mminfo(path)
     _check_shape(path, (rows, columns), "")
@@ -199,10 +159,9 @@ def _numpy_npy(path: Path, _: str) -> Any:
 
 
 def _scipy_npz(path: Path, _: str) -> Any:
-    """Return a sparse matrix that `scipy.sparse.save_npz` has written."""
     with zipfile.ZipFile(path) as file:
         for part in file.infolist():
-            if part.file_size > max(LARGE, RATIO * part.compress_size):
+            if part.file_size > max(64 * 10**6, 200 * part.compress_size):
                 raise ValueError(f"'{part.filename}' with {part.file_size / 1e6:.4g} MB compressed")
     A = scipy.sparse.load_npz(path)
     if hasattr(A, "check_format"):
@@ -214,7 +173,6 @@ def _scipy_npz(path: Path, _: str) -> Any:
 
 
 def _matlab(path: Path, name: str) -> Any:
-    """Return a variable of a file of MATLAB, of version 5 to 7.2, or of 7.3, which is HDF5."""
     if is_hdf5(path):
         from modefront import hdf5  # takes time to import
 

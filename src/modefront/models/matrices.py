@@ -14,16 +14,23 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.brief import as_html, brief_model
-from modefront.errors import Fault, refuse, suggestion, wrong
+from modefront.errors import Fault, InputError, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Factorisation, Pencil, Symbolic, pencil
 from modefront.linalg.products import gram
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
 from modefront.models.geometry import Geometry
-from modefront.models.parameters import Parameter
-from modefront.models.terms import BASE, above_zero, exponents_of, form_of, term_exponents
+from modefront.models.parameters import (
+    BASE,
+    Parameter,
+    above_zero,
+    exponents_of,
+    form_of,
+    term_exponents,
+)
 from modefront.modes.eigensolvers import Eigensolver, FullModes, eigensolver
 from modefront.modes.result import Modes
+from modefront.rounding import LARGEST, SYMMETRY
 from modefront.work.costs import Costs, spend
 from modefront.work.transfer import shared
 
@@ -38,8 +45,6 @@ Matrix: TypeAlias = Floats | scipy.sparse.sparray
 
 @dataclass(frozen=True)
 class _Counted:
-    """An analysis that counts its factorisations."""
-
     symbolic: Symbolic
 
     def factor(self, values: Floats) -> Factorisation:
@@ -49,7 +54,6 @@ class _Counted:
 
 @contextmanager
 def _eigenproblem() -> Iterator[None]:
-    """Count an eigenproblem, and the time that it takes, also where it has no solution."""
     spend(Costs(eigenproblems=1))
     started = time.perf_counter()
     try:
@@ -134,6 +138,10 @@ class MatrixModel:
         columns = np.zeros((self.size, 0)) if loads is None else loads
         with _eigenproblem():
             return self._eigensolver.full_modes(theta, count, columns)
+
+    def at(self, _: Floats) -> MatrixModel:
+        """Return the model itself: its matrices are known at all parameters."""
+        return self
 
     def is_singular(self, theta: Floats) -> bool:
         """Return whether K(theta) is singular to working precision."""
@@ -337,7 +345,7 @@ def affine_model(
 
 
 def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) -> SparseAffine:
-    """Return base + sum_k c_k(theta) A_k for terms named as `modefront.models.terms` says."""
+    """Return base + sum_k c_k(theta) A_k for terms named as `modefront.models.parameters` says."""
     exponents = term_exponents(list(terms), parameters)
     sparse_terms = [scipy.sparse.coo_array(A) for A in terms.values()]
     return sparse_affine(sparse_terms, Monomials(exponents), size)
@@ -386,3 +394,25 @@ def select(
 def weights_of(places: Mapping[str, SensorSpec], size: int, place: str) -> dict[str, Floats]:
     """Return the weights (size,) of the degrees of freedom at each of some places, by name."""
     return dict(zip(places, select(places, size, place).toarray(), strict=True))
+
+
+def symmetrised(A: Any, file: str, place: str) -> Any:
+    """Return a matrix, an array or a sparse one, without the rounding in its symmetry.
+
+    Raises InputError, which names the ``file`` and the ``place``, where a number is not finite and
+    where the matrix is not symmetric.
+    """
+    entries = A.data if scipy.sparse.issparse(A) else A
+    if not (np.abs(entries) <= LARGEST).all():
+        B = scipy.sparse.coo_array(A)
+        k = int(np.argmin(np.abs(B.data) <= LARGEST))
+        found = f"{B.data[k]:g} in row {B.row[k]}, column {B.col[k]} (from 0)"
+        raise InputError(Fault(file, place, f"finite numbers up to {LARGEST:g}", found))
+    asymmetry = abs(A - A.T)
+    if asymmetry.max() > SYMMETRY * abs(A).max():
+        i, j = divmod(int(asymmetry.argmax()), A.shape[0])
+        found = (
+            f"{A[i, j]:.6g} in row {i}, column {j} (from 0), and {A[j, i]:.6g} across the diagonal"
+        )
+        raise InputError(Fault(file, place, "a symmetric matrix", found))
+    return (A + A.T) / 2

@@ -57,9 +57,8 @@ def mesh_model(
     sensors, others = np.split(np.arange(len(built.sensors)), [len(structure.sensors)])
     for name in built.parameters:
         if name not in parameters:
-            raise wrong(
-                "parameters", f"the structure's {', '.join(built.parameters)}", "no " + name
-            )
+            expected = f"the structure's {', '.join(built.parameters)}"
+            raise wrong("parameters", expected, f"no {name}")
     columns = [list(parameters).index(name) for name in built.parameters]
 
     def placed(matrix: SparseAffine) -> SparseAffine:
@@ -86,23 +85,17 @@ def mesh_model(
     return replace(model, limits=limits, geometry=_geometry(structure, built))
 
 
-CELL_TYPES = {
-    **{2: "line", 3: "triangle", 4: "quad"},
-    **{8: "hexahedron", 10: "tetra10", 15: "wedge15", 20: "hexahedron20"},
-}
-"""Types of cells, as meshio calls them, by their nodes."""
-
-
 def _geometry(structure: fem.Structure, built: fem.StructureMatrices) -> Geometry:
-    """Return nodes and cells of a structure, and how its free degrees of freedom move them."""
     nodes = np.asarray(structure.nodes, dtype=float)
+    types = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
+    types |= {15: "wedge15", 20: "hexahedron20"}
     cells = [np.atleast_2d(np.asarray(group.cells)) for group in structure.groups]
     translations = 6 * np.arange(len(nodes))[:, None] + np.arange(3)
     count = len(structure.sensors)
     return Geometry(
         nodes,
         tuple(
-            Cells(group.name, CELL_TYPES[each.shape[1]], each)
+            Cells(group.name, types[each.shape[1]], each)
             for group, each in zip(structure.groups, cells, strict=True)
         ),
         scipy.sparse.csr_array(built.dofs.T[translations.ravel()]),

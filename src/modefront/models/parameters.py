@@ -1,11 +1,21 @@
-"""The parameters that are updated."""
+r"""The parameters that are updated, and the names of terms of affine matrices in them.
+
+.. math:: A(\theta) = A_0 + \sum_k c_k(\theta) A_k, \qquad c_k(\theta) = \prod_i \theta_i^{e_{ki}}
+
+A term is written ``E``, ``t^3``, ``1/L``, ``E*t^3`` or ``E*t/L^2``. A name of a parameter always
+stands for the parameter, whatever characters are in it.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
+import numpy as np
+
+from modefront._typing import Floats
 from modefront.errors import Fault, InputError, refuse, wrong
 from modefront.options import (
     PAIR,
@@ -124,3 +134,55 @@ def in_order(parameters: Sequence[Parameter], names: Sequence[str]) -> list[Para
     twice = each_once("parameters", [parameter.name for parameter in parameters])
     refuse([*twice, *(Fault("", "parameters", f"one called '{x}'", "none") for x in missing)])
     return [given[name] for name in names]
+
+
+BASE = "base"
+"""Name of the term that does not depend on the parameters."""
+
+_POWER = re.compile(r"(?P<name>.*?)\s*(?:\^|\*\*)\s*(?P<power>[+-]?\d+(?:\.\d+)?)")
+
+
+def exponents_of(term: str, parameters: Sequence[str]) -> Floats | None:
+    """Return the exponents (parameters,) of a term, or None where it is not of the right form."""
+    out, names, sign = np.zeros(len(parameters)), list(parameters), 1.0
+    if term == BASE:
+        return out
+    for part in [term] if term in names else re.split(r"(/|(?<!\*)\*(?!\*))", term):
+        factor = part.strip()
+        match = _POWER.fullmatch(factor)
+        if factor in ("*", "/"):
+            sign = 1.0 if factor == "*" else -1.0
+        elif factor in names:
+            out[names.index(factor)] += sign
+        elif match and match["name"] in names:
+            out[names.index(match["name"])] += sign * float(match["power"])
+        elif factor != "1":
+            return None
+    return out if out.any() else None
+
+
+def form_of(term: str) -> str:
+    """Return the expected form of the name of a term, for a message."""
+    if any(sign in term for sign in "^*/"):
+        return f"'{BASE}', a parameter, or a product of powers of parameters"
+    return f"'{BASE}' or a parameter"
+
+
+def term_exponents(terms: Sequence[str], parameters: Sequence[str]) -> Floats:
+    """Return the exponents (terms, parameters) of terms that are all of the right form.
+
+    Raises ValueError for one that is not.
+    """
+    out = np.zeros((len(terms), len(parameters)))
+    for row, term in enumerate(terms):
+        exponents = exponents_of(term, parameters)
+        if exponents is None:
+            raise ValueError(f"expected {form_of(term)}, found {term!r}")
+        out[row] = exponents
+    return out
+
+
+def above_zero(exponents: Floats) -> list[int]:
+    """Return the parameters that have to be above 0 where there are roots or quotients of them."""
+    away = (exponents < 0) | (exponents % 1 != 0)
+    return np.flatnonzero(away.any(axis=0)).tolist()

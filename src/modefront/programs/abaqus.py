@@ -2,7 +2,7 @@
 
 In the format MATRIX INPUT a line is ``node, direction, node, direction, value``; in the format
 COORDINATE it is ``row column value``. Either triangle is listed, or both. Nodes that Abaqus makes
-itself have negative numbers: they are a part of the model, and `modefront.programs.condense`
+itself have negative numbers: they are a part of the model, and `modefront.programs.differences`
 eliminates them where that is exact. Supports are diagonal entries of 1e36: these rows are left out.
 """
 
@@ -19,20 +19,7 @@ from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.programs.base import JobOptions, Matrix
 from modefront.programs.inp import deck_of
-from modefront.programs.reading import (
-    Entries,
-    Listed,
-    columns,
-    existing,
-    given_table,
-    unlabelled,
-)
-
-HELD = 0.9e36
-"""Diagonal entries from which a degree of freedom is a support."""
-
-SLOTS = 32
-"""More than the greatest number of a direction."""
+from modefront.programs.reading import Entries, Listed, columns, existing, given_table, unlabelled
 
 ADVICE = "*MATRIX GENERATE, STIFFNESS, MASS with *MATRIX OUTPUT, STIFFNESS, MASS writes them"
 
@@ -54,7 +41,7 @@ def read(path: Path, options: JobOptions) -> Listed:
         beside = (off.row != off.col) & (off.data != 0)
         used: Bools = K.diagonal() + M.diagonal() != 0
         used[off.row[beside]] = used[off.col[beside]] = True  # those of Lagrange multipliers too
-        return used & (K.diagonal() < HELD)
+        return used & (K.diagonal() < 0.9e36)  # supports are diagonal entries of 1e36
 
     return Listed(files, (K, M), dofs, free, counted=False, mesh=mesh, notes=notes)
 
@@ -97,20 +84,20 @@ def _first(path: Path) -> tuple[int, str]:
 
 def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[Entries]]:
     """Return the table of all labels, nodes made by the program last, and rows and columns."""
-    parts = []
+    parts, slots = [], 32  # more than the greatest number of a direction
     for file in files:
         *labels, value = columns(file, _first(file)[1], "iiiif", comment="*")
         node, direction, other, its = (x.astype(np.int64) for x in labels)
-        parts.append((node * SLOTS + direction, other * SLOTS + its, value))
+        parts.append((node * slots + direction, other * slots + its, value))
     used = np.unique(np.concatenate([np.unique(key) for part in parts for key in part[:2]]))
-    order = np.argsort(used < SLOTS, kind="stable")  # nodes made by the program are below 1
+    order = np.argsort(used < slots, kind="stable")  # nodes made by the program are below 1
     place = np.empty(used.size, np.intp)
     place[order] = np.arange(used.size)
     entries = [
         Entries(place[np.searchsorted(used, row)], place[np.searchsorted(used, column)], value)
         for row, column, value in parts
     ]
-    node, direction = used[order] // SLOTS, used[order] % SLOTS
+    node, direction = used[order] // slots, used[order] % slots
     return DofTable(node, direction, (node > 0).astype(float)), entries
 
 

@@ -32,28 +32,9 @@ from modefront.inputs import counted, wrong
 from modefront.models.dofs import DofTable
 from modefront.models.files import read_entries
 from modefront.programs.base import JobOptions
-from modefront.programs.reading import (
-    Entries,
-    Listed,
-    existing,
-    given_table,
-    unlabelled,
-)
+from modefront.programs.reading import Entries, Listed, existing, given_table, unlabelled
 
-INTEGERS = 0x80
-"""Bit of the flags (their highest byte) for integers."""
-
-PLAIN = (INTEGERS, 0)
-"""Flags of integers and of doubles that are not compressed."""
-
-HEADER = 103
-"""Word at which the header begins."""
-
-SUFFIXES = (".mmf", ".mtx", ".mmx", ".txt")
 MATRICES = {"stiffness": ("_K", "K", "_stiff", "_STIFF"), "mass": ("_M", "M", "_mass", "_MASS")}
-
-IDENTIFIERS = {name: k for k, name in enumerate(("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"), 1)}
-"""Names of degrees of freedom in a mapping file."""
 
 ADVICE = "a modal analysis writes file.full (WRFULL,1 stops there), *EXPORT,…,MMF job_K.mmf"
 
@@ -71,8 +52,6 @@ def read(path: Path, options: JobOptions) -> Listed:
 
 @dataclass(frozen=True, eq=False)
 class _Words:
-    """A file as words of 4 bytes."""
-
     path: Path
     words: np.ndarray
 
@@ -86,7 +65,7 @@ class _Words:
         ):
             raise wrong(self.path, "whole records of Ansys", "a file that is cut off, or another")
         flags = (int(self.words[start + 1]) >> 24) & 0xFF
-        if flags not in PLAIN:
+        if flags not in (0x80, 0):  # integers, or doubles
             raise wrong(self.path, "records that are not compressed (/FCOMP,FULL,0)", "others")
         return self.words[start + 2 : start + 2 + count], start + count + 3
 
@@ -98,7 +77,7 @@ class _Words:
 def _from_full(path: Path) -> Listed:
     data = np.fromfile(path, dtype=np.uint8)
     words = _Words(path, data[: data.size // 4 * 4].view("<i4"))
-    header, position = words.record(HEADER)
+    header, position = words.record(103)
     if words.words[0] != 100 or header.size < 64 or header[0] >= 0:
         raise wrong(path, "an assembled matrix of Ansys (.full)", "another file")
     if header[13]:
@@ -122,7 +101,14 @@ def _from_full(path: Path) -> Listed:
     if terms == 0:
         raise wrong(path, "a mass matrix (ANTYPE,MODAL)", "none")
     position = words.long(header, 27, 28)
-    mass = _diagonal(words, position, size) if header[10] else _rows(words, position, terms, size)
+    if header[10]:  # lumped
+        value, _ = words.record(position)
+        if value.size != 2 * size:
+            raise wrong(path, f"{size} lumped masses", f"{value.size // 2}")
+        diagonal = np.arange(size)
+        mass = Entries(diagonal, diagonal, np.ascontiguousarray(value).view("<f8"))
+    else:
+        mass = _rows(words, position, terms, size)
     notes = ["there is a damping matrix, which is left out"] if int(header[34]) else []
     return Listed((path, path), (stiffness, mass), dofs, identifiers > 0, notes=notes)
 
@@ -150,21 +136,10 @@ def _rows(words: _Words, position: int, terms: int, size: int) -> Entries:
     return Entries(row, column, np.concatenate(values).view("<f8"))
 
 
-def _diagonal(words: _Words, position: int, size: int) -> Entries:
-    value, _ = words.record(position)
-    if value.size != 2 * size:
-        raise wrong(words.path, f"{size} lumped masses", f"{value.size // 2}")
-    place = np.arange(size)
-    return Entries(place, place, np.ascontiguousarray(value).view("<f8"))
-
-
-# *EXPORT, MMF
-
-
 def _from_market(path: Path, options: JobOptions) -> Listed:
-    files, matrices = [], []
+    files, matrices, suffixes = [], [], (".mmf", ".mtx", ".mmx", ".txt")
     for what, endings in MATRICES.items():
-        names = [path.with_name(path.name + end + suffix) for end in endings for suffix in SUFFIXES]
+        names = [path.with_name(path.name + end + suffix) for end in endings for suffix in suffixes]
         file = next((name for name in names if name.is_file()), names[0])
         matrices.append(read_entries(existing(file, f"the {what} of Ansys", ADVICE), form=".mtx"))
         files.append(file)
@@ -177,7 +152,6 @@ def _from_market(path: Path, options: JobOptions) -> Listed:
 
 
 def _labels(path: Path, size: int) -> DofTable:
-    """Return nodes and directions of a mapping of HBMAT, or the vectors of the file, if any."""
     mapping = path.with_name(path.name + ".mapping")
     maps = [path.with_name(f"{path.name}_{name}.mmf") for name in ("nod2bcs", "back")]
     if mapping.is_file():
@@ -193,11 +167,12 @@ def _labels(path: Path, size: int) -> DofTable:
 
 def _mapping(path: Path) -> DofTable:
     rows: list[tuple[int, int, int]] = []
+    directions = {x: k for k, x in enumerate(("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"), 1)}
     with path.open(encoding="utf-8", errors="replace", newline="") as stream:
         for row in csv.reader(stream, delimiter=" ", skipinitialspace=True):
             items = [item for item in row if item]
             if len(items) >= 3 and items[0].isdigit() and items[1].isdigit():
-                rows.append((int(items[0]), int(items[1]), IDENTIFIERS.get(items[2].upper(), 0)))
+                rows.append((int(items[0]), int(items[1]), directions.get(items[2].upper(), 0)))
     table = np.array(sorted(rows), dtype=np.intp).reshape(-1, 3)
     if not np.array_equal(table[:, 0], np.arange(1, len(table) + 1)):
         raise wrong(path, "one line for each equation: equation, node, direction", "others")

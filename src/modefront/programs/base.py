@@ -1,20 +1,111 @@
-"""Finite-element programs, their options, and the jobs that are read of them."""
+"""Finite-element programs, their options and jobs, and meshes for pictures."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
+import numpy as np
 import scipy.sparse
 
-from modefront.inputs import wrong
+from modefront._typing import Floats, Ints
+from modefront.errors import reason
+from modefront.inputs import file_size, wrong
 from modefront.isolated import IsolatedError, isolated
 from modefront.models.dofs import DofTable
-from modefront.programs.mesh import ProgramMesh, mesh_from
+from modefront.outputs import output
 
-READER = "modefront.programs.reading:read_job"
+CORNERS: Mapping[str, int] = {
+    "vertex": 1,
+    "line": 2,
+    "triangle": 3,
+    "quad": 4,
+    "tetra": 4,
+    "pyramid": 5,
+    "wedge": 6,
+    "hexahedron": 8,
+}
+"""Types of cells, as meshio and VTK call them, and their nodes; further nodes are left out."""
+
+
+@dataclass(frozen=True, eq=False)
+class ProgramMesh:
+    """Nodes by their numbers, and cells between them.
+
+    Attributes
+    ----------
+    number : (nodes,) numbers of the program, ascending
+    coordinates : (nodes, 3)
+    cells : (cells, k) numbers of nodes, by the type of the cell
+    """
+
+    number: Ints
+    coordinates: Floats
+    cells: Mapping[str, Ints]
+
+
+def mesh_of(nodes: Mapping[int, Floats], elements: Mapping[str, list[list[int]]]) -> ProgramMesh:
+    """Return the mesh of nodes and of elements, of which those with unknown nodes are left out."""
+    number = np.array(sorted(nodes), dtype=np.intp)
+    coordinates = np.array([nodes[n] for n in number.tolist()], dtype=float).reshape(-1, 3)
+    cells: dict[str, Ints] = {}
+    for kind, rows in elements.items():
+        table = np.array(rows, dtype=np.intp).reshape(-1, CORNERS[kind])
+        table = table[np.isin(table, number).all(axis=1)]
+        if len(table):
+            cells[kind] = table
+    return ProgramMesh(number, coordinates, cells)
+
+
+def refuse_unknown_nodes(path: Path, known: Collection[int], nodes: Iterable[int]) -> None:
+    """Raise InputError where an element has a node that is not in its file."""
+    missing = next((node for node in nodes if node not in known), None)
+    if missing is not None:
+        raise wrong(path, "all nodes of its elements", f"no node {missing}", "nodes")
+
+
+def arrays_of(mesh: ProgramMesh) -> dict[str, Any]:
+    """Return the arrays of a mesh by their names."""
+    cells = {f"cells_{kind}": table for kind, table in mesh.cells.items()}
+    return {"number": mesh.number, "coordinates": mesh.coordinates, **cells}
+
+
+def mesh_from(arrays: Mapping[str, Any]) -> ProgramMesh:
+    """Return the mesh of its arrays; raises ValueError where they do not belong together."""
+    number, coordinates = arrays["number"], arrays["coordinates"]
+    cells = {
+        name.removeprefix("cells_"): table
+        for name, table in arrays.items()
+        if name not in ("number", "coordinates")
+    }
+    if coordinates.shape != (number.size, 3) or not all(
+        table.shape[1:] == (CORNERS[kind],) and np.isin(table, number).all()
+        for kind, table in cells.items()
+    ):
+        raise ValueError("arrays that do not belong together")
+    return ProgramMesh(number.astype(np.intp), coordinates.astype(float), cells)
+
+
+def write_mesh(path: Path, mesh: ProgramMesh) -> None:
+    """Write a mesh as arrays of NumPy."""
+    with output(path) as stream:
+        np.savez(stream, **arrays_of(mesh))
+
+
+def read_mesh(path: Path) -> ProgramMesh:
+    """Return a mesh that `write_mesh` has written.
+
+    Raises InputError for any other file.
+    """
+    file_size(path, "nodes and elements (mesh.npz)")
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            return mesh_from({name: file[name] for name in file.files})
+    except Exception as error:  # what NumPy raises for a damaged file is not documented
+        raise wrong(path, "nodes and elements (mesh.npz)", reason(error)) from None
+
 
 Matrix: TypeAlias = scipy.sparse.csr_array
 
@@ -96,8 +187,9 @@ class Program:
         """Return a job; raises InputError where its files cannot be read, whatever the cause."""
         texts = (options.stiffness, options.mass, options.dofs, options.deck)
         arguments = (self.module, *(str(text or "") for text in texts))
+        reader = "modefront.programs.reading:read_job"
         try:
-            arrays, (name, precision, notes) = isolated(READER, path, arguments=arguments)
+            arrays, (name, precision, notes) = isolated(reader, path, arguments=arguments)
         except IsolatedError as error:
             raise wrong(path, f"a job of {self.name}", str(error)) from None
         dofs = DofTable(*(arrays.pop(part) for part in ("node", "direction", "weight")))

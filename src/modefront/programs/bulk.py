@@ -19,7 +19,7 @@ from scipy.linalg import null_space
 from modefront._typing import Floats
 from modefront.errors import reason
 from modefront.inputs import fortran, wrong
-from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
+from modefront.programs.base import ProgramMesh, mesh_of, refuse_unknown_nodes
 
 _ELEMENTS = {  # field where nodes begin, number of corners and of nodes, cell, what it makes stiff
     **dict.fromkeys(("CQUAD4", "CQUADR", "CSHEAR"), (3, 4, 4, "quad", "shell")),
@@ -34,9 +34,6 @@ _ELEMENTS = {  # field where nodes begin, number of corners and of nodes, cell, 
     "CTETRA": (3, 4, 10, "tetra", "solid"),
     "CPYRAM": (3, 5, 13, "pyramid", "solid"),
 }
-
-FLAT = 1e-8
-"""Stiffness of a direction, over the greatest at its node, below which AUTOSPC holds it."""
 
 EMPTY = [""] * 8
 
@@ -119,7 +116,7 @@ class Bulk:
         for n, blocks in stiff.items():
             for part, block in enumerate(blocks):
                 values, vectors = np.linalg.eigh(block)
-                soft = vectors[:, values <= FLAT * max(values[-1], 1.0)]
+                soft = vectors[:, values <= 1e-8 * max(values[-1], 1.0)]
                 for _ in range(soft.shape[1]):  # the component closest to what is soft, one by one
                     component = int(np.argmax((soft**2).sum(axis=1)))
                     out.add((n, 3 * part + component + 1))
@@ -231,26 +228,20 @@ def _components(text: str) -> list[int]:
 
 def _listed(fields: Iterable[str]) -> list[int]:
     """Return the numbers of a list in which ``a THRU b`` may stand."""
-    items = [x for x in fields if x]
-    out: list[int] = []
-    k = 0
-    while k < len(items):
-        if items[k].upper() == "THRU":
-            out += range(out[-1] + 1, int(items[k + 1]) + 1)
-            k += 2
-            continue
-        out.append(int(items[k]))
-        k += 1
+    items, out = iter([x for x in fields if x]), list[int]()
+    for item in items:
+        if item.upper() == "THRU":
+            out += range(out[-1] + 1, int(next(items, "")) + 1)
+        else:
+            out.append(int(item))
     return out
 
 
 def _all_of(components: str, fields: Iterable[str]) -> set[Dof]:
-    """Return some components of all nodes of a list; 0 of scalar points."""
     return {(n, c) for n in _listed(fields) for c in _components(components or "0")}
 
 
 def _pairs(card: list[str], first: int, step: int) -> set[Dof]:
-    """Return the components of nodes that follow each other in an entry, each with its node."""
     places = (k for k in range(first, len(card) - 1, step) if card[k])
     return {(int(card[k]), c) for k in places for c in _components(card[k + 1] or "0")}
 
@@ -264,13 +255,32 @@ def _take(content: Bulk, card: list[str], default: list[str]) -> None:
     elif name == "SPOINT":
         content.scalar.update(_listed(card[1:]))
     elif name in _ELEMENTS:
-        _element(content, card)
-    elif name.startswith("CELAS") or name.startswith("CDAMP"):
-        _spring(content, card)
-    elif name.startswith("RBE") or name == "RBAR":
+        number, (first, corners, most, _, _) = int(card[1]), _ELEMENTS[name]
+        nodes = [n for n in map(_whole, card[first : first + most]) if n]
+        if number in content.elements:
+            raise ValueError(f"element {number} again")
+        if len(nodes) < corners and name != "CBUSH":  # one end of it may be the ground
+            raise ValueError(f"{len(nodes)} nodes of {corners}")
+        content.elements[number] = name, nodes
+    elif name.startswith(("CELAS", "CDAMP")):
+        ends = [(_whole(card[k]), _whole(card[k + 1])) for k in (3, 5)]
+        if name.endswith(("3", "4")):  # between scalar points
+            ends = [(_whole(card[k]), 0) for k in (3, 4)]
+            content.scalar.update(n for n, _ in ends if n)
+        content.links.append(tuple(n for n, _ in ends if n))
+        if not name.startswith("CDAMP"):
+            content.springs += [(node, component) for node, component in ends if node and component]
+    elif name in ("RBE2", "RBE3", "RBAR"):
         _rigid(content, card)
-    elif name in ("SPC1", "SPC", "SPCADD", "MPCADD", "MPC"):
-        _support(content, card)
+    elif name in ("SPCADD", "MPCADD"):
+        content.added.setdefault(int(card[1]), []).extend(_listed(card[2:]))
+    elif name in ("SPC", "SPC1"):
+        held = _all_of(card[2], card[3:]) if name == "SPC1" else _pairs(card[:8], 2, 3)
+        content.supports.setdefault(int(card[1]), set()).update(held)
+    elif name == "MPC":
+        content.constraints.setdefault(int(card[1]), set()).add((int(card[2]), _whole(card[3])))
+        nodes = [int(card[k]) for k in range(2, len(card), 3) if card[k].isdigit()]
+        content.links.append(tuple(nodes))
     elif name in ("ASET1", "OMIT1", "ASET", "OMIT"):
         target = content.kept if name.startswith("ASET") else content.omitted
         target |= _all_of(card[1], card[2:]) if name.endswith("1") else _pairs(card, 1, 2)
@@ -280,8 +290,7 @@ def _grid(content: Bulk, card: list[str], default: list[str]) -> None:
     number = int(card[1])
     if number in content.nodes:
         raise ValueError(f"node {number} again")
-    held = card[8] or default[2]
-    content.held.update((number, c) for c in _components(held))
+    content.held.update((number, c) for c in _components(card[8] or default[2]))
     if _whole(card[7] or default[1]):
         content.turned.add(number)
     point = [fortran(x) if x else 0.0 for x in (card[3], card[4], card[5])]
@@ -291,40 +300,15 @@ def _grid(content: Bulk, card: list[str], default: list[str]) -> None:
     content.nodes[number] = np.array(point if system == 0 else [np.nan] * 3)
 
 
-def _element(content: Bulk, card: list[str]) -> None:
-    name, number = card[0], int(card[1])
-    first, corners, most, _, _ = _ELEMENTS[name]
-    nodes = [n for n in map(_whole, card[first : first + most]) if n]
-    if number in content.elements:
-        raise ValueError(f"element {number} again")
-    if len(nodes) < corners and name != "CBUSH":  # one end of it may be the ground
-        raise ValueError(f"{len(nodes)} nodes of {corners}")
-    content.elements[number] = name, nodes
-
-
-def _spring(content: Bulk, card: list[str]) -> None:
-    """Take CELAS1 to CELAS4: ends are a node and a component, or scalar points."""
-    if card[0].endswith(("3", "4")):
-        ends = [(_whole(card[k]), 0) for k in (3, 4)]
-        content.scalar.update(n for n, _ in ends if n)
-    else:
-        ends = [(_whole(card[k]), _whole(card[k + 1])) for k in (3, 5)]
-    content.links.append(tuple(n for n, _ in ends if n))
-    if not card[0].startswith("CDAMP"):
-        content.springs += [(node, component) for node, component in ends if node and component]
-
-
 def _rigid(content: Bulk, card: list[str]) -> None:
-    """Take RBE2, RBE3 and RBAR: which degrees of freedom follow others."""
     if card[0] == "RBE2":
         nodes = _listed(x for x in card[4:] if "." not in x)
         content.followers.update((n, c) for n in nodes for c in _components(card[3]))
         content.links.append((int(card[2]), *nodes))
     elif card[0] == "RBE3":
         content.followers.update((int(card[3]), c) for c in _components(card[4]))
-        nodes = [int(x) for x in card[5:] if x.isdigit()]
-        content.links.append((int(card[3]), *nodes))
-    elif card[0] == "RBAR":
+        content.links.append((int(card[3]), *(int(x) for x in card[5:] if x.isdigit())))
+    else:
         ends = int(card[2]), int(card[3])
         content.links.append(ends)
         dependent = [_components(card[k]) for k in (6, 7)]
@@ -333,21 +317,6 @@ def _rigid(content: Bulk, card: list[str]) -> None:
             dependent = [[c for c in range(1, 7) if c not in some] for some in independent]
         for node, some in zip(ends, dependent, strict=True):
             content.followers.update((node, c) for c in some)
-
-
-def _support(content: Bulk, card: list[str]) -> None:
-    number = int(card[1])
-    if card[0] in ("SPCADD", "MPCADD"):
-        content.added.setdefault(number, []).extend(_listed(card[2:]))
-    elif card[0] == "SPC1":
-        content.supports.setdefault(number, set()).update(_all_of(card[2], card[3:]))
-    elif card[0] == "SPC":
-        content.supports.setdefault(number, set()).update(_pairs(card[:8], 2, 3))
-    else:
-        dependent = int(card[2]), _whole(card[3])
-        content.constraints.setdefault(number, set()).add(dependent)
-        nodes = [int(card[k]) for k in range(2, len(card), 3) if card[k].isdigit()]
-        content.links.append(tuple(nodes))
 
 
 def _sets(table: dict[int, set[Dof]], added: dict[int, list[int]], chosen: int | None) -> set[Dof]:

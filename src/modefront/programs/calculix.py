@@ -15,29 +15,18 @@ modes) moves with the model, and belongs to no node.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from modefront._typing import Ints
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.programs.base import JobOptions
 from modefront.programs.inp import Deck, deck_of
-from modefront.programs.reading import (
-    Entries,
-    Listed,
-    columns,
-    coordinates,
-    existing,
-)
+from modefront.programs.reading import Entries, Listed, columns, existing
 
 SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
-
-PRECISION = 1e-13
-"""Relative error of numbers with 14 digits."""
 
 ADVICE = (
     "the deck needs *FREQUENCY, SOLVER=MATRIXSTORAGE; look for *ERROR in what ccx prints, as it "
@@ -53,10 +42,10 @@ def read(path: Path, options: JobOptions) -> Listed:
         existing(file, "a matrix or table of CalculiX", ADVICE)
     labels = columns(files[".dof"], ".", "ii", comment="#")
     node, direction = (column.astype(np.intp) for column in labels)
-    entries = {
-        suffix: replace(coordinates(files[suffix]), precision=PRECISION)
-        for suffix in (".sti", ".mas")
-    }
+    entries = {}
+    for suffix in (".sti", ".mas"):
+        row, column, value = columns(files[suffix], r"\s+", "iif", comment="#")
+        entries[suffix] = Entries(row - 1, column - 1, value, precision=1e-13)
     _refuse_cut_off(files, entries, node.size)
     notes: list[str] = []
     own = job.with_name(job.name + ".inp")
@@ -113,11 +102,13 @@ def _table(labels: DofTable, deck: Deck | None) -> DofTable:
     keys = np.column_stack([labels.node, direction])[order]
     starts = np.flatnonzero(np.append(True, (keys[1:] != keys[:-1]).any(axis=1)))
     groups = np.split(order, starts[1:])
-    parts = [_own_first(group, blocks.get(int(labels.node[group[0]]))) for group in groups]
-    most: dict[int, int] = {}
-    for group, (_, made) in zip(groups, parts, strict=True):
+    parts, most = [], dict[int, int]()
+    for group in groups:  # those of the node itself, and those that were made of it
         number = int(labels.node[group[0]])
-        most[number] = max(most.get(number, 0), made.size)
+        first, behind = blocks.get(number, (0, 0))
+        inside = (group >= first) & (group < behind)
+        parts.append((group[inside], group[~inside]))
+        most[number] = max(most.get(number, 0), int((~inside).sum()))
     follow = _followers(labels, deck, blocks, most, leading)
     for group, (itself, made) in zip(groups, parts, strict=True):
         number, along = int(labels.node[group[0]]), int(direction[group[0]])
@@ -129,14 +120,6 @@ def _table(labels: DofTable, deck: Deck | None) -> DofTable:
         elif made.size == most[number]:  # else the program eliminated one: the mean of all is held
             weight[made] = 1.0 / made.size
     return DofTable(node, direction, weight)
-
-
-def _own_first(group: Ints, block: tuple[int, int] | None) -> tuple[Ints, Ints]:
-    """Return those of the degrees of freedom of a node that are its own, and all others."""
-    if block is None:
-        return group[:0], group
-    inside = (group >= block[0]) & (group < block[1])
-    return group[inside], group[~inside]
 
 
 def _followers(

@@ -11,28 +11,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from modefront.errors import Fault, InputError, reason
-from modefront.inputs import file_size, fortran
+from modefront.errors import reason
+from modefront.inputs import file_size, fortran, wrong
 from modefront.outputs import write_text
 
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
 """A number in a deck."""
 
 SUFFIXES = (".inp", ".dat", ".bdf", ".nas", ".mac", ".py", ".tcl")
-COMMENTS = ("**", "$", "!", "#")
-"""Beginnings of lines that are comments, in one program or another."""
-
-SAME = 1e-6
-"""Relative difference from the factor that passes for the digits of a deck."""
-
-OTHER = 1e-5
-"""Relative difference of two factors from which on they are others: that of six digits."""
-
 CHANGES, KEPT = "changes.json", "deck-"
 """File of the changes in the folder of a study, and beginning of the name of the nominal deck."""
-
-LARGEST = 2**26
-"""Bytes of a deck above which it is not compared."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +66,7 @@ def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Cha
     out = []
     for number, old, new in lines:
         pairs = _changed(old, new)
-        if pairs and all(x and abs(y / x / factor - 1) <= SAME for _, x, y in pairs):
+        if pairs and all(x and abs(y / x / factor - 1) <= 1e-6 for _, x, y in pairs):
             out.append(Change(parameter, name, number, old, tuple(span for span, _, _ in pairs)))
     return out
 
@@ -90,8 +78,8 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
     """
     factors: dict[float, int] = {}
     for number, old, new in _different_lines(nominal, run)[1]:
-        if old.lstrip().startswith(COMMENTS):
-            continue
+        if old.lstrip().startswith(("**", "$", "!", "#")):
+            continue  # a comment, in one program or another
         if (pairs := _changed(old, new)) is None:
             return None
         for _, x, y in pairs:
@@ -99,7 +87,7 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
     if len(factors) != 1:
         return None
     ((value, line),) = factors.items()
-    return None if value <= 0 or abs(value / factor - 1) < OTHER else (value, line)
+    return None if value <= 0 or abs(value / factor - 1) < 1e-5 else (value, line)
 
 
 def _different_lines(nominal: Path, run: Path) -> tuple[str, list[tuple[int, str, str]]]:
@@ -148,7 +136,7 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
 def _deck(path: Path) -> Path | None:
     stem = path.with_suffix("") if path.suffix else path
     for file in (*(stem.with_name(stem.name + x) for x in SUFFIXES), path):
-        if file.suffix.lower() in SUFFIXES and file.is_file() and file.stat().st_size < LARGEST:
+        if file.suffix.lower() in SUFFIXES and file.is_file() and file.stat().st_size < 2**26:
             return file
     return None
 
@@ -176,15 +164,9 @@ def read_changes(path: Path) -> list[Change]:
     """Return the changes in a file; raises InputError for any other file."""
     file_size(path, "changes of a deck")
     try:
-        return [
-            Change(
-                str(each["parameter"]),
-                str(each["file"]),
-                int(each["line"]),
-                str(each["text"]),
-                tuple((int(a), int(b)) for a, b in each["spans"]),
-            )
-            for each in json.loads(path.read_text(encoding="utf-8"))
-        ]
+        listed = json.loads(path.read_text(encoding="utf-8"))
+        spans = [tuple((int(a), int(b)) for a, b in each["spans"]) for each in listed]
+        pairs = zip(listed, spans, strict=True)
+        return [Change(**{**each, "spans": of_line}) for each, of_line in pairs]
     except (OSError, ValueError, TypeError, KeyError) as error:
-        raise InputError(Fault(str(path), "file", "changes of a deck", reason(error))) from None
+        raise wrong(path, "changes of a deck", reason(error)) from None

@@ -9,10 +9,8 @@ With the parameters as factors of their nominal values, so that all are 1 in the
 which the runs r solve for the terms; the base is what is left of the nominal run. A parameter in
 which the matrices are linear takes one run, at any factor; one with the functions t and t³ two.
 
-Differences of large numbers are noise where nothing has changed. Dropped is what is below 1e-13 of
-the greatest entry and no more than 1e-10 of what joins the same degrees of freedom (so that the
-penalties of some programs hide nothing), and what is below the rounding of the file. Terms of few
-degrees of freedom keep the rank that they have above the rounding: a spring's is 1.
+Differences of large numbers are noise where nothing has changed: ``docs/import.md`` says what is
+dropped. Terms of few degrees of freedom keep the rank that they have above the rounding.
 
 ========  ==========================================================
 symbol    meaning
@@ -27,25 +25,21 @@ E         A of a run for checking, minus that of the terms
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse
+from scipy.sparse.csgraph import connected_components
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.errors import InputError, wrong
+from modefront.errors import Fault, InputError, wrong
 from modefront.linalg.affine import Monomials
-from modefront.models.dofs import DofTable
-from modefront.models.terms import BASE, term_exponents
+from modefront.models.dofs import DofTable, name_of
+from modefront.models.parameters import BASE, term_exponents
 from modefront.programs.base import Job, Matrix, Quantity, whole
 from modefront.rounding import ACCUMULATED
-
-DROPPED = 1e-13
-"""Entries of a difference below it, over the greatest entry of the matrix, are dropped."""
-
-LOCAL = 1e-10
-"""They are kept if they are more than this of the diagonal entries of their row and column."""
 
 AFFINE = 1e-10
 """Greatest error of the terms at other values of the parameters, over the change."""
@@ -55,9 +49,6 @@ ROUNDING = 20.0
 
 CANCELLED = 1e-14
 """Size over the greatest of what has cancelled: some fifty roundings of one operation."""
-
-SMALL = 60
-"""Degrees of freedom up to which the rank of a term is found."""
 
 COVERED = 0.99
 """Share of an error within the terms of a parameter, from which it may come from it."""
@@ -69,7 +60,7 @@ class Term:
 
     Attributes
     ----------
-    name : as `modefront.models.terms` has it
+    name : as `modefront.models.parameters` has it
     matrices : upper triangles by quantity; only those that are not zero
     dofs : number of degrees of freedom on which the term acts
     rank : of the stiffness, or of the mass where there is no stiffness; None where not found
@@ -128,7 +119,7 @@ class Differences:
         for quantity, A in self.nominal.matrices.items():
             D = scipy.sparse.coo_array(reordered(job.matrices[quantity], order) - A)
             size, greatest = np.abs(D.data), np.abs(A.data).max(initial=0.0)
-            noise = (size <= DROPPED * greatest) & (size <= LOCAL * _joint(D, A))
+            noise = (size <= 1e-13 * greatest) & (size <= 1e-10 * _joint(D, A))
             differences[quantity] = _with(D, ~noise & (D.data != 0))
         if not any(D.nnz for D in differences.values()):
             changed = self._changed(values)
@@ -182,7 +173,6 @@ class Differences:
         return Terms(self.parameters, Term(BASE, base), tuple(found), self.nominal.dofs)
 
     def _refuse_undetermined(self, c: Floats) -> None:
-        """Refuse terms that no combination of runs can tell apart."""
         for i, name in enumerate(self.parameters):
             of_parameter = np.flatnonzero(self.coefficients.exponents[:, i] != 0)
             if np.linalg.matrix_rank(c[:, of_parameter]) < of_parameter.size:
@@ -265,43 +255,26 @@ def matching(nominal: Job, job: Job, label: str) -> Ints | None:
     They are matched by node and direction, and those of the same label in their order. Raises
     InputError where there are others.
     """
-    before, after = nominal.dofs, job.dofs
-    if before.size != after.size and not (nominal.labelled and job.labelled):
-        raise wrong(
-            label, f"{before.size} degrees of freedom, as '{nominal.name}' has", f"{after.size}"
-        )
+    tables = nominal.dofs, job.dofs
     if not (nominal.labelled and job.labelled):
+        if nominal.size != job.size:
+            expected = f"{nominal.size} degrees of freedom, as '{nominal.name}' has"
+            raise wrong(label, expected, job.size)
         return None
-    same = np.array_equal(before.node, after.node) and np.array_equal(
-        before.direction, after.direction
-    )
-    if same:
-        return None
-    orders = [np.lexsort((table.direction, table.node)) for table in (before, after)]
-    sorted_labels = [
-        np.column_stack([table.node[order], table.direction[order]])
-        for table, order in zip((before, after), orders, strict=True)
+    orders = [np.lexsort((table.direction, table.node)) for table in tables]
+    known = [
+        np.column_stack([table.node, table.direction])[order]
+        for table, order in zip(tables, orders, strict=True)
     ]
-    if before.size != after.size or (sorted_labels[0] != sorted_labels[1]).any():
-        raise _unmatched(nominal, job, label)
-    out = np.zeros(before.size, np.intp)
+    if not np.array_equal(known[0], known[1]):
+        expected = f"the degrees of freedom of '{nominal.name}' ({nominal.size})"
+        before, after = (Counter(map(tuple, labels.tolist())) for labels in known)
+        node, direction = min((before - after) or (after - before))
+        found = f"{after[node, direction] or 'none'} at node {node} {name_of(direction)}"
+        raise wrong(label, expected, f"{found}, {job.size} in all")
+    out = np.zeros(nominal.size, np.intp)
     out[orders[1]] = orders[0]
     return out
-
-
-def _unmatched(nominal: Job, job: Job, label: str) -> InputError:
-    """Return the error that names the first degree of freedom that only one of two jobs has."""
-    tables = [
-        {(int(n), int(d)): k for k, (n, d) in enumerate(zip(t.node, t.direction, strict=True))}
-        for t in (nominal.dofs, job.dofs)
-    ]
-    missing, more = (sorted(tables[a].keys() - tables[b].keys()) for a, b in ((0, 1), (1, 0)))
-    expected = f"the degrees of freedom of '{nominal.name}' ({nominal.size})"
-    if missing:
-        return wrong(label, expected, f"none at {nominal.dofs.label(tables[0][missing[0]])}")
-    if more:
-        return wrong(label, expected, f"one at {job.dofs.label(tables[1][more[0]])}, {job.size}")
-    return wrong(label, expected, f"{job.size}, other numbers of them at the same nodes")
 
 
 def reordered(A: Matrix, order: Ints | None) -> Matrix:
@@ -335,8 +308,7 @@ def _with(entries: scipy.sparse.coo_array, chosen: Bools) -> Matrix:
 
 
 def _support(term: Matrix) -> Ints:
-    entries = scipy.sparse.coo_array(term)
-    return np.unique(np.concatenate([entries.row, entries.col]))
+    return np.unique(np.concatenate(term.nonzero()))
 
 
 def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]:
@@ -345,7 +317,7 @@ def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]
     None is returned for the rank of a term of many degrees of freedom, which is left as it is.
     """
     dofs = _support(term)
-    if dofs.size == 0 or dofs.size > SMALL:
+    if dofs.size == 0 or dofs.size > 60:  # decomposing many takes long
         return term, None if dofs.size else 0
     dense = whole(term)[dofs][:, dofs].toarray()
     values, vectors = np.linalg.eigh(dense)
@@ -359,3 +331,93 @@ def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]
     small = scipy.sparse.coo_array(np.triu(part))
     places = dofs[small.row], dofs[small.col]
     return scipy.sparse.coo_array((small.data, places), shape=term.shape).tocsr(), rank
+
+
+def condensed(terms: Terms) -> tuple[Terms, int, int]:
+    """Return the terms without internal degrees of freedom, and how many went and stayed.
+
+    Raises InputError for Lagrange multipliers: constraints cannot be eliminated so.
+    """
+    internal = np.flatnonzero(terms.dofs.node < 0)
+    if internal.size == 0:
+        return terms, 0, 0
+    stiffness = {name: whole(A) for name, A in terms.of("stiffness").items()}
+    mass = terms.of("mass")
+    acting = [abs(A[internal][:, internal]) for A in stiffness.values()]
+    _, groups = connected_components(sum(acting[1:], acting[0]), directed=False)
+    owner = _owners(stiffness, mass, internal, groups)
+    diagonal = sum(np.abs(A.diagonal()[internal]) for A in stiffness.values())
+    zero = np.flatnonzero(diagonal == 0)
+    if zero.size:
+        label = f"node {terms.dofs.node[internal[zero[0]]]}"
+        expected = "degrees of freedom with stiffness; constraints with Lagrange multipliers "
+        expected += "(contact, connectors, incompressible elements) cannot be imported"
+        raise InputError(Fault("", label, expected, f"none at {zero.size} of the program's own"))
+    gone = np.zeros(internal.size, bool)
+    for name in stiffness:
+        part = owner[groups] == list(stiffness).index(name)
+        if part.any():
+            stiffness[name], done = _eliminated(stiffness[name], internal[part], groups[part])
+            gone[part] = done
+    kept = np.setdiff1d(np.arange(terms.dofs.size), internal[gone])
+
+    def restricted(term: Term) -> Term:
+        both = {
+            x: stiffness[term.name] if x == "stiffness" else A for x, A in term.matrices.items()
+        }
+        rows = {x: scipy.sparse.triu(A[kept][:, kept], format="csr") for x, A in both.items()}
+        return replace(term, matrices={x: A for x, A in rows.items() if A.nnz})
+
+    dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
+    reduced = Terms(
+        terms.parameters, restricted(terms.base), tuple(map(restricted, terms.terms)), dofs
+    )
+    return reduced, int(gone.sum()), int((~gone).sum())
+
+
+def _owners(
+    stiffness: Mapping[str, Matrix], mass: Mapping[str, Matrix], internal: Ints, groups: Ints
+) -> Ints:
+    """Return for each group the only term that acts on it; -1 where several do, or mass."""
+    count = int(groups.max()) + 1
+    acting = np.zeros((count, len(stiffness)), bool)
+    for column, A in enumerate(stiffness.values()):
+        entries = abs(A[internal]).sum(axis=1) > 0
+        acting[groups[entries], column] = True
+    heavy = np.zeros(count, bool)
+    for M in mass.values():
+        heavy[groups[abs(whole(M)[internal]).sum(axis=1) > 0]] = True
+    alone = (acting.sum(axis=1) == 1) & ~heavy
+    return np.where(alone, acting.argmax(axis=1), -1)
+
+
+def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]:
+    """Return a matrix with the effect of internal degrees of freedom in it, and which went."""
+    order = np.argsort(groups, kind="stable")
+    _, starts, sizes = np.unique(groups[order], return_index=True, return_counts=True)
+    rows, columns, values = [], [], []
+    done = np.zeros(internal.size, bool)
+    dense = A[internal][:, internal].tocsr()
+    for size in np.unique(sizes).tolist():
+        members = order[starts[sizes == size][:, None] + np.arange(size)]
+        blocks = np.zeros((len(members), size, size))
+        position = np.full(internal.size, -1)
+        position[members] = np.arange(len(members))[:, None]
+        place = np.zeros(internal.size, np.intp)
+        place[members] = np.arange(size)
+        entries = dense[members.ravel()].tocoo()
+        source = members.ravel()[entries.row]
+        blocks[position[source], place[source], place[entries.col]] = entries.data
+        singular = np.linalg.svd(blocks, compute_uv=False)
+        good = singular[:, -1] > ACCUMULATED * singular[:, 0]
+        inverse, members = np.linalg.inv(blocks[good]), members[good]
+        done[members] = True
+        rows.append(np.repeat(members, size, axis=1).ravel())
+        columns.append(np.tile(members, (1, size)).ravel())
+        values.append(inverse.ravel())
+    triplets = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+    inverse = scipy.sparse.csr_array(triplets, shape=(internal.size, internal.size))
+    others = np.ones(A.shape[0])
+    others[internal[done]] = 0.0
+    coupling = A[internal] @ scipy.sparse.diags_array(others)
+    return (A - coupling.T @ inverse @ coupling).tocsr(), done

@@ -13,7 +13,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.errors import reason
 from modefront.inputs import ended, wrong
-from modefront.programs.mesh import CORNERS, ProgramMesh, mesh_of, refuse_unknown_nodes
+from modefront.programs.base import CORNERS, ProgramMesh, mesh_of, refuse_unknown_nodes
 
 DEEPEST = 20
 """Decks that include each other, one in the other, at most."""
@@ -28,19 +28,6 @@ _TYPES = (
     (r"MASS|ROTARYI|SPRING1|DASHPOT1", "vertex"),
 )
 """Beginnings of the names of element types, and the cells that they are."""
-
-_EXPANDED = re.compile(r"S[3468]|M3D|CPS|CPE|CAX|B[23][123]|PIPE|T[23]D")
-"""Elements that CalculiX makes solids of."""
-
-_MIDDLE = re.compile(r"B[23]2|T[23]D3|PIPE[23]2")
-"""Lines with a node in the middle, which is listed between their ends."""
-
-
-_COUNTED = re.compile(r"(?:D?C3D|SC|S|M3D|CPS|CPE|CAX)(?!27)([0-9]+)")
-"""Elements whose names say how many nodes they have."""
-
-_MORE = ("INCLUDE", "NGEN", "NFILL", "NCOPY", "NMAP")
-"""Keywords that make nodes, or may have them in another file."""
 
 
 @dataclass
@@ -116,8 +103,8 @@ def read_deck(path: Path) -> Deck:
             deck.guides += [options.get(name, "") for name in ("REF NODE", "ROT NODE")]
         elif keyword in ("PART", "INSTANCE"):
             deck.parts = True
-        elif keyword in _MORE:
-            more = True
+        elif keyword in ("INCLUDE", "NGEN", "NFILL", "NCOPY", "NMAP"):
+            more = True  # they make nodes, or may have them in another file
     if not deck.parts and not more:
         refuse_unknown_nodes(path, deck.nodes, deck.expanded | deck.others)
     return deck
@@ -185,7 +172,9 @@ def _elements(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> Non
     if not (name := options.get("TYPE", "").upper()):
         raise ValueError("no TYPE of the elements")
     cell = next((cell for pattern, cell in _TYPES if re.match(pattern, name)), None)
-    count = int(match[1]) if (match := _COUNTED.match(name)) else 0
+    # Names of these say how many nodes there are.
+    counted = re.match(r"(?:D?C3D|SC|S|M3D|CPS|CPE|CAX)(?!27)([0-9]+)", name)
+    count = int(counted[1]) if counted else 0
     numbers: list[int] = []
     joined: list[list[int]] = []
     for row in rows:  # elements of many nodes go on in the next line after a comma at the end
@@ -194,14 +183,15 @@ def _elements(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> Non
             joined.append(numbers[: count + 1] if count else numbers)
             numbers = []
     joined += [numbers] if numbers else []
-    target = deck.expanded if _EXPANDED.match(name) else deck.others
+    expanded = re.match(r"S[3468]|M3D|CPS|CPE|CAX|B[23][123]|PIPE|T[23]D", name)
+    target = deck.expanded if expanded else deck.others
     for number, *nodes in joined:
         if (count and len(nodes) != count) or (number in deck.elements and not deck.parts):
             raise ValueError(f"{len(nodes)} nodes of element {number}, or that element again")
         deck.elements.add(number)
         target.update(n for n in nodes if n)  # ends of networks are 0
-        if _MIDDLE.match(name) and len(nodes) == 3:
-            nodes = [nodes[0], nodes[2]]
+        if re.match(r"B[23]2|T[23]D3|PIPE[23]2", name) and len(nodes) == 3:
+            nodes = [nodes[0], nodes[2]]  # that in the middle is listed between the ends
         if cell and len(nodes) >= CORNERS[cell]:
             deck.cells.setdefault(cell, []).append(nodes[: CORNERS[cell]])
 

@@ -17,27 +17,16 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.errors import reason
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
-from modefront.programs.base import JobOptions, Matrix, whole
+from modefront.programs.base import JobOptions, Matrix, ProgramMesh, whole
 from modefront.programs.bulk import Bulk, read_bulk
-from modefront.programs.dmig import read_dmig
-from modefront.programs.mesh import ProgramMesh
-from modefront.programs.op4 import read_op4
-from modefront.programs.reading import (
-    Entries,
-    Listed,
-    existing,
-    given_table,
-    unlabelled,
-)
+from modefront.programs.nastran_files import read_dmig, read_op4
+from modefront.programs.reading import Entries, Listed, existing, given_table, unlabelled
 
 DECKS = (".dat", ".bdf", ".nas", ".inp")
 MATRICES = (".op4", ".pch")
 
 SETS = ("AA", "AAX", "LL", "XX", "HH", "GG", "JJ", "2GG", "")
 """Names of pairs of matrices behind K and M, the first that there is being taken."""
-
-EQUILIBRIUM = 1e-6
-"""Force of a rigid-body translation, over the forces that cancel, that passes for rounding."""
 
 ADVICE = "OUTPUT4 KAA,MAA,,,//-1/21 writes an .op4 file, EXTSEOUT or PARAM,EXTOUT,DMIGPCH a .pch"
 
@@ -58,7 +47,6 @@ def read(path: Path, options: JobOptions) -> Listed:
 
 
 def _pair(path: Path, names: Iterable[str], options: JobOptions) -> tuple[str, str]:
-    """Return the names of stiffness and mass among those in a file."""
     known = list(names)
     if options.stiffness or options.mass:
         pair = (options.stiffness or "").upper(), (options.mass or "").upper()
@@ -74,7 +62,6 @@ def _pair(path: Path, names: Iterable[str], options: JobOptions) -> tuple[str, s
 
 
 def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
-    """Return the deck of a job, None where there is none."""
     candidates = [options.deck] if options.deck else [path.with_suffix(x) for x in DECKS]
     for deck in candidates:
         try:
@@ -87,9 +74,6 @@ def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
         raise wrong(options.deck, "a deck", "no such file")
     notes.append(f"there is no deck ({path.stem}.dat or .bdf), and so there are no coordinates")
     return None
-
-
-# OUTPUT4
 
 
 def _from_op4(path: Path, options: JobOptions) -> Listed:
@@ -144,13 +128,16 @@ def _drawn(deck: Bulk, notes: list[str]) -> ProgramMesh | None:
 
 
 def _check_labels(path: Path, deck: Bulk, triangle: Matrix, dofs: DofTable, free: Bools) -> None:
-    """Refuse nodes and components with which translations strain what is held nowhere."""
-    K = whole(triangle)
-    strained = free & ~_near_supports(deck, dofs, free)
+    moving = set(zip(dofs.node[free].tolist(), dofs.direction[free].tolist(), strict=True))
+    held = {n for n in deck.mesh.number.tolist() if any((n, c) not in moving for c in (1, 2, 3))}
+    held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)
+    for _ in range(2 if deck.followers else 1):  # followers join elements of their masters
+        held |= {n for link in deck.joined if held.intersection(link) for n in link}
+    K, strained = whole(triangle), free & ~np.isin(dofs.node, list(held))
     for direction in (1, 2, 3):
         r = (free & (dofs.direction == direction)).astype(float)
         force, size = K @ r, abs(K) @ r
-        bad = (np.abs(force) > EQUILIBRIUM * size) & (size > 0) & strained
+        bad = (np.abs(force) > 1e-6 * size) & (size > 0) & strained  # less is rounding
         if bad.any():
             k = int(np.argmax(np.abs(force) * bad))
             raise wrong(
@@ -159,20 +146,6 @@ def _check_labels(path: Path, deck: Bulk, triangle: Matrix, dofs: DofTable, free
                 "degrees of freedom its rows are",
                 f"a force at {dofs.label(k)} in a translation of the whole",
             )
-
-
-def _near_supports(deck: Bulk, dofs: DofTable, free: Bools) -> Bools:
-    moving = set(zip(dofs.node[free].tolist(), dofs.direction[free].tolist(), strict=True))
-    held = {n for n in deck.mesh.number.tolist() if any((n, c) not in moving for c in (1, 2, 3))}
-    held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)
-    near = set(held)
-    for _ in range(2 if deck.followers else 1):  # followers join elements of their masters
-        near |= {n for link in deck.joined if near.intersection(link) for n in link}
-    out: Bools = np.isin(dofs.node, list(near))
-    return out
-
-
-# DMIG
 
 
 def _from_dmig(path: Path, options: JobOptions) -> Listed:

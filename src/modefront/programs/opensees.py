@@ -17,12 +17,10 @@ from modefront.errors import reason
 from modefront.inputs import ended, once, wrong
 from modefront.models.dofs import read_dofs
 from modefront.models.files import read_entries
-from modefront.programs.base import JobOptions
-from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
+from modefront.programs.base import JobOptions, ProgramMesh, mesh_of, refuse_unknown_nodes
 from modefront.programs.reading import Entries, Listed, existing
 
 ADVICE = "the snippet in docs/import.md writes it"
-CELLS = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
 
 
 def read(path: Path, options: JobOptions) -> Listed:
@@ -60,8 +58,9 @@ def _mesh(path: Path) -> ProgramMesh | None:
         expected = "rows node,x,y,z (and element,node,… of elements)"
         raise wrong(nodes, expected, reason(error)) from None
     refuse_unknown_nodes(elements, points, (n for row in rows for n in row[1:]))
+    kinds = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
     for row in rows:
-        if kind := CELLS.get(len(row) - 1):
+        if kind := kinds.get(len(row) - 1):
             cells.setdefault(kind, []).append(row[1:])
     return mesh_of(points, cells)
 

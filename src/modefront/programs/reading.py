@@ -21,12 +21,8 @@ from modefront.errors import reason
 from modefront.inputs import ended, file_size, first_repeated, fortran, wrong
 from modefront.isolated import Read
 from modefront.models.dofs import DofTable, read_dofs
-from modefront.programs.base import JobOptions, Matrix
-from modefront.programs.mesh import ProgramMesh, arrays_of
+from modefront.programs.base import JobOptions, Matrix, ProgramMesh, arrays_of
 from modefront.rounding import LARGEST, SYMMETRY
-
-DOUBLE = 1e-15
-"""Relative error of numbers that are written as binary doubles: a few roundings of the program."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,14 +34,14 @@ class Entries:
     row, column : (entries,) from 0
     value : (entries,)
     shape : numbers of rows and columns, where the file tells them
-    precision : relative error of the values
+    precision : relative error of the values, that of binary doubles unless given
     """
 
     row: Ints
     column: Ints
     value: Floats = field(repr=False)
     shape: tuple[int, int] | None = None
-    precision: float = DOUBLE
+    precision: float = 1e-15
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,15 +70,13 @@ class Listed:
 
 def unlabelled(size: int) -> DofTable:
     """Return the table of degrees of freedom that belong to no node."""
-    return DofTable(np.zeros(size, np.intp), np.zeros(size, np.intp), np.ones(size))
+    return DofTable(*np.zeros((2, size), np.intp), np.ones(size))
 
 
 def given_table(options: JobOptions, size: int) -> DofTable | None:
     """Return the table of degrees of freedom of ``--dofs``, if any; it has to have so many rows."""
-    if options.dofs is None:
-        return None
-    table = read_dofs(options.dofs)
-    if table.size != size:
+    table = read_dofs(options.dofs) if options.dofs else None
+    if options.dofs and table and table.size != size:
         raise wrong(options.dofs, f"{size} rows, one a degree of freedom", str(table.size))
     return table
 
@@ -173,15 +167,6 @@ def existing(path: Path, expected: str, advice: str) -> Path:
     if file_size(path, f"{expected} ({advice})") > 0:
         return path
     raise wrong(path, f"{expected} ({advice})", "an empty one")
-
-
-def coordinates(path: Path) -> Entries:
-    """Return the entries of a file of lines ``row column value``, counted from 1.
-
-    Raises InputError where a line is none, or is cut off.
-    """
-    row, column, value = columns(path, r"\s+", "iif", comment="#")
-    return Entries(row - 1, column - 1, value)
 
 
 def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.ndarray]:

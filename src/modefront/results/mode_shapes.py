@@ -28,8 +28,8 @@ import xarray as xr
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
+from modefront.models.base import geometry_of, shapes_at
 from modefront.models.geometry import Cells, Geometry
-from modefront.models.local import geometry_of, shapes_at
 from modefront.pairing.match import mean_mac, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values

@@ -18,7 +18,7 @@ from modefront._typing import Floats
 from modefront.brief import as_html, brief
 from modefront.errors import ModelError
 from modefront.front.point import Kind, preferred
-from modefront.models.local import matrices_at
+from modefront.models.base import matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem

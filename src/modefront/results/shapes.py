@@ -22,9 +22,8 @@ from modefront._typing import Floats
 from modefront.brief import as_html, brief
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
-from modefront.models.base import full_of
+from modefront.models.base import full_of, geometry_of, shapes_at
 from modefront.models.geometry import Geometry
-from modefront.models.local import geometry_of, shapes_at
 from modefront.residuals.problem import UpdatingProblem
 
 

@@ -22,7 +22,7 @@ from modefront.errors import InputError, ModelError
 from modefront.front.simplex import default_points, size
 from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.cost import estimate as reduced_cost
+from modefront.models.reduced.options import estimate as reduced_cost
 from modefront.optim.scalarisation import weighted
 from modefront.optim.sqp import Options, begin, solve
 from modefront.predictions import Passage, Prediction

@@ -24,8 +24,8 @@ from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs, write_do
 from modefront.models.geometry import Cells
 from modefront.outputs import output as written
 from modefront.outputs import write_table, write_text
+from modefront.programs.base import ProgramMesh, read_mesh
 from modefront.programs.changes import Change, read_changes, write_deck
-from modefront.programs.mesh import ProgramMesh, read_mesh
 from modefront.results.files import FILE, read_dataset
 from modefront.results.results import ReportedModel, Results
 from modefront.results.vtu import write_grid

@@ -19,10 +19,10 @@ from modefront.errors import Fault, InputError, ModelError, reason, refuse, sugg
 from modefront.fem.structure import DIRECTIONS
 from modefront.models.dofs import number_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
-from modefront.models.terms import exponents_of, form_of
+from modefront.models.parameters import exponents_of, form_of
 from modefront.outputs import output, write_text
 from modefront.programs import PROGRAMS
-from modefront.programs.base import Job, JobOptions, Quantity, whole
+from modefront.programs.base import Job, JobOptions, Quantity, whole, write_mesh
 from modefront.programs.changes import (
     CHANGES,
     KEPT,
@@ -32,9 +32,7 @@ from modefront.programs.changes import (
     other_factor,
     write_changes,
 )
-from modefront.programs.condense import condensed
-from modefront.programs.differences import Differences, Term, Terms
-from modefront.programs.mesh import write_mesh
+from modefront.programs.differences import Differences, Term, Terms, condensed
 from modefront.study.schema import add_schema
 
 QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")

@@ -11,7 +11,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.csv import read_csv
 from modefront.data.modal import ModalData
-from modefront.data.uff55 import NodalModes, is_universal, read_uff55
+from modefront.data.uff import NodalModes, is_universal, read_uff55
 from modefront.diagnosis.notes import DataDirection, axis_name
 from modefront.errors import InputError, reason, suggestion
 from modefront.families import Family

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from modefront.data.uff55 import SUFFIXES
+from modefront.data.uff import SUFFIXES
 from modefront.front.given import Weighted
 from modefront.front.options import Pareto
 from modefront.front.search import Search

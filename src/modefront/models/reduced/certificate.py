@@ -1,29 +1,13 @@
 r"""Errors of the modes of a reduced model, proved in the full one with one factor.
 
-Let :math:`\rho` be the lowest m Ritz values in the basis, X their modes, :math:`X^T M X = I`, and
-:math:`\sigma` a level in the gap above them. The factor of :math:`B = K - \sigma M` at the model
-in question has m negative eigenvalues if, and only if, m modes of the full model are below
-:math:`\sigma` (Sylvester): then none is missing. The residuals
-
-.. math:: R = K X - M X \,\mathrm{diag}(\rho), \qquad X^T R = 0, \qquad E = R^T B^{-1} R \ge 0
-
-bound the eigenvalues from below, since :math:`B^{-1} M` has m negative eigenvalues
-:math:`1 / (\lambda_i - \sigma)`, and its Ritz values in X are above these (Lehmann). With
-:math:`S = \sigma I - \mathrm{diag}(\rho)` they are those of
-
-.. math::
-    \lambda_i \ge \ell_i, \qquad \mathrm{diag}(\rho) - P = Y \,\mathrm{diag}(\ell)\, Y^T, \qquad
-    P = (E^{-1} - S^{-1})^{-1} = E + E S^{-1} E + \dots
-
-which needs :math:`E < S`. The errors :math:`\rho_i - \lambda_i` are at most
-:math:`\rho_i - \ell_i`. To leading order that is :math:`E_{ii}`, where the error is
-:math:`r^T (K - \lambda_i M)^+ r`: too much by :math:`(\lambda_j - \lambda_i) / (\lambda_j -
-\sigma)` of what the mode has of mode j above the level. One step of inverse iteration makes better
-modes of X,
+``docs/reduced.md`` has the bounds, whose symbols are used here, with :math:`X^T M X = I`. For
+:math:`\mathrm{diag}(\rho) - P = Y \,\mathrm{diag}(\ell)\, Y^T`, one step of inverse iteration makes
+better modes of X,
 
 .. math:: \tilde X = -B^{-1} M X S\,(I + S^{-1} P)\, Y = (X - B^{-1} R)(I + S^{-1} P)\, Y ,
 
-and what they differ from X is the error of the shapes, too much by the same factor.
+and what they differ from X is the error of the shapes. Of what the mode has of a mode j above the
+level, both errors are too much by :math:`(\lambda_j - \lambda_i) / (\lambda_j - \sigma)`.
 
 Sources: Lehmann 1949, doi:10.1002/zamm.19490290507 and Parlett 1998,
 doi:10.1137/1.9781611971163, section 10.5 (bounds from residuals).
@@ -47,21 +31,8 @@ from modefront.modes.derivatives import Shifted
 from modefront.work.costs import Costs, spend
 from modefront.work.transfer import shared
 
-GAP = 1e-6
-"""Relative gap of Ritz values that is too narrow for a level."""
-
-WIDE = 0.2
-"""Relative gap at which the search for a wider one ends."""
-
 LATER = 4
 """Gaps above the last mode in question among which the widest is taken."""
-
-LOW = 0.25
-"""Place of the level in its gap: a low one is the sharper one for the modes below it, and Ritz
-values above are less exact."""
-
-ROUNDING = 100.0
-"""Error of a projection over the rounding of the full matrices above which it is an error."""
 
 
 @dataclass(frozen=True)
@@ -102,11 +73,6 @@ class Certifier:
 
     full: MatrixModel
     basis: Basis
-
-    @property
-    def version(self) -> int:
-        """Always the same: nothing in it changes."""
-        return 0
 
     @property
     def footprint(self) -> float:
@@ -156,12 +122,15 @@ class Certifier:
         R = times(K, X) - times(M, X) * rho
         Z = above.factor.solve(R)
         room = above.sigma - rho  # the diagonal of S
-        P = _bounding(gram(R, Z), room)
-        if P is None:
+        E, unit = gram(R, Z), np.sqrt(np.outer(room, room))
+        values, U = np.linalg.eigh((E + E.T) / 2 / unit)
+        if values[-1] >= 1:  # E < S does not hold
             return None
+        values = np.maximum(values, 0.0)  # but for rounding
+        P = (U * (values / (1 - values))) @ U.T * unit
         noise = np.finfo(float).eps * (K.diagonal() @ X**2)
-        forms = gram(X, R)  # should vanish
-        forms[np.abs(forms) <= ROUNDING * np.sqrt(np.outer(noise, noise))] = 0.0
+        forms = gram(X, R)  # should vanish; what is beyond rounding is an error of the projection
+        forms[np.abs(forms) <= 100 * np.sqrt(np.outer(noise, noise))] = 0.0
         ell, Y = np.linalg.eigh(np.diag(rho) + (forms + forms.T) / 2 - P)
         Y *= np.where(np.diag(Y) < 0, -1.0, 1.0)
         error = np.maximum(np.abs(rho - ell), np.diag(P))  # without cancellation, where P is small
@@ -186,24 +155,14 @@ def level(pencil: Pencil, theta: Floats, lam: Floats, count: int, shift: float) 
     None where a mode is missing, or there is no gap.
     """
     gaps = np.diff(lam[count - 1 : count + LATER]) / (lam[count : count + LATER] - shift)
-    if not gaps.size or gaps.max() <= GAP:
+    if not gaps.size or gaps.max() <= 1e-6:
         return None
-    wide = gaps > WIDE
+    wide = gaps > 0.2
     k = count + int(np.argmax(wide) if wide.any() else np.argmax(gaps))
-    sigma = float(lam[k - 1] + LOW * (lam[k] - lam[k - 1]))
+    # A low level is the sharper one for the modes below it, and Ritz values above are less exact.
+    sigma = float(lam[k - 1] + 0.25 * (lam[k] - lam[k - 1]))
     try:
         factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
     except SingularMatrixError:
         return None
     return Shifted(sigma, factor) if factor.negative == k else None
-
-
-def _bounding(E: Floats, room: Floats) -> Floats | None:
-    """Return P for E and the diagonal of S; None where E < S does not hold."""
-    unit = np.sqrt(np.outer(room, room))
-    values, U = np.linalg.eigh((E + E.T) / 2 / unit)
-    if values[-1] >= 1:
-        return None
-    values = np.maximum(values, 0.0)  # but for rounding
-    P: Floats = (U * (values / (1 - values))) @ U.T * unit
-    return P

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
@@ -16,17 +16,18 @@ from modefront._typing import Floats
 from modefront.brief import as_html, brief_model
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
-from modefront.linalg.factorisation import Factorisation
 from modefront.models.base import passed_on
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.basis import Basis, empty, extended
-from modefront.models.reduced.certificate import LATER, Certifier, level
-from modefront.models.reduced.corrections import (
+from modefront.models.reduced.basis import (
+    Basis,
     CorrectionRequest,
+    empty,
+    extended,
     lacking_lengths,
     with_derivatives,
     with_modes,
 )
+from modefront.models.reduced.certificate import LATER, Certifier, level
 from modefront.modes import dense
 from modefront.modes.eigensolvers import FullModes
 from modefront.modes.result import Modes
@@ -34,21 +35,8 @@ from modefront.modes.sparse import lowest
 from modefront.work.costs import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
 
-SHORTEST = 0.1
-"""Length of the shortest direction of the basis, over the square root of the tolerance."""
-
 SPARE = 2
 """Modes in the basis beyond those that are used, without derivatives: they may enter later."""
-
-WIDE = 2
-"""Modes of the first snapshot over those that are used: certificates need a level above these, and
-below the next one."""
-
-PROBES = 24
-"""Factorisations at most that seek modes which enter where two parameters drop together."""
-
-COARSE = 3e-3
-"""Length of the shortest direction of the basis that stands for the bounds."""
 
 SHARE = 0.1
 """Remainder of a correction over all of it, where it need not be exact."""
@@ -56,17 +44,8 @@ SHARE = 0.1
 FAR = 30.0
 """Condition of K over that of the factor up to which a snapshot has no factor of its own."""
 
-HALVINGS = 4
-"""Number of times that a bound is moved halfway to the model."""
-
 WORST = 6
 """Models of a snapshot that are corrected at once, the worst ones."""
-
-UNSTABLE = 3
-"""Directions of negative stiffness that are sought together."""
-
-NEGATIVE = 1e-8
-"""Stiffness of a direction, over that of the factor, that is no rounding."""
 
 TOLERANCE = 1e-8
 """Default relative error of eigenvalues."""
@@ -115,7 +94,7 @@ class _Projected:
     sensed: Floats
 
 
-# 13 fields: eight describe the basis, five are its state.
+# 12 fields: eight describe the basis, four are its state.
 @shared
 @dataclass(eq=False, repr=False)
 class ReducedModel:
@@ -133,6 +112,7 @@ class ReducedModel:
     tolerance : relative error of eigenvalues that is aimed at
     memory : GiB that the basis may take; one mode is always allowed
     spare : how many of the modes are only there to tell the others from them
+    snapshots : those in use
     """
 
     full: MatrixModel
@@ -143,10 +123,9 @@ class ReducedModel:
     tolerance: float = TOLERANCE
     memory: float = MEMORY
     spare: int = 0
-    _requested: tuple[SnapshotRequest, ...] = ()
+    snapshots: tuple[SnapshotRequest, ...] = ()
     _taken: tuple[tuple[SnapshotRequest, Costs, float], ...] = ()
     _basis: Basis | None = None
-    _factor: Factorisation | None = None
     _small: _Projected | None = None
 
     __repr__ = brief_model
@@ -158,13 +137,13 @@ class ReducedModel:
         Modes need no more; for anything else, snapshots are taken again when needed.
         """
         small = self._projected() if self._is_at_hand else None
-        lost = {"_taken": (), "_basis": None, "_factor": None, "_small": small}
+        lost = {"_taken": (), "_basis": None, "_small": small}
         return {**vars(self), **lost}
 
     @property
     def version(self) -> tuple[tuple[bytes, int, float], ...]:
         """Snapshots in use."""
-        return tuple(what.key for what in self._requested)
+        return tuple(what.key for what in self.snapshots)
 
     @property
     def parts(self) -> tuple[MatrixModel]:
@@ -177,18 +156,13 @@ class ReducedModel:
         return 8.0 * 8 * self._projected().K.size ** 2 if self._is_at_hand else 0.0
 
     parameters = passed_on("full", "parameters")
-
     sensors = passed_on("full", "sensors")
-
     size = passed_on("full", "size")
-
     places = passed_on("full", "places")
-
     directions = passed_on("full", "directions")
-
     transfer = passed_on("full", "transfer")
-
     unused = passed_on("full", "unused")
+    selection = passed_on("full", "selection")
 
     @property
     def capacity(self) -> int:
@@ -205,18 +179,13 @@ class ReducedModel:
         """The first snapshot, unless another one is taken before it."""
         return SnapshotRequest(self.nominal, self.count - self.spare)
 
-    @property
-    def snapshots(self) -> tuple[SnapshotRequest, ...]:
-        """The snapshots in use."""
-        return self._requested
-
     def restart(self) -> None:
         """Use no snapshots. Those at hand are not computed again, but count when taken again."""
-        self._requested = ()
+        self.snapshots = ()
 
     def resume(self, snapshots: Sequence[SnapshotRequest]) -> None:
         """Use these snapshots, which were counted before; they are computed when needed."""
-        self._requested = tuple(snapshots)
+        self.snapshots = tuple(snapshots)
 
     def take(self, what: SnapshotRequest) -> float:
         """Add a snapshot and return the greatest relative error of an eigenvalue before it.
@@ -224,12 +193,12 @@ class ReducedModel:
         The error is an estimate, and infinite where the model had to be solved in full. Raises
         ModelError where the model has no modes there.
         """
-        before = self._requested
-        self._requested = (*before, what)
+        before = self.snapshots
+        self.snapshots = (*before, what)
         try:
             self._compute()
         except ModelError:
-            self._requested = before
+            self.snapshots = before
             raise
         _, costs, error = self._taken[len(before)]
         spend(costs)
@@ -280,13 +249,13 @@ class ReducedModel:
                 lam = basis.lowest(theta, count + LATER).lam
                 if lam.size > count:
                     doubtful.append((-lam[count - 1], pair, theta, lam))
-        chosen = sorted(doubtful, key=lambda entry: entry[:2])[:PROBES]
+        chosen = sorted(doubtful, key=lambda entry: entry[:2])[:24]  # each takes a factorisation
         return [theta for *_, theta, lam in chosen if self._lacks(basis, theta, lam, count)]
 
     @property
     def basis(self) -> Basis:
         """The basis of the snapshots in use; the nominal one is taken where there is none."""
-        if not self._requested:
+        if not self.snapshots:
             self.take(self.first)
         self._compute()
         if self._basis is None:
@@ -296,9 +265,9 @@ class ReducedModel:
     @property
     def _is_at_hand(self) -> bool:
         """Whether nothing has to be solved in full for the snapshots in use."""
-        if self._small is not None and self._small.snapshots is self._requested:
+        if self._small is not None and self._small.snapshots is self.snapshots:
             return True
-        return len(self._taken) == len(self._requested) > 0 and self._begins
+        return len(self._taken) == len(self.snapshots) > 0 and self._begins
 
     @property
     def _begins(self) -> bool:
@@ -306,18 +275,18 @@ class ReducedModel:
         return self.version[: len(self._taken)] == tuple(what.key for what, *_ in self._taken)
 
     def _projected(self) -> _Projected:
-        if self._small is None or self._small.snapshots is not self._requested:
+        if self._small is None or self._small.snapshots is not self.snapshots:
             basis = self.basis
             sensed = np.hstack([self.full.selection @ block for block in basis.blocks])
-            self._small = _Projected(self._requested, basis.K, basis.M, sensed)
+            self._small = _Projected(self.snapshots, basis.K, basis.M, sensed)
         return self._small
 
     def _compute(self) -> None:
         """Make the basis that of the requested snapshots; only those not in it are computed."""
         if not self._begins:
-            self._taken, self._basis, self._factor = (), None, None
+            self._taken, self._basis = (), None
         with uncounted():  # `take` counts a snapshot, once
-            for what in self._requested[len(self._taken) :]:
+            for what in self.snapshots[len(self._taken) :]:
                 with counted() as costs:
                     basis, error = self._added(what)
                 self._basis = basis
@@ -330,13 +299,13 @@ class ReducedModel:
         have no modes are left out; raises ModelError where all of them have none.
         """
         models, error = what.models, 0.0
-        if self._basis is None or self._factor is None:
+        if self._basis is None:
             basis = self._solved(None, models.pop(0), what.modes)
             return (self._added_to(basis, models, what)[0] if models else basis), np.inf
         if what.modes == 0:
-            return self._excluding(self._basis, self._factor, models), np.inf
+            return self._excluding(self._basis, models), np.inf
         if what.enough:
-            models, error = self._worst(self._basis, self._factor, what)
+            models, error = self._worst(self._basis, what)
         return self._added_to(self._basis, models, what) if models else (self._basis, error)
 
     def _added_to(
@@ -357,9 +326,7 @@ class ReducedModel:
             raise ModelError("none of the models of a snapshot has modes")
         return basis, error
 
-    def _worst(
-        self, basis: Basis, factor: Factorisation, what: SnapshotRequest
-    ) -> tuple[list[Floats], float]:
+    def _worst(self, basis: Basis, what: SnapshotRequest) -> tuple[list[Floats], float]:
         """Return the models of a snapshot that the basis knows least, and its error there."""
         models = []
         for theta in what.models:
@@ -368,7 +335,7 @@ class ReducedModel:
                     models.append(theta)
         if not models:
             return what.models[:WORST], np.inf
-        lengths = lacking_lengths(self.full.pencil, basis, factor, models, what.modes)
+        lengths = lacking_lengths(basis, models, what.modes)
         ranked = np.argsort(-lengths, kind="stable")[:WORST]
         return [models[k] for k in ranked if lengths[k] >= what.enough], float(lengths.max())
 
@@ -394,12 +361,10 @@ class ReducedModel:
 
         None where the models need factors of their own.
         """
-        started, factor = time.perf_counter(), self._factor
-        if factor is None:
-            return None
+        started = time.perf_counter()
         request = CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
         try:
-            known = with_modes(self.full.pencil, basis, factor, near, what.modes, request)
+            known = with_modes(basis, near, what.modes, request)
         except ModelError:
             return None  # a larger space sees that a matrix is indefinite
         if known is None:
@@ -408,7 +373,7 @@ class ReducedModel:
         count = int((errors >= what.enough).sum())
         if count:
             worst = near[int(errors.argmax())]
-            basis = self._with_derivatives(basis, factor, worst, what.modes)
+            basis = self._with_derivatives(basis, worst, what.modes)
         spend(Costs(corrected=count, corrected_time=time.perf_counter() - started))
         return basis, float(errors.max())
 
@@ -419,24 +384,26 @@ class ReducedModel:
         if known is None:  # as many more as there are
             count = min(max(count, self.count), self.size)
             with suppress(ModelError):
-                spectrum = lowest(pencil, theta, min(WIDE * count, self.size))
+                # Certificates need a level above the modes in question, and below the next one.
+                spectrum = lowest(pencil, theta, min(2 * count, self.size))
         spectrum = spectrum or lowest(pencil, theta, count)
         below = spectrum.factors[0]
         vectors = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
         del spectrum  # the other factor
         vectors = vectors[:, : self.capacity]  # of directions of equal length, the lowest ones
-        basis = known or empty(pencil, theta, below.sigma)
-        basis = extended(pencil, basis, vectors, self._shortest, self.capacity)
+        basis = known or empty(pencil, below.factor, theta, below.sigma)
+        basis = extended(basis, vectors, self._shortest, self.capacity)
         solved = time.perf_counter()
         spend(Costs(eigenproblems=1, full_time=solved - started))
-        basis = self._with_derivatives(basis, below.factor, theta, modes)
+        # Of its derivatives the model's own factor knows more.
+        own = self._with_derivatives(replace(basis, factor=below.factor), theta, modes)
+        basis = replace(own, factor=basis.factor)
         if known is None:
-            self._factor = below.factor
-            basis = self._at_bounds(basis, below.factor, theta)
+            basis = self._at_bounds(basis, theta)
         spend(Costs(corrected_time=time.perf_counter() - solved))
         return basis
 
-    def _excluding(self, basis: Basis, factor: Factorisation, models: list[Floats]) -> Basis:
+    def _excluding(self, basis: Basis, models: list[Floats]) -> Basis:
         """Return the basis with directions in which the stiffness of some models is negative.
 
         Raises ModelError where none is found.
@@ -444,29 +411,27 @@ class ReducedModel:
         pencil = self.full.pencil
         A = pencil.K.at(basis.theta) - basis.sigma * pencil.M.at(basis.theta)
         inverse = scipy.sparse.linalg.LinearOperator(
-            A.shape, matvec=lambda x: factor.solve(x.reshape(-1, 1))[:, 0], dtype=float
+            A.shape, matvec=lambda x: basis.factor.solve(x.reshape(-1, 1))[:, 0], dtype=float
         )
         found = []
         for theta in models:
             start = np.random.default_rng(0).standard_normal(self.size)
             options = {"which": "SA", "v0": start, "tol": SHARE**2, "Minv": inverse}
-            nu, X = scipy.sparse.linalg.eigsh(pencil.K.at(theta), UNSTABLE, A, **options)
-            found.append(X[:, nu < -NEGATIVE])
+            nu, X = scipy.sparse.linalg.eigsh(pencil.K.at(theta), 3, A, **options)
+            found.append(X[:, nu < -1e-8])  # less is rounding
         vectors = np.hstack(found)
         if not vectors.shape[1]:
             raise ModelError("no direction of negative stiffness is found")
-        return extended(pencil, basis, vectors, self._shortest, self.capacity)
+        return extended(basis, vectors, self._shortest, self.capacity)
 
-    def _with_derivatives(
-        self, basis: Basis, factor: Factorisation, theta: Floats, modes: int
-    ) -> Basis:
+    def _with_derivatives(self, basis: Basis, theta: Floats, modes: int) -> Basis:
         count, half = min(modes, basis.columns - 1), (self.upper - self.lower) / 2
         request = CorrectionRequest(SHARE, self._shortest, self.capacity)
         if count < 1:
             return basis
-        return with_derivatives(self.full.pencil, basis, factor, theta, count, half, request)
+        return with_derivatives(basis, theta, count, half, request)
 
-    def _at_bounds(self, basis: Basis, factor: Factorisation, theta: Floats) -> Basis:
+    def _at_bounds(self, basis: Basis, theta: Floats) -> Basis:
         """Return the basis with the modes where one parameter is at a bound, or nearer to theta.
 
         They are for the global search, and take no more than half of what is left of the memory.
@@ -474,7 +439,7 @@ class ReducedModel:
         bounds = []
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
             for end in ends:
-                for halving in range(HALVINGS + 1):
+                for halving in range(5):
                     nearby = theta.copy()
                     nearby[i] += (end - theta[i]) / 2**halving
                     if _condition(basis, nearby) <= FAR:
@@ -483,11 +448,11 @@ class ReducedModel:
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
-        request = CorrectionRequest(SHARE, COARSE, (basis.columns + self.capacity) // 2)
+        request = CorrectionRequest(SHARE, 3e-3, (basis.columns + self.capacity) // 2)
         for some in (bounds, *([theta] for theta in bounds)):
             # A larger space may see that a matrix is indefinite at one of them: then each alone.
             with suppress(ModelError):
-                known = with_modes(self.full.pencil, basis, factor, some, count, request)
+                known = with_modes(basis, some, count, request)
                 basis = known[0] if known else basis
                 spend(Costs(corrected=len(some)))
                 if some is bounds:
@@ -496,7 +461,7 @@ class ReducedModel:
 
     @property
     def _shortest(self) -> float:
-        return SHORTEST * float(np.sqrt(self.tolerance))
+        return 0.1 * float(np.sqrt(self.tolerance))  # an error is the square of what is lacking
 
 
 def _condition(basis: Basis, theta: Floats) -> float:

@@ -1,8 +1,9 @@
-r"""OUTPUT4 files of Nastran: binary or text, matrices dense, sparse, or sparse and BIGMAT.
+r"""Matrices in files of Nastran: OUTPUT4, binary or text, and DMIG entries of punch files.
 
-A file holds matrices one after the other. Each has a header (columns, rows, form, type, name) and
-then its columns, of which each has a header (column, first row, words): dense where the first row
-is given; where it is 0, strings of consecutive rows follow, each with a header of its own,
+A file of OUTPUT4 holds dense, sparse or BIGMAT matrices one after the other. Each has a header
+(columns, rows, form, type, name) and then its columns, of which each has a header (column, first
+row, words): dense where the first row is given; where it is 0, strings of consecutive rows follow,
+each with a header of its own,
 
 - one word IS with L = IS / 65536 - 1 words and first row IS - 65536 (L + 1), or
 - for BIGMAT, whose number of rows is negative, two words: L + 1 and the first row.
@@ -10,6 +11,10 @@ is given; where it is 0, strings of consecutive rows follow, each with a header 
 A column beyond the last one ends the matrix. In binary files these are records of Fortran; words
 have 4 bytes (or 8, where integers have 8), so that a double may take two. Text has headers in
 fields of 8 characters and values in the format that the first line names, such as ``1P,3E23.16``.
+
+Each column of DMIG has a line ``DMIG*  NAME  node  component``, followed by a line
+``*  node  component  value`` for every row, in fields of 16 characters behind one of 8. A component
+of 0 is a scalar point.
 """
 
 from __future__ import annotations
@@ -17,11 +22,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
+from scipy.io import FortranEOFError, FortranFile
 
+from modefront._typing import Floats, Ints
 from modefront.errors import reason
-from modefront.inputs import counted, wrong
+from modefront.inputs import counted, ended, fortran, wrong
 from modefront.programs.reading import Entries, fixed_width
 
 STRING = 65536
@@ -44,7 +52,7 @@ def read_op4(path: Path) -> Mapping[str, Entries]:
     for order in "<>":
         length = int(np.frombuffer(data, order + "i4", 1)[0])
         if length in (24, 48):
-            return dict(_binary(path, data, order, length // 6))
+            return dict(_binary(path, order, length // 6))
     return dict(_text(path, [line.rstrip() for line in data.split(b"\n")]))
 
 
@@ -81,46 +89,42 @@ class _Pieces:
         return self.name, entries
 
 
-def _binary(path: Path, data: bytes, order: str, word: int) -> Iterator[tuple[str, Entries]]:
-    position, integer = 0, f"{order}i{word}"
+def _binary(path: Path, order: str, word: int) -> Iterator[tuple[str, Entries]]:
+    integer = f"{order}i{word}"
+    with FortranFile(path, header_dtype=order + "u4") as file:
 
-    def record() -> bytes:
-        """Return the record of Fortran at the position, and move this behind it."""
-        nonlocal position
-        lengths, end = [np.frombuffer(data[position : position + 4], order + "i4")], position
-        if len(data) >= position + 4 and (size := int(lengths[0][0])) >= 0:
-            end = position + 4 + size
-        if end == position or len(data) < end + 4:
-            raise wrong(path, "whole matrices, each with its end", "a file that is cut off")
-        if np.frombuffer(data[end : end + 4], order + "i4")[0] != size:
-            raise wrong(path, f"records of Fortran ({EXPECTED})", "lengths that differ")
-        content, position = data[position + 4 : end], end + 4
-        return content
+        def record() -> bytes:
+            try:
+                return bytes(file.read_record("u1"))
+            except FortranEOFError:
+                return b""
+            except (OSError, ValueError) as error:
+                expected = f"whole records of Fortran ({EXPECTED})"
+                raise wrong(path, expected, f"a file that is cut off: {reason(error)}") from None
 
-    while position < len(data):
-        head = record()
-        if len(head) != 6 * word:
-            raise wrong(path, "the header of a matrix", f"a record of {len(head)} bytes")
-        name = head[4 * word :].decode("latin-1").strip().upper()
-        header = np.frombuffer(head, integer, 4).tolist()
-        pieces, values = _Pieces(path, name, header), [np.zeros(0)]
-        real = np.dtype(f"{order}f{8 if word == 8 or header[3] == 2 else 4}")
-        while True:
-            content = record()
-            if len(content) < 3 * word:
-                found = f"a record of {len(content)} bytes in '{name}'"
-                raise wrong(path, "columns of a matrix", found)
-            column, row, count = np.frombuffer(content, integer, 3).tolist()
-            if not pieces.begin(column):
-                break
-            body = content[3 * word :]
-            counted(path, f"column {column} of '{name}'", "words", count, len(body) / word)
-            if row > 0:
-                values.append(np.frombuffer(body, real))
-                pieces.places.append((column, row, values[-1].size))
-            else:
-                values.append(_strings(pieces, np.frombuffer(body, integer), real))
-        yield pieces.matrix(np.concatenate(values))
+        while head := record():
+            if len(head) != 6 * word:
+                raise wrong(path, "the header of a matrix", f"a record of {len(head)} bytes")
+            name = head[4 * word :].decode("latin-1").strip().upper()
+            header = np.frombuffer(head, integer, 4).tolist()
+            pieces, values = _Pieces(path, name, header), [np.zeros(0)]
+            real = np.dtype(f"{order}f{8 if word == 8 or header[3] == 2 else 4}")
+            while True:
+                content = record()
+                if len(content) < 3 * word:
+                    found = f"a record of {len(content)} bytes in '{name}'; is it cut off?"
+                    raise wrong(path, "columns of a matrix, and its end", found)
+                column, row, count = np.frombuffer(content, integer, 3).tolist()
+                if not pieces.begin(column):
+                    break
+                body = content[3 * word :]
+                counted(path, f"column {column} of '{name}'", "words", count, len(body) / word)
+                if row > 0:
+                    values.append(np.frombuffer(body, real))
+                    pieces.places.append((column, row, values[-1].size))
+                else:
+                    values.append(_strings(pieces, np.frombuffer(body, integer), real))
+            yield pieces.matrix(np.concatenate(values))
 
 
 def _strings(pieces: _Pieces, body: np.ndarray, real: np.dtype[np.floating]) -> np.ndarray:
@@ -228,3 +232,64 @@ def _columns(
         if not headers:
             expected = f"as many words in column {column} of '{name}' as its header says"
             raise wrong(path, expected, str(words))
+
+
+DmigMatrix: TypeAlias = tuple[Ints, Floats, float]
+"""Labels (entries, 4) of rows and columns, each a node and a component; values (entries,); and the
+relative error of these."""
+
+
+def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
+    """Return all matrices of a punch file by their names.
+
+    Raises InputError for a file without any, with complex numbers, or cut off.
+    """
+    ended(path)
+    entries: dict[str, list[tuple[list[int], str]]] = {}
+    header, column, name = None, list[int](), ""
+    with path.open(encoding="latin-1") as stream:
+        for number, line in enumerate(stream, start=1):
+            place = f"line {number}"
+            if line.startswith("DMIG "):
+                header, column = line[8:16].strip(), []
+                if header.upper() in entries:
+                    expected = f"the header 'DMIG {header}' once, before its columns"
+                    raise wrong(path, expected, "one after them", place)
+                kind = line[32:40].strip()
+                if kind.isdigit() and int(kind) in (3, 4):
+                    raise wrong(path, "real numbers", f"type {int(kind)} (complex)", place)
+            elif line.startswith("DMIG*"):
+                name = line[8:24].strip()
+                if header not in (None, name):
+                    expected = f"a header 'DMIG {name}' before its columns"
+                    raise wrong(path, expected, repr(header), place)
+                column = _label(path, place, line[24:40], line[40:56])
+                entries.setdefault(name.upper(), [])
+            elif line.startswith("*") and line.strip() != "*" and (entries or header is not None):
+                if not column:
+                    raise wrong(path, "a column ('DMIG*') before its entries", "none", place)
+                label = _label(path, place, line[8:24], line[24:40])
+                entries[name.upper()].append(([*label, *column], line[40:56]))
+    if not entries:
+        raise wrong(path, "DMIG entries in large fields ('DMIG*')", "none")
+    known = (text.strip().lstrip("+-").upper() for x in entries.values() for _, text in x[: 10**4])
+    behind = (re.split("[DE+-]", text)[0].partition(".")[2] for text in known)
+    precision = 10.0 ** -max(map(len, behind), default=15)
+    try:
+        return {
+            each: (
+                np.array([labels for labels, _ in rows], dtype=np.intp).reshape(-1, 4),
+                np.array([fortran(text) for _, text in rows]),
+                precision,
+            )
+            for each, rows in entries.items()
+        }
+    except ValueError as error:
+        raise wrong(path, "numbers in the fourth field", reason(error)) from None
+
+
+def _label(path: Path, place: str, *fields: str) -> list[int]:
+    try:
+        return [int(field) for field in fields]
+    except ValueError as error:
+        raise wrong(path, "nodes and components in fields of 16", reason(error), place) from None
