@@ -47,6 +47,7 @@ class Requirement:
     record : the class of a nested record, read from a table within the table; None for a value
     entries : schema of a table with its entries, where these are read one by one and what is wrong
         is said of each; empty where ``schema`` says all
+    read : reads such a table, given the `modefront.toml.Table` with it and its key
     """
 
     expected: str
@@ -55,6 +56,7 @@ class Requirement:
     further: Callable[[Any], bool] = lambda _: True
     record: type | None = None
     entries: Schema = field(default_factory=dict)
+    read: Callable[[Any, str], Any] | None = None
 
     def holds(self, value: Any) -> bool:
         """Return whether a value in plain Python is so."""
@@ -135,7 +137,7 @@ TRUE_OR_FALSE = Requirement("true or false", {"type": "boolean"})
 
 @dataclass(frozen=True)
 class Option:
-    """A field of a record of options.
+    """A key of a table, and the field of that name where a record of options is made of it.
 
     Attributes
     ----------
@@ -149,8 +151,8 @@ class Option:
 
     name: str
     requirement: Requirement
-    optional: bool
-    required: bool
+    optional: bool = False
+    required: bool = False
     default: Any = None
     meaning: str = ""
 
@@ -162,6 +164,11 @@ class Option:
         said = {"description": "\n".join(filter(None, lines))}
         known = {} if self.default is None else {"default": self.default}
         return {**self.requirement.described, **said, **known}
+
+
+def keys(required: Sequence[str], **known: Requirement) -> tuple[Option, ...]:
+    """Return the keys of a table that is no record of options."""
+    return tuple(Option(name, each, required=name in required) for name, each in known.items())
 
 
 def options(record: type) -> tuple[Option, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.options import (
+    Option,
     Requirement,
     is_name,
     number,
@@ -18,7 +19,6 @@ from modefront.options import (
     options,
     shown,
     text,
-    whole,
 )
 from modefront.text import NAME, clean
 
@@ -83,7 +83,7 @@ class Table:
         if value is None and default is not ...:
             return default
         if value is not None and requirement.holds(value):
-            return requirement.convert(value)
+            return requirement.read(self, key) if requirement.read else requirement.convert(value)
         self.fault(key, requirement.expected, "nothing" if value is None else shown(value))
         return None if default is ... else default
 
@@ -103,9 +103,25 @@ class Table:
         """Return a finite number within limits, those of `modefront.options.number`."""
         return self.value(key, number(expected, **limits), default)
 
-    def integer(self, key: str, least: int, most: int, default: Any = ...) -> Any:
-        """Return a whole number within limits."""
-        return self.value(key, whole(least, most), default)
+    def read(self, known: Iterable[Option]) -> dict[str, Any] | None:
+        """Return the values of keys that are given, None where anything is wrong with the table."""
+        before = len(self.faults)
+        values: dict[str, Any] = {}
+        for option in known:
+            name, requirement = option.name, option.requirement
+            given = self.values.get(name)
+            if given is None and not option.required:
+                self.requested.append(name)
+            elif requirement.record and isinstance(given, dict):
+                inner = self.table(name)
+                values[name] = inner and inner.record(requirement.record)
+            elif not requirement.schema:
+                self.requested.append(name)  # a reader of its own says what is wrong with it
+                values[name] = given
+            else:
+                values[name] = self.value(name, requirement)
+        self.close()
+        return values if len(self.faults) == before else None
 
     def record(self, record: type[T]) -> T | None:
         """Return the record of options that the table describes, None where something is wrong.
@@ -113,25 +129,9 @@ class Table:
         Keys are its fields. Everything that is wrong is noted: single values first, and where these
         are right, what contradicts another.
         """
-        before = len(self.faults)
-        values: dict[str, Any] = {}
-        for option in options(record):
-            name, given = option.name, self.values.get(option.name)
-            if given is None and not option.required:
-                self.requested.append(name)
-            elif option.requirement.record and isinstance(given, dict):
-                inner = self.table(name)
-                values[name] = inner and inner.record(option.requirement.record)
-            elif not option.requirement.schema:
-                self.requested.append(name)  # a reader of its own says what is wrong with it
-                values[name] = given
-            else:
-                values[name] = self.value(name, option.requirement)
-        self.close()
-        if len(self.faults) > before:
-            return None
+        values = self.read(options(record))
         try:
-            return record(**values)
+            return None if values is None else record(**values)
         except InputError as error:
             self.note(error.faults)
             return None
@@ -143,6 +143,20 @@ class Table:
             return None
         place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
         return replace(self, place=place, values=value, requested=[])
+
+    def entries(
+        self, key: str, each: str, least: str = "", *, required: bool = True
+    ) -> Iterator[tuple[str, Table]]:
+        """Yield the tables within a table by their names; ``each`` says in words what one holds.
+
+        ``least`` is what one of them is called where there has to be one.
+        """
+        table = self.table(key, f"a table of {key.removesuffix('s')}s", ... if required else None)
+        if table and least and not table.values:
+            table.fault("", f"at least one {least}", "none")
+        for name in table.values if table else ():
+            if table and (entry := table.table(name, each)):
+                yield name, entry
 
     def content(self, key: str, read: Callable[[Path], R]) -> R | None:
         """Return what is read from a file, None without its name; note what is wrong with it."""

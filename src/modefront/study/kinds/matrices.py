@@ -18,7 +18,7 @@ from modefront.models.files import READERS, read_matrix
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import matrices
 from modefront.models.terms import BASE, exponents_of, form_of
-from modefront.options import TRUE_OR_FALSE, check_fields, entries, schema_of, text
+from modefront.options import TRUE_OR_FALSE, Option, check_fields, entries, text
 from modefront.programs.mesh import ProgramMesh, read_mesh
 from modefront.study.kinds.sensors import (
     BY_NODE,
@@ -34,25 +34,18 @@ from modefront.toml import Table
 FILE = text("the name of a file")
 
 
-@dataclass(frozen=True)
-class MatrixFile:
-    """One of the matrices in a file.
-
-    Attributes
-    ----------
-    file : its name
-    name : of the matrix in it; empty for the only one
-    """
-
-    file: Annotated[str, FILE]
-    name: Annotated[str, text("the name of a matrix in the file")] | None = None
-
-    def __post_init__(self) -> None:
-        check_fields(self)
-
+OF_SEVERAL = (
+    Option("file", FILE, required=True),
+    Option(
+        "name",
+        text("the name of a matrix in the file"),
+        meaning="of the matrix in it; empty for the only one",
+    ),
+)
+"""Keys of one of the matrices in a file."""
 
 MATRIX = file_name(READERS)
-ONE_OF_SEVERAL = closed({**schema_of(MatrixFile)["properties"], "file": MATRIX}, ["file"])
+ONE_OF_SEVERAL = closed({"file": MATRIX, "name": OF_SEVERAL[1].schema}, ["file"])
 TERMS = entries("a table of files", table_of(any_of(MATRIX, ONE_OF_SEVERAL), 1))
 PLACES = entries("a table, name = place", table_of(any_of(WEIGHTED, BY_NODE), 1))
 OUTPUTS = entries("a table, name = place", table_of(any_of(WEIGHTED, BY_NODE)))
@@ -174,13 +167,11 @@ def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_arr
 def _file(table: Table, key: str) -> tuple[str, str | None] | None:
     """Return the name of a file and, where given, that of a matrix in it."""
     if not isinstance(table.values[key], dict):
-        name = table.text(key, "the name of a file")
+        name = table.value(key, FILE)
         return None if name is None else (name, None)
     inner = table.table(key)
-    if inner is None:
-        return None
-    read = inner.record(MatrixFile)
-    return None if read is None else (read.file, read.name or None)
+    read = inner and inner.read(OF_SEVERAL)
+    return (read["file"], read.get("name")) if read else None
 
 
 def _common_size(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -61,10 +63,20 @@ WEIGHTED = any_of(DOF, array(pair(DOF, NUMBER), 1))
 
 VECTOR = array(NUMBER, 3, 3)
 
+
+def _axes(rows: Any) -> Floats:
+    """Return local axes (3, 3), x, y and z in rows."""
+    first, second = np.asarray(rows, dtype=float)
+    x, z = first / np.linalg.norm(first), np.cross(first, second)
+    z /= np.linalg.norm(z)
+    return np.stack([x, np.cross(z, x), z])
+
+
 AXES = Requirement(
     "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane",
     array(VECTOR, 2, 2),
-    further=lambda x: (
+    _axes,
+    lambda x: (
         float(np.linalg.norm(np.cross(*x))) > PARALLEL * float(np.prod(np.linalg.norm(x, axis=1)))
     ),
 )
@@ -85,17 +97,6 @@ NODE = whole(1, 2**62)
 BY_NODE = closed({"node": NODE.schema} | ORIENTED, ["node", "direction"])
 
 
-def read_axes(place: Table) -> Floats | None:
-    """Return local axes (3, 3), x, y and z in rows; None for those of the model."""
-    rows = place.value("axes", AXES, None)
-    if rows is None:
-        return None
-    first, second = np.asarray(rows, dtype=float)
-    x, z = first / np.linalg.norm(first), np.cross(first, second)
-    z /= np.linalg.norm(z)
-    return np.stack([x, np.cross(z, x), z])
-
-
 def read_directions(place: Table) -> list[tuple[str, Any]]:
     """Return the directions of a sensor in the axes of the model, with what each adds to its name.
 
@@ -109,23 +110,20 @@ def read_directions(place: Table) -> list[tuple[str, Any]]:
     else:
         direction = place.value("direction", DIRECTION)
         found = [] if direction is None else [("", direction)]
-    axes = read_axes(place)
-    turned = [(ending, in_axes(place, direction, axes)) for ending, direction in found]
-    return [(ending, direction) for ending, direction in turned if direction is not None]
-
-
-def in_axes(place: Table, direction: Any, axes: Floats | None) -> Any:
-    """Return a direction in the axes of the model, None where it has none there."""
-    if axes is None:
-        return direction
-    if isinstance(direction, str):
-        axis = direction.removeprefix("-")
-        if axis not in DIRECTIONS[:3]:
+    axes = place.value("axes", AXES, None)
+    out = []
+    for ending, direction in found:
+        axis = str(direction).removeprefix("-")
+        if axes is None:
+            out.append((ending, direction))
+        elif not isinstance(direction, str):
+            out.append((ending, (np.asarray(direction, dtype=float) @ axes).tolist()))
+        elif axis in DIRECTIONS[:3]:
+            row = axes[DIRECTIONS.index(axis)]
+            out.append((ending, (-row if direction != axis else row).tolist()))
+        else:
             place.fault("direction", "x, y or z where axes are given", f"'{direction}'")
-            return None
-        row = axes[DIRECTIONS.index(axis)]
-        return (-row if direction != axis else row).tolist()
-    return (np.asarray(direction, dtype=float) @ axes).tolist()
+    return out
 
 
 def read_sensors(
@@ -170,7 +168,7 @@ def read_base(
     if table is None:
         return {}
     for name, value in table.values.items():
-        if isinstance(value, list) and all(map(is_dof, value)):
+        if isinstance(value, list) and all(fits(dof, DOF) for dof in value):
             table.values[name] = [[dof, 1.0] for dof in value]
         elif dofs is not None and isinstance(value, dict) and value.get("direction") in DIRECTIONS:
             table.values[name] = [list(pair) for pair in dofs.of_direction(value["direction"])]
@@ -193,7 +191,7 @@ def _read(
                 else:
                     table.fault(name, "a name that a column of the data can have", repr(sensor))
             continue
-        pairs = [[value, 1.0]] if is_dof(value) else value
+        pairs = [[value, 1.0]] if fits(value, DOF) else value
         if not fits(pairs, WEIGHTED):
             expected = "a degree of freedom from 0, or a list [[degree of freedom, weight], ...]"
             table.fault(name, expected, shown(value))
@@ -203,7 +201,7 @@ def _read(
             found = ", ".join(map(str, beyond))
             one_off = " (they are counted from 0)" if max(beyond) == size else ""
             table.fault(name, f"degrees of freedom from 0 to {size - 1}{one_off}", found)
-        elif not _selects(pairs):
+        elif not any(sum(w for _, w in of) for _, of in groupby(sorted(pairs), itemgetter(0))):
             table.fault(name, "weights that do not cancel", shown(pairs))
         else:
             out[name] = [(int(dof), float(weight)) for dof, weight in pairs]
@@ -234,16 +232,3 @@ def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, Sensor
         except LookupError as error:
             place.fault("", *error.args)
     return out
-
-
-def _selects(pairs: Iterable[Any]) -> bool:
-    """Return whether any degree of freedom has a weight that is not zero."""
-    total: dict[int, float] = {}
-    for dof, weight in pairs:
-        total[dof] = total.get(dof, 0.0) + weight
-    return any(total.values())
-
-
-def is_dof(value: object) -> bool:
-    """Return whether a value is a whole number from 0."""
-    return fits(value, DOF)
