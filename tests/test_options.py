@@ -13,8 +13,8 @@ import pytest
 
 import modefront as mf
 from modefront.front import methods
+from modefront.study.definition import labels_of
 from modefront.study.examples import write_example
-from modefront.study.labels import labels_of
 from modefront.work.costs import counted
 
 METHODS = "'nbi', 'weights', 'spea2', 'nsga2'"

@@ -23,7 +23,7 @@ from modefront.modes.result import Modes
 from modefront.pairing.match import Pairs
 from modefront.residuals.base import Curvature, Member, ModeErrors, Scale, Sensitivity
 from modefront.results.files import read_dataset
-from modefront.study.extensions import FAMILIES
+from modefront.study.schema import FAMILIES
 from modefront.toml import Table
 
 CHAIN = STUDY[STUDY.index("[model]") : STUDY.index("[[parameter]]")]

@@ -139,7 +139,7 @@ def test_results_do_not_depend_on_who_does_the_work(
     files = sorted(x.name for x in (tmp_path / "one").rglob("*.npz"))
     for name in names:
         with monkeypatch.context() as patch:
-            patch.setattr(session, "processes", lambda *_, x=pools[name]: nullcontext(x))
+            patch.setattr(session, "backend", lambda *_, x=pools[name]: nullcontext(x))
             result = mf.run(of(tmp_path), tmp_path / name).dataset
         xr.testing.assert_identical(result, expected)
         assert sorted(x.name for x in (tmp_path / name).rglob("*.npz")) == files

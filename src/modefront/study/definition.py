@@ -12,7 +12,9 @@ from modefront.brief import as_html
 from modefront.diagnosis.notes import Note
 from modefront.errors import Fault, InputError, refuse
 from modefront.front.given import Weighted, label_faults
+from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
+from modefront.front.point import Kind, label
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
 from modefront.models.parameters import Parameter, parameters_of
@@ -21,7 +23,6 @@ from modefront.predictions import Prediction
 from modefront.predictions.ranges import SLACK
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.schema import variables_of
-from modefront.study.labels import labels_of
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 
@@ -183,3 +184,38 @@ def undrawn(uncertainty: Uncertainty, predictions: int) -> Iterator[Fault]:
     """Yield what is wrong with draws where there is nothing to predict."""
     if uncertainty.draws and not predictions:
         yield Fault("", "draws", "0 without predictions", str(uncertainty.draws))
+
+
+ITERATED = "iterated-weights"
+"""Name of the model at which the iteration of the weights arrives."""
+
+NAMED = (Kind.EDGE, Kind.IDENTIFIABLE_EDGE)
+"""Kinds of models with the name of a group."""
+
+
+@dataclass(frozen=True)
+class Labels:
+    """All labels that a study of these groups may give to its models.
+
+    Points of the front, and of its identifiable part, have a number behind a beginning; how many
+    there are is not known beforehand.
+    """
+
+    single: frozenset[str]
+    numbered: frozenset[str]
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether a name is such a label."""
+        beginning, _, end = str(name).rpartition("-")
+        is_number = end.isascii() and end.isdigit()
+        return name in self.single or (is_number and f"{beginning}-" in self.numbered)
+
+
+def labels_of(groups: Sequence[str]) -> Labels:
+    """Return the labels that a study may give besides the names of weights."""
+    numbered = {Kind.FRONT, Kind.IDENTIFIABLE}
+    alone = [label(kind) for kind in Kind if kind not in {*NAMED, *numbered, Kind.GIVEN}]
+    named = [label(kind, group) for kind in NAMED for group in groups]
+    beginnings = [label(Kind.FRONT, method).rpartition("-")[0] + "-" for method in METHODS]
+    part = label(Kind.IDENTIFIABLE).rpartition("-")[0] + "-"
+    return Labels(frozenset([ITERATED, *alone, *named]), frozenset([part, *beginnings]))

@@ -17,14 +17,16 @@ from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel, of_free
+from modefront.models.reduced.model import MEMORY
+from modefront.models.reduced.options import Reduction
 from modefront.pairing.match import Pairing
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Origin, Study, undrawn
 from modefront.study.measured import read_data
 from modefront.study.tables import (
     complete,
+    of_header,
     read_groups,
-    read_header,
     read_model,
     read_options,
     read_parameters,
@@ -53,11 +55,11 @@ def load(path: Path | str) -> Study:
     root, content = read_toml(Path(path), "a study file")
     faults = root.faults
     header = root.table("study", "a table [study]")
+    of_study = (header and header.read(of_header())) or {}
     names, parameters = read_parameters(root)
-    model, reduction = read_model(root, header, names)
+    model, reduced = read_model(root, names)
     if model is not None and not faults:
         model, parameters = of_free(model, parameters)
-    title, seed = read_header(header)
     data = read_data(root, model)
     groups = read_groups(root, data)
     pareto = read_options(root, "pareto", Pareto)
@@ -75,6 +77,7 @@ def load(path: Path | str) -> Study:
     root.close()
     if faults or model is None or data is None:
         raise InputError(faults)
+    reduction = Reduction(reduced, of_study.pop("memory", MEMORY))
     problem = UpdatingProblem(
         reduction.of(model, data, pairing, parameters),
         data,
@@ -102,8 +105,7 @@ def load(path: Path | str) -> Study:
     )
     return Study(
         problem,
-        title,
-        seed,
+        **of_study,
         pareto=pareto,
         weighted=weighted,
         search=search,

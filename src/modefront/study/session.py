@@ -36,7 +36,6 @@ from modefront.predictions.runner import PredictionRunner
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
-from modefront.study.processes import processes
 from modefront.study.whereabouts import note_study
 from modefront.uncertainty.inference import infer
 from modefront.uncertainty.most_probable import most_probable
@@ -47,6 +46,7 @@ from modefront.work.progress import Progress
 from modefront.work.run import Run
 from modefront.work.store import FOLDER, Store, locked
 from modefront.work.task import Backend, Task, Within
+from modefront.work.workers import backend
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -162,7 +162,7 @@ def run(
     UnfinishedError
         If the work cannot be done; what is done is kept.
     """
-    carrier = processes(workers, scheduler)
+    carrier = backend(workers, scheduler)
     return run_on(carrier, study, folder, fresh=fresh, refined=refined, progress=progress)
 
 

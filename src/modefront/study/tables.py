@@ -5,9 +5,9 @@ A table whose keys are the fields of a record of options is read by `modefront.t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TypeVar, get_args
+from typing import Any, TypeVar, get_args
 
 from modefront.data.modal import ModalData
 from modefront.diagnosis.notes import ComparedPair
@@ -16,17 +16,16 @@ from modefront.findings.knowledge import enumeration
 from modefront.front.given import Weighted, label_faults
 from modefront.models.base import Model
 from modefront.models.parameters import Parameter
-from modefront.models.reduced.options import Reduction
-from modefront.options import each_once, one_of, options, text
+from modefront.models.reduced.options import REDUCTION, Reduction
+from modefront.options import Option, each_once, one_of, options, text
 from modefront.predictions import CLASSES, Prediction
 from modefront.predictions.ranges import SLACK
 from modefront.residuals.base import Scale
 from modefront.residuals.groups import MODE_NUMBERS, Group, faults
 from modefront.residuals.kinds import KINDS as RESIDUALS
 from modefront.residuals.problem import UpdatingProblem
-from modefront.study.definition import NAME, SEED
+from modefront.study.definition import Study, labels_of
 from modefront.study.kinds import KINDS
-from modefront.study.labels import labels_of
 from modefront.toml import Table, names_of
 
 T = TypeVar("T")
@@ -44,14 +43,10 @@ def read_options(root: Table, key: str, record: type[T]) -> T:
     return (table and table.record(record)) or record()
 
 
-def read_header(header: Table | None) -> tuple[str, int]:
-    """Return name and seed of the table ``[study]``; its memory is read elsewhere."""
-    if header is None:
-        return "", 0
-    name = header.value("name", NAME) or ""
-    seed: int = header.value("seed", SEED, 0)
-    header.close()
-    return name, seed
+def of_header() -> tuple[Option, ...]:
+    """Return the keys of ``[study]``."""
+    known = {each.name: each for each in (*options(Study), *options(Reduction))}
+    return replace(known["name"], required=True, default=None), known["seed"], known["memory"]
 
 
 def read_parameters(root: Table) -> tuple[list[str], tuple[Parameter, ...]]:
@@ -75,28 +70,27 @@ def read_parameters(root: Table) -> tuple[list[str], tuple[Parameter, ...]]:
     return names, read
 
 
-def read_model(
-    root: Table, header: Table | None, parameters: Sequence[str]
-) -> tuple[Model | None, Reduction]:
-    """Return the model of a study, None where it has faults, and whether it is reduced.
-
-    ``header`` is the table ``[study]``, which says how much memory a basis may take.
-    """
+def read_model(root: Table, parameters: Sequence[str]) -> tuple[Model | None, Any]:
+    """Return the model of a study, None where it has faults, and how far it is reduced."""
     table = root.table("model", "a table [model]")
     name = table and table.choice("kind", tuple(KINDS))
-    kind = KINDS[name] if name else None
-    places = {"reduction": table if kind and kind.is_reducible else None, "memory": header}
-    reduction = Reduction("off" if kind and not kind.is_reducible else "auto")
-    values = {
-        each.name: place.value(each.name, each.requirement, getattr(reduction, each.name))
-        for each in options(Reduction)
-        if (place := places[each.name]) is not None
-    }
-    if table is None or kind is None:
-        return None, reduction
+    if table is None or not name:
+        return None, "auto"
+    kind = KINDS[name]
+    reduction = table.value("reduction", REDUCTION, "auto") if kind.is_reducible else "off"
     model = kind.read(table, parameters)
     table.close()
-    return model, replace(reduction, **values)
+    return model, reduction
+
+
+def of_group() -> Iterator[Option]:
+    """Yield the keys of ``[[group]]``."""
+    meaning = "name of the objective in results"
+    yield Option("name", GROUP_NAME, required=True, meaning=meaning)
+    for name, kind in RESIDUALS.items():
+        meaning = f"measured modes whose {kind.plural} count"
+        yield Option(name, MODE_NUMBERS, optional=True, meaning=meaning)
+    yield Option("scale", SCALE, default="measured", meaning="unit of the residuals")
 
 
 def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:

@@ -40,6 +40,9 @@ LOSSES = 2
 SHARE = 0.6
 """Share of the memory that is available that processes may take."""
 
+WARM = "modefront.front.pareto", "modefront.analysis.front"
+"""What processes import when they start: nearly all that the tasks of a run need."""
+
 MOST = 61
 """Processes of this machine at most; Windows waits for no more."""
 
@@ -243,7 +246,7 @@ def _kind(task: Task[Any]) -> str:
 
 @contextmanager
 def backend(
-    workers: int, scheduler: str | None = None, warm: Sequence[str] = ()
+    workers: int, scheduler: str | None = None, warm: Sequence[str] = WARM
 ) -> Iterator[Backend]:
     """Open the backend of so many processes, or of the cluster with this scheduler.
 
