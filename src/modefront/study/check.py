@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from modefront.diagnosis.notes import Note
 from modefront.diagnosis.pairs import PairRemark
 from modefront.diagnosis.search import Found, diagnose
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
-from modefront.errors import Fault, InputError, ModelError
+from modefront.errors import Fault, ModelError, refuse
 from modefront.findings.knowledge import (
     SHOWN,
     alike,
@@ -26,7 +26,6 @@ from modefront.findings.knowledge import (
 from modefront.identifiability.combinations import (
     NONE,
     WEAK,
-    Combination,
     combinations,
     gram,
     optimal_weights,
@@ -35,7 +34,7 @@ from modefront.identifiability.combinations import (
 )
 from modefront.identifiability.scale import Scale, scale_at
 from modefront.inputs import available_memory
-from modefront.models.base import Model, full_of
+from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel
 from modefront.optim.problem import Evaluation
 from modefront.residuals.problem import UpdatingProblem
@@ -124,11 +123,7 @@ def _checked(study: Study) -> Findings:
     warnings = [
         *map(str, mistakes),
         *_undetermined(problem, nominal, scale, parameters_only=spoils(mistakes)),
-        *_coincident(problem, nominal),
-        *_at_bounds(problem),
-        *_infeasible_bounds(problem),
-        *_of_elements(problem.model),
-        *_many(problem),
+        *_of_model(problem, nominal),
     ]
     agreement = compared(problem)
     cause = "" if agreement.error <= AGREEMENT else cause_of(problem, agreement)
@@ -148,13 +143,36 @@ def spoils(mistakes: Sequence[Mistake]) -> bool:
     return any(each.kind not in HARMLESS for each in mistakes)
 
 
-def _coincident(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
-    """Warn of modes that coincide with others."""
-    return [
-        f"mode {r} of the nominal model coincides with another one: its derivatives are not defined"
-        for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True)
-        if coincident
-    ]
+def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[str]:
+    """Warn of modes that coincide, of bounds, of elements, and of so much that a run takes long."""
+    for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True):
+        if coincident:
+            yield (
+                f"mode {r} of the nominal model coincides with another one: its derivatives are "
+                "not defined"
+            )
+    ends = {"lower": problem.lower, "upper": problem.upper}
+    for name, value, *bounds in zip(
+        problem.model.parameters, problem.start, *ends.values(), strict=True
+    ):
+        if value in bounds:
+            yield f"the nominal value of {name} is one of its bounds, {value:g}"
+    full = full_of(problem.model)  # a basis may not hold what makes a matrix indefinite
+    for name, theta in ends.items():
+        try:
+            replace(problem, model=full).modes(theta, derivatives=False)
+        except ModelError as error:
+            yield f"at the {name} bounds of all parameters: {error}"
+    yield from full.limits if isinstance(full, MatrixModel) else ()
+    p, sets = len(problem.model.parameters), len(problem.data.sets)
+    if sets > COMPARED:
+        yield f"{sets} data sets are many: mistakes are sought in {COMPARED} of them, chosen evenly"
+    if p > MANY:
+        yield (
+            f"{p} parameters are many: a run takes some {memory_of(problem) / 1e9:.2g} GB and "
+            "long, as every step solves for all of them; let one parameter scale several parts, "
+            "or keep those at their nominal values that the data do not determine"
+        )
 
 
 def memory_of(problem: UpdatingProblem) -> float:
@@ -174,41 +192,7 @@ def refuse_too_many(problem: UpdatingProblem, file: str) -> None:
             f"search some {KEPT} models, {need / 1e9:.3g} GB: let one parameter scale several "
             "parts, or keep those at their nominal values that the data do not determine"
         )
-        raise InputError(Fault(file, "[[parameter]]", expected, found))
-
-
-def _many(problem: UpdatingProblem) -> list[str]:
-    """Warn of so many parameters that a run takes long, and data sets that are not looked at."""
-    p, sets = len(problem.model.parameters), len(problem.data.sets)
-    out = []
-    if sets > COMPARED:
-        out.append(
-            f"{sets} data sets are many: mistakes are sought in {COMPARED} of them, chosen evenly"
-        )
-    if p <= MANY:
-        return out
-    return [
-        *out,
-        f"{p} parameters are many: a run takes some {memory_of(problem) / 1e9:.2g} GB and long, as "
-        "every step solves for all of them; let one parameter scale several parts, or keep those "
-        "at their nominal values that the data do not determine",
-    ]
-
-
-def _of_elements(model: Model) -> Sequence[str]:
-    """Warn of elements that are too coarse, small or distorted."""
-    full = full_of(model)
-    return full.limits if isinstance(full, MatrixModel) else ()
-
-
-def _at_bounds(problem: UpdatingProblem) -> list[str]:
-    """Warn of nominal values that are bounds."""
-    values = zip(problem.model.parameters, problem.start, problem.lower, problem.upper, strict=True)
-    return [
-        f"the nominal value of {name} is one of its bounds, {value:g}"
-        for name, value, *bounds in values
-        if value in bounds
-    ]
+        refuse([Fault(file, "[[parameter]]", expected, found)])
 
 
 def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequence[int]) -> None:
@@ -216,25 +200,18 @@ def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequ
 
     ``unchanged`` are the positions of these groups.
     """
-    faults = [
-        Fault(
-            file,
-            f"[[group]] '{problem.objectives[i]}'",
-            "residuals that a parameter changes",
+    faults = []
+    for i in unchanged:
+        remarks = [member.remark for member in problem.members[i]]
+        found = (
             "none: no parameter changes them within its bounds, so there is nothing to update; "
             "remove the group, or give it other members or the model other parameters"
-            + _fitted_by_any(problem, i),
         )
-        for i in unchanged
-    ]
-    if faults:
-        raise InputError(faults)
-
-
-def _fitted_by_any(problem: UpdatingProblem, i: int) -> str:
-    """Return why any model fits a group, where that is so of all of its members."""
-    remarks = [member.remark for member in problem.members[i]]
-    return f" ({'; '.join(dict.fromkeys(remarks))})" if all(remarks) else ""
+        if all(remarks):  # any model fits it
+            found += f" ({'; '.join(dict.fromkeys(remarks))})"
+        place = f"[[group]] '{problem.objectives[i]}'"
+        faults.append(Fault(file, place, "residuals that a parameter changes", found))
+    refuse(faults)
 
 
 def determined(problem: UpdatingProblem) -> tuple[str, ...]:
@@ -262,13 +239,16 @@ def _undetermined(
     Mistakes change what the residuals determine: then ``parameters_only`` without effect are named.
     """
     names = problem.model.parameters
-    weights = optimal_weights(problem.properties, nominal.J)
     idle = without_effect(problem, nominal, scale)
-    if parameters_only:
-        return [str(finding) for finding in no_effect(idle, names)]
-    known = combinations(problem, problem.start, weights=weights, scale=scale)
-    weak = [each for each in known if each.share < WEAK and not _is_of(idle, each)]
     out = [str(finding) for finding in no_effect(idle, names)]
+    if parameters_only:
+        return out
+    weights = optimal_weights(problem.properties, nominal.J)
+    weak = [
+        each
+        for each in combinations(problem, problem.start, weights=weights, scale=scale)
+        if each.share < WEAK and np.linalg.norm(each.direction[list(idle)]) <= np.sqrt(0.5)
+    ]
     for degree, chosen in (
         ("do not determine", [each for each in weak if each.share <= NONE]),
         ("hardly determine", [each for each in weak if each.share > NONE]),
@@ -284,23 +264,3 @@ def _undetermined(
             for each in chosen
         ]
     return [*out, *map(str, alike(gram(nominal, weights, scale), names, idle))]
-
-
-def _is_of(idle: Sequence[int], combination: Combination) -> bool:
-    """Return whether a combination is one of parameters without effect."""
-    return bool(np.linalg.norm(combination.direction[list(idle)]) > np.sqrt(0.5))
-
-
-def _infeasible_bounds(problem: UpdatingProblem) -> list[str]:
-    """Warn where the model has no modes at the bounds of all parameters at once.
-
-    The full model is evaluated: a basis may not hold what makes a matrix indefinite.
-    """
-    problem = replace(problem, model=full_of(problem.model))
-    out = []
-    for name, theta in (("lower", problem.lower), ("upper", problem.upper)):
-        try:
-            problem.modes(theta, derivatives=False)
-        except ModelError as error:
-            out.append(f"at the {name} bounds of all parameters: {error}")
-    return out

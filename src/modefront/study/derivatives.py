@@ -36,18 +36,6 @@ SHARE = 0.02
 MOST = 60
 """Directions in which derivatives are compared, at most."""
 
-SHRINK, ATTEMPTS = 8.0, 3
-"""Division of a step at which the model is not defined, and how often that is done."""
-
-CLOSE = 1e-3
-"""Relative gap of two frequencies below which modes are close."""
-
-WIDE = 1e12
-"""Ratio of effects of parameters from which on units are likely wrong."""
-
-NAMED = 3
-"""Parameters of a direction that are named."""
-
 
 @dataclass(frozen=True)
 class Agreement:
@@ -98,11 +86,6 @@ def compared(problem: UpdatingProblem) -> Agreement:
     return Agreement(float(error[i, k]), theta, int(i), STEP * directions[k])
 
 
-def derivative_error(problem: UpdatingProblem) -> float:
-    """Return the greatest relative error of dr against extrapolated central differences."""
-    return compared(problem).error
-
-
 def _directions(unit: Floats) -> Floats:
     """Return directions (k, p), one a parameter, or several parameters together."""
     count = min(len(unit), MOST)
@@ -122,50 +105,38 @@ def _slopes(
     NaN where the model is not defined with the shortest.
     """
 
-    def central(h: float) -> list[Floats]:
-        ahead, behind = (
-            problem.vectors(
-                problem.modes(theta + sign * h * direction, derivatives=False)[0], pairs
-            )
-            for sign in (1, -1)
-        )
-        return [(a - b) / (2 * h) for a, b in zip(ahead, behind, strict=True)]
+    def changed(h: float) -> list[Floats]:
+        modes, _ = problem.modes(theta + h * direction, derivatives=False)
+        return problem.vectors(modes, pairs)
 
-    h = STEP
-    for _ in range(ATTEMPTS):
+    for h in (STEP, STEP / 8, STEP / 64):
         try:
-            slopes = zip(central(h / 2), central(h), strict=True)
-            return [(4 * half - whole) / 3 for half, whole in slopes]
+            half, whole = (
+                [(a - b) / (2 * k) for a, b in zip(changed(k), changed(-k), strict=True)]
+                for k in (h / 2, h)
+            )
+            return [(4 * x - y) / 3 for x, y in zip(half, whole, strict=True)]
         except ModelError:
-            h /= SHRINK
+            continue
     return [np.full(1, np.nan) for _ in problem.groups]
 
 
 def cause_of(problem: UpdatingProblem, agreement: Agreement) -> str:
     """Return which parameter and mode derivatives are wrong for, and the likely cause."""
     names = [problem.model.parameters[j] for j in np.flatnonzero(agreement.step)]
-    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-    of = f"{', '.join(names[:NAMED])}{more}"
+    of = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
     theta, step = agreement.theta, agreement.step
-    undefined = _undefined(problem, [theta, theta + step, theta - step])
-    if undefined:
-        return f"for {of}: a small change leads to no model: {undefined}; check its value and units"
+    for point in (theta, theta + step, theta - step):
+        try:
+            problem.modes(point, derivatives=False)
+        except ModelError as error:
+            return f"for {of}: a small change leads to no model: {error}; check its value and units"
     group = problem.objectives[agreement.objective]
     mode, why = _mode_and_cause(problem, theta, step)
     return (
         f"of group '{group}' for {of}, mostly by measured mode {mode} "
         f"(relative {agreement.error:.1e}): {why}"
     )
-
-
-def _undefined(problem: UpdatingProblem, points: list[Floats]) -> str:
-    """Return why the model has no modes at any of some points; nothing where it has."""
-    for theta in points:
-        try:
-            problem.modes(theta, derivatives=False)
-        except ModelError as error:
-            return str(error)
-    return ""
 
 
 def _mode_and_cause(problem: UpdatingProblem, theta: Floats, step: Floats) -> tuple[int, str]:
@@ -182,14 +153,14 @@ def _mode_and_cause(problem: UpdatingProblem, theta: Floats, step: Floats) -> tu
     frequency = np.sort(problem.modes(theta, derivatives=False)[0].frequency)
     k = int(points[2].quantities["paired_mode"][r]) - 1
     near = [abs(frequency[i] / frequency[k] - 1) for i in (k - 1, k + 1) if 0 <= i < len(frequency)]
-    if frequency[k] > 0 and near and min(near) < CLOSE:
+    if frequency[k] > 0 and near and min(near) < 1e-3:
         return mode, (
             f"model mode {k + 1} and its neighbour are {100 * min(near):.2g} % apart, and close "
             "modes turn into each other within a small change of the parameter"
         )
     effects = np.sqrt(np.einsum("ijj->j", problem.evaluate(theta).H) / 2) * np.abs(theta)
     known = effects[effects > 0]
-    if known.size and known.max() > WIDE * known.min():
+    if known.size and known.max() > 1e12 * known.min():
         return mode, (
             f"parameters differ by {known.max() / known.min():.0e} in their effect: check units "
             "of the matrices, and whether a stiffness vanishes"
