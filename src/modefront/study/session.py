@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -30,13 +31,12 @@ from modefront.front.search import Search
 from modefront.identifiability.combinations import unchanged_groups
 from modefront.identifiability.options import Identifiability
 from modefront.optim.sqp import given
-from modefront.outputs import remove_unfinished
+from modefront.outputs import remove_unfinished, write_text
 from modefront.predictions import Prediction
 from modefront.predictions.runner import PredictionRunner
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
-from modefront.study.whereabouts import note_study
 from modefront.uncertainty.inference import infer
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.options import Uncertainty
@@ -44,7 +44,7 @@ from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress
 from modefront.work.run import Run
-from modefront.work.store import FOLDER, Store, locked
+from modefront.work.store import FOLDER, NOTE, Store, locked
 from modefront.work.task import Backend, Task, Within
 from modefront.work.workers import backend
 
@@ -204,7 +204,9 @@ def run_on(
             _set_aside(folder / FILE)
         write(data, folder / FILE)
         if study.origin is not None:
-            note_study(folder, tasks, study.origin.file)
+            with suppress(ValueError, OSError):  # another drive; a note is no loss
+                note = os.path.relpath(study.origin.file.absolute(), folder.absolute())
+                write_text(tasks / NOTE, Path(note).as_posix() + "\n")
     return Results(data, study.problem)
 
 
@@ -214,7 +216,6 @@ def _worked(
     progress: Progress,
     store: Store | None = None,
 ) -> xr.Dataset:
-    """Return what the work of a study gives; a store keeps the results of its tasks."""
     with carrier as opened:
         progress.workers = opened.workers
         return _Session(study, Run(store, progress, opened)).results()
@@ -236,8 +237,6 @@ def _prepare(folder: Path, aside: Sequence[Path] = ()) -> None:
 
 @dataclass(frozen=True)
 class _Session:
-    """The work of a study, with the executor that does it."""
-
     study: Study
     work: Run
 

@@ -33,6 +33,9 @@ from modefront.work.task import Task
 FOLDER = "tasks"
 """Folder of the kept results, within that of the results of a run."""
 
+NOTE = "study"
+"""File beside these results, with the path of the study file from those of the run."""
+
 CHECKSUM = 32
 """Bytes of the checksum at the end of a file."""
 
