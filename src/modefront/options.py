@@ -174,7 +174,9 @@ def keys(required: Sequence[str], **known: Requirement) -> tuple[Option, ...]:
 def options(record: type) -> tuple[Option, ...]:
     """Return the fields of a class of records that have requirements."""
     hints = get_type_hints(record, include_extras=True)
-    meanings = _meanings(inspect.getdoc(record) or "")
+    _, _, section = (inspect.getdoc(record) or "").partition("Attributes\n----------\n")
+    said = re.findall(r"^(\w+) : (.*(?:\n    .*)*)", section, re.MULTILINE)
+    meanings = {name: " ".join(text.split()).replace("``", "`") for name, text in said}
     out = []
     for each in fields(record):
         requirement = _requirement(hints[each.name])
@@ -187,13 +189,6 @@ def options(record: type) -> tuple[Option, ...]:
             meaning = meanings.get(each.name, "")
             out.append(Option(each.name, requirement, optional, required, default, meaning))
     return tuple(out)
-
-
-def _meanings(docstring: str) -> dict[str, str]:
-    """Return what a docstring says of each attribute."""
-    _, _, section = docstring.partition("Attributes\n----------\n")
-    found = re.findall(r"^(\w+) : (.*(?:\n    .*)*)", section, re.MULTILINE)
-    return {name: " ".join(meaning.split()).replace("``", "`") for name, meaning in found}
 
 
 def schema_of(record: type) -> Schema:

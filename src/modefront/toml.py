@@ -25,9 +25,6 @@ from modefront.text import NAME, clean
 R = TypeVar("R")
 T = TypeVar("T")
 
-SUGGESTED = 20
-"""Unknown keys of a table for which a known one is sought."""
-
 
 @dataclass
 class Table:
@@ -193,7 +190,7 @@ class Table:
         """Note every unknown key, once."""
         known = set(self.requested)
         for k, key in enumerate(key for key in self.values if key not in known):
-            found = suggestion(key, self.requested) if k < SUGGESTED else repr(clean(key, NAME))
+            found = suggestion(key, self.requested) if k < 20 else repr(clean(key, NAME))
             self.fault("", "a known key", found)
         self.requested += self.values
 

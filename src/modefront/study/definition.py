@@ -109,7 +109,7 @@ class Study:
         yield from each_once("groups", groups)
         yield from self.pareto.faults(len(groups))
         for weighted in self.weighted:
-            faults = [*weighted.faults(groups), *label_faults([weighted.name], labels_of(groups))]
+            faults = [*weighted.faults(groups), *label_faults([weighted.name], Labels(groups))]
             for fault in faults:
                 yield replace(fault, place=f"weighted '{weighted.name}' {fault.place}")
         yield from each_once("weighted", [weighted.name for weighted in self.weighted])
@@ -186,36 +186,23 @@ def undrawn(uncertainty: Uncertainty, predictions: int) -> Iterator[Fault]:
         yield Fault("", "draws", "0 without predictions", str(uncertainty.draws))
 
 
-ITERATED = "iterated-weights"
-"""Name of the model at which the iteration of the weights arrives."""
-
-NAMED = (Kind.EDGE, Kind.IDENTIFIABLE_EDGE)
-"""Kinds of models with the name of a group."""
-
-
-@dataclass(frozen=True)
 class Labels:
-    """All labels that a study of these groups may give to its models.
+    """All labels that a study of these groups may give to its models, but those of given weights.
 
     Points of the front, and of its identifiable part, have a number behind a beginning; how many
     there are is not known beforehand.
     """
 
-    single: frozenset[str]
-    numbered: frozenset[str]
+    def __init__(self, groups: Sequence[str]) -> None:
+        numbered, named = (Kind.FRONT, Kind.IDENTIFIABLE), (Kind.EDGE, Kind.IDENTIFIABLE_EDGE)
+        alone = [label(x) for x in Kind if x not in {*named, *numbered, Kind.GIVEN}]
+        labels = [*(label(kind, group) for kind in named for group in groups), *alone]
+        self.single = {"iterated-weights", *labels}  # at which the iteration of weights arrives
+        first = [label(Kind.FRONT, method) for method in METHODS] + [label(Kind.IDENTIFIABLE)]
+        self.numbered = {name.rpartition("-")[0] for name in first}
 
     def __contains__(self, name: object) -> bool:
         """Return whether a name is such a label."""
         beginning, _, end = str(name).rpartition("-")
         is_number = end.isascii() and end.isdigit()
-        return name in self.single or (is_number and f"{beginning}-" in self.numbered)
-
-
-def labels_of(groups: Sequence[str]) -> Labels:
-    """Return the labels that a study may give besides the names of weights."""
-    numbered = {Kind.FRONT, Kind.IDENTIFIABLE}
-    alone = [label(kind) for kind in Kind if kind not in {*NAMED, *numbered, Kind.GIVEN}]
-    named = [label(kind, group) for kind in NAMED for group in groups]
-    beginnings = [label(Kind.FRONT, method).rpartition("-")[0] + "-" for method in METHODS]
-    part = label(Kind.IDENTIFIABLE).rpartition("-")[0] + "-"
-    return Labels(frozenset([ITERATED, *alone, *named]), frozenset([part, *beginnings]))
+        return name in self.single or (is_number and beginning in self.numbered)

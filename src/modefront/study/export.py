@@ -20,7 +20,7 @@ import scipy.sparse
 from modefront._typing import Floats, Ints
 from modefront.brief import as_html, brief
 from modefront.data.uff import dataset_55
-from modefront.errors import Fault, InputError, ModelError, UnfinishedError, reason, suggestion
+from modefront.errors import Fault, InputError, ModelError, UnfinishedError, suggestion, writing
 from modefront.front.point import preferred
 from modefront.inputs import MOST_TABLES
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs, write_dofs
@@ -109,18 +109,16 @@ def export(
         # As many modes as there are degrees of freedom with mass.
         most = int(np.count_nonzero(model.mass.diagonal()))
         count = min(modes or max(len(model.frequency), 1), most)
-        output.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as unfinished:
-            missing = _write(model, loaded.file, Path(unfinished), count)
-            deck = write_deck(loaded.file.parent, model.theta, Path(unfinished))
-            missing += [deck] if deck else []
-            files = sorted(Path(unfinished).iterdir())
-            moved = tuple(Path(shutil.move(file, output / file.name)) for file in files)
+        with writing(output):
+            output.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as unfinished:
+                missing = _write(model, loaded.file, Path(unfinished), count)
+                deck = write_deck(loaded.file.parent, model.theta, Path(unfinished))
+                missing += [deck] if deck else []
+                files = sorted(Path(unfinished).iterdir())
+                moved = tuple(Path(shutil.move(file, output / file.name)) for file in files)
     except ModelError as error:
         raise UnfinishedError(str(error)) from None
-    except OSError as error:
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(output), "folder", expected, reason(error))) from None
     return Exported(point, moved, tuple(missing))
 
 

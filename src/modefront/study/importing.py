@@ -16,7 +16,7 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.brief import as_html, brief
-from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion
+from modefront.errors import Fault, InputError, ModelError, refuse, suggestion, writing
 from modefront.fem.dofs import DIRECTIONS
 from modefront.models.dofs import number_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
@@ -80,12 +80,12 @@ class Imported:
 
         Raises InputError where the folder has a study already, or cannot be written to.
         """
-        directory, expected = Path(folder), "a folder that can be written to"
+        directory = Path(folder)
         study = directory / "study.toml"
         if study.exists():
-            without = "a folder without a study, as nothing is overwritten"
-            raise InputError(Fault(str(study), "file", without, "an existing one"))
-        try:
+            expected = "a folder without a study, as nothing is overwritten"
+            raise InputError(Fault(str(study), "file", expected, "an existing one"))
+        with writing(directory):
             directory.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryDirectory(dir=directory, prefix=".import-") as name:
                 inner = Path(name)
@@ -100,8 +100,6 @@ class Imported:
                 add_schema([inner / "study.toml"])
                 files = sorted(inner.iterdir(), key=lambda file: file.name == "study.toml")
                 return [Path(shutil.move(file, directory / file.name)) for file in files]
-        except OSError as error:
-            raise InputError(Fault(str(directory), "folder", expected, reason(error))) from None
 
     __repr__ = brief
     _repr_html_ = as_html

@@ -20,7 +20,7 @@ from modefront.analysis.certified import (
     certified_points,
 )
 from modefront.analysis.front import AnalysisOptions, analyse_front
-from modefront.errors import Fault, InputError, reason
+from modefront.errors import Fault, InputError, writing
 from modefront.front.front import Front
 from modefront.front.given import Weighted
 from modefront.front.indicators import coverage
@@ -189,14 +189,19 @@ def run_on(
         return Results(_worked(study, carrier, progress), study.problem)
     folder = Path(folder)
     tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}"
-    _prepare(folder)
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
     for path in (tasks.parent, tasks):
         if path.is_symlink():
             found = f"a link to {path.readlink()}: remove it, or choose another folder with -o"
             raise InputError(Fault(str(path), "folder", "a folder of its own", found))
-    _prepare(tasks.parent)
+    with writing(tasks.parent):
+        tasks.parent.mkdir(exist_ok=True)
     with locked(folder):
-        _prepare(tasks, (tasks, folder / FILE) if fresh or not study.work else ())
+        with writing(tasks):
+            for path in (tasks, folder / FILE) if fresh or not study.work else ():
+                _set_aside(path)
+            tasks.mkdir(exist_ok=True)
         remove_unfinished(folder, FILE)
         remove_unfinished(tasks)
         data = _worked(study, carrier, progress, Store(tasks))
@@ -219,20 +224,6 @@ def _worked(
     with carrier as opened:
         progress.workers = opened.workers
         return _Session(study, Run(store, progress, opened)).results()
-
-
-def _prepare(folder: Path, aside: Sequence[Path] = ()) -> None:
-    """Make a folder where there is none, after some files are set aside.
-
-    Raises InputError where the folder cannot be written to.
-    """
-    try:
-        for path in aside:
-            _set_aside(path)
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        fault = Fault(str(folder), "folder", "a folder that can be written to", reason(error))
-        raise InputError(fault) from None
 
 
 @dataclass(frozen=True)

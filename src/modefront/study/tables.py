@@ -24,7 +24,7 @@ from modefront.residuals.base import Scale
 from modefront.residuals.groups import MODE_NUMBERS, Group, faults
 from modefront.residuals.kinds import KINDS as RESIDUALS
 from modefront.residuals.problem import UpdatingProblem
-from modefront.study.definition import Study, labels_of
+from modefront.study.definition import Labels, Study
 from modefront.study.kinds import KINDS
 from modefront.toml import Table, names_of
 
@@ -140,7 +140,7 @@ def read_weights(root: Table, groups: Sequence[str]) -> tuple[Weighted, ...]:
         if weighted is not None:
             table.note(weighted.faults(groups))
             out.append(weighted)
-        table.note(label_faults(names_of([table]), labels_of(groups)))
+        table.note(label_faults(names_of([table]), Labels(groups)))
     root.note(each_once("[[weighted]]", names_of(tables)))
     return tuple(out)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import resources
 from pathlib import Path
 
-from modefront.errors import Fault, InputError, reason, refuse, suggestion
+from modefront.errors import Fault, InputError, refuse, suggestion, writing
 from modefront.outputs import write_bytes
 
 
@@ -26,7 +26,7 @@ def write_example(name: str, directory: Path) -> list[Path]:
         raise InputError(Fault("modefront init", "--example", expected, suggestion(name, names())))
     sources = resources.files(__package__).joinpath(name).iterdir()
     files = {directory / source.name: source for source in sources}
-    try:
+    with writing(directory):
         directory.mkdir(parents=True, exist_ok=True)
         expected = "a new file, as nothing is overwritten"
         refuse(
@@ -36,7 +36,4 @@ def write_example(name: str, directory: Path) -> list[Path]:
         )
         for path, source in files.items():
             write_bytes(path, source.read_bytes())
-    except OSError as error:
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(directory), "folder", expected, reason(error))) from None
     return sorted(files)
