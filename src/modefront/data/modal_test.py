@@ -25,8 +25,7 @@ from modefront.data.responses import ORDERS, joined
 from modefront.data.uff import read_uff
 from modefront.errors import Fault, InputError, suggestion
 from modefront.json_schema import NOT_NEGATIVE, array
-from modefront.options import is_name, numbers, repeated, rising
-from modefront.toml import Table, read_toml
+from modefront.options import Table, is_name, numbers, read_toml, repeated, rising
 
 KINDS = ("hammer", "ambient")
 """Kinds of tests."""

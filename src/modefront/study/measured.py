@@ -22,8 +22,7 @@ from modefront.json_schema import NAME, any_of, closed
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
-from modefront.options import Requirement, shown, text, whole
-from modefront.toml import Table
+from modefront.options import Requirement, Table, shown, text, whole
 
 NEAR = 0.01
 """Distance of a sensor from the node of the test that is its own, over the size of the test."""

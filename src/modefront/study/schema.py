@@ -30,9 +30,9 @@ from modefront.pairing.match import Pairing
 from modefront.predictions import CLASSES
 from modefront.predictions.ranges import SLACK
 from modefront.residuals.kinds import KINDS as RESIDUALS
+from modefront.study.file import of_group, of_header
 from modefront.study.kinds import KINDS
 from modefront.study.measured import FILE, PLACE, READERS
-from modefront.study.tables import of_group, of_header
 from modefront.text import NAME as LENGTH
 from modefront.text import clean
 from modefront.uncertainty.options import Uncertainty

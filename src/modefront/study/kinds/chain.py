@@ -10,9 +10,8 @@ from modefront.errors import Fault, refuse, suggestion
 from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, array, table_of
 from modefront.models.base import Model
 from modefront.models.chain import chain
-from modefront.options import Requirement, check_fields, entries, numbers, shown
+from modefront.options import Requirement, Table, check_fields, entries, numbers, shown
 from modefront.study.kinds.sensors import WEIGHTED, ModelKind, read_outputs, read_sensors
-from modefront.toml import Table
 
 MASSES = numbers("a list of masses above 0", array(ABOVE_ZERO, 1))
 STIFFNESSES = numbers(

@@ -18,7 +18,7 @@ from modefront.models.files import READERS, read_matrix
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import matrices
 from modefront.models.terms import BASE, exponents_of, form_of
-from modefront.options import TRUE_OR_FALSE, Option, check_fields, entries, text
+from modefront.options import TRUE_OR_FALSE, Option, Table, check_fields, entries, text
 from modefront.programs.mesh import ProgramMesh, read_mesh
 from modefront.study.kinds.sensors import (
     BY_NODE,
@@ -29,7 +29,6 @@ from modefront.study.kinds.sensors import (
     read_outputs,
     read_sensors,
 )
-from modefront.toml import Table
 
 FILE = text("the name of a file")
 

@@ -34,6 +34,7 @@ from modefront.options import (
     TRUE_OR_FALSE,
     Option,
     Requirement,
+    Table,
     check_fields,
     entries,
     is_name,
@@ -54,7 +55,6 @@ from modefront.study.kinds.sensors import (
     ModelKind,
     read_directions,
 )
-from modefront.toml import Table
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 OF_VECTOR = numbers("a vector of 3 numbers", VECTOR)

@@ -26,8 +26,7 @@ from modefront.json_schema import (
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
-from modefront.options import Requirement, is_name, shown, whole
-from modefront.toml import Table
+from modefront.options import Requirement, Table, is_name, shown, whole
 
 
 @dataclass(frozen=True)
@@ -38,7 +37,7 @@ class ModelKind:
     ----------
     name : value of ``kind`` in the table ``[model]``
     read : returns the model of that table, given the names of the parameters, or None where the
-        table has faults; files are opened by `modefront.toml.Table.path`, so that they are known
+        table has faults; files are opened by `modefront.options.Table.path`, so that they are known
     is_reducible : whether a model may be large enough for a reduced basis
     table : record of options whose fields are the keys of that table (`modefront.options`), for
         the schema of study files; None where they are not known
