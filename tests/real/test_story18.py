@@ -12,8 +12,7 @@ import scipy.sparse
 
 import modefront as mf
 from modefront.identifiability.combinations import NONE, combinations
-from modefront.study.check import determined
-from modefront.study.derivatives import compared
+from modefront.study.check import compared, determined
 
 FILE = Path(__file__).parents[3] / "shared" / "data" / "smu" / "story18_exp.npz"
 STORIES = 18

@@ -13,9 +13,8 @@ from modefront.errors import InputError
 from modefront.models.chain import chain
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
-from modefront.study.check import check
+from modefront.study.check import cause_of, check, compared
 from modefront.study.definition import Study
-from modefront.study.derivatives import cause_of, compared
 from modefront.study.examples import write_example
 from modefront.study.file import load
 from modefront.study.session import run

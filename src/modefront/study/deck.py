@@ -31,7 +31,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.errors import Fault, InputError, reason, suggestion, writing
+from modefront.errors import Fault, InputError, reason, refuse, suggestion, writing
 from modefront.inputs import fortran
 from modefront.outputs import write_text
 from modefront.programs.inp import DEEPEST, keyword_of
@@ -140,7 +140,8 @@ def import_deck(
     program = shutil.which(run)
     if program is None:
         raise InputError(Fault("", "--run", "a program that is installed", f"'{run}'"))
-    lines, targets = list(lines_of(path)), _targets(path, parameters)
+    lines = list(lines_of(path))
+    targets = _targets(path, lines, parameters)
     terms = {
         name: tuple(term.format(name) for term in THICKNESS)
         for name, target in targets.items()
@@ -174,9 +175,9 @@ def import_deck(
     return replace(imported, notes=notes)
 
 
-def _targets(path: Path, parameters: Mapping[str, str]) -> dict[str, Target]:
+def _targets(path: Path, lines: Sequence[Line], parameters: Mapping[str, str]) -> dict[str, Target]:
     """Return what parameters multiply; raises InputError for what is not in the deck."""
-    lines, out, faults = list(lines_of(path)), {}, []
+    out, faults = {}, []
     for parameter, text in parameters.items():
         kind, _, name = text.partition(":")
         target, place = Target(kind, name), f"--parameter {parameter}"
@@ -189,8 +190,7 @@ def _targets(path: Path, parameters: Mapping[str, str]) -> dict[str, Target]:
             found = suggestion(name, sorted(names - {""}))
             faults.append(Fault(str(path), place, f"a name with *{KEYWORDS[kind]}", found))
         out[parameter] = target
-    if faults:
-        raise InputError(faults)
+    refuse(faults)
     return out
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import Any, get_args
 
 import numpy as np
 
@@ -38,10 +38,18 @@ from modefront.study.measured import read_data
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 
-T = TypeVar("T")
-
 GROUP_NAME = text("the name of the group")
 SCALE = one_of(*get_args(Scale))
+
+OF_OPTIONS: Mapping[str, type] = {
+    "pareto": Pareto,
+    "pairing": Pairing,
+    "search": Search,
+    "identifiability": Identifiability,
+    "uncertainty": Uncertainty,
+    "noise": NoisePrior,
+}
+"""Tables that are records of options, all of which have defaults."""
 
 Drafts = Sequence[tuple[Table, Prediction]]
 """Predictions as in their tables, without the defaults that follow from the nominal model."""
@@ -71,18 +79,17 @@ def load(path: Path | str) -> Study:
         model, parameters = of_free(model, parameters)
     data = read_data(root, model)
     groups = read_groups(root, data)
-    pareto = read_options(root, "pareto", Pareto)
     weighted = read_weights(root, [group.name for group in groups if group.name])
-    search = read_options(root, "search", Search)
-    identifiability = read_options(root, "identifiability", Identifiability)
-    uncertainty = read_options(root, "uncertainty", Uncertainty)
+    chosen: dict[str, Any] = {}
+    for key, record in OF_OPTIONS.items():
+        table = root.table(key, default=None)
+        chosen[key] = (table and table.record(record)) or record()
+    uncertainty, pairing = chosen["uncertainty"], chosen.pop("pairing")
     drawn = replace(root, place="[uncertainty]")
     drawn.note(undrawn(uncertainty, bool(root.values.get("predict"))))
     drawn.note(uncertainty.faults(data) if data is not None else ())
-    noise = read_options(root, "noise", NoisePrior)
-    pairing = read_options(root, "pairing", Pairing)
     drafts, slack = read_predictions(root, model, data)
-    replace(root, place="[pareto]").note(pareto.faults(len(groups)))
+    replace(root, place="[pareto]").note(chosen["pareto"].faults(len(groups)))
     root.close()
     if faults or model is None or data is None:
         raise InputError(faults)
@@ -98,7 +105,12 @@ def load(path: Path | str) -> Study:
         priors=tuple(each.prior for each in parameters),
     )
     _try_model(root, problem)
-    predictions = complete(drafts, problem) if not faults else ()
+    predictions = []
+    for table, prediction in drafts if not faults else ():
+        try:
+            predictions.append(prediction.complete(problem))
+        except InputError as error:
+            table.note(error.faults)
     if faults:
         raise InputError(faults)
     front = {key: value for key, value in root.values.items() if key != "predict"}
@@ -115,13 +127,9 @@ def load(path: Path | str) -> Study:
     return Study(
         problem,
         **of_study,
-        pareto=pareto,
+        **chosen,
         weighted=weighted,
-        search=search,
-        identifiability=identifiability,
-        uncertainty=uncertainty,
         predictions=predictions,
-        noise=noise,
         slack=slack,
         origin=origin,
     )
@@ -132,14 +140,13 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
     for name in problem.model.unused:
         root.fault(f"[[parameter]] '{name}'", "a parameter that the model uses", "no use of it")
     model = full_of(problem.model)
+    lower = dict(zip(model.parameters, problem.lower.tolist(), strict=True))
     above_zero = model.above_zero if isinstance(model, MatrixModel) else ()
-    before = len(root.faults)
-    for name in above_zero:
-        lower = float(problem.lower[problem.model.parameters.index(name)])
-        if lower <= 0:
-            expected = "a lower bound above 0, as terms of the matrices have quotients or roots"
-            root.fault(f"[[parameter]] '{name}' bounds", f"{expected} of it", f"{lower:g}")
-    if len(root.faults) > before:
+    wrong = [name for name in above_zero if lower[name] <= 0]
+    for name in wrong:
+        expected = "a lower bound above 0, as terms of the matrices have quotients or roots of it"
+        root.fault(f"[[parameter]] '{name}' bounds", expected, f"{lower[name]:g}")
+    if wrong:
         return
     try:
         problem.modes(problem.start, derivatives=False)
@@ -158,12 +165,6 @@ def _digest(content: bytes, files: Sequence[Path]) -> str:
         with path.open("rb") as stream:
             total.update(hashlib.file_digest(stream, "sha256").digest())
     return total.hexdigest()
-
-
-def read_options(root: Table, key: str, record: type[T]) -> T:
-    """Return the record that a table describes, that of defaults without one or with a fault."""
-    table = root.table(key, default=None)
-    return (table and table.record(record)) or record()
 
 
 def of_header() -> tuple[Option, ...]:
@@ -294,14 +295,3 @@ def read_predictions(
     table.close()
     table.note(each_once("", names))
     return out, float(slack or 0.0)
-
-
-def complete(drafts: Drafts, problem: UpdatingProblem) -> tuple[Prediction, ...]:
-    """Return the predictions; what the nominal model cannot predict is noted and left out."""
-    out = []
-    for table, prediction in drafts:
-        try:
-            out.append(prediction.complete(problem))
-        except InputError as error:
-            table.note(error.faults)
-    return tuple(out)

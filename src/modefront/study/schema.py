@@ -18,25 +18,19 @@ from modefront.errors import wrong
 from modefront.families import Family
 from modefront.front.given import Weighted
 from modefront.front.methods import METHODS
-from modefront.front.options import Pareto
-from modefront.front.search import Search
-from modefront.identifiability.options import Identifiability
 from modefront.json_schema import NAME, OPEN, Schema, array, chosen, closed, file_name, table_of
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.options import Reduction
 from modefront.options import Option, of_options, options, schema_of
 from modefront.outputs import write_text
-from modefront.pairing.match import Pairing
 from modefront.predictions import CLASSES
 from modefront.predictions.ranges import SLACK
 from modefront.residuals.kinds import KINDS as RESIDUALS
-from modefront.study.file import of_group, of_header
+from modefront.study.file import OF_OPTIONS, of_group, of_header
 from modefront.study.kinds import KINDS
 from modefront.study.measured import FILE, PLACE, READERS
 from modefront.text import NAME as LENGTH
 from modefront.text import clean
-from modefront.uncertainty.options import Uncertainty
-from modefront.uncertainty.prior import NoisePrior
 
 T = TypeVar("T")
 
@@ -46,28 +40,24 @@ FILE_NAME = "study.schema.json"
 DIRECTIVE = f"#:schema {FILE_NAME}\n"
 """First line of a study file, by which editors with Taplo find the schema."""
 
-OF_OPTIONS = {
-    "pareto": Pareto,
-    "pairing": Pairing,
-    "search": Search,
-    "identifiability": Identifiability,
-    "uncertainty": Uncertainty,
-    "noise": NoisePrior,
-}
-"""Tables that are records of options, all of which have defaults."""
-
 
 def study_schema() -> dict[str, Any]:
     """Return the schema, draft 7, with the kinds, methods and predictions that are registered."""
+    has_modes = [
+        {"required": [kind], "properties": {kind: {"minItems": 1}}, **OPEN} for kind in RESIDUALS
+    ]
+    meaning = "share by which objectives of models may be greater that count in ranges"
+    slack = Option("slack", SLACK, default=0, meaning=meaning).schema
+    predict = {key: array(schema_of(each), 1) for key, each in CLASSES.items()}
     tables = {
         "study": of_options(of_header()),
         "data": _data(),
         "model": chosen("kind", {name: _model(name) for name in KINDS}),
         "parameter": array(schema_of(Parameter), 1),
-        "group": array({**of_options(of_group()), "anyOf": [_has_modes(x) for x in RESIDUALS]}, 1),
+        "group": array({**of_options(of_group()), "anyOf": has_modes}, 1),
         "weighted": array(schema_of(Weighted), 1),
         **{name: schema_of(record) for name, record in OF_OPTIONS.items()},
-        "predict": _predict(),
+        "predict": closed({"slack": slack, **predict}, []),
     }
     required = ["study", "data", "model", "parameter", "group"]
     head = {"$schema": "http://json-schema.org/draft-07/schema#", "title": "modefront study"}
@@ -120,18 +110,6 @@ def _model(name: str) -> Schema:
     more = {each.name: each.schema for each in options(Reduction) if each.name == "reduction"}
     keys = {"kind": own, **known["properties"], **(more if kind.is_reducible else {})}
     return closed(keys, ["kind", *known["required"]])
-
-
-def _has_modes(kind: str) -> Schema:
-    """Return the schema of groups that have residuals of a kind."""
-    return {"required": [kind], "properties": {kind: {"minItems": 1}}, **OPEN}
-
-
-def _predict() -> Schema:
-    meaning = "share by which objectives of models may be greater that count in ranges"
-    slack = Option("slack", SLACK, default=0, meaning=meaning)
-    lists = {key: array(schema_of(each), 1) for key, each in CLASSES.items()}
-    return closed({"slack": slack.schema, **lists}, [])
 
 
 FAMILIES: tuple[Family[Any], ...] = (CLASSES, KINDS, RESIDUALS, METHODS, READERS)

@@ -80,6 +80,7 @@ class Pool(Protocol):
     @property
     def ready(self) -> bool:
         """Whether a message would be computed at once."""
+        return True
 
     def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
         """Compute a message in one of the processes."""
@@ -88,7 +89,8 @@ class Pool(Protocol):
         """Return the loss that an error means; None where it is an error of the task."""
 
     def restart(self) -> None:
-        """Start the processes again."""
+        """Start the processes again, where nothing else replaces them."""
+        return
 
     def close(self) -> None:
         """End all processes, whatever they do."""
@@ -193,7 +195,7 @@ def _starting() -> Iterator[None]:
 
 
 @dataclass
-class Cluster:
+class Cluster(Pool):
     """Workers of a Dask cluster that runs already, at the address of its scheduler.
 
     Raises InputError where `distributed` is not installed or the address is none, UnfinishedError
@@ -237,11 +239,6 @@ class Cluster:
                 self._count = max(1, sum(self._client.nthreads().values()))
         return self._count
 
-    @property
-    def ready(self) -> bool:
-        """True: the workers run already."""
-        return True
-
     def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
         """Compute a message in one of the workers."""
         return self._executor.submit(_work_of_one_thread, message, objects)
@@ -253,9 +250,6 @@ class Cluster:
         if isinstance(error, KilledWorker):
             return Loss.PROCESS
         return Loss.CLUSTER if isinstance(error, CancelledError | OSError) else None
-
-    def restart(self) -> None:
-        """Do nothing: the scheduler replaces workers."""
 
     def close(self) -> None:
         """Leave the cluster, which cancels what it still computes for this run."""

@@ -11,7 +11,7 @@ from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, array, table_of
 from modefront.models.base import Model
 from modefront.models.chain import chain
 from modefront.options import Requirement, Table, check_fields, entries, numbers, shown
-from modefront.study.kinds.sensors import WEIGHTED, ModelKind, read_outputs, read_sensors
+from modefront.study.kinds.sensors import WEIGHTED, ModelKind, read_places
 
 MASSES = numbers("a list of masses above 0", array(ABOVE_ZERO, 1))
 STIFFNESSES = numbers(
@@ -82,8 +82,9 @@ def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:
             if name and name not in parameters:
                 table.fault(key, "names of parameters", suggestion(name, parameters))
         scales[key] = [name or None for name in names] or None
-    sensors = read_sensors(table, n, default=None)
-    outputs = read_outputs(table, n, sensors or [f"floor{i + 1}" for i in range(n or 0)])
+    sensors = read_places(table, "sensors", n)
+    floors = sensors or [f"floor{i + 1}" for i in range(n or 0)]
+    outputs = read_places(table, "outputs", n, taken=floors) or {}
     if len(table.faults) > before or read is None:
         return None
     return chain(

@@ -25,9 +25,7 @@ from modefront.study.kinds.sensors import (
     DOF,
     WEIGHTED,
     ModelKind,
-    read_base,
-    read_outputs,
-    read_sensors,
+    read_places,
 )
 
 FILE = text("the name of a file")
@@ -103,9 +101,9 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
         table.fault("dofs", expected, f"{dofs.size} in '{table.values['dofs']}'")
         dofs = None
     mesh = table.content("mesh", read_mesh)
-    sensors = read_sensors(table, size, dofs=dofs)
-    outputs = read_outputs(table, size, sensors, dofs)
-    base = read_base(table, size, dofs)
+    sensors = read_places(table, "sensors", size, dofs, default=...)
+    outputs = read_places(table, "outputs", size, dofs, taken=sensors or ()) or {}
+    base = read_places(table, "base", size, dofs) or {}
     if len(table.faults) > before or read is None or sensors is None:
         return None
     model = matrices(
@@ -194,17 +192,15 @@ def _check_entries(
     model: Table, matrices: Mapping[str, Mapping[str, scipy.sparse.coo_array]], size: int
 ) -> None:
     """Note a mass that is zero, and degrees of freedom with neither stiffness nor mass."""
-    all_terms = [A for terms in matrices.values() for A in terms.values()]
     mass = matrices["mass"]
     if mass and not any(A.nnz for A in mass.values()):
         model.fault("mass", "a mass matrix that is not zero", "only zeros")
     elif all(matrices.values()) and not model.faults:
-        stiff = np.zeros(size, dtype=bool)
-        for A in all_terms:
-            stiff[A.row] = True
-        if not stiff.all():
+        rows = [A.row for terms in matrices.values() for A in terms.values()]
+        empty = np.setdiff1d(np.arange(size), np.concatenate(rows))
+        if empty.size:
             expected = "stiffness or mass at every degree of freedom"
-            model.fault("", expected, f"neither at {int(np.argmin(stiff))} (from 0)")
+            model.fault("", expected, f"neither at {empty[0]} (from 0)")
 
 
 MATRICES = ModelKind("matrices", read_matrices, table=Matrices)

@@ -125,62 +125,48 @@ def read_directions(place: Table) -> list[tuple[str, Any]]:
     return out
 
 
-def read_sensors(
-    model: Table, size: int | None, default: Any = ..., dofs: DofTable | None = None
-) -> dict[str, SensorSpec] | None:
-    """Return the sensors of a model of ``size`` degrees of freedom (None: not known).
+EXPECTED = {
+    "sensors": "a table of sensors, name = degree of freedom",
+    "outputs": "a table of outputs, name = degree of freedom",
+    "base": "a table, direction = list of the degrees of freedom that move with the base",
+}
+"""Tables of places."""
 
-    With ``dofs``, sensors may be given by node and direction too.
+
+# 6 arguments: the table, the model's size and nodes, and what differs between the tables.
+def read_places(
+    model: Table,
+    key: str,
+    size: int | None,
+    dofs: DofTable | None = None,
+    *,
+    taken: Iterable[str] = (),
+    default: Any = None,
+) -> dict[str, SensorSpec] | None:
+    """Return named degrees of freedom of a model, weighted or not; None without the table.
+
+    ``size`` is how many the model has, where that is known. With ``dofs``, they may be given by
+    node and direction too, and those of the base by the direction alone.
     """
-    table = model.table("sensors", "a table of sensors, name = degree of freedom", default)
+    table = model.table(key, EXPECTED[key], default)
     if table is None:
         return None
-    out = _read(table, size, lambda name: not is_reserved(name, table.values), dofs)
-    if not table.values:
+    if key == "sensors" and not table.values:
         table.fault("", "at least one sensor", "none")
-    return out
-
-
-def read_outputs(
-    model: Table, size: int | None, sensors: Iterable[str] | None, dofs: DofTable | None = None
-) -> dict[str, SensorSpec]:
-    """Return the places besides the sensors that predictions may name, given as these are."""
-    expected = "a table of outputs, name = degree of freedom"
-    table = model.table("outputs", expected, default=None)
-    if table is None:
-        return {}
-    out = _read(table, size, is_name, dofs)
-    for name in set(sensors or ()).intersection(table.values):
+    for name in set(taken).intersection(table.values):
         table.fault(name, "a name that no sensor has", f"'{name}'")
-    return out
 
+    def is_right(name: str) -> bool:
+        return is_name(name) and not (key == "sensors" and is_reserved(name, table.values))
 
-def read_base(
-    model: Table, size: int | None, dofs: DofTable | None = None
-) -> dict[str, SensorSpec]:
-    """Return which degrees of freedom move with the base, for each direction of its motion.
-
-    With ``dofs``, these may be all of a direction: ``x = { direction = "x" }``.
-    """
-    expected = "a table, direction = list of the degrees of freedom that move with the base"
-    table = model.table("base", expected, default=None)
-    if table is None:
-        return {}
-    for name, value in table.values.items():
+    for name, value in table.values.items() if key == "base" else ():
         if isinstance(value, list) and all(fits(dof, DOF) for dof in value):
             table.values[name] = [[dof, 1.0] for dof in value]
         elif dofs is not None and isinstance(value, dict) and value.get("direction") in DIRECTIONS:
             table.values[name] = [list(pair) for pair in dofs.of_direction(value["direction"])]
-    return _read(table, size, is_name, dofs)
-
-
-def _read(
-    table: Table, size: int | None, is_right: Callable[[str], bool], dofs: DofTable | None = None
-) -> dict[str, SensorSpec]:
-    """Return named degrees of freedom, weighted or not; ``is_right`` tells good names."""
     out: dict[str, SensorSpec] = {}
     for name, value in table.values.items():
-        if not is_name(name) or name != name.strip() or not is_right(name):
+        if name != name.strip() or not is_right(name):
             table.fault(repr(name), "a name that a column of the data can have", repr(name))
             continue
         if isinstance(value, dict) and {"node", "direction"} & value.keys():
