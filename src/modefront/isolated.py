@@ -35,12 +35,6 @@ LEAST_SECONDS, SPEED = 60.0, 10**6
 """Time that reading may take, and bytes that are read a second at least besides: chosen against
 readers that do not end, far above what whole files take."""
 
-GRACE = 30.0
-"""Seconds that a server may take to start and to answer, besides the time for reading."""
-
-CRASHED = 255
-"""Exit status above which a process was ended by the system, on Windows."""
-
 TEXTS = "texts and numbers"
 """Name among the arrays of all that is none, as JSON."""
 
@@ -92,7 +86,7 @@ def isolated(
         if status is None or status == -getattr(signal, "SIGALRM", 0):
             text = f"nothing within {seconds:.0f} s, after which reading was given up"
             raise IsolatedError(text)
-        if status < 0 or status > CRASHED:
+        if status < 0 or status > 255:  # ended by the system, on Windows with such a status
             raise IsolatedError(f"a file that ends its reader (signal {abs(status)})")
         try:
             with np.load(answer, allow_pickle=False) as file:
@@ -151,7 +145,7 @@ class _Server:
 
             assert process.stdin is not None
             assert process.stdout is not None
-            timer = threading.Timer(seconds + GRACE, give_up)
+            timer = threading.Timer(seconds + 30, give_up)  # s to start and to answer
             timer.start()
             line = ""
             try:

@@ -37,14 +37,8 @@ EDGE = 10.0, 60.0
 DRAW = 0.4, 2.0
 """Time of a draw of the posterior over that of a search, from and to."""
 
-REST = 1.4
-"""Time of a run over that of its searches: what is known is kept and compared, results are made."""
-
 SHORT = 30.0
 """Seconds up to which no advice on a shorter run is given."""
-
-SHARE = 0.25
-"""Share of the time from which a part of the work is worth to be made shorter."""
 
 TIMED, STEPS, WITHIN = 8, 3, 0.4
 """Searches that are timed, after a few steps that tell whether there is time for them; seconds
@@ -52,9 +46,6 @@ within which another one is begun."""
 
 SAMPLES = 100
 """Samples with which a prediction is timed, and three times as many."""
-
-LARGE = 2000
-"""Degrees of freedom from which a reduced basis is worth a try."""
 
 
 @dataclass(frozen=True)
@@ -78,13 +69,13 @@ class Estimate:
     @property
     def text(self) -> str:
         """The estimate in a sentence."""
-        least, most = self.range
         counts = (sum(ends) for ends in zip(*self.plan.searches.values(), strict=True))
         few, many = (max(int(float(f"{count:.0e}")), 1) for count in counts)
         longest = max(self.plan.other.values(), key=lambda span: span[1], default=(0.0, 0.0))
-        share = f", {_span(longest)} for predictions" if longest[1] > most / 10 else ""
+        times = [" to ".join(map(duration, span)) for span in (self.range, longest)]
+        share = f", {times[1]} for predictions" if longest[1] > self.range[1] / 10 else ""
         return (
-            f"a run takes {_span((least, most))} of a processor: the number of minima decides "
+            f"a run takes {times[0]} of a processor: the number of minima decides "
             f"({few:,} to {many:,} searches of {duration(self.plan.search)} each{share})"
         )
 
@@ -118,13 +109,14 @@ def estimate(study: Study) -> Estimate | None:
             other["predict"] = least + spent / 2, most + 2 * spent
             text = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
             advice.append((2 * spent, text))
-    plan = Plan(REST * search, {stage: span for stage, (span, _) in parts.items()}, other)
+    # What is known is kept and compared, and results are made: 1.4 times the searches.
+    plan = Plan(1.4 * search, {stage: span for stage, (span, _) in parts.items()}, other)
     most = plan.seconds[1]
     if most <= SHORT:
         return Estimate(plan)
     advice.sort(key=lambda part: -part[0])
-    said = [text for seconds, text in advice if seconds > SHARE * most and text]
-    if problem.model.size >= LARGE and not is_reduced(problem.model):
+    said = [text for seconds, text in advice if seconds > most / 4 and text]
+    if problem.model.size >= 2000 and not is_reduced(problem.model):
         said.insert(0, 'a reduced basis ([model] reduction = "auto")')
     return Estimate(plan, (*said, "--workers N with as many as there are cores"))
 
@@ -142,11 +134,6 @@ def duration(seconds: float) -> str:
     if seconds < 90:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
-
-
-def _span(span: Span) -> str:
-    """Return a range of times: "0.4 s to 8 s"."""
-    return f"{duration(span[0])} to {duration(span[1])}"
 
 
 def _search(study: Study) -> tuple[float, float] | None:

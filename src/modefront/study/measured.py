@@ -24,13 +24,6 @@ from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
 from modefront.options import Requirement, Table, keys, text, whole
 
-NEAR = 0.01
-"""Distance of a sensor from the node of the test that is its own, over the size of the test."""
-
-ASKEW = 0.5
-"""Cosine between the directions of a sensor in model and data below which these disagree."""
-
-
 FILE = text("the name of a file of modal data")
 NODE, DIRECTIONS = whole(0, 10**9), "x, y, z, rx, ry, rz or a vector"
 DIRECTION = Requirement(DIRECTIONS, any_of({"type": "string"}, {"type": "array"}))
@@ -149,7 +142,7 @@ def _of_nodes(
         placed[name] = place
         axis = None if in_space is None else in_space.sensor_directions[s]
         in_data = modes.in_space(*place)
-        if axis is not None and axis.any() and abs(axis @ in_data[:3]) < ASKEW:
+        if axis is not None and axis.any() and abs(axis @ in_data[:3]) < 0.5:
             table.notes.append(DataDirection(name, axis_name(axis), axis_name(in_data)))
     if len(table.faults) > before:
         return None
@@ -195,7 +188,7 @@ def _by_coordinates(
     nearest = int(np.argmin(distance))
     size = float(np.linalg.norm(np.ptp(modes.position, axis=0)))
     is_known = direction.any() and np.isfinite(modes.axes[nearest]).all()
-    if not is_known or distance[nearest] > NEAR * size:
+    if not is_known or distance[nearest] > 0.01 * size:  # another node would be as likely
         return None
     return nearest, modes.local(nearest, direction)
 

@@ -187,9 +187,9 @@ def _starting() -> Iterator[None]:
             signal.pthread_sigmask(signal.SIG_BLOCK, held)
         yield
     finally:
-        for name in ONE_THREAD.keys() - environment.keys():
-            del os.environ[name]
-        os.environ.update(environment)
+        for name in ONE_THREAD:
+            os.environ.pop(name)
+        os.environ.update({x: environment[x] for x in ONE_THREAD if x in environment})
         if signals is not None:
             signal.pthread_sigmask(signal.SIG_SETMASK, signals)
 

@@ -49,10 +49,6 @@ class ModelKind:
     table: type | None = None
 
 
-PARALLEL = 1e-9
-"""Sine of the angle of two axes below which they are one."""
-
-
 NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
 """Directions by their names."""
 
@@ -76,7 +72,7 @@ AXES = Requirement(
     array(VECTOR, 2, 2),
     _axes,
     lambda x: (
-        float(np.linalg.norm(np.cross(*x))) > PARALLEL * float(np.prod(np.linalg.norm(x, axis=1)))
+        float(np.linalg.norm(np.cross(*x))) > 1e-9 * float(np.prod(np.linalg.norm(x, axis=1)))
     ),
 )
 DIRECTION = Requirement(
