@@ -39,7 +39,6 @@ from modefront import fem
 from modefront.models.mesh import mesh_model
 from modefront.study import session
 from modefront.study.examples import write_example
-from modefront.study.processes import processes
 from modefront.work.run import Run
 from modefront.work.task import R, Task
 from modefront.work.workers import Workers, backend
@@ -137,9 +136,9 @@ def done(make: Callable[[], mf.Study], workers: int) -> tuple[Any, dict[str, flo
     """
     before = set(multiprocessing.active_children())
     started, first = time.perf_counter(), time.process_time()
-    with processes(workers, None) as carrier:
+    with backend(workers) as carrier:
         work = Timed(backend=carrier)
-        data = session._Session(make().completed(), work).results()
+        data = session.worked(make().completed(), work)
         others = set(multiprocessing.active_children()) - before
         busy = [time.process_time() - first, *(processor_seconds(each.pid) for each in others)]
     return data, work.seconds | {"whole study": time.perf_counter() - started}, busy

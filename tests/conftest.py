@@ -16,7 +16,7 @@ from hypothesis import settings
 from refusals import Check, command
 from threadpoolctl import threadpool_limits
 
-from modefront.study.extensions import FAMILIES
+from modefront.study.schema import FAMILIES
 from modefront.work.costs import Costs, counted
 
 # Threads wait for each other on small matrices. SciPy brings a BLAS of its own: `scipy.linalg`.

@@ -16,7 +16,7 @@ LAYERS = (
     ("errors", "variables"),
     ("complete", "families", "inputs", "hdf5", "json_schema"),
     ("isolated", "options"),
-    ("toml", "linalg", "response", "work"),
+    ("linalg", "response", "work"),
     ("data", "fem", "modes", "optim", "reliability"),
     ("front", "identification", "pairing"),
     ("models",),

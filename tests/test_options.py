@@ -13,8 +13,8 @@ import pytest
 
 import modefront as mf
 from modefront.front import methods
+from modefront.study.definition import Labels
 from modefront.study.examples import write_example
-from modefront.study.labels import labels_of
 from modefront.work.costs import counted
 
 METHODS = "'nbi', 'weights', 'spea2', 'nsga2'"
@@ -227,8 +227,8 @@ def test_weights_check_themselves() -> None:
     assert (fault.place, fault.expected) == ("weights c", "the name of a group")
 
 
-def test_labels_of_a_study_are_those_that_results_have(study: Path) -> None:
-    labels = labels_of(["frequencies", "shapes"])
+def test_Labels_a_study_are_those_that_results_have(study: Path) -> None:
+    labels = Labels(["frequencies", "shapes"])
     for name in ("nbi-1", "nsga2-400", "edge-shapes", "equal-weights", "identifiable-3"):
         assert name in labels
     for name in ("nbi", "nbi-", "nbi-x", "edge-others", "near-shapes", "sample", "second-1"):

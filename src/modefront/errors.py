@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import difflib
 import errno
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 from modefront.text import NAME, clean, one_line, shortened
 
@@ -110,6 +112,16 @@ def refuse(faults: Iterable[Fault]) -> None:
     """Raise InputError where there are faults."""
     if found := tuple(faults):
         raise InputError(found)
+
+
+@contextmanager
+def writing(folder: Path) -> Iterator[None]:
+    """Raise InputError, with the reason, where a folder cannot be written to."""
+    try:
+        yield
+    except OSError as error:
+        expected = "a folder that can be written to"
+        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
 
 
 def reason(error: BaseException) -> str:

@@ -91,7 +91,6 @@ class Family(Mapping[str, T], Generic[T]):
 
 @cache
 def _entry_points() -> Any:
-    """Return those of all installed packages, which takes time to find out."""
-    from importlib.metadata import entry_points
+    from importlib.metadata import entry_points  # takes time, as does finding them
 
     return entry_points()

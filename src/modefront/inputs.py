@@ -27,13 +27,13 @@ MOST_DATA = 2000 * MEGABYTE
 MOST_TABLES = 64 * MEGABYTE
 """Bytes of a TOML file, at most. Chosen against files that fill the memory when parsed."""
 
-KINDS = (
-    (stat.S_ISDIR, "a folder"),
-    (stat.S_ISFIFO, "a pipe"),
-    (stat.S_ISSOCK, "a socket"),
-    (stat.S_ISCHR, "a device"),
-    (stat.S_ISBLK, "a device"),
-)
+KINDS = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFSOCK: "a socket",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+}
 """Names of the kinds of files that are not regular."""
 
 HDF5, USER_BLOCK = b"\x89HDF\r\n\x1a\n", 512
@@ -67,9 +67,8 @@ def file_size(path: Path, expected: str, most: int | None = None) -> int:
         raise wrong(path, expected, "no such file") from None
     except (OSError, ValueError) as error:  # ValueError where the name holds a null
         raise wrong(path, expected, reason(error)) from None
-    for is_kind, words in KINDS:
-        if is_kind(status.st_mode):
-            raise wrong(path, expected, words)
+    if kind := KINDS.get(stat.S_IFMT(status.st_mode)):
+        raise wrong(path, expected, kind)
     if most is not None and status.st_size > most:
         limit = f"{expected} of up to {most / MEGABYTE:g} MB"
         raise wrong(path, limit, f"{status.st_size / MEGABYTE:.6g} MB")

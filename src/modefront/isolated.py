@@ -13,13 +13,12 @@ import atexit
 import importlib
 import json
 import os
-import queue
 import signal
 import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import astuple
 from pathlib import Path
@@ -29,26 +28,15 @@ import numpy as np
 
 from modefront.errors import Fault, InputError, reason
 from modefront.inputs import available_memory
-from modefront.outputs import output, write_text
+from modefront.outputs import output
 from modefront.text import one_line
-
-MOST_OUTPUT = 20_000
-"""Bytes of what a process prints that are looked at."""
 
 LEAST_SECONDS, SPEED = 60.0, 10**6
 """Time that reading may take, and bytes that are read a second at least besides: chosen against
 readers that do not end, far above what whole files take."""
 
-GRACE = 30.0
-"""Seconds that a server may take to start and to answer, besides the time for reading."""
-
-CRASHED = 255
-"""Exit status above which a process was ended by the system, on Windows."""
-
-ARRAYS, TEXTS, OUTPUT = "arrays.npz", "texts.json", "output.txt"
-
-REFUSED = 2
-"""Exit status of a reader that raised InputError, whose faults are the texts."""
+TEXTS = "texts and numbers"
+"""Name among the arrays of all that is none, as JSON."""
 
 Read = tuple[dict[str, np.ndarray[Any, Any]], Any]
 """Arrays by name, and texts and numbers as JSON has them."""
@@ -90,29 +78,27 @@ def isolated(
         return _called(function, path, arguments)
     seconds = seconds or LEAST_SECONDS + _size(path) / SPEED
     memory = memory or available_memory()
-    with tempfile.TemporaryDirectory(prefix="modefront-") as name:
-        folder = Path(name)
+    with tempfile.TemporaryDirectory(prefix="modefront-") as folder:
+        answer = Path(folder) / "answer.npz"
         called = [str(path), *arguments]
-        status = _SERVER.status([function, called, name, seconds, memory, str(Path.cwd())], seconds)
-        printed = ""
-        with suppress(OSError), (folder / OUTPUT).open("rb") as stream:
-            printed = stream.read(MOST_OUTPUT).decode("utf-8", "replace")
+        request = [function, called, str(answer), seconds, memory, str(Path.cwd())]
+        status = _SERVER.status(request, seconds)
         if status is None or status == -getattr(signal, "SIGALRM", 0):
             text = f"nothing within {seconds:.0f} s, after which reading was given up"
             raise IsolatedError(text)
-        if status < 0 or status > CRASHED:
+        if status < 0 or status > 255:  # ended by the system, on Windows with such a status
             raise IsolatedError(f"a file that ends its reader (signal {abs(status)})")
-        if status == REFUSED:
-            texts = json.loads((folder / TEXTS).read_text(encoding="ascii"))
-            raise InputError(Fault(*parts) for parts in texts)
-        if status:
-            raise IsolatedError(one_line(printed, 400) or f"status {status} of the reader")
         try:
-            with np.load(folder / ARRAYS, allow_pickle=False) as file:
+            with np.load(answer, allow_pickle=False) as file:
                 arrays = {each: file[each] for each in file.files}
-            return arrays, json.loads((folder / TEXTS).read_text(encoding="ascii"))
-        except (OSError, ValueError) as error:
-            raise IsolatedError(f"nothing that can be used: {reason(error)}") from None
+            error, found = json.loads(arrays.pop(TEXTS).tobytes())
+        except (OSError, ValueError, KeyError) as wrong:
+            raise IsolatedError(f"nothing that can be used: {reason(wrong)}") from None
+    if error == "faults":
+        raise InputError(Fault(*parts) for parts in found)
+    if error:
+        raise IsolatedError(one_line(error, 400))
+    return arrays, found
 
 
 _INSIDE = False
@@ -151,36 +137,38 @@ class _Server:
     def status(self, request: Sequence[object], seconds: float) -> int | None:
         """Return how the reading of a file has ended; None where it has not."""
         with self._lock:
-            process = self._started()
+            process, late = self._started(), threading.Event()
+
+            def give_up() -> None:
+                late.set()
+                _kill(process)
+
             assert process.stdin is not None
+            assert process.stdout is not None
+            timer = threading.Timer(seconds + 30, give_up)  # s to start and to answer
+            timer.start()
+            line = ""
             try:
                 with suppress(BrokenPipeError):  # it has ended, and says so below
                     process.stdin.write(json.dumps(request) + "\n")
                     process.stdin.flush()
-                line = _line(process, seconds + GRACE)
-            except BaseException:  # an interrupt
-                self.end()
-                raise
-            if line is None:
-                self.end()
-                return None
-            if line:
-                return int(line)
-            code = process.wait()
-            self.end()
-            return code
+                line = process.stdout.readline()
+                if line:
+                    return int(line)
+                code = process.wait()
+                return None if late.is_set() else code
+            finally:
+                timer.cancel()
+                if not line:  # it has ended, or there was an interrupt
+                    self.end()
 
     def end(self) -> None:
         """End the process, with what it has started, if this process owns it."""
         process, self._process = self._process, None
-        if process is None or self._owner != os.getpid():
-            return
-        if hasattr(os, "killpg"):
-            with suppress(OSError):
-                os.killpg(process.pid, signal.SIGKILL)
-        process.kill()
-        with suppress(BrokenPipeError):
-            process.communicate()
+        if process is not None and self._owner == os.getpid():
+            _kill(process)
+            with suppress(BrokenPipeError):
+                process.communicate()
 
     def _started(self) -> subprocess.Popen[str]:
         if self._process is not None and self._owner == os.getpid():
@@ -207,67 +195,59 @@ _SERVER = _Server()
 atexit.register(_SERVER.end)
 
 
-def _line(process: subprocess.Popen[str], seconds: float) -> str | None:
-    """Return the next line that a process prints, empty where it ends; None after some time."""
-    assert process.stdout is not None
-    lines: queue.Queue[str] = queue.Queue()
-    read: Callable[[], str] = process.stdout.readline
-    threading.Thread(target=lambda: lines.put(read()), daemon=True).start()
-    try:
-        return lines.get(timeout=seconds)
-    except queue.Empty:
-        return None
+def _kill(process: subprocess.Popen[str]) -> None:
+    if hasattr(os, "killpg"):
+        with suppress(OSError):
+            os.killpg(process.pid, signal.SIGKILL)
+    process.kill()
 
 
 def serve() -> None:
     """Have files read, one request a line, until there are no more."""
     for line in sys.stdin:
-        function, called, folder, seconds, memory, work = json.loads(line)
+        function, called, answer, seconds, memory, work = json.loads(line)
         if not hasattr(os, "fork"):
-            status = _read(function, called, folder, memory, work)
-            print(status, flush=True)
+            _read(function, called, answer, memory, work)
+            print(0, flush=True)
             return
         with suppress(Exception):  # what fails fails again, and is said, below
             importlib.import_module(function.split(":")[0])
         child = os.fork()
         if not child:
             signal.setitimer(signal.ITIMER_REAL, seconds)
-            os._exit(_read(function, called, folder, memory, work))
+            _read(function, called, answer, memory, work)
+            os._exit(0)
         print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
 
 
-def _read(function: str, called: Sequence[str], folder: str, memory: int, work: str) -> int:
-    """Read one file into a folder, and return the exit status; what is printed goes there."""
+def _read(function: str, called: Sequence[str], answer: str, memory: int, work: str) -> None:
+    """Read one file, and write what it holds, or what is wrong with it, into another."""
     global _INSIDE
     _INSIDE = True
-    printed = os.open(Path(folder) / OUTPUT, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    answers = os.dup(1)
+
+    def write(error: str, found: object, arrays: Mapping[str, Any]) -> None:
+        texts = np.frombuffer(json.dumps([error, found]).encode(), np.uint8)
+        with output(Path(answer)) as stream:
+            np.savez(stream, allow_pickle=False, **{**arrays, TEXTS: texts})
+
+    # What is printed goes nowhere.
+    nowhere, answers = os.open(os.devnull, os.O_WRONLY), os.dup(1)
     for number in (1, 2):
-        os.dup2(printed, number)
+        os.dup2(nowhere, number)
     path, *arguments = called
-    message, status = "", 0
     try:
         os.chdir(work)
         limit(memory)
         arrays, texts = _called(function, Path(path), arguments)
-        named: Mapping[str, Any] = arrays
-        with output(Path(folder) / ARRAYS) as stream:
-            np.savez(stream, allow_pickle=False, **named)
-        write_text(Path(folder) / TEXTS, json.dumps(texts))
+        write("", texts, arrays)
     except InputError as error:
-        write_text(Path(folder) / TEXTS, json.dumps([astuple(fault) for fault in error.faults]))
-        status = REFUSED
+        write("faults", [astuple(fault) for fault in error.faults], {})
     except MemoryError:
-        message = f"a file that takes more than {memory / 1e9:.2g} GB to be read"
+        write(f"a file that takes more than {memory / 1e9:.2g} GB to be read", None, {})
     except Exception as error:
-        message = str(error) or type(error).__name__
+        write(str(error) or type(error).__name__, None, {})
     sys.stdout.flush()
-    if message:
-        os.ftruncate(printed, 0)
-        os.lseek(printed, 0, os.SEEK_SET)
-        os.write(printed, message.encode("utf-8", "replace"))
     os.dup2(answers, 1)
-    return 1 if message else status
 
 
 def limit(memory: int) -> None:

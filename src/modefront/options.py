@@ -4,7 +4,9 @@ An option is a field of a frozen dataclass. Its annotation has its requirement: 
 ``Annotated`` with a `Requirement`, or with a function that returns one when it is needed; ``None``
 besides, where the annotation has it. `check_fields`, called from ``__post_init__``, compares all
 fields with their requirements and brings their values into plain Python: the same record is made
-from TOML (`modefront.toml.Table`), from literals and from numpy scalars.
+from TOML, from literals and from numpy scalars.
+
+A `Table` of a TOML file reads its keys by the same requirements, and collects the faults.
 """
 
 from __future__ import annotations
@@ -12,20 +14,27 @@ from __future__ import annotations
 import inspect
 import math
 import re
+import tomllib
 import types
 import typing
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, fields
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import MISSING, dataclass, field, fields, replace
 from enum import Enum
 from itertools import pairwise
-from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from modefront.errors import Fault, refuse
+from modefront.errors import Fault, InputError, reason, refuse, suggestion
+from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.json_schema import NAME, NUMBER, TABLE, Schema, array, closed, fits, whole_number
 from modefront.rounding import LARGEST
+from modefront.text import NAME as LENGTH
+from modefront.text import clean
+
+T = TypeVar("T")
 
 WITHOUT = "Without it: "
 """What a description says before the default of a key, where that is no single value."""
@@ -47,6 +56,7 @@ class Requirement:
     record : the class of a nested record, read from a table within the table; None for a value
     entries : schema of a table with its entries, where these are read one by one and what is wrong
         is said of each; empty where ``schema`` says all
+    read : reads such a table, given the `Table` with it and its key
     """
 
     expected: str
@@ -55,6 +65,7 @@ class Requirement:
     further: Callable[[Any], bool] = lambda _: True
     record: type | None = None
     entries: Schema = field(default_factory=dict)
+    read: Callable[[Table, str], Any] | None = None
 
     def holds(self, value: Any) -> bool:
         """Return whether a value in plain Python is so."""
@@ -135,7 +146,7 @@ TRUE_OR_FALSE = Requirement("true or false", {"type": "boolean"})
 
 @dataclass(frozen=True)
 class Option:
-    """A field of a record of options.
+    """A key of a table, and the field of that name where a record of options is made of it.
 
     Attributes
     ----------
@@ -149,8 +160,8 @@ class Option:
 
     name: str
     requirement: Requirement
-    optional: bool
-    required: bool
+    optional: bool = False
+    required: bool = False
     default: Any = None
     meaning: str = ""
 
@@ -164,10 +175,17 @@ class Option:
         return {**self.requirement.described, **said, **known}
 
 
+def keys(required: Sequence[str], **known: Requirement) -> tuple[Option, ...]:
+    """Return the keys of a table that is no record of options."""
+    return tuple(Option(name, each, required=name in required) for name, each in known.items())
+
+
 def options(record: type) -> tuple[Option, ...]:
     """Return the fields of a class of records that have requirements."""
     hints = get_type_hints(record, include_extras=True)
-    meanings = _meanings(inspect.getdoc(record) or "")
+    _, _, section = (inspect.getdoc(record) or "").partition("Attributes\n----------\n")
+    said = re.findall(r"^(\w+) : (.*(?:\n    .*)*)", section, re.MULTILINE)
+    meanings = {name: " ".join(text.split()).replace("``", "`") for name, text in said}
     out = []
     for each in fields(record):
         requirement = _requirement(hints[each.name])
@@ -180,13 +198,6 @@ def options(record: type) -> tuple[Option, ...]:
             meaning = meanings.get(each.name, "")
             out.append(Option(each.name, requirement, optional, required, default, meaning))
     return tuple(out)
-
-
-def _meanings(docstring: str) -> dict[str, str]:
-    """Return what a docstring says of each attribute."""
-    _, _, section = docstring.partition("Attributes\n----------\n")
-    found = re.findall(r"^(\w+) : (.*(?:\n    .*)*)", section, re.MULTILINE)
-    return {name: " ".join(meaning.split()).replace("``", "`") for name, meaning in found}
 
 
 def schema_of(record: type) -> Schema:
@@ -278,3 +289,189 @@ def shown(value: object) -> str:
     if isinstance(known, int | float) and LARGEST < abs(known) < math.inf:
         return f"a number beyond {LARGEST:g}"
     return str(known)
+
+
+@dataclass
+class Table:
+    """One table of a TOML file.
+
+    Readers of values return a default where there is no value, and note a fault and return None
+    where there is none either (a default of ``...``); a value that is wrong is a fault, too.
+
+    Attributes
+    ----------
+    file : the TOML file
+    place : where the table is in it, for messages; empty for the top level
+    values : what the table holds
+    faults : all that is wrong with the file, shared by its tables
+    requested : keys that were read or are known
+    files : paths of the files that the tables name, shared by them; see `path`
+    notes : records of what was found beside faults, shared by the tables
+    """
+
+    file: str
+    place: str
+    values: dict[str, Any]
+    faults: list[Fault]
+    requested: list[str] = field(default_factory=list)
+    files: list[Path] = field(default_factory=list)
+    notes: list[object] = field(default_factory=list)
+
+    def fault(self, key: str, expected: str, found: str) -> None:
+        """Note that something is wrong; an empty key means the table itself."""
+        known = key if key.isprintable() else repr(key)
+        place = f"{self.place} {known}".strip() or "top level"
+        self.faults.append(Fault(self.file, place, expected, found))
+
+    def note(self, faults: Iterable[Fault]) -> None:
+        """Note faults whose places are keys of the table."""
+        for fault in faults:
+            self.fault(fault.place, fault.expected, fault.found)
+
+    def path(self, name: str) -> Path:
+        """Return the path of a file that a table names, relative to the TOML file, and note it.
+
+        What a file is read for depends on all files noted in ``files``.
+        """
+        path = Path(self.file).parent / name
+        if path not in self.files:
+            self.files.append(path)
+        return path
+
+    def value(self, key: str, requirement: Requirement, default: Any = ...) -> Any:
+        """Return a value that meets a requirement."""
+        self.requested.append(key)
+        value = self.values.get(key)
+        if value is None and default is not ...:
+            return default
+        if value is not None and requirement.holds(value):
+            return requirement.read(self, key) if requirement.read else requirement.convert(value)
+        self.fault(key, requirement.expected, "nothing" if value is None else shown(value))
+        return None if default is ... else default
+
+    def take(self, key: str, expected: str, test: Callable[[Any], bool], default: Any) -> Any:
+        """Return a value that passes a test."""
+        return self.value(key, Requirement(expected, {}, further=test), default)
+
+    def text(self, key: str, expected: str = "a text", default: Any = ...) -> Any:
+        """Return a text of printable characters that is not empty."""
+        return self.value(key, text(expected), default)
+
+    def choice(self, key: str, choices: Sequence[str], default: Any = ...) -> Any:
+        """Return one of some texts."""
+        return self.value(key, one_of(*choices), default)
+
+    def number(self, key: str, expected: str, default: Any = ..., **limits: float) -> Any:
+        """Return a finite number within limits, those of `number`."""
+        return self.value(key, number(expected, **limits), default)
+
+    def read(self, known: Iterable[Option]) -> dict[str, Any] | None:
+        """Return the values of keys that are given, None where anything is wrong with the table."""
+        before = len(self.faults)
+        values: dict[str, Any] = {}
+        for option in known:
+            name, requirement = option.name, option.requirement
+            given = self.values.get(name)
+            if given is None and not option.required:
+                self.requested.append(name)
+            elif requirement.record and isinstance(given, dict):
+                inner = self.table(name)
+                values[name] = inner and inner.record(requirement.record)
+            elif not requirement.schema:
+                self.requested.append(name)  # a reader of its own says what is wrong with it
+                values[name] = given
+            else:
+                values[name] = self.value(name, requirement)
+        self.close()
+        return values if len(self.faults) == before else None
+
+    def record(self, record: type[T]) -> T | None:
+        """Return the record of options that the table describes, None where something is wrong.
+
+        Keys are its fields. Everything that is wrong is noted: single values first, and where these
+        are right, what contradicts another.
+        """
+        values = self.read(options(record))
+        try:
+            return None if values is None else record(**values)
+        except InputError as error:
+            self.note(error.faults)
+            return None
+
+    def table(self, key: str, expected: str = "a table", default: Any = ...) -> Table | None:
+        """Return a table within this one."""
+        value = self.take(key, expected, lambda x: isinstance(x, dict), default)
+        if value is None:
+            return None
+        place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
+        return replace(self, place=place, values=value, requested=[])
+
+    def entries(
+        self, key: str, each: str, least: str = "", *, required: bool = True
+    ) -> Iterator[tuple[str, Table]]:
+        """Yield the tables within a table by their names; ``each`` says in words what one holds.
+
+        ``least`` is what one of them is called where there has to be one.
+        """
+        table = self.table(key, f"a table of {key.removesuffix('s')}s", ... if required else None)
+        if table and least and not table.values:
+            table.fault("", f"at least one {least}", "none")
+        for name in table.values if table else ():
+            if table and (entry := table.table(name, each)):
+                yield name, entry
+
+    def content(self, key: str, read: Callable[[Path], T]) -> T | None:
+        """Return what is read from a file, None without its name; note what is wrong with it."""
+        name: Any = self.values.get(key)
+        try:
+            return read(self.path(name)) if is_name(name) else None
+        except InputError as error:
+            self.faults.extend(error.faults)
+            return None
+
+    def names(self, key: str) -> dict[str, str]:
+        """Return a table of names for names, such as those of columns; an empty one without it."""
+        table = self.table(key, "a table, name in the file = name here", None)
+        found = {name: table.text(name) for name in table.values} if table is not None else {}
+        return {name: text for name, text in found.items() if text is not None}
+
+    def tables(self, key: str, required: bool) -> list[Table]:
+        """Return the tables of a list, such as ``[[parameter]]``."""
+        path = f"{self.place.strip('[]')}.{key}" if self.place else key
+        value = self.take(
+            key,
+            f"at least one table [[{path}]]" if required else f"tables [[{path}]]",
+            lambda x: isinstance(x, list) and bool(x) and all(isinstance(y, dict) for y in x),
+            ... if required else [],
+        )
+        out = []
+        for k, item in enumerate(value or [], start=1):
+            named = f" ({item['name']!r})" if isinstance(item.get("name"), str) else ""
+            place = f"[[{path}]] {k}{named}"
+            out.append(replace(self, place=place, values=item, requested=[]))
+        return out
+
+    def close(self) -> None:
+        """Note every unknown key, once."""
+        known = set(self.requested)
+        for k, key in enumerate(key for key in self.values if key not in known):
+            found = suggestion(key, self.requested) if k < 20 else repr(clean(key, LENGTH))
+            self.fault("", "a known key", found)
+        self.requested += self.values
+
+
+def read_toml(path: Path, expected: str) -> tuple[Table, bytes]:
+    """Return the top level of a TOML file, and its content.
+
+    Raises InputError where it cannot be read; ``expected`` says what it should be.
+    """
+    content = read_text_bytes(path, expected, MOST_TABLES)
+    try:
+        return Table(str(path), "", tomllib.loads(content.decode("utf-8-sig")), []), content
+    except (ValueError, RecursionError) as error:
+        raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
+
+
+def names_of(tables: Iterable[Table]) -> list[str]:
+    """Return what tables of a list say as their names."""
+    return [name for table in tables if isinstance(name := table.values.get("name"), str)]

@@ -19,9 +19,6 @@ from pathlib import Path
 ENDING = ".tmp"
 """Ending of files that are not yet written to the end."""
 
-KEPT = 40
-"""Characters of its name that a file has while it is written."""
-
 MASK = os.umask(0o077)
 """Permissions that new files of this process do not have; read once, as reading changes it."""
 os.umask(MASK)
@@ -34,12 +31,16 @@ def output(path: Path, *, lasting: bool = False) -> Iterator[io.BufferedRandom]:
     It has the permissions of the file that was there, or those of any new file. A ``lasting`` one
     is on the drive before it takes its place. Raises OSError where it cannot be written.
     """
-    descriptor, name = tempfile.mkstemp(ENDING, f".{path.name[:KEPT]}-", path.parent)
+    descriptor, name = tempfile.mkstemp(ENDING, f".{path.name[:40]}-", path.parent)
     try:
         with os.fdopen(descriptor, "w+b") as stream:
+            mode = 0o666 & ~MASK
+            with suppress(OSError):
+                known = path.lstat().st_mode
+                mode = stat.S_IMODE(known) & 0o777 if stat.S_ISREG(known) else mode
             if hasattr(os, "fchmod"):
                 with suppress(OSError):  # drives without permissions
-                    os.fchmod(descriptor, _permissions(path))
+                    os.fchmod(descriptor, mode)
             yield stream
             stream.flush()
             if lasting:
@@ -81,11 +82,3 @@ def remove_unfinished(folder: Path, name: str = "") -> None:
     """Remove what processes that were killed have not written to the end, of a file or of all."""
     for path in folder.glob(f".{name}*{ENDING}"):
         path.unlink(missing_ok=True)
-
-
-def _permissions(path: Path) -> int:
-    with suppress(OSError):
-        mode = path.lstat().st_mode
-        if stat.S_ISREG(mode):
-            return stat.S_IMODE(mode) & 0o777
-    return 0o666 & ~MASK

@@ -12,8 +12,7 @@ import scipy.sparse
 
 import modefront as mf
 from modefront.identifiability.combinations import NONE, combinations
-from modefront.study.check import determined
-from modefront.study.derivatives import derivative_error
+from modefront.study.check import compared, determined
 
 FILE = Path(__file__).parents[3] / "shared" / "data" / "smu" / "story18_exp.npz"
 STORIES = 18
@@ -73,7 +72,7 @@ def test_the_check_says_so_in_words(frame: mf.UpdatingProblem) -> None:
     assert shapes.endswith("; and 5 more: no shape changes")
     assert together.startswith("all data together determine 12 of 18 combinations of parameters")
     assert "; and 3 more: no residual changes" in together
-    assert derivative_error(frame) < 1e-5
+    assert compared(frame).error < 1e-5
 
 
 @pytest.mark.slow(5)

@@ -13,9 +13,8 @@ from modefront.errors import InputError
 from modefront.models.chain import chain
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
-from modefront.study.check import check
+from modefront.study.check import cause_of, check, compared
 from modefront.study.definition import Study
-from modefront.study.derivatives import cause_of, compared, derivative_error
 from modefront.study.examples import write_example
 from modefront.study.file import load
 from modefront.study.session import run
@@ -32,13 +31,13 @@ def test_derivatives_are_proved_however_narrow_the_bounds(width: float, study: S
     problem = study.problem
     unit = np.ones(3)
     narrow = replace(problem, lower=(1 - width) * unit, upper=(1 + width) * unit, start=unit)
-    assert derivative_error(narrow) < 1e-9
+    assert compared(narrow).error < 1e-9
 
 
 def test_derivatives_are_proved_however_wide_the_bounds(study: Study) -> None:
     problem = study.problem
     wide = replace(problem, lower=np.full(3, 1e-6), upper=np.full(3, 1e6))
-    assert derivative_error(wide) < 1e-9
+    assert compared(wide).error < 1e-9
 
 
 def test_what_the_data_determine_is_said(study: Study) -> None:
@@ -92,7 +91,7 @@ def test_derivatives_are_proved_for_many_residuals_near_a_minimum() -> None:
     groups = [Group("frequencies", frequency="all"), Group("shapes", shape="all")]
     bounds = dict.fromkeys(k, (0.2, 5.0))
     problem = updating_problem(model, data, groups, bounds, dict.fromkeys(k, 1.0))
-    assert derivative_error(problem) < 1e-6
+    assert compared(problem).error < 1e-6
 
 
 def test_of_many_data_sets_some_are_searched_for_mistakes(study: Study) -> None:

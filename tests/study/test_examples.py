@@ -1,5 +1,6 @@
 """The examples that ``init`` writes."""
 
+import re
 import runpy
 import shutil
 import sys
@@ -104,6 +105,28 @@ def test_a_model_of_a_wrong_class_is_refused(tmp_path: Path) -> None:
     results = solved("wrong-class", "study.toml", tmp_path)
     assert results.verdict[0].startswith("Do not use any of these models: errors of frequencies")
     assert results.attrs["reference"] == ""
+
+
+@pytest.mark.slow(4)
+def test_the_script_simulates_the_modal_tests_that_are_shipped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shipped, made = tmp_path / "shipped", tmp_path / "made"
+    for name in ("hammer-test", "ambient-test"):
+        write_example(name, shipped / name)
+        (made / name).mkdir(parents=True)
+        for file in (shipped / name).glob("test*.toml"):
+            shutil.copy(file, made / name)
+    monkeypatch.setattr(sys, "argv", ["modal_tests.py", str(made)])
+    runpy.run_path(str(EXAMPLES / "modal_tests.py"), run_name="__main__")
+    files = list(made.rglob("*.csv"))
+    assert len(files) == 12 + 2 + 3
+    for file in files:
+        text, expected = (x.read_text() for x in (file, shipped / file.relative_to(made)))
+        again, numbers = (
+            np.array([float(x) for x in re.findall(r"-?\d[\d.e+-]*", t)]) for t in (text, expected)
+        )
+        assert again == pytest.approx(numbers, rel=1e-3, abs=1e-6)
 
 
 def test_the_script_makes_the_measurements_that_are_shipped(

@@ -20,11 +20,11 @@ import modefront as mf
 from modefront._typing import Bools, Floats, Ints
 from modefront.front.methods import METHODS
 from modefront.modes.result import Modes
+from modefront.options import Table
 from modefront.pairing.match import Pairs
 from modefront.residuals.base import Curvature, Member, ModeErrors, Scale, Sensitivity
 from modefront.results.files import read_dataset
-from modefront.study.extensions import FAMILIES
-from modefront.toml import Table
+from modefront.study.schema import FAMILIES
 
 CHAIN = STUDY[STUDY.index("[model]") : STUDY.index("[[parameter]]")]
 

@@ -16,11 +16,11 @@ from modefront.front.search import Search
 from modefront.models.base import Model
 from modefront.models.chain import chain
 from modefront.models.files import read_matrix
+from modefront.options import Table
 from modefront.pairing.match import Pairing
 from modefront.residuals.groups import Group
 from modefront.study.definition import Study
 from modefront.study.file import load
-from modefront.toml import Table
 
 HEAD = """
 [study]

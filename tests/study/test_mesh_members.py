@@ -10,8 +10,8 @@ import pytest
 
 import modefront as mf
 from modefront import fem
+from modefront.options import Table
 from modefront.study.kinds.mesh import read_mesh_model
-from modefront.toml import Table
 
 meshio = pytest.importorskip("meshio")
 

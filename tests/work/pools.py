@@ -9,8 +9,8 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 
 from modefront.work import transfer
-from modefront.work.pools import Loss
 from modefront.work.transfer import Message, Reply
+from modefront.work.workers import Loss
 
 
 @dataclass

@@ -80,7 +80,7 @@ def test_each_task_has_its_own_costs_and_all_of_them_add_up(costs: Costs) -> Non
     spend(Costs(eigenproblems=100))
     work.run(squares(1, 2))
     work.run([Task(("other", "x"), square, (5,))])
-    assert {key: each.eigenproblems for key, each in work.costs.items()} == {
+    assert {key: each.eigenproblems for (key, _), each in work.costs.items()} == {
         ("square", 1): 1,
         ("square", 2): 2,
         ("other", "x"): 5,

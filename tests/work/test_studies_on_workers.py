@@ -26,10 +26,9 @@ import modefront as mf
 from modefront.errors import InputError, UnfinishedError
 from modefront.study import session
 from modefront.work import workers as module
-from modefront.work.pools import Cluster, LocalPool, Pool
 from modefront.work.progress import Progress, State
 from modefront.work.store import locked
-from modefront.work.workers import Workers
+from modefront.work.workers import Cluster, LocalPool, Pool, Workers
 
 # A scheduler that is gone leaves half-open connections, which Dask closes as they are collected.
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning")
@@ -139,7 +138,7 @@ def test_results_do_not_depend_on_who_does_the_work(
     files = sorted(x.name for x in (tmp_path / "one").rglob("*.npz"))
     for name in names:
         with monkeypatch.context() as patch:
-            patch.setattr(session, "processes", lambda *_, x=pools[name]: nullcontext(x))
+            patch.setattr(session, "backend", lambda *_, x=pools[name]: nullcontext(x))
             result = mf.run(of(tmp_path), tmp_path / name).dataset
         xr.testing.assert_identical(result, expected)
         assert sorted(x.name for x in (tmp_path / name).rglob("*.npz")) == files
@@ -184,7 +183,7 @@ def test_a_run_whose_scheduler_is_gone_ends_and_a_later_one_goes_on(tmp_path: Pa
 
 def test_a_cluster_that_is_none_is_refused_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("modefront.work.pools.ANSWER", 0.3)
+    monkeypatch.setattr("modefront.work.workers.ANSWER", 0.3)
     with pytest.raises(InputError, match="--scheduler: expected an address like tcp"):
         Cluster("nonsense:////")
     with pytest.raises(UnfinishedError, match=r"no Dask scheduler answers at tcp://127.0.0.1:9"):
@@ -215,7 +214,7 @@ def ends(group: int) -> bool:
 def test_processes_of_a_pool_never_see_interrupts_of_the_terminal() -> None:
     code = """if __name__ == "__main__":
     import multiprocessing, pathlib, re, signal
-    from modefront.work.pools import LocalPool
+    from modefront.work.workers import LocalPool
     pool = LocalPool(2)
     for process in multiprocessing.active_children():
         text = pathlib.Path(f"/proc/{process.pid}/status").read_text()

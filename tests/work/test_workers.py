@@ -257,7 +257,7 @@ def test_processes_import_only_what_most_tasks_need() -> None:
     spared = "click", "rich", "xarray", "pandas", "h5py", "scipy.optimize", "scipy.stats"
     code = (
         "import sys, importlib, modefront.__main__\n"
-        "from modefront.study.processes import WARM\n"
+        "from modefront.work.workers import WARM\n"
         "for name in WARM: importlib.import_module(name)\n"
         f"sys.exit(' '.join({{*{spared}, 'modefront.fem.structure'}} & set(sys.modules)) or 0)"
     )

@@ -162,10 +162,10 @@ def run(
     scheduler: str | None,
 ) -> None:
     """Do the work of STUDY; continue where an interrupted run stopped."""
-    from modefront.study.processes import processes
+    from modefront.work.workers import backend
 
     directory = directory or study.with_name(f"{study.stem}-results")
-    carrier = processes(workers, scheduler)
+    carrier: AbstractContextManager[Backend] = backend(workers, scheduler)
     with ExitStack() as early:
         if scheduler is None:  # they start while the study is read
             carrier = nullcontext(early.enter_context(carrier))

@@ -24,8 +24,7 @@ from modefront.data.uff import read_uff
 from modefront.errors import Fault, InputError, refuse, suggestion
 from modefront.inputs import wrong
 from modefront.json_schema import NOT_NEGATIVE, array
-from modefront.options import is_name, numbers, repeated, rising
-from modefront.toml import Table, read_toml
+from modefront.options import Table, is_name, numbers, read_toml, repeated, rising
 
 KINDS = ("hammer", "ambient")
 """Kinds of tests."""

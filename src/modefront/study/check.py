@@ -1,20 +1,33 @@
-"""Check of a study before it is run: mistakes, derivatives, undetermined parameters."""
+r"""Check of a study before it is run: mistakes, derivatives, undetermined parameters.
+
+Derivatives are compared with central differences along directions d, with two steps, extrapolated:
+
+.. math:: \frac{4\,\Delta(h/2) - \Delta(h)}{3}, \qquad
+    \Delta(h) = \frac{r(\theta + h d) - r(\theta - h d)}{2 h} .
+
+A direction is one parameter; of many parameters, several are changed together. The residuals are
+compared, and not the objectives, whose derivatives cancel near a minimum; modes keep their pairs. A
+step changes the residuals by a given small amount, root mean square: steps that follow narrow
+bounds, or the length of many residuals together, would drown in rounding, and those that follow
+wide ones see no tangent.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from modefront._typing import Floats
 from modefront.brief import as_html
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
 from modefront.diagnosis.notes import Note
 from modefront.diagnosis.pairs import PairRemark
 from modefront.diagnosis.search import Found, diagnose
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
-from modefront.errors import Fault, InputError, ModelError
+from modefront.errors import Fault, ModelError, refuse
 from modefront.findings.knowledge import (
     SHOWN,
     alike,
@@ -26,7 +39,6 @@ from modefront.findings.knowledge import (
 from modefront.identifiability.combinations import (
     NONE,
     WEAK,
-    Combination,
     combinations,
     gram,
     optimal_weights,
@@ -35,12 +47,25 @@ from modefront.identifiability.combinations import (
 )
 from modefront.identifiability.scale import Scale, scale_at
 from modefront.inputs import available_memory
-from modefront.models.base import Model, full_of
+from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel
 from modefront.optim.problem import Evaluation
+from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
+from modefront.rounding import TINY
 from modefront.study.definition import Study
-from modefront.study.derivatives import AGREEMENT, cause_of, compared
+
+AGREEMENT = 1e-5
+"""Greatest relative error of derivatives that finite differences explain."""
+
+STEP = 2e-3
+"""Change of a residual in its own unit, root mean square, that a finite difference makes."""
+
+SHARE = 0.02
+"""Share of a parameter, or of its range where it is zero, that a step takes at most."""
+
+MOST = 60
+"""Directions in which derivatives are compared, at most."""
 
 MANY = 100
 """Parameters from which on a run is said to take long."""
@@ -124,11 +149,7 @@ def _checked(study: Study) -> Findings:
     warnings = [
         *map(str, mistakes),
         *_undetermined(problem, nominal, scale, parameters_only=spoils(mistakes)),
-        *_coincident(problem, nominal),
-        *_at_bounds(problem),
-        *_infeasible_bounds(problem),
-        *_of_elements(problem.model),
-        *_many(problem),
+        *_of_model(problem, nominal),
     ]
     agreement = compared(problem)
     cause = "" if agreement.error <= AGREEMENT else cause_of(problem, agreement)
@@ -148,13 +169,36 @@ def spoils(mistakes: Sequence[Mistake]) -> bool:
     return any(each.kind not in HARMLESS for each in mistakes)
 
 
-def _coincident(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
-    """Warn of modes that coincide with others."""
-    return [
-        f"mode {r} of the nominal model coincides with another one: its derivatives are not defined"
-        for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True)
-        if coincident
-    ]
+def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[str]:
+    """Warn of modes that coincide, of bounds, of elements, and of so much that a run takes long."""
+    for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True):
+        if coincident:
+            yield (
+                f"mode {r} of the nominal model coincides with another one: its derivatives are "
+                "not defined"
+            )
+    ends = {"lower": problem.lower, "upper": problem.upper}
+    for name, value, *bounds in zip(
+        problem.model.parameters, problem.start, *ends.values(), strict=True
+    ):
+        if value in bounds:
+            yield f"the nominal value of {name} is one of its bounds, {value:g}"
+    full = full_of(problem.model)  # a basis may not hold what makes a matrix indefinite
+    for name, theta in ends.items():
+        try:
+            replace(problem, model=full).modes(theta, derivatives=False)
+        except ModelError as error:
+            yield f"at the {name} bounds of all parameters: {error}"
+    yield from full.limits if isinstance(full, MatrixModel) else ()
+    p, sets = len(problem.model.parameters), len(problem.data.sets)
+    if sets > COMPARED:
+        yield f"{sets} data sets are many: mistakes are sought in {COMPARED} of them, chosen evenly"
+    if p > MANY:
+        yield (
+            f"{p} parameters are many: a run takes some {memory_of(problem) / 1e9:.2g} GB and "
+            "long, as every step solves for all of them; let one parameter scale several parts, "
+            "or keep those at their nominal values that the data do not determine"
+        )
 
 
 def memory_of(problem: UpdatingProblem) -> float:
@@ -174,41 +218,7 @@ def refuse_too_many(problem: UpdatingProblem, file: str) -> None:
             f"search some {KEPT} models, {need / 1e9:.3g} GB: let one parameter scale several "
             "parts, or keep those at their nominal values that the data do not determine"
         )
-        raise InputError(Fault(file, "[[parameter]]", expected, found))
-
-
-def _many(problem: UpdatingProblem) -> list[str]:
-    """Warn of so many parameters that a run takes long, and data sets that are not looked at."""
-    p, sets = len(problem.model.parameters), len(problem.data.sets)
-    out = []
-    if sets > COMPARED:
-        out.append(
-            f"{sets} data sets are many: mistakes are sought in {COMPARED} of them, chosen evenly"
-        )
-    if p <= MANY:
-        return out
-    return [
-        *out,
-        f"{p} parameters are many: a run takes some {memory_of(problem) / 1e9:.2g} GB and long, as "
-        "every step solves for all of them; let one parameter scale several parts, or keep those "
-        "at their nominal values that the data do not determine",
-    ]
-
-
-def _of_elements(model: Model) -> Sequence[str]:
-    """Warn of elements that are too coarse, small or distorted."""
-    full = full_of(model)
-    return full.limits if isinstance(full, MatrixModel) else ()
-
-
-def _at_bounds(problem: UpdatingProblem) -> list[str]:
-    """Warn of nominal values that are bounds."""
-    values = zip(problem.model.parameters, problem.start, problem.lower, problem.upper, strict=True)
-    return [
-        f"the nominal value of {name} is one of its bounds, {value:g}"
-        for name, value, *bounds in values
-        if value in bounds
-    ]
+        refuse([Fault(file, "[[parameter]]", expected, found)])
 
 
 def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequence[int]) -> None:
@@ -216,25 +226,18 @@ def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequ
 
     ``unchanged`` are the positions of these groups.
     """
-    faults = [
-        Fault(
-            file,
-            f"[[group]] '{problem.objectives[i]}'",
-            "residuals that a parameter changes",
+    faults = []
+    for i in unchanged:
+        remarks = [member.remark for member in problem.members[i]]
+        found = (
             "none: no parameter changes them within its bounds, so there is nothing to update; "
             "remove the group, or give it other members or the model other parameters"
-            + _fitted_by_any(problem, i),
         )
-        for i in unchanged
-    ]
-    if faults:
-        raise InputError(faults)
-
-
-def _fitted_by_any(problem: UpdatingProblem, i: int) -> str:
-    """Return why any model fits a group, where that is so of all of its members."""
-    remarks = [member.remark for member in problem.members[i]]
-    return f" ({'; '.join(dict.fromkeys(remarks))})" if all(remarks) else ""
+        if all(remarks):  # any model fits it
+            found += f" ({'; '.join(dict.fromkeys(remarks))})"
+        place = f"[[group]] '{problem.objectives[i]}'"
+        faults.append(Fault(file, place, "residuals that a parameter changes", found))
+    refuse(faults)
 
 
 def determined(problem: UpdatingProblem) -> tuple[str, ...]:
@@ -262,13 +265,16 @@ def _undetermined(
     Mistakes change what the residuals determine: then ``parameters_only`` without effect are named.
     """
     names = problem.model.parameters
-    weights = optimal_weights(problem.properties, nominal.J)
     idle = without_effect(problem, nominal, scale)
-    if parameters_only:
-        return [str(finding) for finding in no_effect(idle, names)]
-    known = combinations(problem, problem.start, weights=weights, scale=scale)
-    weak = [each for each in known if each.share < WEAK and not _is_of(idle, each)]
     out = [str(finding) for finding in no_effect(idle, names)]
+    if parameters_only:
+        return out
+    weights = optimal_weights(problem.properties, nominal.J)
+    weak = [
+        each
+        for each in combinations(problem, problem.start, weights=weights, scale=scale)
+        if each.share < WEAK and np.linalg.norm(each.direction[list(idle)]) <= np.sqrt(0.5)
+    ]
     for degree, chosen in (
         ("do not determine", [each for each in weak if each.share <= NONE]),
         ("hardly determine", [each for each in weak if each.share > NONE]),
@@ -286,21 +292,141 @@ def _undetermined(
     return [*out, *map(str, alike(gram(nominal, weights, scale), names, idle))]
 
 
-def _is_of(idle: Sequence[int], combination: Combination) -> bool:
-    """Return whether a combination is one of parameters without effect."""
-    return bool(np.linalg.norm(combination.direction[list(idle)]) > np.sqrt(0.5))
+@dataclass(frozen=True)
+class Agreement:
+    """Agreement of derivatives with finite differences.
 
-
-def _infeasible_bounds(problem: UpdatingProblem) -> list[str]:
-    """Warn where the model has no modes at the bounds of all parameters at once.
-
-    The full model is evaluated: a basis may not hold what makes a matrix indefinite.
+    Attributes
+    ----------
+    error : greatest difference over the greatest derivative of the residuals of a group; NaN where
+        the model is not defined around the point
+    theta : the point
+    objective : number of the group with this difference
+    step : (p,) change of the parameters for a difference, in the direction with this difference
     """
-    problem = replace(problem, model=full_of(problem.model))
-    out = []
-    for name, theta in (("lower", problem.lower), ("upper", problem.upper)):
-        try:
-            problem.modes(theta, derivatives=False)
-        except ModelError as error:
-            out.append(f"at the {name} bounds of all parameters: {error}")
+
+    error: float
+    theta: Floats
+    objective: int
+    step: Floats
+
+
+def compared(problem: UpdatingProblem) -> Agreement:
+    """Return the agreement of the derivatives of the residuals near the nominal parameters.
+
+    Where bounds leave no room for a step, it leaves them.
+    """
+    span = problem.upper - problem.lower
+    squares = np.einsum("ijj->ij", problem.evaluate(problem.start).H) / 2
+    size = np.sqrt((squares / problem.properties[:, None]).max(axis=0))
+    most = SHARE / STEP * np.where(problem.start != 0, np.abs(problem.start), span)
+    unit = np.minimum(np.divide(1.0, size, out=span.copy(), where=size > 0), most)
+    room = np.minimum(STEP * unit, span / 2)
+    theta = np.clip(problem.start, problem.lower + room, problem.upper - room)
+    evaluation = problem.evaluate(theta)
+    directions = _directions(unit)
+    if not evaluation.feasible:
+        return Agreement(float("nan"), theta, 0, STEP * directions[0])
+    _, pairs = problem.modes(theta, derivatives=False)
+    exact = [residual.dr @ directions.T for residual in evaluation.residuals]
+    scale = [float(np.linalg.norm(x, axis=0).max()) or 1.0 for x in exact]
+    error = np.empty((len(exact), len(directions)))
+    for column, d in enumerate(directions):
+        slopes = _slopes(problem, pairs, theta, d)
+        error[:, column] = [
+            np.linalg.norm(slope - x[:, column]) / size
+            for slope, x, size in zip(slopes, exact, scale, strict=True)
+        ]
+    i, k = np.unravel_index(int(np.argmax(error)), error.shape)  # the first NaN, if there is any
+    return Agreement(float(error[i, k]), theta, int(i), STEP * directions[k])
+
+
+def _directions(unit: Floats) -> Floats:
+    """Return directions (k, p), one a parameter, or several parameters together."""
+    count = min(len(unit), MOST)
+    out = np.zeros((count, len(unit)))
+    signs = np.random.default_rng(0).choice((-1.0, 1.0), len(unit))
+    place = np.arange(len(unit)) % count
+    together = np.bincount(place)[place]
+    out[place, np.arange(len(unit))] = unit * np.where(together > 1, signs / np.sqrt(together), 1)
     return out
+
+
+def _slopes(
+    problem: UpdatingProblem, pairs: Pairs, theta: Floats, direction: Floats
+) -> list[Floats]:
+    """Return the slopes of the residuals of pairs, with a shorter step where the model needs one.
+
+    NaN where the model is not defined with the shortest.
+    """
+
+    def changed(h: float) -> list[Floats]:
+        modes, _ = problem.modes(theta + h * direction, derivatives=False)
+        return problem.vectors(modes, pairs)
+
+    for h in (STEP, STEP / 8, STEP / 64):
+        try:
+            half, whole = (
+                [(a - b) / (2 * k) for a, b in zip(changed(k), changed(-k), strict=True)]
+                for k in (h / 2, h)
+            )
+            return [(4 * x - y) / 3 for x, y in zip(half, whole, strict=True)]
+        except ModelError:
+            continue
+    return [np.full(1, np.nan) for _ in problem.groups]
+
+
+def cause_of(problem: UpdatingProblem, agreement: Agreement) -> str:
+    """Return which parameter and mode derivatives are wrong for, and the likely cause."""
+    names = [problem.model.parameters[j] for j in np.flatnonzero(agreement.step)]
+    of = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+    theta, step = agreement.theta, agreement.step
+    for point in (theta, theta + step, theta - step):
+        try:
+            problem.modes(point, derivatives=False)
+        except ModelError as error:
+            return f"for {of}: a small change leads to no model: {error}; check its value and units"
+    group = problem.objectives[agreement.objective]
+    mode, why = _mode_and_cause(problem, theta, step)
+    return (
+        f"of group '{group}' for {of}, mostly by measured mode {mode} "
+        f"(relative {agreement.error:.1e}): {why}"
+    )
+
+
+def _mode_and_cause(problem: UpdatingProblem, theta: Floats, step: Floats) -> tuple[int, str]:
+    """Return the measured mode that changes least smoothly, and what that is likely due to."""
+    points = [problem.evaluate(theta + k * step, derivatives=False) for k in (-1, -0.5, 0, 0.5, 1)]
+    values = {name: np.array([x.quantities[name] for x in points]) for name in ("frequency", "mac")}
+    bend = np.zeros(len(problem.data.modes))
+    for of in values.values():
+        # Fourth differences: what is left of a smooth curve is close to nothing.
+        fourth = of[0] - 4 * of[1] + 6 * of[2] - 4 * of[3] + of[4]
+        bend = np.maximum(bend, np.abs(np.nan_to_num(fourth / np.abs(of[2]).clip(TINY))))
+    r = int(np.argmax(bend))
+    mode = problem.data.modes[r]
+    frequency = np.sort(problem.modes(theta, derivatives=False)[0].frequency)
+    k = int(points[2].quantities["paired_mode"][r]) - 1
+    near = [abs(frequency[i] / frequency[k] - 1) for i in (k - 1, k + 1) if 0 <= i < len(frequency)]
+    if frequency[k] > 0 and near and min(near) < 1e-3:
+        return mode, (
+            f"model mode {k + 1} and its neighbour are {100 * min(near):.2g} % apart, and close "
+            "modes turn into each other within a small change of the parameter"
+        )
+    effects = np.sqrt(np.einsum("ijj->j", problem.evaluate(theta).H) / 2) * np.abs(theta)
+    known = effects[effects > 0]
+    if known.size and known.max() > 1e12 * known.min():
+        return mode, (
+            f"parameters differ by {known.max() / known.min():.0e} in their effect: check units "
+            "of the matrices, and whether a stiffness vanishes"
+        )
+    if (np.abs(step) > np.abs(theta) + TINY).any():
+        return mode, (
+            "the parameter has so little effect that a step beyond its own size is needed to see "
+            "any: check its value, its units, and whether a stiffness vanishes"
+        )
+    return mode, (
+        "the model does not change smoothly there, or digits are lost in it: check its units, and "
+        "whether a stiffness or mass vanishes; derivatives of a Python model have to be those of "
+        "its matrices"
+    )

@@ -31,30 +31,19 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.errors import Fault, InputError, reason, suggestion
+from modefront.errors import Fault, InputError, reason, refuse, suggestion, writing
 from modefront.inputs import fortran
 from modefront.outputs import write_text
 from modefront.programs.inp import DEEPEST, keyword_of
 from modefront.study.importing import Imported, import_model
 from modefront.text import one_line
 
-FACTORS = (2.0, 0.5, 1.5, 0.75)
-"""Factors of a parameter in its jobs, as many as it has terms."""
-
-CHECK = (1.5, 0.7, 1.3, 0.8)
-"""Factors of the parameters in the job with which the terms are compared, in turn."""
+FACTORS, CHECK = (2.0, 0.5, 1.5, 0.75), (1.5, 0.7, 1.3, 0.8)
+"""Factors of a parameter in its jobs, as many as it has terms, and of the parameters in turn in the
+job with which the terms are compared."""
 
 THICKNESS = ("{0}", "1/{0}", "{0}^2", "{0}^3")
 """Terms of the thickness of a shell, of which the program makes solids."""
-
-PRINTED = 10
-"""Frequencies that the program prints where the deck does not say how many."""
-
-AGREE = 1e-4
-"""Relative difference of frequencies that the digits of the program explain."""
-
-RIGID = 1e-3
-"""Frequency over the greatest one below which a mode is one of a rigid body."""
 
 MODULI: Mapping[str, tuple[Sequence[int], ...]] = {
     "ISO": ((0,),),
@@ -151,7 +140,8 @@ def import_deck(
     program = shutil.which(run)
     if program is None:
         raise InputError(Fault("", "--run", "a program that is installed", f"'{run}'"))
-    lines, targets = list(lines_of(path)), _targets(path, parameters)
+    lines = list(lines_of(path))
+    targets = _targets(path, lines, parameters)
     terms = {
         name: tuple(term.format(name) for term in THICKNESS)
         for name, target in targets.items()
@@ -162,11 +152,8 @@ def import_deck(
     factors = {name: list(FACTORS[:count]) for name, count in counts.items()}
     jobs = {f"{name}-{factor:g}": {name: factor} for name in targets for factor in factors[name]}
     check = dict(zip(targets, cycle(CHECK), strict=False))
-    try:
+    with writing(folder):
         folder.mkdir(exist_ok=True)
-    except OSError as error:
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
     for job, values in {"nominal": {}, **jobs, "check": check}.items():
         progress(f"running {run} {folder / job}")
         text = job_text(path, lines, {targets[name]: x for name, x in values.items()}, stored=True)
@@ -188,9 +175,9 @@ def import_deck(
     return replace(imported, notes=notes)
 
 
-def _targets(path: Path, parameters: Mapping[str, str]) -> dict[str, Target]:
+def _targets(path: Path, lines: Sequence[Line], parameters: Mapping[str, str]) -> dict[str, Target]:
     """Return what parameters multiply; raises InputError for what is not in the deck."""
-    lines, out, faults = list(lines_of(path)), {}, []
+    out, faults = {}, []
     for parameter, text in parameters.items():
         kind, _, name = text.partition(":")
         target, place = Target(kind, name), f"--parameter {parameter}"
@@ -203,8 +190,7 @@ def _targets(path: Path, parameters: Mapping[str, str]) -> dict[str, Target]:
             found = suggestion(name, sorted(names - {""}))
             faults.append(Fault(str(path), place, f"a name with *{KEYWORDS[kind]}", found))
         out[parameter] = target
-    if faults:
-        raise InputError(faults)
+    refuse(faults)
     return out
 
 
@@ -242,7 +228,7 @@ def job_text(
         text = line.text
         if line.keyword == "FREQUENCY" and not line.row:
             text, found = "*FREQUENCY", True
-            text += ", SOLVER=MATRIXSTORAGE" if stored else f"\n{PRINTED}" * (not counted)
+            text += ", SOLVER=MATRIXSTORAGE" if stored else "\n10" * (not counted)
         items = text.split(",")
         for target, factor in factors.items():
             for k in target.columns(line):
@@ -284,9 +270,9 @@ def _compared(computed: Floats | None, printed: Floats) -> list[str]:
         return []
     count = min(computed.size, printed.size)
     f, expected = computed[:count], printed[:count]
-    elastic = expected > RIGID * expected.max()
+    elastic = expected > 1e-3 * expected.max()  # others are those of a rigid body
     error = np.abs(f[elastic] / expected[elastic] - 1).max(initial=0.0)
-    if error < AGREE:
+    if error < 1e-4:  # as the digits of the program explain
         return [f"the first {count} frequencies are those that the program prints, to {error:.0e}"]
     shown = " ".join(f"{x:.5g}" for x in expected)
     return [f"the program prints {shown} Hz, up to {100 * error:.2g} % from those of its matrices"]

@@ -12,7 +12,9 @@ from modefront.brief import as_html
 from modefront.diagnosis.notes import Note
 from modefront.errors import Fault, InputError, refuse
 from modefront.front.given import Weighted, label_faults
+from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
+from modefront.front.point import Kind, label
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
 from modefront.models.parameters import Parameter, parameters_of
@@ -21,7 +23,6 @@ from modefront.predictions import Prediction
 from modefront.predictions.ranges import SLACK
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.schema import variables_of
-from modefront.study.labels import labels_of
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 
@@ -108,7 +109,7 @@ class Study:
         yield from each_once("groups", groups)
         yield from self.pareto.faults(len(groups))
         for weighted in self.weighted:
-            faults = [*weighted.faults(groups), *label_faults([weighted.name], labels_of(groups))]
+            faults = [*weighted.faults(groups), *label_faults([weighted.name], Labels(groups))]
             for fault in faults:
                 yield replace(fault, place=f"weighted '{weighted.name}' {fault.place}")
         yield from each_once("weighted", [weighted.name for weighted in self.weighted])
@@ -183,3 +184,25 @@ def undrawn(uncertainty: Uncertainty, predictions: int) -> Iterator[Fault]:
     """Yield what is wrong with draws where there is nothing to predict."""
     if uncertainty.draws and not predictions:
         yield Fault("", "draws", "0 without predictions", str(uncertainty.draws))
+
+
+class Labels:
+    """All labels that a study of these groups may give to its models, but those of given weights.
+
+    Points of the front, and of its identifiable part, have a number behind a beginning; how many
+    there are is not known beforehand.
+    """
+
+    def __init__(self, groups: Sequence[str]) -> None:
+        numbered, named = (Kind.FRONT, Kind.IDENTIFIABLE), (Kind.EDGE, Kind.IDENTIFIABLE_EDGE)
+        alone = [label(x) for x in Kind if x not in {*named, *numbered, Kind.GIVEN}]
+        labels = [*(label(kind, group) for kind in named for group in groups), *alone]
+        self.single = {"iterated-weights", *labels}  # at which the iteration of weights arrives
+        first = [label(Kind.FRONT, method) for method in METHODS] + [label(Kind.IDENTIFIABLE)]
+        self.numbered = {name.rpartition("-")[0] for name in first}
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether a name is such a label."""
+        beginning, _, end = str(name).rpartition("-")
+        is_number = end.isascii() and end.isdigit()
+        return name in self.single or (is_number and beginning in self.numbered)

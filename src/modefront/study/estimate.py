@@ -1,17 +1,14 @@
 """Estimate of the time that a study takes, as a range, with advice on how to shorten it.
 
 A few searches are timed, and each prediction once, with few samples: all times are those of the
-processor, whatever else it does. Each stage of a run takes from and to so many searches, as counted
-over studies with 2 to 12 parameters; how many evaluations a search takes differs more between
-studies, and is measured. Where a search takes too long to be timed, its evaluations are an average:
-10, and one more for each parameter. ``benchmarks/honest_time.py`` measures how often the time of a
-run is within the range.
+processor, whatever else it does. Each stage of a run takes from and to so many searches. Where a
+search takes too long to be timed, its evaluations are 10, and one more for each parameter.
+``benchmarks/honest_time.py`` measures how often the time of a run is within the range.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,14 +37,8 @@ EDGE = 10.0, 60.0
 DRAW = 0.4, 2.0
 """Time of a draw of the posterior over that of a search, from and to."""
 
-REST = 1.4
-"""Time of a run over that of its searches: what is known is kept and compared, results are made."""
-
 SHORT = 30.0
 """Seconds up to which no advice on a shorter run is given."""
-
-SHARE = 0.25
-"""Share of the time from which a part of the work is worth to be made shorter."""
 
 TIMED, STEPS, WITHIN = 8, 3, 0.4
 """Searches that are timed, after a few steps that tell whether there is time for them; seconds
@@ -55,25 +46,6 @@ within which another one is begun."""
 
 SAMPLES = 100
 """Samples with which a prediction is timed, and three times as many."""
-
-LARGE = 2000
-"""Degrees of freedom from which a reduced basis is worth a try."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """A part of the work.
-
-    Attributes
-    ----------
-    stage : of the run in which it is done
-    span : evaluations of models, or seconds, that it will probably take, from and to
-    advice : what would make it shorter; empty for nothing
-    """
-
-    stage: str
-    span: Span
-    advice: str = ""
 
 
 @dataclass(frozen=True)
@@ -97,42 +69,54 @@ class Estimate:
     @property
     def text(self) -> str:
         """The estimate in a sentence."""
-        least, most = self.range
-        few, many = (_round(round(sum(x))) for x in zip(*self.plan.searches.values(), strict=True))
+        counts = (sum(ends) for ends in zip(*self.plan.searches.values(), strict=True))
+        few, many = (max(int(float(f"{count:.0e}")), 1) for count in counts)
         longest = max(self.plan.other.values(), key=lambda span: span[1], default=(0.0, 0.0))
-        share = f", {_span(longest)} for predictions" if longest[1] > most / 10 else ""
+        times = [" to ".join(map(duration, span)) for span in (self.range, longest)]
+        share = f", {times[1]} for predictions" if longest[1] > self.range[1] / 10 else ""
         return (
-            f"a run takes {_span((least, most))} of a processor: the number of minima decides "
+            f"a run takes {times[0]} of a processor: the number of minima decides "
             f"({few:,} to {many:,} searches of {duration(self.plan.search)} each{share})"
         )
 
 
 def estimate(study: Study) -> Estimate | None:
     """Return the time that a study takes; None where the nominal model cannot be evaluated."""
+    problem = study.problem
     with uncounted(), threadpool_limits(1, user_api="blas"):
         timed = _search(study)
         if timed is None:
             return None
         search, evaluations = timed
-        advice = []
-        searches: dict[str, Span] = {}
+        parts = _parts(study, evaluations)
+        advice = [(span[1] * search, text) for span, text in parts.values()]
         other: dict[str, Span] = {}
-        for part in _parts(study, evaluations):
-            searches[part.stage] = part.span
-            advice.append((part.span[1] * search, part.advice))
-        if is_reduced(study.problem.model):
-            other["snapshot"] = _snapshots(study)
-        for part in _predictions(study, search / evaluations):
-            known = other.get(part.stage, (0.0, 0.0))
-            other[part.stage] = (known[0] + part.span[0], known[1] + part.span[1])
-            advice.append((part.span[1], part.advice))
-    plan = Plan(REST * search, searches, other)
+        if is_reduced(problem.model):  # snapshots of the basis, and their certificates
+            began = time.process_time()
+            full_of(problem.model).modes(problem.start, len(problem.data.modes))
+            alone, p = time.process_time() - began, len(problem.start)
+            other["snapshot"] = alone * p, 2 * alone * (3 * p + 5)
+        models = _points(study) + len(problem.groups) + len(study.weighted) + 3
+        models += study.uncertainty.draws or 1 + 2 * len(problem.start)
+        for prediction in study.predictions:
+            try:
+                spent = _seconds_of(prediction, problem)
+            except (ModelError, InputError):
+                continue
+            each = search / evaluations
+            spent = models * max(spent - each, each)
+            least, most = other.get("predict", (0.0, 0.0))
+            other["predict"] = least + spent / 2, most + 2 * spent
+            text = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
+            advice.append((2 * spent, text))
+    # What is known is kept and compared, and results are made: 1.4 times the searches.
+    plan = Plan(1.4 * search, {stage: span for stage, (span, _) in parts.items()}, other)
     most = plan.seconds[1]
     if most <= SHORT:
         return Estimate(plan)
     advice.sort(key=lambda part: -part[0])
-    said = [text for seconds, text in advice if seconds > SHARE * most and text]
-    if study.problem.model.size >= LARGE and not is_reduced(study.problem.model):
+    said = [text for seconds, text in advice if seconds > most / 4 and text]
+    if problem.model.size >= 2000 and not is_reduced(problem.model):
         said.insert(0, 'a reduced basis ([model] reduction = "auto")')
     return Estimate(plan, (*said, "--workers N with as many as there are cores"))
 
@@ -150,21 +134,6 @@ def duration(seconds: float) -> str:
     if seconds < 90:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
-
-
-def _round(count: int) -> int:
-    """Return a number with one leading digit.
-
-    >>> _round(847)
-    800
-    """
-    power = 10 ** max(len(str(count)) - 1, 0)
-    return max(round(count / power), 1) * power
-
-
-def _span(span: Span) -> str:
-    """Return a range of times: "0.4 s to 8 s"."""
-    return f"{duration(span[0])} to {duration(span[1])}"
 
 
 def _search(study: Study) -> tuple[float, float] | None:
@@ -188,7 +157,9 @@ def _search(study: Study) -> tuple[float, float] | None:
         found = [x for x in found if x[1]]
     if found:
         seconds, average = (float(np.mean(x)) for x in zip(*found, strict=True))
-    return seconds * _share_of_basis(study.problem), average
+    if is_reduced(study.problem.model) and isinstance(problem.model, MatrixModel):
+        seconds *= reduced_cost(problem.model, len(problem.data.modes)).share
+    return seconds, average
 
 
 def _timed(
@@ -205,59 +176,34 @@ def _timed(
     return time.process_time() - began, (1 + found.evaluations) * start.feasible
 
 
-def _share_of_basis(problem: UpdatingProblem) -> float:
-    """Return the time of an evaluation over that with a full solution."""
-    model = full_of(problem.model)
-    if model is problem.model:
-        return 1.0
-    assert isinstance(model, MatrixModel)  # no other one is reduced
-    return reduced_cost(model, len(problem.data.modes)).share
-
-
-def _modes(problem: UpdatingProblem) -> float:
-    """Return the seconds of the modes of the full model and their derivatives."""
-    began = time.process_time()
-    full_of(problem.model).modes(problem.start, len(problem.data.modes))
-    return time.process_time() - began
-
-
-def _snapshots(study: Study) -> Span:
-    """Return the seconds of the snapshots of a reduced basis and their certificates."""
-    alone, p = _modes(study.problem), len(study.problem.start)
-    return (alone * p, 2 * alone * (3 * p + 5))
-
-
-def _parts(study: Study, evaluations: float) -> Iterator[Part]:
-    """Yield the parts of the work, predictions apart, in searches of so many evaluations."""
+def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
+    """Return the searches, of so many evaluations, of each stage, and what would shorten it."""
     n, pareto, points = len(study.problem.groups), study.pareto, _points(study)
     edges, budget = n + len(study.weighted) + 1, study.search.evaluations / evaluations
-    yield Part(
-        "edges",
-        (min(EDGE[0] * edges, budget), min(EDGE[1] * edges, budget)),
-        f"fewer evaluations of the search ([search] evaluations, now {study.search.evaluations})",
-    )
-    if pareto.method in ("nbi", "weights"):
-        advice = f"fewer points of the front ([pareto] points), now {points}"
-        yield Part("front", (points / 5, 2.0 * points), advice)
-    else:
-        all_of_it = pareto.evaluations / evaluations
-        advice = f"fewer evaluations ([pareto] evaluations, now {pareto.evaluations})"
-        yield Part("front", (all_of_it, all_of_it), advice)
-    yield Part("optimal-weights", (0.0, 3.0 * edges))
-    if study.noise.weight:
-        yield Part("most-probable", (1.0, MAXIMA))
-        yield Part("sample-posterior", (DRAW[0] * DRAWS, DRAW[1] * DRAWS))
-    equivalent = study.identifiability.models * n / evaluations
-    yield Part(
-        "manifold", (0.0, 8 * equivalent), "fewer equivalent models ([identifiability] models)"
-    )
     samples = study.uncertainty.bootstrap
-    if samples:
-        yield Part(
-            "bootstrap",
-            (samples * points / 5, samples * points),
-            f"fewer bootstrap samples ([uncertainty] bootstrap, now {samples})",
+    out = {
+        "edges": (
+            (min(EDGE[0] * edges, budget), min(EDGE[1] * edges, budget)),
+            f"fewer evaluations of the search ([search] evaluations, now "
+            f"{study.search.evaluations})",
         )
+    }
+    if pareto.method in ("nbi", "weights"):
+        text = f"fewer points of the front ([pareto] points), now {points}"
+        out["front"] = (points / 5, 2.0 * points), text
+    else:
+        text = f"fewer evaluations ([pareto] evaluations, now {pareto.evaluations})"
+        out["front"] = (pareto.evaluations / evaluations, pareto.evaluations / evaluations), text
+    out["optimal-weights"] = (0.0, 3.0 * edges), ""
+    if study.noise.weight:
+        out["most-probable"] = (1.0, float(MAXIMA)), ""
+        out["sample-posterior"] = (DRAW[0] * DRAWS, DRAW[1] * DRAWS), ""
+    equivalent = 8 * study.identifiability.models * n / evaluations
+    out["manifold"] = (0.0, equivalent), "fewer equivalent models ([identifiability] models)"
+    if samples:
+        text = f"fewer bootstrap samples ([uncertainty] bootstrap, now {samples})"
+        out["bootstrap"] = (samples * points / 5, float(samples * points)), text
+    return out
 
 
 def _points(study: Study) -> int:
@@ -268,26 +214,6 @@ def _points(study: Study) -> int:
     if study.pareto.method not in ("nbi", "weights"):
         return study.pareto.population
     return size(n, study.pareto.points or default_points(n))
-
-
-def _models(study: Study) -> int:
-    """Return how many models results will probably hold, those beside the front too."""
-    return _points(study) + len(study.problem.groups) + len(study.weighted) + 3
-
-
-def _predictions(study: Study, each: float) -> Sequence[Part]:
-    """Return the time of the predictions."""
-    out = []
-    drawn = study.uncertainty.draws or 1 + 2 * len(study.problem.start)
-    models = _models(study) + drawn
-    for prediction in study.predictions:
-        try:
-            spent = max(_seconds_of(prediction, study.problem) - each, each)
-        except (ModelError, InputError):
-            continue
-        advice = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
-        out.append(Part("predict", (models * spent / 2, 2 * models * spent), advice))
-    return out
 
 
 def _seconds_of(prediction: Prediction, problem: UpdatingProblem) -> float:

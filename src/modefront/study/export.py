@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import tempfile
 import tomllib
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -18,8 +20,9 @@ import scipy.sparse
 from modefront._typing import Floats, Ints
 from modefront.brief import as_html, brief
 from modefront.data.uff import dataset_55
-from modefront.errors import Fault, InputError, ModelError, UnfinishedError, reason, suggestion
+from modefront.errors import Fault, InputError, ModelError, UnfinishedError, suggestion, writing
 from modefront.front.point import preferred
+from modefront.inputs import MOST_TABLES
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs, write_dofs
 from modefront.models.geometry import Cells
 from modefront.outputs import output as written
@@ -29,8 +32,10 @@ from modefront.programs.changes import Change, read_changes, write_deck
 from modefront.results.files import FILE, read_dataset
 from modefront.results.results import ReportedModel, Results
 from modefront.results.vtu import write_grid
-from modefront.study.whereabouts import find_study, given_study
+from modefront.study.definition import Study
+from modefront.study.file import load
 from modefront.text import file_name
+from modefront.work.store import FOLDER, NOTE
 
 ELEMENTS = {"line": 11, "triangle": 91, "quad": 94, "tetra": 111, "wedge": 112, "hexahedron": 115}
 """Identifiers of dataset 2412: rod, thin shells, solids; others are left out."""
@@ -93,26 +98,77 @@ def export(
         nearest = suggestion(point, labels)
         raise InputError(Fault(str(folder / FILE), "--point", "the label of a model", nearest))
     name, digest = (str(data.attrs.get(key, "")) for key in ("study", "inputs"))
-    loaded = given_study(folder, Path(study), digest) if study else find_study(folder, name, digest)
+    if study is None:
+        loaded = _find_study(folder, name, digest)
+    elif (loaded := load(study)).digest != digest:
+        expected = f"the study of the results in '{folder}'"
+        raise InputError(Fault(str(study), "study", expected, "other inputs: run it again"))
     model = Results(data, loaded.problem).model(point)
     output = Path(output) if output else folder / file_name(f"export-{point}")
     try:
         # As many modes as there are degrees of freedom with mass.
         most = int(np.count_nonzero(model.mass.diagonal()))
         count = min(modes or max(len(model.frequency), 1), most)
-        output.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as unfinished:
-            missing = _write(model, loaded.file, Path(unfinished), count)
-            deck = write_deck(loaded.file.parent, model.theta, Path(unfinished))
-            missing += [deck] if deck else []
-            files = sorted(Path(unfinished).iterdir())
-            moved = tuple(Path(shutil.move(file, output / file.name)) for file in files)
+        with writing(output):
+            output.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as unfinished:
+                missing = _write(model, loaded.file, Path(unfinished), count)
+                deck = write_deck(loaded.file.parent, model.theta, Path(unfinished))
+                missing += [deck] if deck else []
+                files = sorted(Path(unfinished).iterdir())
+                moved = tuple(Path(shutil.move(file, output / file.name)) for file in files)
     except ModelError as error:
         raise UnfinishedError(str(error)) from None
-    except OSError as error:
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(output), "folder", expected, reason(error))) from None
     return Exported(point, moved, tuple(missing))
+
+
+def _find_study(results: Path, name: str, digest: str) -> Study:
+    """Return the study of results: where the run says, beside them, above them or here.
+
+    Raises InputError where there is none of this name with these inputs, with the files that were
+    found, or what is wrong with the only one.
+    """
+    changed: list[Path] = []
+    broken: InputError | None = None
+    for file in dict.fromkeys(_candidates(results)):
+        try:
+            if not file.is_file() or file.stat().st_size > MOST_TABLES:
+                continue
+            if tomllib.loads(file.read_text("utf-8-sig"))["study"]["name"] != name:
+                continue
+        except (OSError, ValueError, KeyError, TypeError):
+            continue
+        try:
+            study = load(file)
+        except InputError as error:
+            broken = broken or error
+            continue
+        if study.digest == digest:
+            return study
+        changed.append(file)
+    if broken and not changed:
+        raise broken
+    expected = f"the study '{name}' where it was run, beside the results or in this folder"
+    found = "none: pass --study FILE"
+    if changed:
+        files = " and ".join(f"'{file}'" for file in changed[:3])
+        found = f"{files} with other inputs than those of the results: changed since the run"
+        expected = f"the study '{name}' as it was run (pass --study FILE, or run it again)"
+    raise InputError(Fault(str(results), "study", expected, found))
+
+
+def _candidates(results: Path) -> Iterator[Path]:
+    """Yield the files that may be the study, the likeliest first."""
+    for file in sorted((results / FOLDER).glob(f"*/{NOTE}")):
+        with suppress(OSError, UnicodeDecodeError):
+            if file.is_file() and file.stat().st_size <= 4096:
+                note = file.read_text("utf-8").strip()
+                if note.isprintable() and note.endswith(".toml"):
+                    yield Path(os.path.normpath(results / note))
+    absolute = results.absolute()
+    for folder in (results, *absolute.parents[:3], Path.cwd()):
+        yield from sorted(folder.glob("*.toml"))
+    yield from sorted(absolute.parent.glob("*/*.toml"))
 
 
 def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[str]:

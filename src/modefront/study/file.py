@@ -1,39 +1,58 @@
-"""The study file: TOML in, a study out, or all of its faults."""
+"""The study file: TOML in, a study out, or all of its faults; a reader for each table."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, get_args
 
 import numpy as np
 
-from modefront.diagnosis.notes import Note
-from modefront.errors import InputError, ModelError
+from modefront.data.modal import ModalData
+from modefront.diagnosis.notes import ComparedPair, Note
+from modefront.errors import Fault, InputError, ModelError
+from modefront.findings.knowledge import enumeration
+from modefront.front.given import Weighted, label_faults
 from modefront.front.options import Pareto
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
-from modefront.models.base import full_of
+from modefront.models.base import Model, full_of
 from modefront.models.matrices import MatrixModel, of_free
+from modefront.models.parameters import Parameter
+from modefront.models.reduced.model import MEMORY
+from modefront.models.reduced.options import REDUCTION, Reduction
+from modefront.options import Option, Table, each_once, names_of, one_of, options, read_toml, text
 from modefront.pairing.match import Pairing
+from modefront.predictions import CLASSES, Prediction
+from modefront.predictions.ranges import SLACK
+from modefront.residuals.base import Scale
+from modefront.residuals.groups import MODE_NUMBERS, Group, faults
+from modefront.residuals.kinds import KINDS as RESIDUALS
 from modefront.residuals.problem import UpdatingProblem
-from modefront.study.definition import Origin, Study, undrawn
+from modefront.study.definition import Labels, Origin, Study, undrawn
+from modefront.study.kinds import KINDS
 from modefront.study.measured import read_data
-from modefront.study.tables import (
-    complete,
-    read_groups,
-    read_header,
-    read_model,
-    read_options,
-    read_parameters,
-    read_predictions,
-    read_weights,
-)
-from modefront.toml import Table, read_toml
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
+
+GROUP_NAME = text("the name of the group")
+SCALE = one_of(*get_args(Scale))
+
+OF_OPTIONS: Mapping[str, type] = {
+    "pareto": Pareto,
+    "pairing": Pairing,
+    "search": Search,
+    "identifiability": Identifiability,
+    "uncertainty": Uncertainty,
+    "noise": NoisePrior,
+}
+"""Tables that are records of options, all of which have defaults."""
+
+Drafts = Sequence[tuple[Table, Prediction]]
+"""Predictions as in their tables, without the defaults that follow from the nominal model."""
 
 
 # Many lines: a line or two for each table of the file.
@@ -53,28 +72,28 @@ def load(path: Path | str) -> Study:
     root, content = read_toml(Path(path), "a study file")
     faults = root.faults
     header = root.table("study", "a table [study]")
+    of_study = (header and header.read(of_header())) or {}
     names, parameters = read_parameters(root)
-    model, reduction = read_model(root, header, names)
+    model, reduced = read_model(root, names)
     if model is not None and not faults:
         model, parameters = of_free(model, parameters)
-    title, seed = read_header(header)
     data = read_data(root, model)
     groups = read_groups(root, data)
-    pareto = read_options(root, "pareto", Pareto)
     weighted = read_weights(root, [group.name for group in groups if group.name])
-    search = read_options(root, "search", Search)
-    identifiability = read_options(root, "identifiability", Identifiability)
-    uncertainty = read_options(root, "uncertainty", Uncertainty)
+    chosen: dict[str, Any] = {}
+    for key, record in OF_OPTIONS.items():
+        table = root.table(key, default=None)
+        chosen[key] = (table and table.record(record)) or record()
+    uncertainty, pairing = chosen["uncertainty"], chosen.pop("pairing")
     drawn = replace(root, place="[uncertainty]")
     drawn.note(undrawn(uncertainty, bool(root.values.get("predict"))))
     drawn.note(uncertainty.faults(data) if data is not None else ())
-    noise = read_options(root, "noise", NoisePrior)
-    pairing = read_options(root, "pairing", Pairing)
     drafts, slack = read_predictions(root, model, data)
-    replace(root, place="[pareto]").note(pareto.faults(len(groups)))
+    replace(root, place="[pareto]").note(chosen["pareto"].faults(len(groups)))
     root.close()
     if faults or model is None or data is None:
         raise InputError(faults)
+    reduction = Reduction(reduced, of_study.pop("memory", MEMORY))
     problem = UpdatingProblem(
         reduction.of(model, data, pairing, parameters),
         data,
@@ -86,7 +105,12 @@ def load(path: Path | str) -> Study:
         priors=tuple(each.prior for each in parameters),
     )
     _try_model(root, problem)
-    predictions = complete(drafts, problem) if not faults else ()
+    predictions = []
+    for table, prediction in drafts if not faults else ():
+        try:
+            predictions.append(prediction.complete(problem))
+        except InputError as error:
+            table.note(error.faults)
     if faults:
         raise InputError(faults)
     front = {key: value for key, value in root.values.items() if key != "predict"}
@@ -102,15 +126,10 @@ def load(path: Path | str) -> Study:
     )
     return Study(
         problem,
-        title,
-        seed,
-        pareto=pareto,
+        **of_study,
+        **chosen,
         weighted=weighted,
-        search=search,
-        identifiability=identifiability,
-        uncertainty=uncertainty,
         predictions=predictions,
-        noise=noise,
         slack=slack,
         origin=origin,
     )
@@ -121,14 +140,13 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
     for name in problem.model.unused:
         root.fault(f"[[parameter]] '{name}'", "a parameter that the model uses", "no use of it")
     model = full_of(problem.model)
+    lower = dict(zip(model.parameters, problem.lower.tolist(), strict=True))
     above_zero = model.above_zero if isinstance(model, MatrixModel) else ()
-    before = len(root.faults)
-    for name in above_zero:
-        lower = float(problem.lower[problem.model.parameters.index(name)])
-        if lower <= 0:
-            expected = "a lower bound above 0, as terms of the matrices have quotients or roots"
-            root.fault(f"[[parameter]] '{name}' bounds", f"{expected} of it", f"{lower:g}")
-    if len(root.faults) > before:
+    wrong = [name for name in above_zero if lower[name] <= 0]
+    for name in wrong:
+        expected = "a lower bound above 0, as terms of the matrices have quotients or roots of it"
+        root.fault(f"[[parameter]] '{name}' bounds", expected, f"{lower[name]:g}")
+    if wrong:
         return
     try:
         problem.modes(problem.start, derivatives=False)
@@ -147,3 +165,133 @@ def _digest(content: bytes, files: Sequence[Path]) -> str:
         with path.open("rb") as stream:
             total.update(hashlib.file_digest(stream, "sha256").digest())
     return total.hexdigest()
+
+
+def of_header() -> tuple[Option, ...]:
+    """Return the keys of ``[study]``."""
+    known = {each.name: each for each in (*options(Study), *options(Reduction))}
+    return replace(known["name"], required=True, default=None), known["seed"], known["memory"]
+
+
+def read_parameters(root: Table) -> tuple[list[str], tuple[Parameter, ...]]:
+    """Return the names that tables give to parameters, and the parameters in which all is right."""
+    tables = root.tables("parameter", required=True)
+    out = []
+    for table in tables:
+        if table.values.get("name") == "base":
+            table.fault("name", "another name: 'base' is the constant term", "'base'")
+        out.append(table.record(Parameter))
+    names = names_of(tables)
+    root.note(each_once("[[parameter]]", names))
+    read = tuple(parameter for parameter in out if parameter is not None)
+    free = {parameter.name for parameter in read if parameter.free}
+    for parameter in read:
+        if parameter.tie and parameter.tie not in free:
+            expected = "the name of a parameter that is neither fixed nor tied"
+            root.fault(f"[[parameter]] '{parameter.name}' tie", expected, f"'{parameter.tie}'")
+    if read and not free:
+        root.fault("[[parameter]]", "one that is neither fixed nor tied", "none")
+    return names, read
+
+
+def read_model(root: Table, parameters: Sequence[str]) -> tuple[Model | None, Any]:
+    """Return the model of a study, None where it has faults, and how far it is reduced."""
+    table = root.table("model", "a table [model]")
+    name = table and table.choice("kind", tuple(KINDS))
+    if table is None or not name:
+        return None, "auto"
+    kind = KINDS[name]
+    reduction = table.value("reduction", REDUCTION, "auto") if kind.is_reducible else "off"
+    model = kind.read(table, parameters)
+    table.close()
+    return model, reduction
+
+
+def of_group() -> Iterator[Option]:
+    """Yield the keys of ``[[group]]``."""
+    meaning = "name of the objective in results"
+    yield Option("name", GROUP_NAME, required=True, meaning=meaning)
+    for name, kind in RESIDUALS.items():
+        meaning = f"measured modes whose {kind.plural} count"
+        yield Option(name, MODE_NUMBERS, optional=True, meaning=meaning)
+    yield Option("scale", SCALE, default="measured", meaning="unit of the residuals")
+
+
+def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
+    """Return the groups that a study names, those without fault with members that the data have."""
+    out: list[Group] = []
+    tables = root.tables("group", required=True)
+    held: dict[frozenset[tuple[str, int]], str] = {}
+    equal = []
+    for table in tables:
+        name = table.value("name", GROUP_NAME) or ""
+        before = len(root.faults)
+        modes = {name: table.value(name, MODE_NUMBERS, []) for name in RESIDUALS}
+        are_read = len(root.faults) == before
+        group = Group(name, scale=table.value("scale", SCALE, "measured"), **modes)
+        table.close()
+        wrong = list(faults(group, data))
+        if group.chosen or are_read:
+            for fault in wrong:
+                table.fault(*fault)
+        out.append(group)
+        if data is None or wrong:
+            continue
+        chosen = {kind.name: rs for kind, rs in group.positions(data)}
+        single = {data.modes[r] for r in chosen.get("shape", ())}
+        root.notes += [ComparedPair(pair, group.name) for pair in data.pairs if single & set(pair)]
+        members = frozenset((kind.name, r) for kind, rs in group.positions(data) for r in rs)
+        if members in held:  # their objectives could not differ
+            expected = f"other members than those of '{held[members]}'"
+            equal.append(Fault("", "[[group]]", expected, f"'{name}'"))
+        held.setdefault(members, name)
+    if data is not None:
+        count = sum(int(kind.measured(data).sum()) for kind in RESIDUALS.values())
+        if len(tables) > count:
+            nouns = " and ".join(kind.plural for kind in RESIDUALS.values())
+            expected = f"at most {count} groups, as many as measured {nouns}"
+            root.fault("[[group]]", expected, str(len(tables)))
+    root.note([*equal, *each_once("[[group]]", names_of(tables))])
+    return tuple(out)
+
+
+def read_weights(root: Table, groups: Sequence[str]) -> tuple[Weighted, ...]:
+    """Return the weights that a study gives; no name may be one of the labels of other models."""
+    tables = root.tables("weighted", required=False)
+    out = []
+    for table in tables:
+        weighted = table.record(Weighted)
+        if weighted is not None:
+            table.note(weighted.faults(groups))
+            out.append(weighted)
+        table.note(label_faults(names_of([table]), Labels(groups)))
+    root.note(each_once("[[weighted]]", names_of(tables)))
+    return tuple(out)
+
+
+def read_predictions(
+    root: Table, model: Model | None, data: ModalData | None
+) -> tuple[Drafts, float]:
+    """Return the predictions that a study asks for, as far as they are right, and their slack."""
+    if "predict" not in root.values:
+        root.requested.append("predict")
+        return [], 0.0
+    expected = f"tables {enumeration([f'[[predict.{name}]]' for name in CLASSES])}"
+    table = root.table("predict", expected)
+    if table is None:
+        return [], 0.0
+    slack = table.value("slack", SLACK, 0.0)
+    out: list[tuple[Table, Prediction]] = []
+    names = []
+    for key, prediction_class in CLASSES.items():
+        for each in table.tables(key, required=False):
+            names += names_of([each])
+            prediction = each.record(prediction_class)
+            if prediction is None:
+                continue
+            if model is not None and data is not None:
+                each.note(prediction.faults(model, data))
+            out.append((each, prediction))
+    table.close()
+    table.note(each_once("", names))
+    return out, float(slack or 0.0)

@@ -8,6 +8,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +16,8 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.brief import as_html, brief
-from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion
-from modefront.fem.structure import DIRECTIONS
+from modefront.errors import Fault, InputError, ModelError, refuse, suggestion, writing
+from modefront.fem.dofs import DIRECTIONS
 from modefront.models.dofs import number_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.parameters import exponents_of, form_of
@@ -37,18 +38,9 @@ from modefront.study.schema import add_schema
 
 QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
 
-FACTOR = 2.0
-"""Factor of a parameter in its run, unless given."""
-
-LARGE = 100_000
-"""Degrees of freedom from which on frequencies are computed only if asked for."""
-
-SHOWN = 6
-"""Frequencies that are computed unless asked for others."""
-
-BOUNDS = (0.5, 2.0)
-"""Bounds of the parameters in the study that is written."""
-
+LARGE, SHOWN = 100_000, 6
+"""Degrees of freedom from which on no frequencies are computed unless asked for, and how many
+frequencies otherwise."""
 
 JobFiles = Path | str | Sequence[Path | str]
 """The job of a parameter, or several."""
@@ -86,7 +78,26 @@ class Imported:
 
         Raises InputError where the folder has a study already, or cannot be written to.
         """
-        return write_study(self, self.program, Path(folder))
+        directory = Path(folder)
+        study = directory / "study.toml"
+        if study.exists():
+            expected = "a folder without a study, as nothing is overwritten"
+            raise InputError(Fault(str(study), "file", expected, "an existing one"))
+        with writing(directory):
+            directory.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryDirectory(dir=directory, prefix=".import-") as name:
+                inner = Path(name)
+                text = _study(self, _write_matrices(self.terms, inner))
+                write_dofs(inner / "dofs.csv", self.terms.dofs)
+                if self.nominal.mesh is not None:
+                    write_mesh(inner / "mesh.npz", self.nominal.mesh)
+                if self.changes:
+                    write_changes(inner / CHANGES, self.changes)
+                    write_text(inner / f"{KEPT}{self.changes[0].file}", self.deck)
+                write_text(inner / "study.toml", text)
+                add_schema([inner / "study.toml"])
+                files = sorted(inner.iterdir(), key=lambda file: file.name == "study.toml")
+                return [Path(shutil.move(file, directory / file.name)) for file in files]
 
     __repr__ = brief
     _repr_html_ = as_html
@@ -157,21 +168,25 @@ def import_model(
     notes = list(nominal.notes)
     if form.eliminates:
         identified, gone, stayed = condensed(identified)
-        if gone:
-            notes.append(
-                f"{gone} massless degrees of freedom of the program are eliminated exactly"
-            )
-        if stayed:
-            notes.append(
-                f"{stayed} degrees of freedom of the program are kept, without nodes: they have "
-                "mass, or several terms act on them, so that to eliminate them were not exact"
-            )
+        text = f"{gone} massless degrees of freedom of the program are eliminated exactly"
+        notes += [text] * bool(gone)
+        text = (
+            f"{stayed} degrees of freedom of the program are kept, without nodes: they have mass, "
+            "or several terms act on them, so that to eliminate them were not exact"
+        )
+        notes += [text] * bool(stayed)
     frequencies, floating = _frequencies(identified, modes, notes, progress)
     changed = _changes(nominal_path, runs, notes)
     return Imported(
-        *(nominal, identified, frequencies, floating, tuple(errors), tuple(notes), changed),
-        program=program,
-        deck=deck_text(nominal_path),
+        nominal,
+        identified,
+        frequencies,
+        floating,
+        tuple(errors),
+        tuple(notes),
+        changed,
+        program,
+        deck_text(nominal_path),
     )
 
 
@@ -225,26 +240,23 @@ def _runs(
     given = {name: [x] if isinstance(x, int | float) else list(x) for name, x in factors.items()}
     places = [("--factor", name) for name in given]
     places += [("--check", name) for _, values in checks for name in values]
+    faults = [
+        Fault("", option, "a parameter", suggestion(name, names))
+        for option, name in places
+        if name not in names
+    ]
     expected = "a factor above 0, and not 1"
-    refuse(
-        [
-            *(
-                Fault("", option, "a parameter", suggestion(name, names))
-                for option, name in places
-                if name not in names
-            ),
-            *(
-                Fault("", f"--factor {name}", expected, f"{factor:g}")
-                for name, each in given.items()
-                for factor in each
-                if name in names and (not 0 < factor < np.inf or factor == 1)
-            ),
-        ]
-    )
+    faults += [
+        Fault("", f"--factor {name}", expected, f"{factor:g}")
+        for name, each in given.items()
+        for factor in each
+        if name in names and (not 0 < factor < np.inf or factor == 1)
+    ]
+    refuse(faults)
     out = []
     for k, (name, jobs) in enumerate(parameters.items()):
         paths = [jobs] if isinstance(jobs, str | Path) else list(jobs)
-        values = given.get(name) or ([FACTOR] if len(paths) == 1 else [])
+        values = given.get(name) or ([2.0] if len(paths) == 1 else [])
         if len(values) != len(paths):
             expected = f"{len(paths)} factors, one for each of its runs"
             raise InputError(Fault("", f"--factor {name}", expected, str(len(given.get(name, [])))))
@@ -290,39 +302,6 @@ def _frequencies(
     return frequencies, floating
 
 
-# The study
-
-
-def write_study(imported: Imported, program: str, directory: Path) -> list[Path]:
-    """Write a study with its matrices into a folder, and return the files.
-
-    Raises InputError where the folder has a study already, or cannot be written to.
-    """
-    study = directory / "study.toml"
-    if study.exists():
-        expected = "a folder without a study, as nothing is overwritten"
-        raise InputError(Fault(str(study), "file", expected, "an existing one"))
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=directory, prefix=".import-") as name:
-            folder = Path(name)
-            names = _write_matrices(imported.terms, folder)
-            write_dofs(folder / "dofs.csv", imported.terms.dofs)
-            if imported.nominal.mesh is not None:
-                write_mesh(folder / "mesh.npz", imported.nominal.mesh)
-            if imported.changes:
-                write_changes(folder / CHANGES, imported.changes)
-                write_text(folder / f"{KEPT}{imported.changes[0].file}", imported.deck)
-            text = _study(imported, program, names)
-            write_text(folder / "study.toml", text)
-            add_schema([folder / "study.toml"])
-            files = sorted(folder.iterdir(), key=lambda file: file.name == "study.toml")
-            return [Path(shutil.move(file, directory / file.name)) for file in files]
-    except OSError as error:
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(directory), "folder", expected, reason(error))) from None
-
-
 def _write_matrices(terms: Terms, folder: Path) -> dict[Quantity, dict[str, str]]:
     """Write all matrices; return the names of their files by quantity and term."""
     out: dict[Quantity, dict[str, str]] = {quantity: {} for quantity in QUANTITIES}
@@ -338,17 +317,18 @@ def _write_matrices(terms: Terms, folder: Path) -> dict[Quantity, dict[str, str]
     return out
 
 
-def _study(imported: Imported, program: str, names: dict[Quantity, dict[str, str]]) -> str:
+def _study(imported: Imported, names: dict[Quantity, dict[str, str]]) -> str:
     dofs = imported.terms.dofs
     nodes = dofs.node[dofs.node > 0]
-    pairs = {x: [f"{_quoted(k)} = {_quoted(v)}" for k, v in y.items()] for x, y in names.items()}
+    quoted = partial(json.dumps, ensure_ascii=False)  # TOML has texts as JSON has them
+    pairs = {x: [f"{quoted(k)} = {quoted(v)}" for k, v in y.items()] for x, y in names.items()}
     lines = [
-        f"# Imported from {program}: {Path(imported.nominal.name).name}. Parameters are factors of "
-        "the nominal values.",
+        f"# Imported from {imported.program}: {Path(imported.nominal.name).name}. "
+        "Parameters are factors of the nominal values.",
         *(f"# - {' '.join(note.split())}" for note in imported.notes),
         "",
         "[study]",
-        f"name = {_quoted(Path(imported.nominal.name).stem)}",
+        f"name = {quoted(Path(imported.nominal.name).stem)}",
         "",
         "# What is left to you: measured modes, and where the sensors are.",
         "# [data]",
@@ -372,18 +352,13 @@ def _study(imported: Imported, program: str, names: dict[Quantity, dict[str, str
         lines += [
             "",
             "[[parameter]]",
-            f"name = {_quoted(name)}",
+            f"name = {quoted(name)}",
             "nominal = 1.0",
-            f"bounds = [{BOUNDS[0]}, {BOUNDS[1]}]",
+            "bounds = [0.5, 2.0]",
         ]
     for group, what in (("frequencies", "frequency"), ("shapes", "shape")):
         lines += ["", "[[group]]", f'name = "{group}"', f'{what} = "all"']
     return "\n".join(lines) + "\n"
-
-
-def _quoted(text: str) -> str:
-    """Return a text as TOML has it, for which JSON's form is right."""
-    return json.dumps(text, ensure_ascii=False)
 
 
 def describe(term: Term) -> str:

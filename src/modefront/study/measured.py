@@ -22,21 +22,12 @@ from modefront.json_schema import NAME, any_of, closed
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
-from modefront.options import Requirement, shown, text, whole
-from modefront.toml import Table
-
-NEAR = 0.01
-"""Distance of a sensor from the node of the test that is its own, over the size of the test."""
-
-ASKEW = 0.5
-"""Cosine between the directions of a sensor in model and data below which these disagree."""
-
+from modefront.options import Requirement, Table, keys, text, whole
 
 FILE = text("the name of a file of modal data")
-NODE = whole(0, 10**9)
-DIRECTION = Requirement(
-    "x, y, z, rx, ry, rz or a vector", any_of({"type": "string"}, {"type": "array"})
-)
+NODE, DIRECTIONS = whole(0, 10**9), "x, y, z, rx, ry, rz or a vector"
+DIRECTION = Requirement(DIRECTIONS, any_of({"type": "string"}, {"type": "array"}))
+OF_PLACE = keys(["node", "direction"], node=NODE, direction=DIRECTION)
 PLACE = any_of(
     NAME, closed({"node": NODE.schema, "direction": DIRECTION.schema}, ["node", "direction"])
 )
@@ -151,7 +142,7 @@ def _of_nodes(
         placed[name] = place
         axis = None if in_space is None else in_space.sensor_directions[s]
         in_data = modes.in_space(*place)
-        if axis is not None and axis.any() and abs(axis @ in_data[:3]) < ASKEW:
+        if axis is not None and axis.any() and abs(axis @ in_data[:3]) < 0.5:
             table.notes.append(DataDirection(name, axis_name(axis), axis_name(in_data)))
     if len(table.faults) > before:
         return None
@@ -171,24 +162,18 @@ def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | 
         if place is None:
             places.fault(name, f"one of {_listed(modes)}", suggestion(value, modes.measured))
         return place
-    if not isinstance(value, dict):
-        places.fault(name, 'node and direction, such as "12Z"', shown(value))
+    inner = places.table(name, 'node and direction, such as "12Z"')
+    known = inner.read(OF_PLACE) if inner else None
+    if inner is None or known is None:
         return None
-    inner = places.table(name)
-    if inner is None:
-        return None
-    node, direction = inner.value("node", NODE), inner.value("direction", DIRECTION)
-    inner.close()
-    if node is None or direction is None:
-        return None
-    position = np.flatnonzero(modes.nodes == node)
+    position = np.flatnonzero(modes.nodes == known["node"])
     if not position.size:
-        inner.fault("node", "a node of the test", str(node))
+        inner.fault("node", "a node of the test", str(known["node"]))
         return None
     try:
-        return int(position[0]), unit_vector(direction, name)
+        return int(position[0]), unit_vector(known["direction"], name)
     except FemError as error:
-        inner.fault("direction", "x, y, z, rx, ry, rz or a vector", str(error))
+        inner.fault("direction", DIRECTIONS, str(error))
         return None
 
 
@@ -203,7 +188,7 @@ def _by_coordinates(
     nearest = int(np.argmin(distance))
     size = float(np.linalg.norm(np.ptp(modes.position, axis=0)))
     is_known = direction.any() and np.isfinite(modes.axes[nearest]).all()
-    if not is_known or distance[nearest] > NEAR * size:
+    if not is_known or distance[nearest] > 0.01 * size:  # another node would be as likely
         return None
     return nearest, modes.local(nearest, direction)
 

@@ -1,5 +1,6 @@
-"""JSON Schema of the study file, made from the requirements by which it is read.
+"""What study files may hold: their JSON Schema, and the extensions of the user.
 
+The schema is made from the requirements by which study files are read.
 What a schema cannot say is left to ``modefront check``: names that refer to other tables, files,
 columns and nodes, numbers that depend on each other, names that repeat, and whether a whole number
 was written with a decimal point.
@@ -8,31 +9,30 @@ was written with a decimal point.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from modefront.data.uff import SUFFIXES
+from modefront.data.uff55 import SUFFIXES
+from modefront.errors import wrong
+from modefront.families import Family
 from modefront.front.given import Weighted
-from modefront.front.options import Pareto
-from modefront.front.search import Search
-from modefront.identifiability.options import Identifiability
+from modefront.front.methods import METHODS
 from modefront.json_schema import NAME, OPEN, Schema, array, chosen, closed, file_name, table_of
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.options import Reduction
 from modefront.options import Option, of_options, options, schema_of
 from modefront.outputs import write_text
-from modefront.pairing.match import Pairing
 from modefront.predictions import CLASSES
 from modefront.predictions.ranges import SLACK
-from modefront.residuals.groups import KINDS as RESIDUALS
-from modefront.residuals.groups import MODE_NUMBERS
-from modefront.study.definition import Study
+from modefront.residuals.kinds import KINDS as RESIDUALS
+from modefront.study.file import OF_OPTIONS, of_group, of_header
 from modefront.study.kinds import KINDS
 from modefront.study.measured import FILE, PLACE, READERS
-from modefront.study.tables import GROUP_NAME, SCALE
-from modefront.uncertainty.options import Uncertainty
-from modefront.uncertainty.prior import NoisePrior
+from modefront.text import NAME as LENGTH
+from modefront.text import clean
+
+T = TypeVar("T")
 
 FILE_NAME = "study.schema.json"
 """File that is written beside a study file: no network is needed to read it."""
@@ -40,28 +40,24 @@ FILE_NAME = "study.schema.json"
 DIRECTIVE = f"#:schema {FILE_NAME}\n"
 """First line of a study file, by which editors with Taplo find the schema."""
 
-OF_OPTIONS = {
-    "pareto": Pareto,
-    "pairing": Pairing,
-    "search": Search,
-    "identifiability": Identifiability,
-    "uncertainty": Uncertainty,
-    "noise": NoisePrior,
-}
-"""Tables that are records of options, all of which have defaults."""
-
 
 def study_schema() -> dict[str, Any]:
     """Return the schema, draft 7, with the kinds, methods and predictions that are registered."""
+    has_modes = [
+        {"required": [kind], "properties": {kind: {"minItems": 1}}, **OPEN} for kind in RESIDUALS
+    ]
+    meaning = "share by which objectives of models may be greater that count in ranges"
+    slack = Option("slack", SLACK, default=0, meaning=meaning).schema
+    predict = {key: array(schema_of(each), 1) for key, each in CLASSES.items()}
     tables = {
-        "study": of_options(_header()),
+        "study": of_options(of_header()),
         "data": _data(),
         "model": chosen("kind", {name: _model(name) for name in KINDS}),
         "parameter": array(schema_of(Parameter), 1),
-        "group": array({**of_options(_group()), "anyOf": [_has_modes(x) for x in RESIDUALS]}, 1),
+        "group": array({**of_options(of_group()), "anyOf": has_modes}, 1),
         "weighted": array(schema_of(Weighted), 1),
         **{name: schema_of(record) for name, record in OF_OPTIONS.items()},
-        "predict": _predict(),
+        "predict": closed({"slack": slack, **predict}, []),
     }
     required = ["study", "data", "model", "parameter", "group"]
     head = {"$schema": "http://json-schema.org/draft-07/schema#", "title": "modefront study"}
@@ -83,15 +79,6 @@ def add_schema(studies: Sequence[Path]) -> Path:
     path = studies[0].parent / FILE_NAME
     write_text(path, as_text())
     return path
-
-
-def _header() -> Iterator[Option]:
-    """Yield the keys of ``[study]``."""
-    of_study = {each.name: each for each in options(Study)}
-    name = of_study["name"]
-    yield Option("name", name.requirement, False, True, None, name.meaning)
-    yield of_study["seed"]
-    yield from (each for each in options(Reduction) if each.name == "memory")
 
 
 def _data() -> Schema:
@@ -125,29 +112,31 @@ def _model(name: str) -> Schema:
     return closed(keys, ["kind", *known["required"]])
 
 
-def _group() -> Iterator[Option]:
-    """Yield the keys of ``[[group]]``."""
-    yield Option("name", GROUP_NAME, False, True, None, "name of the objective in results")
-    for name, kind in RESIDUALS.items():
-        yield Option(
-            name, MODE_NUMBERS, True, False, None, f"measured modes whose {kind.plural} count"
-        )
-    yield Option("scale", SCALE, False, False, "measured", "unit of the residuals")
+FAMILIES: tuple[Family[Any], ...] = (CLASSES, KINDS, RESIDUALS, METHODS, READERS)
+"""All families that users extend."""
 
 
-def _has_modes(kind: str) -> Schema:
-    """Return the schema of groups that have residuals of a kind."""
-    return {"required": [kind], "properties": {kind: {"minItems": 1}}, **OPEN}
+def register(extension: T) -> T:
+    """Make an extension known, and return it.
 
+    Entry points of installed packages do the same: ``modefront.predictions``,
+    ``modefront.models``, ``modefront.residuals``, ``modefront.methods`` and ``modefront.readers``.
 
-def _predict() -> Schema:
-    slack = Option(
-        "slack",
-        SLACK,
-        False,
-        False,
-        0,
-        "share by which objectives of models may be greater that count in ranges",
-    )
-    lists = {key: array(schema_of(each), 1) for key, each in CLASSES.items()}
-    return closed({"slack": slack.schema, **lists}, [])
+    Parameters
+    ----------
+    extension
+        A class of predictions with what `Prediction` has, a `ModelKind`, a kind of residual with
+        what `modefront.residuals.base.ResidualKind` has, a `Method` of fronts, or a `DataReader`.
+        It takes the place of one that was registered before under its name.
+
+    Raises
+    ------
+    InputError
+        Where it is none of these, or its name is that of another one.
+    """
+    for family in FAMILIES:
+        if family.takes(extension):
+            family.add(extension)
+            return extension
+    expected = ", ".join(family.what for family in FAMILIES)
+    raise wrong("register", f"one of {expected}", clean(repr(extension), LENGTH))

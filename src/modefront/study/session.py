@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from contextlib import AbstractContextManager, suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
@@ -19,7 +20,7 @@ from modefront.analysis.certified import (
     certified_points,
 )
 from modefront.analysis.front import AnalysisOptions, analyse_front
-from modefront.errors import Fault, InputError, reason
+from modefront.errors import Fault, InputError, writing
 from modefront.front.front import Front
 from modefront.front.given import Weighted
 from modefront.front.indicators import coverage
@@ -30,14 +31,12 @@ from modefront.front.search import Search
 from modefront.identifiability.combinations import unchanged_groups
 from modefront.identifiability.options import Identifiability
 from modefront.optim.sqp import given
-from modefront.outputs import remove_unfinished
+from modefront.outputs import remove_unfinished, write_text
 from modefront.predictions import Prediction
 from modefront.predictions.runner import PredictionRunner
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
-from modefront.study.processes import processes
-from modefront.study.whereabouts import note_study
 from modefront.uncertainty.inference import infer
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.options import Uncertainty
@@ -45,8 +44,9 @@ from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress
 from modefront.work.run import Run
-from modefront.work.store import FOLDER, Store, locked
+from modefront.work.store import FOLDER, NOTE, Store, locked
 from modefront.work.task import Backend, Task, Within
+from modefront.work.workers import backend
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -162,7 +162,7 @@ def run(
     UnfinishedError
         If the work cannot be done; what is done is kept.
     """
-    carrier = processes(workers, scheduler)
+    carrier = backend(workers, scheduler)
     return run_on(carrier, study, folder, fresh=fresh, refined=refined, progress=progress)
 
 
@@ -185,166 +185,143 @@ def run_on(
         study = replace(study, pareto=replace(study.pareto, refined=refined))
     study = study.completed()
     progress = progress or Progress()
+
+    def done(store: Store | None = None) -> xr.Dataset:
+        with carrier as opened:
+            progress.workers = opened.workers
+            return worked(study, Run(store, progress, opened))
+
     if folder is None:
-        return Results(_worked(study, carrier, progress), study.problem)
+        return Results(done(), study.problem)
     folder = Path(folder)
     tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}"
-    _prepare(folder)
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
     for path in (tasks.parent, tasks):
         if path.is_symlink():
             found = f"a link to {path.readlink()}: remove it, or choose another folder with -o"
             raise InputError(Fault(str(path), "folder", "a folder of its own", found))
-    _prepare(tasks.parent)
+    with writing(tasks.parent):
+        tasks.parent.mkdir(exist_ok=True)
     with locked(folder):
-        _prepare(tasks, (tasks, folder / FILE) if fresh or not study.work else ())
+        with writing(tasks):
+            for path in (tasks, folder / FILE) if fresh or not study.work else ():
+                _set_aside(path)
+            tasks.mkdir(exist_ok=True)
         remove_unfinished(folder, FILE)
         remove_unfinished(tasks)
-        data = _worked(study, carrier, progress, Store(tasks))
+        data = done(Store(tasks))
         if (folder / FILE).is_file() and written_for(folder / FILE) != study.digest:
             _set_aside(folder / FILE)
         write(data, folder / FILE)
         if study.origin is not None:
-            note_study(folder, tasks, study.origin.file)
+            with suppress(ValueError, OSError):  # another drive; a note is no loss
+                note = os.path.relpath(study.origin.file.absolute(), folder.absolute())
+                write_text(tasks / NOTE, Path(note).as_posix() + "\n")
     return Results(data, study.problem)
 
 
-def _worked(
-    study: Study,
-    carrier: AbstractContextManager[Backend],
-    progress: Progress,
-    store: Store | None = None,
-) -> xr.Dataset:
-    """Return what the work of a study gives; a store keeps the results of its tasks."""
-    with carrier as opened:
-        progress.workers = opened.workers
-        return _Session(study, Run(store, progress, opened)).results()
+def worked(study: Study, work: Run) -> xr.Dataset:
+    """Do the work of a study, and return its results.
 
-
-def _prepare(folder: Path, aside: Sequence[Path] = ()) -> None:
-    """Make a folder where there is none, after some files are set aside.
-
-    Raises InputError where the folder cannot be written to.
+    Raises InputError where no parameter changes a group.
     """
-    try:
-        for path in aside:
-            _set_aside(path)
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        fault = Fault(str(folder), "folder", "a folder that can be written to", reason(error))
-        raise InputError(fault) from None
+    problem, file = study.problem, str(study.file)
+    # Dense problems of a hundred unknowns are slower on several threads of the BLAS than on one.
+    with threadpool_limits(1, user_api="blas"):
+        refuse_too_many(problem, file)
+        (unchanged,) = work.run([Task(("check-groups",), unchanged_groups, (problem,))])
+        refuse_unchanged_groups(problem, file, unchanged)
+        return _results(study, work)
 
 
-@dataclass(frozen=True)
-class _Session:
-    """The work of a study, with the executor that does it."""
+def _results(study: Study, work: Run) -> xr.Dataset:
+    from modefront.results.assemble import dataset
+    from modefront.results.posterior import posterior_models, with_intervals, with_posterior
+    from modefront.results.predictions import extent, with_predictions
+    from modefront.results.verdict import with_verdict
 
-    study: Study
-    work: Run
-
-    def results(self) -> xr.Dataset:
-        """Do the work and return its results.
-
-        Raises InputError where no parameter changes a group.
-        Dense problems of a hundred unknowns are slower on several threads of the BLAS than on one.
-        """
-        problem = self.study.problem
-        with threadpool_limits(1, user_api="blas"):
-            refuse_too_many(problem, str(self.study.file))
-            (unchanged,) = self.work.run([Task(("check-groups",), unchanged_groups, (problem,))])
-            refuse_unchanged_groups(problem, str(self.study.file), unchanged)
-            return self._results()
-
-    def _results(self) -> xr.Dataset:
-        from modefront.results.assemble import dataset
-        from modefront.results.posterior import posterior_models, with_intervals, with_posterior
-        from modefront.results.predictions import extent, with_predictions
-        from modefront.results.verdict import with_verdict
-
-        study, work = self.study, self.work
-        problem = study.problem
-        search = partial(
-            pareto_front,
-            problem,
-            problem.properties,
-            study.pareto,
-            seed=study.seed,
-            search=study.search,
-            given=[(each.name, each.of(problem.objectives)) for each in study.weighted],
+    problem = study.problem
+    search = partial(
+        pareto_front,
+        problem,
+        problem.properties,
+        study.pareto,
+        seed=study.seed,
+        search=study.search,
+        given=[(each.name, each.of(problem.objectives)) for each in study.weighted],
+    )
+    front = certified_front(problem, search, work)
+    noise = study.noise.of(problem, study.uncertainty.of(problem.data))
+    inference = None
+    if noise is not None:
+        minima = [x for edge in front.edges for x in edge.minima]
+        known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
+        (best, *_) = most_probable(problem, noise, known, work)
+        points = certified_points(
+            problem, [Point(Kind.MOST_PROBABLE, best)], Within(work, ("most-probable",))
         )
-        front = certified_front(problem, search, work)
-        noise = study.noise.of(problem, study.uncertainty.of(problem.data))
-        inference = None
-        if noise is not None:
-            minima = [x for edge in front.edges for x in edge.minima]
-            known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
-            (best, *_) = most_probable(problem, noise, known, work)
-            points = certified_points(
-                problem, [Point(Kind.MOST_PROBABLE, best)], Within(work, ("most-probable",))
-            )
-            front = replace(front, points=[*front.points, *points])
-            count = max(DRAWS, study.uncertainty.draws)
-            inference = infer(noise, best.theta, count, study.seed, work)
-        options = AnalysisOptions(
-            study.pareto, study.identifiability, study.uncertainty, study.seed
-        )
-        analysis = analyse_front(problem, front, options, work)
-        (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
-        extra = [*analysis.points, Point(Kind.NOMINAL, given(nominal))]
-        analysis = replace(analysis, points=certified_points(problem, extra, work))
-        data = self._with_shapes(dataset(problem, front, analysis))
-        gaussian, drawn = analysis.posterior, None
-        if inference is not None:
-            data = with_intervals(data, inference)
-            gaussian, drawn = inference.gaussian, inference.draws.theta
-        runner = PredictionRunner(
-            problem, study.predictions, study.seed, work, study.file, study.slack
-        )
-        models = posterior_models(data, runner, gaussian, study.uncertainty.draws, drawn)
-        work.expect(extent(study.predictions, data.sizes["point"] + models.count))
-        data = with_posterior(with_predictions(data, runner), runner, models)
-        data = with_verdict(data)
-        data.attrs |= self._attributes(front)
-        return data
+        front = replace(front, points=[*front.points, *points])
+        count = max(DRAWS, study.uncertainty.draws)
+        inference = infer(noise, best.theta, count, study.seed, work)
+    options = AnalysisOptions(study.pareto, study.identifiability, study.uncertainty, study.seed)
+    analysis = analyse_front(problem, front, options, work)
+    (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
+    extra = [*analysis.points, Point(Kind.NOMINAL, given(nominal))]
+    analysis = replace(analysis, points=certified_points(problem, extra, work))
+    data = _with_shapes(dataset(problem, front, analysis), problem, work)
+    gaussian, drawn = analysis.posterior, None
+    if inference is not None:
+        data = with_intervals(data, inference)
+        gaussian, drawn = inference.gaussian, inference.draws.theta
+    runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file, study.slack)
+    models = posterior_models(data, runner, gaussian, study.uncertainty.draws, drawn)
+    work.expect(extent(study.predictions, data.sizes["point"] + models.count))
+    data = with_posterior(with_predictions(data, runner), runner, models)
+    data = with_verdict(data)
+    data.attrs |= _attributes(study, work, front)
+    return data
 
-    def _with_shapes(self, data: xr.Dataset) -> xr.Dataset:
-        """Return results with the mode shapes of all points."""
-        from modefront.results.mode_shapes import mode_shapes, with_mode_shapes
 
-        problem = self.study.problem
-        theta, paired = data["theta"].values, data["paired_mode"].values
-        # A refined front has further points: what is kept is that of the points before.
-        mark = hashlib.sha256(theta.tobytes() + paired.tobytes()).hexdigest()[:16]
-        (shapes,) = self.work.run([Task(("shapes", mark), mode_shapes, (problem, theta, paired))])
-        return with_mode_shapes(data, problem, shapes)
+def _with_shapes(data: xr.Dataset, problem: UpdatingProblem, work: Run) -> xr.Dataset:
+    """Return results with the mode shapes of all points."""
+    from modefront.results.mode_shapes import mode_shapes, with_mode_shapes
 
-    def _attributes(self, front: Front) -> dict[str, str | int | float]:
-        """Return version, seed, costs, and the coverage of the front."""
-        total = self.work.total(lambda stage: stage != "shapes")
-        along = self.work.total(lambda stage: stage == "front")
-        predictions = self.work.total(lambda stage: stage == "predict")
-        shapes = self.work.total(lambda stage: stage == "shapes")
-        refined = self.study.pareto.refined
-        out: dict[str, str | int | float] = {
-            "study": self.study.name,
-            "inputs": self.study.digest,
-            "remark": self.study.remark,
-            "version": __version__,
-            "seed": self.study.seed,
-            "model_evaluations": total.model_evaluations,
-            "method": front.method,
-            "front_evaluations": along.model_evaluations,
-            "nbi_evaluations": along.model_evaluations if front.method == "nbi" else 0,
-            "full_eigensolutions": total.eigenproblems,
-            "prediction_eigensolutions": predictions.eigenproblems,
-            "shape_eigensolutions": shapes.model_evaluations,
-            "corrected_eigensolutions": total.corrected,
-            "factorisations": total.factorisations,
-            "reduced_solutions": total.reduced,
-            "front_is_a_point": int(front.target is None),
-            **({} if refined is None else {"refined": refined}),
-            **coverage(front),
-        }
-        return out | certificate_attributes(self.study.problem)
+    theta, paired = data["theta"].values, data["paired_mode"].values
+    # A refined front has further points: what is kept is that of the points before.
+    mark = hashlib.sha256(theta.tobytes() + paired.tobytes()).hexdigest()[:16]
+    (shapes,) = work.run([Task(("shapes", mark), mode_shapes, (problem, theta, paired))])
+    return with_mode_shapes(data, problem, shapes)
+
+
+def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | float]:
+    """Return version, seed, costs, and the coverage of the front."""
+    total = work.total(lambda stage: stage != "shapes")
+    along = work.total(lambda stage: stage == "front")
+    predictions = work.total(lambda stage: stage == "predict")
+    shapes = work.total(lambda stage: stage == "shapes")
+    refined = study.pareto.refined
+    out: dict[str, str | int | float] = {
+        "study": study.name,
+        "inputs": study.digest,
+        "remark": study.remark,
+        "version": __version__,
+        "seed": study.seed,
+        "model_evaluations": total.model_evaluations,
+        "method": front.method,
+        "front_evaluations": along.model_evaluations,
+        "nbi_evaluations": along.model_evaluations if front.method == "nbi" else 0,
+        "full_eigensolutions": total.eigenproblems,
+        "prediction_eigensolutions": predictions.eigenproblems,
+        "shape_eigensolutions": shapes.model_evaluations,
+        "corrected_eigensolutions": total.corrected,
+        "factorisations": total.factorisations,
+        "reduced_solutions": total.reduced,
+        "front_is_a_point": int(front.target is None),
+        **({} if refined is None else {"refined": refined}),
+        **coverage(front),
+    }
+    return out | certificate_attributes(study.problem)
 
 
 def _set_aside(path: Path) -> None:

@@ -1,12 +1,10 @@
 """Progress of a run: its stage, tasks done, and the time that is left, as a range.
 
-Every task belongs to a stage. The extent of a stage is an estimate until it ends; a stage has ended
-when a task of another one starts, and its extent then is the number of tasks that it had.
-
-A plan says from and to how many searches each stage takes. What a stage has taken is subtracted
-from it; a stage that has tasks of a known number takes for each that is left as long as for those
-before. A search takes as long as those of the edges and the front so far, and as planned before
-there are many.
+Every task belongs to a stage. The extent of a stage is an estimate until a task of another stage
+starts: then it has ended, with the tasks that it had. A plan says from and to how many searches
+each stage takes. What a stage has taken is subtracted from it; a stage with tasks of a known number
+takes for each that is left as long as for those before. A search takes as long as those of the
+edges and the front so far, and as planned before there are many.
 """
 
 from __future__ import annotations
@@ -127,7 +125,8 @@ class Progress:
         if self._began is None:
             self._began = self.clock()
         if stage != self._stage and self._stage:
-            self._expected[self._stage] = self._met(self._stage)
+            before = self._stage
+            self._expected[before] = self._done[before] + self._running[before]
             self._ended.add(self._stage)
         self._ended.discard(stage)
         self._stage = stage
@@ -147,7 +146,7 @@ class Progress:
     def state(self) -> State:
         """State of the run."""
         stages = dict.fromkeys([*self._expected, *self._done, *self._running])
-        extents = {stage: max(self._expected[stage], self._met(stage)) for stage in stages}
+        extents = {x: max(self._expected[x], self._done[x] + self._running[x]) for x in stages}
         return State(
             self._stage,
             self._done.total(),
@@ -176,9 +175,6 @@ class Progress:
                 low = 0.0 if self._done[stage] > done else max(low - spent, 0.0)
             least, most = least + low, most + high
         return least / self.workers, most / self.workers
-
-    def _met(self, stage: str) -> int:
-        return self._done[stage] + self._running[stage]
 
 
 ITERATION = "iteration "

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from modefront.work.costs import Costs, total
 from modefront.work.progress import Progress
 from modefront.work.store import Store
-from modefront.work.task import Backend, Done, InTurn, R, Task, computed
+from modefront.work.task import Backend, InTurn, Key, R, Task
 
 
 @dataclass
@@ -27,7 +28,7 @@ class Run:
     store: Store | None = None
     progress: Progress = field(default_factory=Progress)
     backend: Backend = field(default_factory=InTurn)
-    costs: dict[tuple[Any, ...], Costs] = field(default_factory=dict)
+    costs: dict[tuple[Key, Key], Costs] = field(default_factory=dict)
 
     def expect(self, stages: Mapping[str, int]) -> None:
         """Note the number of tasks of each stage that are still to come."""
@@ -38,11 +39,11 @@ class Run:
 
         Raises ValueError for a key that another task of the run had.
         """
-        names: list[tuple[Any, ...]] = [(*task.key, *task.turn) for task in tasks]
-        for k, name in enumerate(names):
-            if name in self.costs or name in names[:k]:
-                raise ValueError(f"two tasks are named {tasks[k].name}")
         results: dict[int, R] = {}
+        names = [task.identity for task in tasks]
+        for k, task in enumerate(tasks):
+            if names[k] in self.costs or names[k] in names[:k]:
+                raise ValueError(f"two tasks are named {task.name}")
         for k, task in enumerate(tasks):
             kept = self.store.read(task) if self.store else None
             if kept is not None:
@@ -50,30 +51,24 @@ class Run:
                 results[k], self.costs[names[k]] = kept
                 self.progress.end(task.stage, None)
         left = [k for k in range(len(tasks)) if k not in results]
+        here = [k for k in left if tasks[k].in_process]
         elsewhere = [k for k in left if not tasks[k].in_process]
-        chosen = [tasks[k] for k in elsewhere]
-
-        def begun(position: int) -> None:
-            self.progress.start(chosen[position].stage)
-
-        for position, done in self.backend.compute(chosen, begun):
-            k = elsewhere[position]
-            results[k] = self._ended(tasks[k], done)
-        for k in left:
-            if tasks[k].in_process:
-                self.progress.start(tasks[k].stage)
-                results[k] = self._ended(tasks[k], computed(tasks[k]))
+        for ks, backend in ((elsewhere, self.backend), (here, InTurn())):
+            chosen = [tasks[k] for k in ks]
+            started = partial(self._started, chosen)
+            for position, done in backend.compute(chosen, started):
+                task = chosen[position]
+                results[ks[position]] = done.result
+                self.costs[task.identity] = done.costs
+                self.progress.spent.add(done.costs)
+                if self.store:
+                    self.store.write(task, done.result, done.costs)
+                self.progress.end(task.stage, done.seconds)
         return [results[k] for k in range(len(tasks))]
+
+    def _started(self, tasks: Sequence[Task[Any]], position: int) -> None:
+        self.progress.start(tasks[position].stage)
 
     def total(self, chosen: Callable[[str], bool] = lambda _: True) -> Costs:
         """Return the costs of the tasks of the chosen stages."""
-        return total(costs for key, costs in self.costs.items() if chosen(str(key[0])))
-
-    def _ended(self, task: Task[R], done: Done) -> R:
-        self.costs[*task.key, *task.turn] = done.costs
-        self.progress.spent.add(done.costs)
-        if self.store:
-            self.store.write(task, done.result, done.costs)
-        self.progress.end(task.stage, done.seconds)
-        result: R = done.result
-        return result
+        return total(costs for (key, _), costs in self.costs.items() if chosen(str(key[0])))

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from filelock import FileLock, SoftFileLock, Timeout
 
-from modefront.errors import Fault, InputError, reason
+from modefront.errors import Fault, InputError, writing
 from modefront.outputs import write_bytes, write_text
 from modefront.text import NAME, clean
 from modefront.work.codec import decode, encode
@@ -32,6 +32,9 @@ from modefront.work.task import Task
 
 FOLDER = "tasks"
 """Folder of the kept results, within that of the results of a run."""
+
+NOTE = "study"
+"""File beside these results, with the path of the study file from those of the run."""
 
 CHECKSUM = 32
 """Bytes of the checksum at the end of a file."""
@@ -94,12 +97,6 @@ FILE = "lock"
 HOLDER = "lock-holder"
 """File that says which process holds the lock."""
 
-PATIENCE = 0.5
-"""Seconds in which a run that is just ending may still let go."""
-
-LONGEST_HOLDER = 400
-"""Bytes that say who holds a lock, at most."""
-
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
@@ -112,32 +109,28 @@ def locked(folder: Path) -> Iterator[None]:
     Raises InputError where another run holds it, and where the folder cannot be written to.
     """
     path, holder = folder / FOLDER / FILE, folder / FOLDER / HOLDER
-    lock = FileLock(path, timeout=PATIENCE)
-    try:
-        with warnings.catch_warnings(action="ignore"):  # of drives without locks
-            lock.acquire()
-        write_text(holder, f"process {os.getpid()} on {socket.gethostname()}")
-    except Timeout:
-        found = f"{_holding(holder)}: wait until it has ended, or choose another folder with -o"
-        if isinstance(lock, SoftFileLock):
-            found += f"; if it was killed, remove '{path}', as this drive has no locks"
-        raise InputError(Fault(str(folder), "folder", "no other run in it", found)) from None
-    except OSError as error:
-        lock.release()
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
+    lock = FileLock(path, timeout=0.5)  # s, in which a run that is just ending may let go
+    with writing(folder):
+        try:
+            with warnings.catch_warnings(action="ignore"):  # of drives without locks
+                lock.acquire()
+            write_text(holder, f"process {os.getpid()} on {socket.gethostname()}")
+        except Timeout:
+            known = "another run"
+            with suppress(OSError):
+                if holder.is_file():  # a pipe in its place would be waited for
+                    text = holder.read_bytes()[:400].decode("utf-8", "replace")
+                    known = clean(f"the run of {text}", NAME)
+            found = f"{known}: wait until it has ended, or choose another folder with -o"
+            if isinstance(lock, SoftFileLock):
+                found += f"; if it was killed, remove '{path}', as this drive has no locks"
+            raise InputError(Fault(str(folder), "folder", "no other run in it", found)) from None
+        except OSError:
+            lock.release()
+            raise
     try:
         yield
     finally:
         with suppress(OSError):  # the folder may have been taken away
             holder.unlink()
         lock.release()
-
-
-def _holding(holder: Path) -> str:
-    with suppress(OSError):
-        if holder.is_file():  # a pipe in its place would be waited for
-            with holder.open("rb") as stream:
-                known = stream.read(LONGEST_HOLDER).decode("utf-8", "replace")
-                return clean(f"the run of {known}", NAME)
-    return "another run"

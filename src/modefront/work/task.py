@@ -62,18 +62,14 @@ class Task(Generic[R]):
     @property
     def name(self) -> str:
         """Key and turn in one line."""
-        parts = [
-            "_".join(map(str, part)) if isinstance(part, tuple) else str(part)
-            for part in (*self.key, *self.turn)
-        ]
-        return "-".join(parts)
+        parts = (part if isinstance(part, tuple) else (part,) for part in (*self.key, *self.turn))
+        return "-".join("_".join(map(str, part)) for part in parts)
 
     def __call__(self) -> R:
         """Return the result of the function."""
-        options: dict[str, Any] = {}
-        if self.seed is not None:
-            options["rng"] = np.random.default_rng(self.seed)
-        return self.function(*self.arguments, **options)
+        if self.seed is None:
+            return self.function(*self.arguments)
+        return self.function(*self.arguments, rng=np.random.default_rng(self.seed))
 
 
 class Executor(Protocol):

@@ -114,12 +114,8 @@ class _Pickler(pickle.Pickler):
     def persistent_id(self, value: Any) -> str | None:
         if not is_shared(value) or value is self.root:
             return None
-        return self._meet(value)
-
-    def _meet(self, value: Shared) -> str:
-        """Take note of a shared object after its parts; return its name."""
         for part in getattr(value, "parts", ()):
-            self._meet(part)
+            self.persistent_id(part)
         name = self.sender.name(value)
         self.met[name] = value
         return name

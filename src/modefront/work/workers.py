@@ -1,71 +1,301 @@
-"""A backend that hands tasks to other processes.
+"""A backend that hands tasks to other processes: of this machine, or those of a Dask cluster.
 
-Tasks are sent as bytes, short ones several at a time.
+Tasks are sent as bytes, short ones several at a time. Where a process is lost, the tasks that it
+may have computed are done again, one at a time. One that is lost alone as well, or whose memory
+does not suffice twice, is given up: the others are computed to the end, and an error names it.
 
-Where a process is lost, the tasks that it may have computed are done again, one at a time. One
-that is lost alone as well, or whose memory does not suffice twice, is given up: the others are
-computed to the end, and an error names it.
+A process of this machine is spawned, ends with the one that has started it, whatever ends that, and
+leaves interrupts of the terminal to it.
 """
 
 from __future__ import annotations
 
+import importlib
+import logging
+import math
+import multiprocessing
+import os
+import signal
+import threading
+import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
-from contextlib import contextmanager
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
-from math import ceil
+from enum import Enum
+from functools import cache
+from multiprocessing import connection, resource_tracker
 from pickle import PicklingError
-from typing import Any
+from typing import Any, Protocol
+
+from threadpoolctl import threadpool_limits
 
 from modefront.errors import Fault, InputError, UnfinishedError, wrong
 from modefront.inputs import available_memory
 from modefront.work.costs import spend
-from modefront.work.pools import Cluster, LocalPool, Loss, Pool
 from modefront.work.task import Backend, Done, InTurn, Key, Task, computed
-from modefront.work.transfer import Message, Reply, Sender
+from modefront.work.transfer import Message, Reply, Sender, work
 
-SHORT = 0.02
-"""Seconds of tasks that are sent together, about."""
-
-TINY = 0.005
-"""Seconds of all tasks below which they are computed in the calling process."""
+SHORT, TINY = 0.02, 0.005
+"""Seconds of tasks that are sent together, about, and of all tasks below which they are computed in
+the calling process."""
 
 QUEUED = 2
 """Messages that are sent, over the number of processes."""
 
-LOSSES = 2
-"""Times that a task is lost, after which it is given up."""
-
 SHARE = 0.6
 """Share of the memory that is available that processes may take."""
+
+WARM = "modefront.front.pareto", "modefront.analysis.front"
+"""What processes import when they start: nearly all that the tasks of a run need."""
 
 MOST = 61
 """Processes of this machine at most; Windows waits for no more."""
 
+ANSWER, JOIN = 10.0, 60.0
+"""Seconds in which a scheduler has to answer, and one of its workers to join."""
+
+ONE_THREAD = {"RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+"""Environment of a process with one thread: of rslab, `modefront.linalg.products` and the BLAS. A
+BLAS that is limited only after it has started its threads makes imports take half as long again."""
+
+
+class Loss(Enum):
+    """Tasks that are lost with an error that is not one of a task."""
+
+    PROCESS = "the process that computed the task"
+    POOL = "all processes, which can be started again"
+    CLUSTER = "the cluster"
+
+
+class Pool(Protocol):
+    """Processes that compute messages."""
+
+    @property
+    def count(self) -> int:
+        """Number of processes."""
+
+    @property
+    def ready(self) -> bool:
+        """Whether a message would be computed at once."""
+        return True
+
+    def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
+        """Compute a message in one of the processes."""
+
+    def lost(self, error: Exception, /) -> Loss | None:
+        """Return the loss that an error means; None where it is an error of the task."""
+
+    def restart(self) -> None:
+        """Start the processes again, where nothing else replaces them."""
+        return
+
+    def close(self) -> None:
+        """End all processes, whatever they do."""
+
+
+@dataclass
+class LocalPool:
+    """Processes of this machine, spawned, with one thread each.
+
+    They import the modules ``warm`` when they start, and with them what most tasks need.
+    """
+
+    count: int
+    warm: Sequence[str] = ()
+    _executor: ProcessPoolExecutor = field(init=False)
+    _first: Future[int] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.restart()
+
+    @property
+    def ready(self) -> bool:
+        """Whether the first process has started."""
+        return self._first.done()
+
+    def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
+        """Compute a message in one of the processes."""
+        with _starting():  # the executor may start a process that it has not needed yet
+            return self._executor.submit(work, message, objects)
+
+    def lost(self, error: Exception, /) -> Loss | None:
+        """Return that all processes are lost where one has ended: the executor ends the others."""
+        return Loss.POOL if isinstance(error, BrokenProcessPool) else None
+
+    def restart(self) -> None:
+        """Start the processes, or others in their place."""
+        spawn = multiprocessing.get_context("spawn")
+        try:
+            with _starting():
+                self._executor = ProcessPoolExecutor(self.count, spawn, _prepare, (self.warm,))
+                # The executor starts a process a task, as long as none of them is idle.
+                self._first, *_ = [self._executor.submit(int) for _ in range(self.count)]
+        except BaseException:  # an interrupt that was held back
+            self.close()
+            raise
+
+    def close(self) -> None:
+        """End all processes, whatever they do."""
+        processes = list((self._executor._processes or {}).values())
+        for process in processes:  # first, so that none of them misses what it starts with
+            process.kill()
+        self._executor.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.join()
+
+
+def _prepare(warm: Sequence[str]) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
+
+    def end_with_parent() -> None:
+        if parent := multiprocessing.parent_process():
+            connection.wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=end_with_parent, daemon=True).start()
+    for module in warm:
+        importlib.import_module(module)
+    _take_one_thread()
+
+
+@cache
+def _take_one_thread() -> None:
+    """Limit the BLAS of this process, and what it first shares among threads later, to one."""
+    os.environ.update(ONE_THREAD)
+    threadpool_limits(1, user_api="blas")
+
+
+@contextmanager
+def _starting() -> Iterator[None]:
+    """Start processes with one thread, which hold interrupts back for good, until the context ends.
+
+    Among these is the one in which `multiprocessing` keeps account of semaphores. It is started
+    first, since `multiprocessing` lets interrupts pass once it has started it.
+    """
+    environment, signals = dict(os.environ), None
+    os.environ.update(ONE_THREAD)
+    try:
+        if hasattr(signal, "pthread_sigmask"):  # on Windows the initializer ignores them
+            held = {signal.SIGINT, signal.SIGHUP, signal.SIGTERM}
+            signals = signal.pthread_sigmask(signal.SIG_BLOCK, held)
+            resource_tracker.ensure_running()
+            signal.pthread_sigmask(signal.SIG_BLOCK, held)
+        yield
+    finally:
+        for name in ONE_THREAD:
+            os.environ.pop(name)
+        os.environ.update({x: environment[x] for x in ONE_THREAD if x in environment})
+        if signals is not None:
+            signal.pthread_sigmask(signal.SIG_SETMASK, signals)
+
+
+@dataclass
+class Cluster(Pool):
+    """Workers of a Dask cluster that runs already, at the address of its scheduler.
+
+    Raises InputError where `distributed` is not installed or the address is none, UnfinishedError
+    where no scheduler answers, no worker joins, or the versions differ.
+    """
+
+    address: str
+    _count: int = 1
+    _counted: float = -math.inf
+    _client: Any = field(init=False)
+    _executor: Any = field(init=False)
+
+    def __post_init__(self) -> None:
+        place = "--scheduler"
+        try:
+            distributed: Any = importlib.import_module("distributed")
+        except ImportError:
+            expected = "the extra 'cluster': pip install modefront[cluster]"
+            raise InputError(Fault("", place, expected, "no package 'distributed'")) from None
+        try:
+            logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors say what it logs
+            self._client = distributed.Client(self.address, timeout=ANSWER, set_as_default=False)
+        except ValueError as error:
+            expected = "an address like tcp://HOST:PORT"
+            raise InputError(Fault("", place, expected, f"{self.address}: {error}")) from None
+        except OSError:
+            raise UnfinishedError(f"no Dask scheduler answers at {self.address}") from None
+        try:
+            self._client.wait_for_workers(1, timeout=JOIN)
+        except TimeoutError:
+            self._client.close()
+            raise UnfinishedError(f"no worker has joined the scheduler {self.address}") from None
+        self._executor = self._client.get_executor(pure=False, retries=0)
+
+    @property
+    def count(self) -> int:
+        """Number of threads of all workers, as it was a few seconds ago."""
+        if time.monotonic() > self._counted + 10:
+            self._counted = time.monotonic()
+            with suppress(Exception):  # what is lost shows when it is used
+                self._count = max(1, sum(self._client.nthreads().values()))
+        return self._count
+
+    def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
+        """Compute a message in one of the workers."""
+        return self._executor.submit(_work_of_one_thread, message, objects)
+
+    def lost(self, error: Exception, /) -> Loss | None:
+        """Return whether a worker or the whole cluster is lost."""
+        from distributed import KilledWorker
+
+        if isinstance(error, KilledWorker):
+            return Loss.PROCESS
+        return Loss.CLUSTER if isinstance(error, CancelledError | OSError) else None
+
+    def close(self) -> None:
+        """Leave the cluster, which cancels what it still computes for this run."""
+        with suppress(Exception):  # a scheduler that is gone needs no farewell
+            self._executor.shutdown(wait=False, cancel_futures=True)
+            self._client.close(timeout=5)
+
+
+def _work_of_one_thread(message: Message, objects: dict[str, bytes]) -> Reply:
+    _take_one_thread()
+    return work(message, objects)
+
+
+@dataclass(frozen=True)
+class _Sent:
+    """Tasks that were sent.
+
+    Attributes
+    ----------
+    positions : of the tasks in their call
+    message : with the tasks
+    lacked : names of shared objects that came with it, as some process did not know them
+    """
+
+    positions: Sequence[int]
+    message: Message
+    lacked: frozenset[str] = frozenset()
+
 
 @dataclass
 class _Call:
-    """Tasks of one call.
+    """Tasks of one call: where they are, by their positions.
 
     Attributes
     ----------
     tasks : of the call
-    begun : is called with the position of each task that is sent or computed
-    pending : positions of tasks to be sent
-    alone : positions of tasks that are sent one at a time, since a process was lost with them
-    flying : positions of tasks that were sent, their message, and the names of shared objects that
-        came with it, as some process did not know them; by what will come back
-    errors : of tasks, by their position
+    pending : to be sent
+    alone : to be sent one at a time, since a process was lost with them
+    flying : sent, by what will come back
+    errors : of tasks that have failed
     """
 
     tasks: Sequence[Task[Any]]
-    begun: Callable[[int], None]
     pending: deque[int]
     alone: deque[int] = field(default_factory=deque)
-    flying: dict[Future[Reply], tuple[Sequence[int], Message, frozenset[str]]] = field(
-        default_factory=dict
-    )
+    flying: dict[Future[Reply], _Sent] = field(default_factory=dict)
     errors: dict[int, Exception] = field(default_factory=dict)
 
 
@@ -105,7 +335,7 @@ class Workers:
         the model cannot be sent to another process, and what tasks raise; but for a cluster that
         is gone, all other tasks are computed first.
         """
-        call = _Call(tasks, begun, deque(range(len(tasks))))
+        call = _Call(tasks, deque(range(len(tasks))))
         while call.pending or call.alone or call.flying:
             if self._is_for_this_process(call):
                 k = call.pending.popleft()
@@ -114,7 +344,7 @@ class Workers:
                 self._learn(tasks[k], done.seconds)
                 yield k, done
                 continue
-            self._send(call)
+            self._send(call, begun)
             for future in wait(call.flying, return_when=FIRST_COMPLETED).done:
                 if future in call.flying:  # else it was lost with another one
                     yield from self._received(call, future)
@@ -134,44 +364,38 @@ class Workers:
         seconds = (self._seconds.get(_kind(call.tasks[k]), SHORT) for k in call.pending)
         return lone or sum(seconds) < TINY
 
-    def _send(self, call: _Call) -> None:
+    def _send(self, call: _Call, begun: Callable[[int], None]) -> None:
         """Send tasks of a call, as many as the processes have room for."""
         if call.alone:
             if not call.flying:
-                self._submit(call, [call.alone.popleft()])
+                k = call.alone.popleft()
+                self._submit(call, _Sent([k], self._message(call, [k])))
             return
         while call.pending and len(call.flying) < QUEUED * self.pool.count:
-            share = ceil(len(call.pending) / self.pool.count)
+            share = math.ceil(len(call.pending) / self.pool.count)
             each = self._seconds.get(_kind(call.tasks[call.pending[0]]), SHORT)
             count = max(1, min(share, int(SHORT / max(each, SHORT / 1000))))
             positions = [call.pending[k] for k in range(count)]
-            if not self._submit(call, positions):
+            message = self._message(call, positions)
+            taken = sum(sent.message.memory for sent in call.flying.values())
+            if call.flying and taken + message.memory > self.memory:
                 return
+            self._submit(call, _Sent(positions, message))
             for k in positions:
                 call.pending.popleft()
-                call.begun(k)
+                begun(k)
 
-    def _submit(self, call: _Call, positions: Sequence[int]) -> bool:
-        """Send tasks; return False where the memory does not suffice for one message more."""
+    def _message(self, call: _Call, positions: Sequence[int]) -> Message:
         try:
-            message = self._sender.message([call.tasks[k] for k in positions])
+            return self._sender.message([call.tasks[k] for k in positions])
         except (PicklingError, AttributeError, TypeError) as error:
             expected = "a model that other processes can import: functions of a module"
             raise InputError(Fault("", "workers", expected, str(error))) from None
-        taken = sum(sent.memory for _, sent, _ in call.flying.values())
-        if call.flying and taken + message.memory > self.memory:
-            return False
-        self._fly(call, positions, message, frozenset())
-        return True
 
-    def _fly(
-        self, call: _Call, positions: Sequence[int], message: Message, lacked: frozenset[str]
-    ) -> None:
-        """Send tasks with the shared objects that a process has lacked."""
-        objects = self._sender.objects([name for name in message.names if name in lacked])
-        sent = positions, message, lacked
+    def _submit(self, call: _Call, sent: _Sent) -> None:
+        objects = self._sender.objects([x for x in sent.message.names if x in sent.lacked])
         try:
-            call.flying[self.pool.submit(message, objects)] = sent
+            call.flying[self.pool.submit(sent.message, objects)] = sent
         except Exception as error:
             loss = self.pool.lost(error)
             if loss is Loss.CLUSTER:
@@ -179,53 +403,49 @@ class Workers:
             if loss is not Loss.POOL:
                 raise
             self.pool.restart()
-            call.flying[self.pool.submit(message, objects)] = sent
+            call.flying[self.pool.submit(sent.message, objects)] = sent
 
     def _received(self, call: _Call, future: Future[Reply]) -> Iterator[tuple[int, Done]]:
+        sent = call.flying.pop(future)
         try:
             reply = future.result()
         except Exception as error:
             loss = self.pool.lost(error)
             if loss is None:
                 raise
-            self._lose(call, future, loss)
+            if loss is Loss.CLUSTER:
+                text = "the Dask scheduler is gone; what was done is kept"
+                raise UnfinishedError(text) from None
+            lost = [sent]
+            if loss is Loss.POOL:
+                lost += call.flying.values()
+                call.flying.clear()
+                self.pool.restart()
+            for k in (k for each in lost for k in each.positions):
+                self._lose(call, k, "the process that computed it ended")
             return
-        positions, message, lacked = call.flying.pop(future)
         if reply.lacking:
-            self._fly(call, positions, message, lacked.union(reply.lacking))
+            lacked = sent.lacked.union(reply.lacking)
+            self._submit(call, _Sent(sent.positions, sent.message, lacked))
             return
-        for k, done in zip(positions, reply.done, strict=False):
+        for k, done in zip(sent.positions, reply.done, strict=False):
             self._learn(call.tasks[k], done.seconds)
             spend(done.costs)
             yield k, done
         if reply.error is None:
             return
-        failed, *others = positions[len(reply.done) :]
+        failed, *others = sent.positions[len(reply.done) :]
         if isinstance(reply.error, MemoryError):
-            self._lost_one(call, failed, "its memory does not suffice")
+            self._lose(call, failed, "its memory does not suffice")
         else:
             call.errors[failed] = reply.error
         call.pending.extend(others)
 
-    def _lose(self, call: _Call, future: Future[Reply], loss: Loss) -> None:
-        """Take note of a loss; the tasks that it concerns are done again, one at a time."""
-        if loss is Loss.CLUSTER:
-            raise UnfinishedError("the Dask scheduler is gone; what was done is kept")
-        lost = list(call.flying.values()) if loss is Loss.POOL else [call.flying[future]]
-        if loss is Loss.POOL:
-            call.flying.clear()
-            self.pool.restart()
-        else:
-            del call.flying[future]
-        for positions, *_ in lost:
-            for k in positions:
-                self._lost_one(call, k, "the process that computed it ended")
-
-    def _lost_one(self, call: _Call, position: int, reason: str) -> None:
-        """Take note that a task was lost, and give it up where that is not the first time."""
+    def _lose(self, call: _Call, position: int, reason: str) -> None:
+        """Note that a task was lost: it is done again, alone, and given up the second time."""
         task = call.tasks[position]
         self._losses[task.identity] += 1
-        if self._losses[task.identity] < LOSSES:
+        if self._losses[task.identity] == 1:
             call.alone.append(position)
             return
         text = f"task '{task.name}' could not be done: {reason}, twice; all others are kept"
@@ -243,7 +463,7 @@ def _kind(task: Task[Any]) -> str:
 
 @contextmanager
 def backend(
-    workers: int, scheduler: str | None = None, warm: Sequence[str] = ()
+    workers: int, scheduler: str | None = None, warm: Sequence[str] = WARM
 ) -> Iterator[Backend]:
     """Open the backend of so many processes, or of the cluster with this scheduler.
 

@@ -1,15 +1,12 @@
-"""Examples that ``modefront init`` writes: one folder each, and what is simulated for it."""
+"""Examples that ``modefront init`` writes: one folder each."""
 
 from __future__ import annotations
 
-from importlib import import_module, resources
+from importlib import resources
 from pathlib import Path
 
-from modefront.errors import Fault, InputError, reason, suggestion
+from modefront.errors import Fault, InputError, refuse, suggestion, writing
 from modefront.outputs import write_bytes
-
-SIMULATED = {"hammer-test": "hammer_test", "ambient-test": "ambient_test"}
-"""Modules of examples of which tests are simulated where written."""
 
 
 def names() -> list[str]:
@@ -27,26 +24,16 @@ def write_example(name: str, directory: Path) -> list[Path]:
     if name not in names():
         expected = "one of " + ", ".join(names())
         raise InputError(Fault("modefront init", "--example", expected, suggestion(name, names())))
-    sources = sorted(
-        (item for item in resources.files(__package__).joinpath(name).iterdir()),
-        key=lambda item: item.name,
-    )
-    targets = [directory / source.name for source in sources]
-    module = import_module(f"{__package__}.{SIMULATED[name]}") if name in SIMULATED else None
-    simulated = [directory / file for file in module.files()] if module else []
-    try:
+    sources = resources.files(__package__).joinpath(name).iterdir()
+    files = {directory / source.name: source for source in sources}
+    with writing(directory):
         directory.mkdir(parents=True, exist_ok=True)
-        existing = [path for path in (*targets, *simulated) if path.exists() or path.is_symlink()]
-        if existing:
-            expected = "a new file, as nothing is overwritten"
-            raise InputError(
-                Fault(str(path), "file", expected, "an existing one") for path in existing
-            )
-        for source, path in zip(sources, targets, strict=True):
+        expected = "a new file, as nothing is overwritten"
+        refuse(
+            Fault(str(path), "file", expected, "an existing one")
+            for path in sorted(files)
+            if path.exists() or path.is_symlink()
+        )
+        for path, source in files.items():
             write_bytes(path, source.read_bytes())
-        if module:
-            module.write(directory)
-    except OSError as error:
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(directory), "folder", expected, reason(error))) from None
-    return sorted([*targets, *simulated])
+    return sorted(files)

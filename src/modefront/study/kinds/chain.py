@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -10,9 +10,8 @@ from modefront.errors import Fault, refuse, suggestion
 from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, array, table_of
 from modefront.models.base import Model
 from modefront.models.chain import chain
-from modefront.options import Requirement, check_fields, entries, numbers, shown
-from modefront.study.kinds.sensors import WEIGHTED, ModelKind, read_outputs, read_sensors
-from modefront.toml import Table
+from modefront.options import Requirement, Table, check_fields, entries, numbers, shown
+from modefront.study.kinds.sensors import WEIGHTED, ModelKind, read_places
 
 MASSES = numbers("a list of masses above 0", array(ABOVE_ZERO, 1))
 STIFFNESSES = numbers(
@@ -58,19 +57,17 @@ class Chain:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        refuse(self._of_other_length())
-
-    def _of_other_length(self) -> Iterator[Fault]:
         n, springs = len(self.masses), len(self.stiffnesses)
-        for key, counts, requirement in (
-            ("stiffnesses", (n, n + 1), STIFFNESSES),
-            ("added_masses", (n,), ADDED),
-            ("stiffness_parameters", (springs,), OF_SPRINGS),
-            ("mass_parameters", (n,), OF_MASSES),
-        ):
-            values = getattr(self, key)
-            if values is not None and len(values) not in counts:
-                yield Fault("", key, requirement.expected, shown(values))
+        refuse(
+            Fault("", key, requirement.expected, shown(values))
+            for key, counts, requirement in (
+                ("stiffnesses", (n, n + 1), STIFFNESSES),
+                ("added_masses", (n,), ADDED),
+                ("stiffness_parameters", (springs,), OF_SPRINGS),
+                ("mass_parameters", (n,), OF_MASSES),
+            )
+            if (values := getattr(self, key)) is not None and len(values) not in counts
+        )
 
 
 def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:
@@ -78,10 +75,16 @@ def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:
     before = len(table.faults)
     read, masses = table.record(Chain), table.values.get("masses")
     n = len(masses) if isinstance(masses, list) and MASSES.holds(masses) else None
-    stiffness_names = _scales(table, "stiffness_parameters", read, parameters)
-    mass_names = _scales(table, "mass_parameters", read, parameters)
-    sensors = read_sensors(table, n, default=None)
-    outputs = read_outputs(table, n, sensors or [f"floor{i + 1}" for i in range(n or 0)])
+    scales: dict[str, list[str | None] | None] = {}
+    for key in ("stiffness_parameters", "mass_parameters"):
+        names = (getattr(read, key) if read else None) or ()
+        for name in names:
+            if name and name not in parameters:
+                table.fault(key, "names of parameters", suggestion(name, parameters))
+        scales[key] = [name or None for name in names] or None
+    sensors = read_places(table, "sensors", n)
+    floors = sensors or [f"floor{i + 1}" for i in range(n or 0)]
+    outputs = read_places(table, "outputs", n, taken=floors) or {}
     if len(table.faults) > before or read is None:
         return None
     return chain(
@@ -89,22 +92,11 @@ def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:
         read.masses,
         read.stiffnesses,
         added_masses=read.added_masses or [0.0] * len(read.masses),
-        stiffness_parameters=stiffness_names,
-        mass_parameters=mass_names,
+        stiffness_parameters=scales["stiffness_parameters"],
+        mass_parameters=scales["mass_parameters"],
         sensors=sensors,
         outputs=outputs,
     )
-
-
-def _scales(
-    table: Table, key: str, read: Chain | None, parameters: Sequence[str]
-) -> list[str | None] | None:
-    """Return the parameter that scales each member; an empty text means that none does."""
-    names = (getattr(read, key) if read else None) or ()
-    for name in names:
-        if name and name not in parameters:
-            table.fault(key, "names of parameters", suggestion(name, parameters))
-    return [name or None for name in names] or None
 
 
 CHAIN = ModelKind("chain", read_chain, is_reducible=False, table=Chain)

@@ -17,42 +17,32 @@ from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
 from modefront.models.files import READERS, read_matrix
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import matrices
-from modefront.models.parameters import BASE, exponents_of, form_of
-from modefront.options import TRUE_OR_FALSE, check_fields, entries, schema_of, text
-from modefront.programs.base import ProgramMesh, read_mesh
+from modefront.models.terms import BASE, exponents_of, form_of
+from modefront.options import TRUE_OR_FALSE, Option, Table, check_fields, entries, text
+from modefront.programs.mesh import ProgramMesh, read_mesh
 from modefront.study.kinds.sensors import (
     BY_NODE,
     DOF,
     WEIGHTED,
     ModelKind,
-    read_base,
-    read_outputs,
-    read_sensors,
+    read_places,
 )
-from modefront.toml import Table
 
 FILE = text("the name of a file")
 
 
-@dataclass(frozen=True)
-class MatrixFile:
-    """One of the matrices in a file.
-
-    Attributes
-    ----------
-    file : its name
-    name : of the matrix in it; empty for the only one
-    """
-
-    file: Annotated[str, FILE]
-    name: Annotated[str, text("the name of a matrix in the file")] | None = None
-
-    def __post_init__(self) -> None:
-        check_fields(self)
-
+OF_SEVERAL = (
+    Option("file", FILE, required=True),
+    Option(
+        "name",
+        text("the name of a matrix in the file"),
+        meaning="of the matrix in it; empty for the only one",
+    ),
+)
+"""Keys of one of the matrices in a file."""
 
 MATRIX = file_name(READERS)
-ONE_OF_SEVERAL = closed({**schema_of(MatrixFile)["properties"], "file": MATRIX}, ["file"])
+ONE_OF_SEVERAL = closed({"file": MATRIX, "name": OF_SEVERAL[1].schema}, ["file"])
 TERMS = entries("a table of files", table_of(any_of(MATRIX, ONE_OF_SEVERAL), 1))
 PLACES = entries("a table, name = place", table_of(any_of(WEIGHTED, BY_NODE), 1))
 OUTPUTS = entries("a table, name = place", table_of(any_of(WEIGHTED, BY_NODE)))
@@ -111,9 +101,9 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
         table.fault("dofs", expected, f"{dofs.size} in '{table.values['dofs']}'")
         dofs = None
     mesh = table.content("mesh", read_mesh)
-    sensors = read_sensors(table, size, dofs=dofs)
-    outputs = read_outputs(table, size, sensors, dofs)
-    base = read_base(table, size, dofs)
+    sensors = read_places(table, "sensors", size, dofs, default=...)
+    outputs = read_places(table, "outputs", size, dofs, taken=sensors or ()) or {}
+    base = read_places(table, "base", size, dofs) or {}
     if len(table.faults) > before or read is None or sensors is None:
         return None
     model = matrices(
@@ -174,13 +164,11 @@ def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_arr
 def _file(table: Table, key: str) -> tuple[str, str | None] | None:
     """Return the name of a file and, where given, that of a matrix in it."""
     if not isinstance(table.values[key], dict):
-        name = table.text(key, "the name of a file")
+        name = table.value(key, FILE)
         return None if name is None else (name, None)
     inner = table.table(key)
-    if inner is None:
-        return None
-    read = inner.record(MatrixFile)
-    return None if read is None else (read.file, read.name or None)
+    read = inner and inner.read(OF_SEVERAL)
+    return (read["file"], read.get("name")) if read else None
 
 
 def _common_size(
@@ -204,17 +192,15 @@ def _check_entries(
     model: Table, matrices: Mapping[str, Mapping[str, scipy.sparse.coo_array]], size: int
 ) -> None:
     """Note a mass that is zero, and degrees of freedom with neither stiffness nor mass."""
-    all_terms = [A for terms in matrices.values() for A in terms.values()]
     mass = matrices["mass"]
     if mass and not any(A.nnz for A in mass.values()):
         model.fault("mass", "a mass matrix that is not zero", "only zeros")
     elif all(matrices.values()) and not model.faults:
-        stiff = np.zeros(size, dtype=bool)
-        for A in all_terms:
-            stiff[A.row] = True
-        if not stiff.all():
+        rows = [A.row for terms in matrices.values() for A in terms.values()]
+        empty = np.setdiff1d(np.arange(size), np.concatenate(rows))
+        if empty.size:
             expected = "stiffness or mass at every degree of freedom"
-            model.fault("", expected, f"neither at {int(np.argmin(stiff))} (from 0)")
+            model.fault("", expected, f"neither at {empty[0]} (from 0)")
 
 
 MATRICES = ModelKind("matrices", read_matrices, table=Matrices)

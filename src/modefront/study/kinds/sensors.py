@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -24,8 +26,7 @@ from modefront.json_schema import (
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
-from modefront.options import Requirement, is_name, shown, whole
-from modefront.toml import Table
+from modefront.options import Requirement, Table, is_name, shown, whole
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class ModelKind:
     ----------
     name : value of ``kind`` in the table ``[model]``
     read : returns the model of that table, given the names of the parameters, or None where the
-        table has faults; files are opened by `modefront.toml.Table.path`, so that they are known
+        table has faults; files are opened by `modefront.options.Table.path`, so that they are known
     is_reducible : whether a model may be large enough for a reduced basis
     table : record of options whose fields are the keys of that table (`modefront.options`), for
         the schema of study files; None where they are not known
@@ -48,10 +49,6 @@ class ModelKind:
     table: type | None = None
 
 
-PARALLEL = 1e-9
-"""Sine of the angle of two axes below which they are one."""
-
-
 NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
 """Directions by their names."""
 
@@ -61,11 +58,21 @@ WEIGHTED = any_of(DOF, array(pair(DOF, NUMBER), 1))
 
 VECTOR = array(NUMBER, 3, 3)
 
+
+def _axes(rows: Any) -> Floats:
+    """Return local axes (3, 3), x, y and z in rows."""
+    first, second = np.asarray(rows, dtype=float)
+    x, z = first / np.linalg.norm(first), np.cross(first, second)
+    z /= np.linalg.norm(z)
+    return np.stack([x, np.cross(z, x), z])
+
+
 AXES = Requirement(
     "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane",
     array(VECTOR, 2, 2),
-    further=lambda x: (
-        float(np.linalg.norm(np.cross(*x))) > PARALLEL * float(np.prod(np.linalg.norm(x, axis=1)))
+    _axes,
+    lambda x: (
+        float(np.linalg.norm(np.cross(*x))) > 1e-9 * float(np.prod(np.linalg.norm(x, axis=1)))
     ),
 )
 DIRECTION = Requirement(
@@ -85,17 +92,6 @@ NODE = whole(1, 2**62)
 BY_NODE = closed({"node": NODE.schema} | ORIENTED, ["node", "direction"])
 
 
-def read_axes(place: Table) -> Floats | None:
-    """Return local axes (3, 3), x, y and z in rows; None for those of the model."""
-    rows = place.value("axes", AXES, None)
-    if rows is None:
-        return None
-    first, second = np.asarray(rows, dtype=float)
-    x, z = first / np.linalg.norm(first), np.cross(first, second)
-    z /= np.linalg.norm(z)
-    return np.stack([x, np.cross(z, x), z])
-
-
 def read_directions(place: Table) -> list[tuple[str, Any]]:
     """Return the directions of a sensor in the axes of the model, with what each adds to its name.
 
@@ -109,81 +105,64 @@ def read_directions(place: Table) -> list[tuple[str, Any]]:
     else:
         direction = place.value("direction", DIRECTION)
         found = [] if direction is None else [("", direction)]
-    axes = read_axes(place)
-    turned = [(ending, in_axes(place, direction, axes)) for ending, direction in found]
-    return [(ending, direction) for ending, direction in turned if direction is not None]
-
-
-def in_axes(place: Table, direction: Any, axes: Floats | None) -> Any:
-    """Return a direction in the axes of the model, None where it has none there."""
-    if axes is None:
-        return direction
-    if isinstance(direction, str):
-        axis = direction.removeprefix("-")
-        if axis not in DIRECTIONS[:3]:
+    axes = place.value("axes", AXES, None)
+    out = []
+    for ending, direction in found:
+        axis = str(direction).removeprefix("-")
+        if axes is None:
+            out.append((ending, direction))
+        elif not isinstance(direction, str):
+            out.append((ending, (np.asarray(direction, dtype=float) @ axes).tolist()))
+        elif axis in DIRECTIONS[:3]:
+            row = axes[DIRECTIONS.index(axis)]
+            out.append((ending, (-row if direction != axis else row).tolist()))
+        else:
             place.fault("direction", "x, y or z where axes are given", f"'{direction}'")
-            return None
-        row = axes[DIRECTIONS.index(axis)]
-        return (-row if direction != axis else row).tolist()
-    return (np.asarray(direction, dtype=float) @ axes).tolist()
+    return out
 
 
-def read_sensors(
-    model: Table, size: int | None, default: Any = ..., dofs: DofTable | None = None
+EXPECTED = {
+    "sensors": "a table of sensors, name = degree of freedom",
+    "outputs": "a table of outputs, name = degree of freedom",
+    "base": "a table, direction = list of the degrees of freedom that move with the base",
+}
+"""Tables of places."""
+
+
+# 6 arguments: the table, the model's size and nodes, and what differs between the tables.
+def read_places(
+    model: Table,
+    key: str,
+    size: int | None,
+    dofs: DofTable | None = None,
+    *,
+    taken: Iterable[str] = (),
+    default: Any = None,
 ) -> dict[str, SensorSpec] | None:
-    """Return the sensors of a model of ``size`` degrees of freedom (None: not known).
+    """Return named degrees of freedom of a model, weighted or not; None without the table.
 
-    With ``dofs``, sensors may be given by node and direction too.
+    ``size`` is how many the model has, where that is known. With ``dofs``, they may be given by
+    node and direction too, and those of the base by the direction alone.
     """
-    table = model.table("sensors", "a table of sensors, name = degree of freedom", default)
+    table = model.table(key, EXPECTED[key], default)
     if table is None:
         return None
-    out = _read(table, size, lambda name: not is_reserved(name, table.values), dofs)
-    if not table.values:
+    if key == "sensors" and not table.values:
         table.fault("", "at least one sensor", "none")
-    return out
-
-
-def read_outputs(
-    model: Table, size: int | None, sensors: Iterable[str] | None, dofs: DofTable | None = None
-) -> dict[str, SensorSpec]:
-    """Return the places besides the sensors that predictions may name, given as these are."""
-    expected = "a table of outputs, name = degree of freedom"
-    table = model.table("outputs", expected, default=None)
-    if table is None:
-        return {}
-    out = _read(table, size, is_name, dofs)
-    for name in set(sensors or ()).intersection(table.values):
+    for name in set(taken).intersection(table.values):
         table.fault(name, "a name that no sensor has", f"'{name}'")
-    return out
 
+    def is_right(name: str) -> bool:
+        return is_name(name) and not (key == "sensors" and is_reserved(name, table.values))
 
-def read_base(
-    model: Table, size: int | None, dofs: DofTable | None = None
-) -> dict[str, SensorSpec]:
-    """Return which degrees of freedom move with the base, for each direction of its motion.
-
-    With ``dofs``, these may be all of a direction: ``x = { direction = "x" }``.
-    """
-    expected = "a table, direction = list of the degrees of freedom that move with the base"
-    table = model.table("base", expected, default=None)
-    if table is None:
-        return {}
-    for name, value in table.values.items():
-        if isinstance(value, list) and all(map(is_dof, value)):
+    for name, value in table.values.items() if key == "base" else ():
+        if isinstance(value, list) and all(fits(dof, DOF) for dof in value):
             table.values[name] = [[dof, 1.0] for dof in value]
         elif dofs is not None and isinstance(value, dict) and value.get("direction") in DIRECTIONS:
             table.values[name] = [list(pair) for pair in dofs.of_direction(value["direction"])]
-    return _read(table, size, is_name, dofs)
-
-
-def _read(
-    table: Table, size: int | None, is_right: Callable[[str], bool], dofs: DofTable | None = None
-) -> dict[str, SensorSpec]:
-    """Return named degrees of freedom, weighted or not; ``is_right`` tells good names."""
     out: dict[str, SensorSpec] = {}
     for name, value in table.values.items():
-        if not is_name(name) or name != name.strip() or not is_right(name):
+        if name != name.strip() or not is_right(name):
             table.fault(repr(name), "a name that a column of the data can have", repr(name))
             continue
         if isinstance(value, dict) and {"node", "direction"} & value.keys():
@@ -193,7 +172,7 @@ def _read(
                 else:
                     table.fault(name, "a name that a column of the data can have", repr(sensor))
             continue
-        pairs = [[value, 1.0]] if is_dof(value) else value
+        pairs = [[value, 1.0]] if fits(value, DOF) else value
         if not fits(pairs, WEIGHTED):
             expected = "a degree of freedom from 0, or a list [[degree of freedom, weight], ...]"
             table.fault(name, expected, shown(value))
@@ -203,7 +182,7 @@ def _read(
             found = ", ".join(map(str, beyond))
             one_off = " (they are counted from 0)" if max(beyond) == size else ""
             table.fault(name, f"degrees of freedom from 0 to {size - 1}{one_off}", found)
-        elif not _selects(pairs):
+        elif not any(sum(w for _, w in of) for _, of in groupby(sorted(pairs), itemgetter(0))):
             table.fault(name, "weights that do not cancel", shown(pairs))
         else:
             out[name] = [(int(dof), float(weight)) for dof, weight in pairs]
@@ -234,16 +213,3 @@ def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, Sensor
         except LookupError as error:
             place.fault("", *error.args)
     return out
-
-
-def _selects(pairs: Iterable[Any]) -> bool:
-    """Return whether any degree of freedom has a weight that is not zero."""
-    total: dict[int, float] = {}
-    for dof, weight in pairs:
-        total[dof] = total.get(dof, 0.0) + weight
-    return any(total.values())
-
-
-def is_dof(value: object) -> bool:
-    """Return whether a value is a whole number from 0."""
-    return fits(value, DOF)
