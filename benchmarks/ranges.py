@@ -10,8 +10,9 @@ parameters act on the same members, one parameter acts on nothing measured. Both
 greatest accelerance or receptance between two sensors and a rational function of the parameters
 with its least value within the bounds, are minimised and maximised over the front, by SLSQP (SciPy)
 at levels of the first objective between its points, and over the equivalent models of each, which
-are known in closed form here: by random models and SLSQP from the best of them. A range is wrong where an end differs by more than 2 % of the greater one;
-the cost is the number of eigenproblems of the predictions over those of the search.
+are known in closed form here: by random models and SLSQP from the best of them. A range is wrong
+where an end differs by more than 2 % of the greater one; the cost is the number of eigenproblems of
+the predictions over those of the search.
 """
 
 from __future__ import annotations
