@@ -208,9 +208,9 @@ class _Scaled:
     def evaluate(
         self, problem: Problem, theta: Floats, derivatives: bool, second: bool
     ) -> Evaluation:
-        """Return the misfit and the distance; residuals take derivatives, whether asked or not."""
-        del derivatives
-        return self.of(problem.evaluate(theta, second=second))
+        """Return the misfit and the distance, always with the derivatives that residuals take."""
+        del derivatives, second
+        return self.of(problem.evaluate(theta))
 
     def of(self, found: Evaluation) -> Evaluation:
         """Return them from an evaluation."""
