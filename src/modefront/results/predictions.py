@@ -23,8 +23,10 @@ RANGE = ("minimum", "maximum", "spread")
 
 
 def extent(predictions: Sequence[Prediction], models: int) -> dict[str, int]:
-    """Return the expected number of tasks of the predictions of so many models."""
-    return {"predict": sum(models + (each.kind.check is not None) for each in predictions)}
+    """Return the expected number of tasks of the predictions of so many models, and their ends."""
+    ends = [2 * len(each.kind.ranged) * len(each.places) for each in predictions]
+    checks = [each.kind.check is not None for each in predictions]
+    return {"predict": models * len(ends) + sum(ends) + sum(checks)}
 
 
 def by_kind(
