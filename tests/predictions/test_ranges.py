@@ -8,7 +8,7 @@ import pytest
 import modefront as mf
 from modefront._typing import Floats
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual
-from modefront.predictions.ranges import extreme
+from modefront.predictions.ranges import Sampled, extreme
 
 LOWER, UPPER = np.array([0.5, 0.5, 0.5]), np.array([2.0, 2.0, 2.0])
 
@@ -39,7 +39,10 @@ class Ratios:
 
 def along(problem: Problem, q: Any, thetas: Floats, slack: float = 0.0) -> tuple[float, float]:
     """Return the range of a function of the parameters."""
-    least, greatest = (extreme(problem, thetas, q, s, slack, 1e-4) for s in (1.0, -1.0))
+    J = np.array([problem.evaluate(theta).J for theta in thetas])
+    front = Sampled(thetas, J, is_open=slack > 0 or isinstance(problem, Ratios), slack=slack)
+    values = np.array([q(theta) for theta in thetas])
+    least, greatest = (extreme(problem, front, values, q, s, 1e-4) for s in (1.0, -1.0))
     return least, greatest
 
 
@@ -66,31 +69,52 @@ def test_two_combinations_that_are_open() -> None:
     assert greatest == pytest.approx(6.0, rel=1e-6)
 
 
-def test_no_open_combination_leaves_the_range_of_the_points() -> None:
-    class Known(Ratios):
-        def evaluate(
-            self, theta: Floats, *, derivatives: bool = True, second: bool = False
-        ) -> Evaluation:
-            r = theta - 1.0
-            slopes = ObjectiveDerivatives((2 * r)[None], 2 * np.eye(3)[None])
-            parts = (Residual(r, np.eye(3)),)
-            return Evaluation(theta, np.array([r @ r]), slopes, residuals=parts)
+class Known:
+    """Two groups that know all parameters: the squared distances from two models."""
 
-    thetas = np.array([[1.1, 1.2, 0.9], [1.4, 0.9, 1.0], [0.8, 1.5, 1.0]])
-    calls = [0]
+    objectives = ("a", "b")
+    lower, upper, start = LOWER, UPPER, np.ones(3)
+    ends = (np.array([0.8, 1.0, 1.0]), np.array([1.6, 1.0, 1.0]))
+
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        r = [theta - end for end in self.ends]
+        slopes = ObjectiveDerivatives(2 * np.array(r), 2 * np.array([np.eye(3)] * 2), exact=True)
+        parts = tuple(Residual(x, np.eye(3)) for x in r)
+        return Evaluation(theta, np.array([x @ x for x in r]), slopes, residuals=parts)
+
+
+def test_between_points_the_front_is_solved_for() -> None:
+    """Models from one end to the other are optimal: of (x - 1.3)^2 the least is 0, unseen."""
+    thetas, calls = np.array([[0.8, 1.0, 1.0], [1.1, 1.0, 1.0], [1.6, 1.0, 1.0]]), [0]
 
     def q(theta: Floats) -> float:
         calls[0] += 1
-        return float(theta.sum())
+        return float((theta[0] - 1.3) ** 2 + theta[1])
 
-    assert along(Known(), q, thetas) == pytest.approx((3.2, 3.3))
-    assert calls[0] == 6
-    # With a slack of 3 the ball of radius sqrt(J) about ones doubles its radius.
-    J = 0.1**2 + 0.5**2 + 0.0
-    J = max(J, 0.2**2 + 0.5**2)
-    least, greatest = along(Known(), q, thetas[2:], 3.0)
-    assert greatest == pytest.approx(3 + np.sqrt(3 * 4 * 0.29), rel=2e-3)
-    assert least == pytest.approx(max(3 - np.sqrt(3 * 4 * 0.29), 1.5), rel=2e-3)
+    assert along(Known(), q, thetas) == pytest.approx((1.0, 1.25), abs=2e-3)
+    assert calls[0] < 40
+
+
+def test_a_range_is_the_same_for_any_points_of_the_front() -> None:
+    def q(theta: Floats) -> float:
+        return float(np.sin(4 * theta[0]))
+
+    ranges = [
+        along(Known(), q, np.array([[x, 1.0, 1.0] for x in np.linspace(0.8, 1.6, count)]))
+        for count in (3, 4, 7, 12)
+    ]
+    assert np.ptp(ranges, axis=0).max() < 2e-3
+
+
+def test_nearly_optimal_models_within_a_slack_count() -> None:
+    """A slack of 3 doubles the distances from both ends, which are 0.3 and 0.5."""
+    theta = np.array([[1.1, 1.0, 1.0]])
+    least, greatest = along(Known(), lambda x: float(x[1]), theta, 3.0)
+    # Within 0.6 of the first end and 1.0 of the second: at x = 0.8 the nearer sphere is widest.
+    assert greatest == pytest.approx(1.0 + 0.6, rel=2e-3)
+    assert least == pytest.approx(0.5, rel=2e-3)
 
 
 def test_where_a_model_has_no_value_it_is_left_out() -> None:

@@ -8,8 +8,7 @@ from scipy.integrate import quad
 from scipy.signal import StateSpace, lsim
 
 from modefront.reliability import FirstPassage, KanaiTajimi, Sided, WhiteNoise
-from modefront.reliability.gaussian import Convolution, gaussian_response
-from modefront.reliability.pulse import pulse_response
+from modefront.reliability.gaussian import Convolution, gaussian_response, pulse_response
 from modefront.response import ModalSystem
 
 SYSTEM = ModalSystem(

@@ -22,8 +22,8 @@ from modefront.reliability import (
     monte_carlo,
     step_effect,
 )
-from modefront.reliability.elementary import elementary_failures
 from modefront.reliability.gaussian import gaussian_response
+from modefront.reliability.methods import elementary_failures
 from modefront.response import ModalSystem
 
 CONDITIONAL = [importance_sampling, directional_importance_sampling, additive_rules]
@@ -188,18 +188,9 @@ def test_one_pass_serves_levels_far_apart():
     assert list(together) == apart
 
 
-def test_result_says_what_it_depends_on():
+def test_the_error_falls_with_the_root_of_the_samples():
     problem = replace(REFERENCE, duration=2.0, noise=WhiteNoise(2.0, Sided.ONE))
     (result,) = directional_importance_sampling(problem, [0.8], 100, seed(0))
-    assert (result.level, result.samples, result.duration, result.time_step) == (
-        0.8,
-        100,
-        2.0,
-        0.02,
-    )
-    assert (result.density, result.sided) == (2.0, Sided.ONE)
-    assert (result.barrier, result.start) == ("two-sided", "at rest")
-    assert result.method == "directional importance sampling"
     delta = result.unit_coefficient_of_variation
     assert result.coefficient_of_variation == pytest.approx(delta / 10)
     assert result.standard_error == pytest.approx(result.probability * delta / 10)
@@ -218,7 +209,6 @@ def test_halving_the_step():
     """Peaks between the times are missed: the finer grid sees more failures."""
     coarse = replace(REFERENCE, time_step=0.1)
     (effect,) = step_effect(directional_importance_sampling, coarse, [1.8], 2000, seed(1))
-    assert (effect.given.time_step, effect.halved.time_step) == (0.1, 0.05)
     assert effect.ratio == effect.halved.probability / effect.given.probability
     assert effect.ratio - 1 > 2 * effect.standard_error
     (fine,) = step_effect(directional_importance_sampling, REFERENCE, [1.8], 2000, seed(1))

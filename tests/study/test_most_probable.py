@@ -18,7 +18,7 @@ from modefront.cli.show import as_json
 from modefront.pairing.mac import mac
 from modefront.results.verdict import with_verdict
 from modefront.study.examples import write_example
-from modefront.uncertainty.freed import wider
+from modefront.uncertainty.inference import wider
 
 DATA = """set,mode,frequency,damping,low,high
 a,1,4.586,0.02,0.613,1.0

@@ -18,8 +18,7 @@ from modefront._typing import Floats
 from modefront.predictions import Passage, PeakResponse, Prediction
 from modefront.results.remarks import remarks
 from modefront.study.examples import write_example
-from modefront.uncertainty.differences import STEP
-from modefront.uncertainty.prediction import SUMMARY
+from modefront.uncertainty.prediction import STEP, SUMMARY
 from modefront.work.progress import Progress, State
 
 pytestmark = pytest.mark.slow(2)

@@ -5,7 +5,7 @@ import pytest
 
 import modefront as mf
 from modefront.errors import UnfinishedError
-from modefront.uncertainty.bootstrap import redraw
+from modefront.uncertainty.points import redraw
 
 
 def data_of(sets: int) -> mf.ModalData:

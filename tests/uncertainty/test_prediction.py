@@ -7,12 +7,13 @@ import pytest
 import scipy.stats
 
 from modefront._typing import Floats
-from modefront.uncertainty.differences import STEP, stencil
 from modefront.uncertainty.prediction import (
+    STEP,
     TruncationError,
     draw,
     linear,
     lognormal_std,
+    stencil,
     summary,
 )
 

@@ -18,6 +18,7 @@ from modefront.optim.scalarisation import weighted
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Status, begin, solve
 from modefront.uncertainty.conditions import (
+    LinearisationWarning,
     between,
     boundary,
     given_weights,
@@ -27,7 +28,6 @@ from modefront.uncertainty.linear import with_neighbours
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.points import Role, SolvedPoint
 from modefront.uncertainty.scatter import Scatter, scatter
-from modefront.uncertainty.validity import LinearisationWarning
 
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 

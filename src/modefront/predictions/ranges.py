@@ -1,10 +1,23 @@
-r"""Least and greatest values of a prediction over models that fit the data equally well.
+r"""Least and greatest values of a prediction over a front and all models that are equivalent.
 
-Where data leave combinations of parameters open, models form a set on which no residual changes,
-and a point of a front stands for all of it. With the residuals r of all groups over the lengths of
-their derivatives, of the singular values :math:`U \Sigma V^T` of the derivatives at the point
-:math:`\theta_P` over the ranges of the parameters, and :math:`V_0` those that vanish, these models
-are the solutions of
+**Along the front.** A front is known at points, objectives over their ranges r. Two of them are
+neighbours where the ball of which they are the poles holds no other one (Gabriel & Sokal 1969,
+doi:10.2307/2412323); of two objectives, these are next to each other. Half-way between neighbours a
+and b lies
+
+.. math:: \min_\theta \max_i c_i + \rho \sum_i c_i, \qquad
+    c_i = \big(J_i - \tfrac12 (J_a + J_b)_i\big) / r_i ,
+
+as all points of a front do (`modefront.front.subproblems`); behind a gap it is where a branch ends.
+A parabola through the least of three even values reaches below it by an eighth of the greatest
+difference at most. Where a point is better than all its neighbours and so much less could be the
+least of all, the front is solved for between it and these, again and again.
+
+**Equivalent models.** Where data leave combinations of parameters open, models form a set on which
+no residual changes, and a point of a front stands for all of it. With the residuals r of all groups
+over the lengths of their derivatives, of the singular values :math:`U \Sigma V^T` of the
+derivatives at the point :math:`\theta_P` over the ranges of the parameters, and :math:`V_0` those
+that vanish, these models are the solutions of
 
 .. math:: \min \pm q(\theta) \quad\text{subject to}\quad
     \Sigma^{-1} U^T \big( r(\theta) - r(\theta_P) \big) = 0
@@ -18,25 +31,37 @@ With a slack s models are nearly as good, and for all i
 .. math:: \min \pm q(\theta) \quad\text{subject to}\quad J_i(\theta) \le (1 + s) J_i(\theta_P) .
 
 The constraints are a penalty on the greatest violation, exact from some factor on, which grows
-until they are met. The next point starts where the last one ended, relative to it. A function along
-a set of models has several extremes: where one of the ends of the open directions, alone and
-together, promises more, the search goes on from the best of these.
+until they are met. A function along a set of models has several extremes: where the bounds to which
+:math:`V_0 V_0^T e_j` leads, the open direction along which parameter j changes most, promise more
+than what is reached, the search goes on from there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from itertools import product
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.optim.lexicographic import EXACT, RANK
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Wrapped, infeasible
-from modefront.optim.scalarisation import Linear, Rows, no_rows
+from modefront.front.dominance import undominated
+from modefront.front.subproblems import RHO
+from modefront.optim.lexicographic import EXACT, RANK, TIE
+from modefront.optim.problem import (
+    Evaluation,
+    ObjectiveDerivatives,
+    Problem,
+    Wrapped,
+    infeasible,
+)
+from modefront.optim.scalarisation import Linear, Rows, achievement, no_rows
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.options import number
+
+SURE = 1e-3
+"""Share of its greatest value that the end of a range needs, and of the range of a parameter below
+which the front is not solved for between models."""
 
 SAME = 1e-4
 """Growth of an objective, over itself, up to which models are equivalent: that of its root is far
@@ -48,13 +73,27 @@ FACTORS = (1e1, 1e2, 1e3, 1e4)
 _ENOUGH = Options(step=1e-5, constraint=1e-6, reduction=1e-8, iterations=40)
 """A range needs a thousandth of itself, and no more."""
 
-MANY = 3
-"""Open directions of which sums are tried: 26 models."""
-
 SLACK = number("a share of 0 or more", least=0)
 
 Values = Callable[[Floats], float]
 """Returns the prediction of a model (p,); NaN where it has none."""
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """A front at some of its models.
+
+    Attributes
+    ----------
+    theta, J : (m, p) and (m, n) parameters and objectives
+    is_open : whether others are equivalent to these
+    slack : share by which objectives of models may be greater that count
+    """
+
+    theta: Floats
+    J: Floats
+    is_open: bool
+    slack: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -74,68 +113,93 @@ class Equivalent:
     slack: float
     step: float
 
+    def extreme(self, q: Values, sign: float) -> float:
+        """Return the least (sign 1) or greatest (-1) value of a prediction; NaN without any."""
+        theta, reached = self.model.theta, q(self.model.theta)
+        is_open = self.slack > 0 or self.equations[1].shape[1] > 0
+        start: Floats | None = theta if is_open and np.isfinite(reached) else None
+        size = abs(reached) if reached else 1.0
+        while start is not None:
+            found = self._solve(q, size, sign, start)
+            value = np.nan if found is None else float(found.J[-1]) * size
+            if found is not None and sign * value < sign * reached:
+                theta, reached = found.theta, value
+            elif start is not self.model.theta:
+                break
+            start = self._farther(q, sign, theta, reached)
+        return reached
+
+    def _farther(self, q: Values, sign: float, theta: Floats, reached: float) -> Floats | None:
+        """Return the model (p,) at the bounds that promises most; None where none promises more."""
+        null = self.equations[1]
+        best, best_value = None, reached - sign * SURE * abs(reached)
+        known: list[Floats] = []
+        for v in (null @ null.T)[np.abs(null).max(axis=1, initial=0.0) > RANK]:
+            v = v / np.linalg.norm(v)
+            if any(abs(v @ x) > 1 - RANK for x in known):
+                continue
+            known.append(v)
+            for step in (v, -v):
+                end = self._at_bound(theta, step)
+                value = q(end)
+                if sign * value < sign * best_value:
+                    best, best_value = end, value
+        return best
+
+    def _at_bound(self, theta: Floats, direction: Floats) -> Floats:
+        """Return the model at the bounds in a direction (p,) over the ranges."""
+        lower, upper = self.problem.lower, self.problem.upper
+        moves = np.abs(direction) > RANK
+        step = np.where(moves, direction, 0.0) * self.span
+        room = np.where(step > 0, upper, lower)[moves] - theta[moves]
+        reach = max(float((room / step[moves]).min()), 0.0)
+        return np.clip(theta + reach * step, lower, upper)
+
     @property
     def span(self) -> Floats:
         """Ranges of the parameters, (p,)."""
         return self.problem.upper - self.problem.lower
 
+    @cached_property
     def equations(self) -> tuple[Floats, Floats]:
-        """Return the rows (k, rows) of the equations, and their null space (p, d)."""
-        dr = self._jacobian(self.model)
-        U, sigma, Vt = np.linalg.svd(dr)
+        """The rows (k, rows) of the equations, and their null space (p, d)."""
+        U, sigma, Vt = np.linalg.svd(self._jacobian(self.model))
         k = int((sigma > RANK * sigma.max(initial=0.0)).sum())
         return U[:, :k].T / sigma[:k, None], Vt[k:].T
 
-    def ends(self) -> list[Floats]:
-        """Return the models (p,) at the bounds to which open directions and their sums lead."""
-        lower, upper, theta = self.problem.lower, self.problem.upper, self.model.theta
-        null, out = self.equations()[1], []
-        for signs in product((-1, 0, 1), repeat=min(null.shape[1], MANY)):
-            step = null[:, : len(signs)] @ signs * self.span
-            moves = np.abs(step) > RANK * self.span
-            if moves.any():
-                room = np.where(step > 0, upper, lower)[moves] - theta[moves]
-                reach = max(float((room / step[moves]).min()), 0.0)
-                out.append(np.clip(theta + reach * step, lower, upper))
-        return out
-
+    @cached_property
     def _lengths(self) -> list[float]:
         parts = [np.linalg.norm(x.dr * self.span) for x in self.model.residuals]
         return [float(x) if x > 0 else 1.0 for x in parts]
 
     def _jacobian(self, evaluation: Evaluation) -> Floats:
-        lengths = self._lengths()
-        return np.vstack(
-            [x.dr * self.span / v for x, v in zip(evaluation.residuals, lengths, strict=True)]
-        )
+        parts = zip(evaluation.residuals, self._lengths, strict=True)
+        return np.vstack([x.dr * self.span / v for x, v in parts])
 
     def _vector(self, evaluation: Evaluation) -> Floats:
-        lengths = self._lengths()
-        return np.concatenate([x.r / v for x, v in zip(evaluation.residuals, lengths, strict=True)])
+        parts = zip(evaluation.residuals, self._lengths, strict=True)
+        return np.concatenate([x.r / v for x, v in parts])
 
     @property
     def level(self) -> Floats:
         """Greatest objectives (n,)."""
         grown = np.sqrt((1 + max(self.slack, SAME)) * self.model.J)
-        return np.asarray((grown + np.sqrt(EXACT) * np.array(self._lengths())) ** 2)
+        return np.asarray((grown + np.sqrt(EXACT) * np.array(self._lengths)) ** 2)
 
-    def extreme(self, q: Values, size: float, sign: float, start: Floats) -> Solution | None:
-        """Return the model with the least (sign 1) or greatest (-1) value; None without others.
+    def _solve(self, q: Values, size: float, sign: float, start: Floats) -> Solution | None:
+        """Return the extreme to which a start leads; None where that is no equivalent model.
 
         The solution has q over ``size`` as its last objective.
         """
-        rows, null = self.equations()
         if self.slack == 0:
-            if not null.shape[1]:
-                return None
-            k = len(rows)
-            target = Wrapped(self.problem, self._with(q, size, rows), ("",) * (k + 1))
+            k = len(self.equations[0])
+            target = Wrapped(self.problem, self._with(q, size), ("",) * (k + 1))
             equal = Rows(np.eye(k, k + 1), np.zeros(k))
             programme = Linear(np.append(np.zeros(k), sign), equal, no_rows(k + 1))
             found = solve(target, programme, begin(target.evaluate(start)), _ENOUGH)
             return found if self._as_good(found) else None
         n = self.model.J.size
-        target = Wrapped(self.problem, self._with(q, size, None), ("",) * (n + 1))
+        target = Wrapped(self.problem, self._with(q, size), ("",) * (n + 1))
         w, found = np.append(np.zeros(n), sign), begin(target.evaluate(start))
         for factor in FACTORS:
             C = np.vstack([np.zeros(n + 1), factor * np.eye(n, n + 1) / self.level[:, None]])
@@ -149,10 +213,9 @@ class Equivalent:
         J = self.problem.evaluate(found.theta, derivatives=False).J
         return bool((self.level * (1 + SAME) - J >= 0).all())
 
-    def _with(
-        self, q: Values, size: float, rows: Floats | None
-    ) -> Callable[[Problem, Floats, bool, bool], Evaluation]:
+    def _with(self, q: Values, size: float) -> Callable[[Problem, Floats, bool, bool], Evaluation]:
         """Return the evaluation of the equations, or the objectives, and of q over its size."""
+        rows = self.equations[0] if self.slack == 0 else None
         r0 = self._vector(self.model)
 
         def evaluation(problem: Problem, theta: Floats, _: bool, __: bool) -> Evaluation:
@@ -189,33 +252,102 @@ class Equivalent:
         return out / self.span
 
 
-# 6 arguments: the problem, the models, and what is sought.
-def extreme(
-    problem: Problem, thetas: Floats, q: Values, sign: float, slack: float, step: float
-) -> float:
-    """Return the least (sign 1) or greatest (-1) prediction over equivalent models.
+@dataclass
+class _Along:
+    """Models of a front that are solved for where a prediction may have its least value.
 
-    ``thetas`` (m, p) are models of a front, to which others are equivalent; they count too. NaN
-    where none has a value.
+    Attributes
+    ----------
+    problem : the problem
+    value : returns the value of a model of the front
+    ranges : (n,) of the objectives
+    theta, J, values : of the models
+    halved : pairs of models between which the front has been solved for
     """
-    best, shift = np.nan, np.zeros(problem.start.size)
-    for theta in thetas:
-        here, value = problem.evaluate(theta), q(theta)
-        if not (here.feasible and np.isfinite(value)):
-            continue
-        size = abs(value) if value else 1.0
-        each = Equivalent(problem, here, slack, step)
-        start = np.clip(theta + shift, problem.lower, problem.upper)
-        found = each.extreme(q, size, sign, start)
-        if found is None and shift.any():
-            found = each.extreme(q, size, sign, theta)
-        reached = value if found is None else float(found.J[-1]) * size
-        ends = each.ends()
-        promises = np.array([sign * q(end) for end in ends])
-        if (promises < sign * reached).any():
-            other = each.extreme(q, size, sign, ends[int(np.nanargmin(promises))])
-            if other is not None and sign * float(other.J[-1]) * size < sign * reached:
-                found, reached = other, float(other.J[-1]) * size
-        shift = np.zeros(theta.size) if found is None else found.theta - theta
-        best = sign * float(np.nanmin([sign * best, sign * value, sign * reached]))
-    return best
+
+    problem: Problem
+    value: Callable[[Floats], float]
+    ranges: Floats
+    theta: list[Floats] = field(default_factory=list)
+    J: list[Floats] = field(default_factory=list)
+    values: list[float] = field(default_factory=list)
+    halved: set[tuple[int, int]] = field(default_factory=set)
+
+    def add(self, theta: Floats, J: Floats, value: float) -> None:
+        """Add a model."""
+        self.theta.append(theta)
+        self.J.append(J)
+        self.values.append(value)
+
+    def least(self) -> float:
+        """Return the least value; NaN without any."""
+        while pairs := set(self._promising()):
+            for pair in sorted(pairs):
+                self._halve(*pair)
+        known = [x for x in self.values if np.isfinite(x)]
+        return min(known, default=np.nan)
+
+    def _promising(self) -> Iterator[tuple[int, int]]:
+        """Yield the neighbours between which less than the least value may lie."""
+        values = np.array(self.values)
+        known = np.isfinite(values)
+        scaled = np.array(self.J) / self.ranges
+        squares = ((scaled[:, None] - scaled) ** 2).sum(axis=2)
+        needed = values.min(where=known, initial=np.inf)
+        needed -= SURE * np.abs(values).max(where=known, initial=0.0)
+        for k in np.flatnonzero(known).tolist():
+            inside = (squares[k][:, None] + squares < squares[k]).any(axis=0)
+            near = np.flatnonzero(~inside & known & (np.arange(values.size) != k))
+            rise = values[near] - values[k]
+            if near.size and rise.min() >= 0 and values[k] - rise.max() / 8 < needed:
+                pairs = ((min(k, j), max(k, j)) for j in near.tolist())
+                yield from (pair for pair in pairs if pair not in self.halved)
+
+    def _halve(self, a: int, b: int) -> None:
+        """Add the model half-way between two of them, if it is another one."""
+        self.halved.add((a, b))
+        one, other = self.theta[a], self.theta[b]
+        if _apart(self.problem, one, other) <= SURE:
+            return
+        unit, J = self.ranges, np.array(self.J)
+        middle = (J[a] + J[b]) / (2 * unit)
+        programme = achievement(RHO / unit, np.diag(1 / unit), middle)
+        least = float((J[[a, b]] / unit - middle).max(axis=1).min()) - TIE
+        for starts in ([(one + other) / 2], [one, other]):
+            found = [
+                solve(self.problem, programme, begin(self.problem.evaluate(start)), _ENOUGH)
+                for start in starts
+            ]
+            best = min(found, key=lambda x: float((x.J / unit - middle).max()))
+            if (best.J / unit - middle).max() < least:
+                if undominated(best.J[None], J, unit).all():
+                    self.add(best.theta, best.J, self.value(best.theta))
+                return
+
+
+def _apart(problem: Problem, one: Floats, other: Floats) -> float:
+    return float(np.abs((one - other) / (problem.upper - problem.lower)).max())
+
+
+# 6 arguments: the problem, the front, and what is sought.
+def extreme(
+    problem: Problem, front: Sampled, values: Floats, q: Values, sign: float, step: float
+) -> float:
+    """Return the least (sign 1) or greatest (-1) prediction over a front; NaN without any.
+
+    ``values`` (m,) are those of its models, and ``step`` that of differences, over the ranges of
+    the parameters.
+    """
+
+    def value(theta: Floats) -> float:
+        if not front.is_open:
+            return sign * q(theta)
+        here = problem.evaluate(theta)
+        return sign * Equivalent(problem, here, front.slack, step).extreme(q, sign)
+
+    ranges = np.ptp(front.J, axis=0)
+    along = _Along(problem, value, np.where(ranges > 0, ranges, 1.0))
+    for theta, J, known in zip(front.theta, front.J, sign * values, strict=True):
+        if all(_apart(problem, theta, other) > SURE for other in along.theta):
+            along.add(theta, J, value(theta) if front.is_open else float(known))
+    return sign * along.least()

@@ -17,7 +17,7 @@ from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.models.base import full_of, is_reduced
 from modefront.predictions import Prediction, ResultVariable
-from modefront.predictions.ranges import extreme
+from modefront.predictions.ranges import Sampled, extreme
 from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
 from modefront.work.store import hash_text
@@ -55,7 +55,6 @@ class PredictionRunner:
     Attributes
     ----------
     file : of the study, named in messages
-    slack : share by which objectives of models may be greater that count in ranges
     """
 
     problem: UpdatingProblem
@@ -63,7 +62,6 @@ class PredictionRunner:
     seed: int
     work: Executor
     file: Path
-    slack: float = 0.0
 
     def at_points(
         self, prediction: Prediction, points: Sequence[tuple[str, Floats]]
@@ -95,19 +93,20 @@ class PredictionRunner:
         ]
         return self.work.run(tasks)
 
-    def extremes(self, prediction: Prediction, thetas: Floats) -> dict[str, Floats]:
-        """Return least and greatest values over models (m, p) and all that are equivalent.
+    def extremes(self, prediction: Prediction, front: Sampled, values: Arrays) -> dict[str, Floats]:
+        """Return least and greatest values over a front, and over all models that are equivalent.
 
-        They have the shape (2, places), by the key of each variable of which the range is reported.
+        ``values`` (m, places) are those of its m models by key. The ends have the shape
+        (2, places), by the key of each variable of which the range is reported.
         """
         kind, places = prediction.kind, len(prediction.places)
-        mark = hash_text(f"{thetas.tolist()} {self.slack}")[:8]
+        mark = hash_text(f"{front.theta.tolist()} {front.is_open} {front.slack}")[:8]
         tasks = [
             self._task(
                 prediction,
                 ("least" if sign > 0 else "greatest", variable.key, i + 1, mark),
                 _extreme,
-                (thetas, variable, i, sign, self.slack),
+                (front, values[variable.key], variable, i, sign),
             )
             for variable in kind.ranged
             for sign in (1.0, -1.0)
@@ -182,20 +181,25 @@ def _extreme(
     problem: UpdatingProblem,
     prediction: Prediction,
     numbers: np.random.SeedSequence,
-    thetas: Floats,
+    front: Sampled,
+    values: Floats,
     variable: ResultVariable,
     place: int,
     sign: float,
-    slack: float,
 ) -> float:
-    """Return the least (sign 1) or greatest (-1) value at a place over equivalent models."""
+    """Return the least (sign 1) or greatest (-1) value at a place; ``values`` (m, places)."""
     logarithmic = variable.logarithmic
 
-    def q(theta: Floats) -> float:
-        value = float(_at_model(problem, prediction, numbers, theta).values[variable.key][place])
+    def scaled(values: Floats) -> Floats:
+        own = values[..., place]
         if not logarithmic:
-            return value
-        return float(np.log(value)) if value > 0 else np.nan
+            return own
+        return np.log(own, out=np.full(own.shape, np.nan), where=own > 0)
 
-    found = extreme(problem, thetas, q, sign, slack, ROUGH if logarithmic else STEP)
+    def q(theta: Floats) -> float:
+        found = _at_model(problem, prediction, numbers, theta)
+        return float(scaled(found.values[variable.key]))
+
+    step = ROUGH if logarithmic else STEP
+    found = extreme(problem, front, scaled(values), q, sign, step)
     return float(np.exp(found)) if logarithmic else found

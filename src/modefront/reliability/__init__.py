@@ -3,11 +3,13 @@
 from types import MappingProxyType
 from typing import Final
 
-from modefront.reliability.additive import additive_rules
-from modefront.reliability.directional import directional_importance_sampling
 from modefront.reliability.estimate import Estimate, Estimator, StepEffect, step_effect
-from modefront.reliability.importance import importance_sampling
-from modefront.reliability.monte_carlo import monte_carlo
+from modefront.reliability.methods import (
+    additive_rules,
+    directional_importance_sampling,
+    importance_sampling,
+    monte_carlo,
+)
 from modefront.reliability.problem import FirstPassage, KanaiTajimi, Sided, StepError, WhiteNoise
 
 METHODS: Final = MappingProxyType(

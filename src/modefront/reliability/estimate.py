@@ -7,7 +7,7 @@ the chunk's size follows from the problem alone, so who computes it changes noth
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from queue import SimpleQueue
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from modefront.errors import wrong
 from modefront.reliability.gaussian import Convolution, GaussianResponse, gaussian_response
-from modefront.reliability.problem import FirstPassage, Sided
+from modefront.reliability.problem import FirstPassage
 from modefront.response.system import FloatArray, positive_count, real_array
 
 LARGEST_CHUNK = 32
@@ -31,10 +31,9 @@ Prepare = Callable[[GaussianResponse, FloatArray], Weigh]
 """(response, levels) → what weighs samples at these levels."""
 
 
-# 11 fields: an estimate repeats all that it depends on.
 @dataclass(frozen=True)
 class Estimate:
-    """A first-passage probability and all that it depends on.
+    """A first-passage probability.
 
     Attributes
     ----------
@@ -44,9 +43,6 @@ class Estimate:
     samples : number of samples N; each takes one evaluation of the response
     method : name of the method
     level : barrier b; failure is |x| > b for any response
-    duration, time_step : T and Δt in s; the response is looked at on the times j Δt only
-    density, sided : spectral density of the noise, per rad/s, and how it is meant
-    barrier, start : said for the record: both sides, and at rest
     """
 
     probability: float
@@ -54,12 +50,6 @@ class Estimate:
     samples: int
     method: str
     level: float
-    duration: float
-    time_step: float
-    density: float
-    sided: Sided
-    barrier: str = field(default="two-sided", init=False)
-    start: str = field(default="at rest", init=False)
 
     @property
     def coefficient_of_variation(self) -> float:
@@ -136,15 +126,7 @@ class Estimator:
         spread = weights.std(axis=1, ddof=1)
         return tuple(
             Estimate(
-                probability=float(p),
-                unit_coefficient_of_variation=float(s / p) if p > 0 else np.inf,
-                samples=samples,
-                method=self.method,
-                level=float(level),
-                duration=problem.duration,
-                time_step=problem.time_step,
-                density=problem.noise.density,
-                sided=problem.noise.sided,
+                float(p), float(s / p) if p > 0 else np.inf, samples, self.method, float(level)
             )
             for p, s, level in zip(mean, spread, b, strict=True)
         )

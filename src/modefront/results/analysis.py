@@ -23,8 +23,8 @@ from modefront.identifiability.combinations import (
 from modefront.identifiability.scale import Scale, scale_at
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import TINY
+from modefront.uncertainty.conditions import std
 from modefront.uncertainty.prediction import linear, summary
-from modefront.uncertainty.validity import std
 
 Values = dict[str, object]
 """Values of variables by name; `modefront.results.schema` describes them."""

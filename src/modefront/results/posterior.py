@@ -23,10 +23,17 @@ from modefront.results.analysis import Values, left_open
 from modefront.results.findings import as_values
 from modefront.results.predictions import by_kind
 from modefront.results.schema import described
-from modefront.uncertainty.differences import Stencil, stencil
 from modefront.uncertainty.inference import Inference
 from modefront.uncertainty.laplace import Posterior
-from modefront.uncertainty.prediction import SUMMARY, TruncationError, draw, lognormal_std, summary
+from modefront.uncertainty.prediction import (
+    SUMMARY,
+    Stencil,
+    TruncationError,
+    draw,
+    lognormal_std,
+    stencil,
+    summary,
+)
 from modefront.work.task import seed_sequence
 
 QUANTILES = (0.05, 0.5, 0.95)

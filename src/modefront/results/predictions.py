@@ -12,6 +12,7 @@ from modefront._typing import Bools, Floats
 from modefront.front.point import preferred
 from modefront.optim.lexicographic import RANK
 from modefront.predictions import Prediction, PredictionKind
+from modefront.predictions.ranges import Sampled
 from modefront.predictions.registry import ATTRIBUTE, as_text
 from modefront.predictions.runner import PredictionRunner
 from modefront.results.analysis import ALL, Values
@@ -22,8 +23,10 @@ RANGE = ("minimum", "maximum", "spread")
 
 
 def extent(predictions: Sequence[Prediction], models: int) -> dict[str, int]:
-    """Return the expected number of tasks of the predictions of so many models."""
-    return {"predict": sum(models + (each.kind.check is not None) for each in predictions)}
+    """Return the expected number of tasks of the predictions of so many models, and their ends."""
+    ends = [2 * len(each.kind.ranged) * len(each.places) for each in predictions]
+    checks = [each.kind.check is not None for each in predictions]
+    return {"predict": models * len(ends) + sum(ends) + sum(checks)}
 
 
 def by_kind(
@@ -34,9 +37,10 @@ def by_kind(
         yield kind, [each for each in predictions if each.kind == kind]
 
 
-def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
+def with_predictions(data: xr.Dataset, runner: PredictionRunner, slack: float) -> xr.Dataset:
     """Return results with the predictions of every point.
 
+    ``slack`` is the share by which objectives of models may be greater that count in ranges.
     Raises what `PredictionRunner.at_points` raises.
     """
     if not runner.predictions:
@@ -46,11 +50,14 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
     coordinates = {"range": list(RANGE)}
     points = list(zip(map(str, data["label"].values), data["theta"].values, strict=True))
     reference = next(point for point in points if point[0] == preferred(data.attrs))
-    thetas = data["theta"].values[optimal]
-    is_open = runner.slack > 0 or _leaves_open(data)
+    theta, J = (data[name].values[optimal] for name in ("theta", "objective"))
+    front = Sampled(theta, J, slack > 0 or _leaves_open(data), slack)
     for kind, predictions in by_kind(runner.predictions):
         rows = [runner.at_points(each, points) for each in predictions]
-        ends = [runner.extremes(each, thetas) for each in predictions] if is_open else []
+        ends = [
+            runner.extremes(each, front, _by_key(row, optimal))
+            for each, row in zip(predictions, rows, strict=True)
+        ]
         values |= _of_points(kind, rows, optimal, ends)
         for setting in kind.settings:
             every = (prediction.settings[setting.name] for prediction in predictions)
@@ -70,6 +77,11 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
     return out.assign_attrs({ATTRIBUTE: as_text(kinds)})
 
 
+def _by_key(rows: Sequence[Mapping[str, Floats]], optimal: Bools) -> dict[str, Floats]:
+    kept = [row for row, is_kept in zip(rows, optimal, strict=True) if is_kept]
+    return {key: np.array([row[key] for row in kept]) for key in rows[0]}
+
+
 def _leaves_open(data: xr.Dataset) -> bool:
     together = ALL if data.sizes["group"] > 1 else data["group"].values[0]
     of = data["combination_of"].values == together
@@ -86,14 +98,14 @@ def _of_points(
 ) -> Values:
     """Return the values at all points, (points, places), and their ranges over the optimal ones.
 
-    ``ends`` (2, places) are those over models that are equivalent to these.
+    ``ends`` (2, places) are those between these, and over all models that are equivalent.
     """
     out: Values = {}
     for variable in kind.variables:
         values = np.hstack([np.array([x[variable.key] for x in each]) for each in rows])
         out[variable.name] = values
         if variable.ranged:
-            more = np.hstack([x[variable.key] for x in ends]) if ends else values[:0]
+            more = np.hstack([x[variable.key] for x in ends])
             known = np.append(optimal, np.ones(len(more), dtype=np.bool_))
             out[f"{variable.name}_range"] = _range(np.vstack([values, more]), known)
     return out

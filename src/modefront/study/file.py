@@ -29,8 +29,8 @@ from modefront.pairing.match import Pairing
 from modefront.predictions import CLASSES, Prediction
 from modefront.predictions.ranges import SLACK
 from modefront.residuals.base import Scale
+from modefront.residuals.groups import KINDS as RESIDUALS
 from modefront.residuals.groups import MODE_NUMBERS, Group, faults
-from modefront.residuals.kinds import KINDS as RESIDUALS
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Labels, Origin, Study, undrawn
 from modefront.study.kinds import KINDS

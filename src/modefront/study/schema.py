@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from modefront.data.uff55 import SUFFIXES
+from modefront.data.uff import SUFFIXES
 from modefront.errors import wrong
 from modefront.families import Family
 from modefront.front.given import Weighted
@@ -25,7 +25,7 @@ from modefront.options import Option, of_options, options, schema_of
 from modefront.outputs import write_text
 from modefront.predictions import CLASSES
 from modefront.predictions.ranges import SLACK
-from modefront.residuals.kinds import KINDS as RESIDUALS
+from modefront.residuals.groups import KINDS as RESIDUALS
 from modefront.study.file import OF_OPTIONS, of_group, of_header
 from modefront.study.kinds import KINDS
 from modefront.study.measured import FILE, PLACE, READERS

@@ -274,10 +274,10 @@ def _results(study: Study, work: Run) -> xr.Dataset:
     if inference is not None:
         data = with_intervals(data, inference)
         gaussian, drawn = inference.gaussian, inference.draws.theta
-    runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file, study.slack)
+    runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file)
     models = posterior_models(data, runner, gaussian, study.uncertainty.draws, drawn)
     work.expect(extent(study.predictions, data.sizes["point"] + models.count))
-    data = with_posterior(with_predictions(data, runner), runner, models)
+    data = with_posterior(with_predictions(data, runner, study.slack), runner, models)
     data = with_verdict(data)
     data.attrs |= _attributes(study, work, front)
     return data

@@ -1,11 +1,17 @@
-"""Conditions of each kind of programme on the changes of its solution.
+"""Conditions of each kind of programme on the changes of its solution, and when these are valid.
 
-The equations are derived at the top of `modefront.uncertainty.scatter`.
+The equations are derived at the top of `modefront.uncertainty.scatter`. Linearised, they are valid
+as long as no active set changes and the solution remains the same minimum. Each of these conditions
+is that a quantity is positive, and is in doubt where it is less than its own linearised standard
+deviation. A point is near the end of a branch of the front where the end is within its scatter in
+all objectives.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 
@@ -13,7 +19,48 @@ from modefront._typing import Bools, Floats
 from modefront.front.subproblems import RHO, active_bounds
 from modefront.optim.problem import Evaluation
 from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.validity import std
+
+
+class LinearisationWarning(Enum):
+    """Reason why the linearised scatter of a point may not be valid."""
+
+    SADDLE = "the second derivatives are not positive definite: the front folds or jumps there"
+    MEETS = "a parameter reaches its bound within one standard deviation"
+    LEAVES = "a parameter leaves its bound within one standard deviation"
+    SWITCHES = "other groups determine the point within one standard deviation"
+    ENDS = "a branch of the front ends within one standard deviation"
+    RIVAL = "another minimum becomes better within one standard deviation"
+    UNSOLVED = "the solution has not converged"
+
+
+def std(changes: Floats) -> Floats:
+    """Return the standard deviations over the sources, which are the first dimension."""
+    return np.asarray(np.sqrt((changes**2).sum(axis=0)))
+
+
+def near_an_end(J: Floats, changes: Floats, ends: Iterable[Floats]) -> bool:
+    """Return whether a point J (n,) that changes by (sources, n) is within its scatter of an end.
+
+    ``ends`` are the objectives (n,) at the ends of the branches of the front.
+
+    >>> J, changes = np.array([1.0, 2.0]), np.array([[0.2, 0.1]])
+    >>> near_an_end(J, changes, [np.array([1.1, 1.95])])
+    True
+    >>> near_an_end(J, changes, [np.array([1.1, 1.8])])
+    False
+    """
+    reach = std(changes)
+    return any(bool((np.abs(J - end) <= reach).all()) for end in ends)
+
+
+def has_rival(value: float, changes: Floats, others: Iterable[float]) -> bool:
+    """Return whether a least value that changes by (sources,) is within its scatter of others.
+
+    >>> has_rival(1.0, np.array([0.3, 0.4]), [1.4]), has_rival(1.0, np.array([0.3, 0.4]), [1.6])
+    (True, False)
+    """
+    reach = float(std(changes))
+    return any(other - value <= reach for other in others)
 
 
 @dataclass(frozen=True)

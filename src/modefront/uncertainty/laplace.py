@@ -1,28 +1,15 @@
-r"""The posterior of the parameters, with the variance of the errors of each group unknown.
+r"""Laplace's approximation of the posterior, with the variance of the errors of each group unknown.
 
-Let the residuals of group i, :math:`a_i` of them, be independent and Gaussian with an unknown
-variance :math:`s_i`, and :math:`J_i` the sum of their squares. Then
-
-.. math:: p(D \mid \theta, s) = \prod_i (2 \pi s_i)^{-a_i/2} e^{-J_i(\theta) / (2 s_i)} .
-
-With Jeffreys' prior :math:`p(s_i) \propto 1 / s_i` each variance is integrated out,
-
-.. math:: \int_0^\infty s^{-a/2 - 1} e^{-J / (2 s)} ds = \Gamma(a/2) \, (J/2)^{-a/2},
-
-and with a uniform prior within the bounds
-
-.. math:: -\ln p(\theta \mid D) = \tfrac12 \sum_i a_i \ln J_i(\theta) + \text{const} = \tfrac12 I .
-
-So the optimally weighted model, equation (8), is the most probable one (compare Christodoulou &
-Papadimitriou 2007, Mechanical Systems and Signal Processing 21, 4-23), and
-Laplace's approximation has the covariance
+With Jeffreys' prior of the variances and a uniform one within the bounds, :math:`-\ln p = \tfrac12
+I = \tfrac12 \sum_i a_i \ln J_i`: the optimally weighted model, equation (8), is the most probable
+one (compare Christodoulou & Papadimitriou 2007, Mechanical Systems and Signal Processing 21, 4-23),
+and
 
 .. math:: C = \Big(\tfrac12 \nabla^2 I\Big)^{-1}, \qquad
     \nabla^2 I = \sum_i \frac{a_i}{J_i} H_i - \sum_i \frac{a_i}{J_i^2} \partial J_i \partial J_i^T .
 
 A parameter that is pressed against a bound is held there: C is that of the others given it.
-Directions in which no residual changes keep their prior; they are named and left out of C. Where a
-group can be fitted exactly the posterior cannot be normalised; C is then that of the regular peak.
+Directions in which no residual changes keep their prior; they are named and left out of C.
 """
 
 from __future__ import annotations

@@ -14,18 +14,20 @@ from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
 from modefront.optim.sqp import Solution
 from modefront.uncertainty.conditions import (
     Conditions,
+    LinearisationWarning,
     Target,
     between,
     boundary,
     given_weights,
+    has_rival,
     level,
+    near_an_end,
     optimal_weights,
     over_ranges,
 )
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.points import Role, SolvedPoint, edge_weights, in_order
 from modefront.uncertainty.scatter import Scatter, scatter
-from modefront.uncertainty.validity import LinearisationWarning, has_rival, near_an_end
 from modefront.work.codec import record
 
 

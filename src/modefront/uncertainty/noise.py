@@ -1,17 +1,9 @@
 r"""Effects of errors of measurement on the objectives and their derivatives.
 
-Errors of the data change :math:`J_i` and :math:`\partial J_i` at fixed parameters. To first order
-both are sums over independent sources m of standard deviation one,
-
-.. math:: \delta J_i = \sum_m \varepsilon_m \, \delta_m J_i , \qquad
-    \delta\, \partial J_i = \sum_m \varepsilon_m \, \delta_m \partial J_i .
-
-**From standard deviations** of the measured values y, each value is a source:
-:math:`\delta_m J_i = \sigma_m \partial J_i / \partial y_m`, which each kind of residual derives
-(`modefront.residuals`). A value without a standard deviation counts as exact.
-
-**From several data sets**, each set is a source: the objectives are means over sets, and a mean has
-the variance of its terms over their number,
+To first order both are sums over independent sources of standard deviation one. From standard
+deviations, each value is a source, which each kind of residual derives (`modefront.residuals`); a
+value without one counts as exact. From several data sets, each set is a source: the objectives are
+means over sets, and a mean has the variance of its terms over their number,
 
 .. math:: \delta_k J_r = \frac{J_{r,k} - J_r}{\sqrt{K_r (K_r - 1)}}
 

@@ -1,19 +1,10 @@
 r"""What to measure next: how much each further mode or sensor would narrow each parameter.
 
-About the most probable model, with residuals linearised, weights w of its groups, and the precision
-P of the prior of the parameters (of a uniform one :math:`12 / range^2`), the covariance is
-
-.. math:: C = \Big(\sum_i w_i \, \partial r_i^T \partial r_i + P\Big)^{-1},
-
-and with further measurements, of which the residuals over their expected standard deviations change
-by R (rows, p),
-
-.. math:: C' = C - C R^T (I + R C R^T)^{-1} R C
-
-(Papadimitriou, Beck & Au 2000, doi:10.1177/107754630000600503). A frequency has
+The covariance about the most probable model becomes less (docs/uncertainty.md) by the rows R
+(rows, p) of further measurements over their expected standard deviations. A frequency has
 :math:`R = \partial f / (\tau f)`. A shape :math:`\chi = \varphi / (\tau \max |\varphi|)` at all
-sensors has, as its factor is fitted, :math:`R = (I - \chi \chi^T / \|\chi\|^2)\, \partial \chi`; a
-sensor s that is added to the components M of a shape gives one row more,
+sensors has, as its factor is fitted, :math:`R = (I - \chi \chi^T / \|\chi\|^2)\, \partial \chi`;
+a sensor s that is added to the components M of a shape gives one row,
 
 .. math:: R = \frac{\partial \chi_s - \chi_s \, \chi_M^T \partial \chi_M / \|\chi_M\|^2}
     {\sqrt{1 + \chi_s^2 / \|\chi_M\|^2}} .

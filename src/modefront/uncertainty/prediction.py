@@ -3,13 +3,18 @@ r"""The uncertainty of predictions, given that of the parameters.
 A prediction q of covariance C of the parameters has, to first order, the covariance
 :math:`\partial q \, C \, \partial q^T`. With axes R, :math:`R R^T = C`, the parameters are
 :math:`\theta = \hat\theta + R z`, z standard normal, and that is :math:`S S^T` with
-:math:`S = \partial q / \partial z` (`modefront.uncertainty.differences`).
+:math:`S = \partial q / \partial z`.
 
 A probability P varies by orders of magnitude. Its logarithm is what is nearly linear: where it has
 the standard deviation s around :math:`\ln \hat P`, P is lognormal with the median :math:`\hat P`,
 the mean :math:`\hat P e^{s^2/2}` and the standard deviation
 
 .. math:: \hat P \sqrt{e^{s^2} (e^{s^2} - 1)} .
+
+Derivatives are differences, central ones where these stay within the bounds and one-sided ones of
+second order elsewhere. A step of one half balances two errors: of smooth peaks it leaves 0.06 % of
+a standard deviation, and failure probabilities, estimated with the same random numbers for all
+models, are rough below it.
 
 Where q bends too much for that, or where there is no gradient, it is evaluated at a sample of the
 Gaussian. The mean of probabilities over the posterior is the robust, or updated, failure
@@ -19,12 +24,23 @@ probability (Papadimitriou, Beck & Katafygiotis 2001, Probabilistic Engineering 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from modefront._typing import Floats
 
 SUMMARY = ("mean", "standard deviation", "5 %", "50 %", "95 %")
 """Statistics of a sample: two moments and three quantiles."""
+
+STEP = 0.5
+"""Of a difference, in standard deviations."""
+
+LEAST = 0.05
+"""Shortest step, where bounds are near."""
+
+NEGLIGIBLE = 1e-9
+"""Part of an axis in the standard deviation of a parameter that counts as none."""
 
 BATCH = 1000
 """Draws that are made at a time."""
@@ -34,6 +50,57 @@ SELDOM = 1e-4
 
 TRIALS = 100_000
 """Draws after which that share is judged."""
+
+
+@dataclass(frozen=True)
+class Stencil:
+    """Models for finite differences of predictions, with the coefficients of the differences.
+
+    Attributes
+    ----------
+    theta : (m, 2, p) parameters, two an axis
+    factors : (m, 3) of the prediction in the middle and at these
+    """
+
+    theta: Floats
+    factors: Floats
+
+    def slopes(self, middle: Floats, values: Floats) -> Floats:
+        """Return derivatives (q, m) of predictions (q,) in the middle and (m, 2, q) around it."""
+        first = np.outer(middle, self.factors[:, 0])
+        return first + np.einsum("mk,mkq->qm", self.factors[:, 1:], values)
+
+
+def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stencil | None:
+    """Return differences around ``theta`` (p,) along ``axes`` (p, m) within the bounds.
+
+    None where an axis has no room between them.
+    """
+    m = axes.shape[1]
+    std = np.linalg.norm(axes, axis=1)
+    directions = np.where(np.abs(axes) > NEGLIGIBLE * std[:, None], axes, 0.0).T
+    points, factors = np.empty((m, 2, theta.size)), np.empty((m, 3))
+    for k, direction in enumerate(directions):
+        up, down = (_room(theta, s * direction, lower, upper) for s in (1.0, -1.0))
+        side = 1.0 if up >= down else -1.0
+        central, aside = min(STEP, up, down), min(STEP, max(up, down) / 2)
+        if max(central, aside) < LEAST:
+            return None
+        if central >= aside:
+            steps = np.array([central, -central])
+            factors[k] = np.array([0.0, 1.0, -1.0]) / (2 * central)
+        else:
+            steps = side * np.array([aside, 2 * aside])
+            factors[k] = side * np.array([-3.0, 4.0, -1.0]) / (2 * aside)
+        points[k] = np.clip(theta + steps[:, None] * direction, lower, upper)
+    return Stencil(points, factors)
+
+
+def _room(theta: Floats, direction: Floats, lower: Floats, upper: Floats) -> float:
+    """Return the number of steps ``direction`` (p,) that stay within the bounds."""
+    moved = direction != 0
+    to = np.where(direction > 0, upper, lower)
+    return float(((to - theta)[moved] / direction[moved]).min(initial=np.inf))
 
 
 class TruncationError(ValueError):

@@ -1,25 +1,14 @@
 r"""What is expected of the errors of the data and the model, before the data are fitted.
 
-The residuals of group i, in units of their expected standard deviations :math:`\tau`, are Gaussian
-with an unknown variance :math:`s_i` of scaled inverse chi-square prior: :math:`\nu` degrees of
-freedom, about :math:`m_i`. With :math:`J_i'` the sum of their squares over all data sets, of which
-:math:`S_i` no model can explain (the scatter of the sets about their mean), the variance is
-integrated out,
+The residuals of group i over their expected standard deviations are Gaussian with an unknown
+variance of scaled inverse chi-square prior: :math:`\nu` degrees of freedom, about :math:`m_i`. It
+is integrated out (docs/uncertainty.md), and the most probable model has the bounded weights
+:math:`w_i = (a_i + \nu) / (J_i' - S_i + \nu m_i)`.
 
-.. math:: -\ln p(\theta \mid D) = \tfrac12 \sum_i (a_i + \nu) \ln (J_i' - S_i + \nu m_i)
-    + \text{const} .
-
-The weights of the most probable model are bounded, :math:`w_i = (a_i + \nu) / (J_i' - S_i + \nu
-m_i)`. Without a prior, :math:`\nu = 0`, it is the optimally weighted one, equation (8); the greater
-:math:`\nu`, the closer it comes to weights that are known.
-
-The count :math:`a_i` is that of independent errors which a model can explain, so that :math:`J_i' -
-S_i` of the true model has the mean :math:`a_i`: one a frequency; of a shape one less than its
-components, since its factor is fitted. Repeated data sets count once: errors of the model are the
-same in all of them, and only those of measurement become less in their mean.
-
-Expected standard deviations are those of the data, else :math:`\tau` that are assumed. The scatter
-of S, of d degrees of freedom, corrects these to :math:`m_i = (\nu + S_i) / (\nu + d_i)`.
+Expected standard deviations are those of the data, else those that are assumed. The scatter S of
+the data sets about their mean, of d degrees of freedom, corrects these to :math:`m_i = (\nu + S_i)
+/ (\nu + d_i)`. Repeated data sets count once in :math:`a_i`: errors of the model are the same in
+all of them.
 
 The prior of the parameters is uniform within their bounds, and where neither data nor bounds say
 anything a parameter is nearest to its nominal value: :math:`-2 \ln p` has the further term

@@ -1,16 +1,11 @@
 r"""Models drawn from the posterior: randomised maximum likelihood.
 
-Each draw is the model that fits data with other errors, and is nearest to a model of the prior:
-
-.. math:: \theta = \arg\min \sum_i \frac{\|r_i(\theta) + \varepsilon_i\|^2}{s_i}
-    + \delta \sum_j \frac{(\theta_j - \vartheta_j)^2}{range_j^2}, \qquad
-    \varepsilon_i \sim N(0, s_i), \quad \vartheta \sim U(bounds),
-
-with :math:`\delta` so small that it decides only where the data say nothing (Kitanidis 1995,
-doi:10.1029/94WR02740; Oliver, He & Reynolds 1996). Where residuals are linear and bounds far these
-are independent draws from the posterior. It is an approximation elsewhere, which follows curved
-sets of equivalent models and reaches all minima. ``benchmarks/calibration.py`` measures it. Markov
-chains take a hundred times as many models where the data leave much open.
+Each draw is the model that fits data with other errors, and where these say nothing is nearest to a
+model of the prior (docs/uncertainty.md; Kitanidis 1995, doi:10.1029/94WR02740; Oliver, He &
+Reynolds 1996). Where residuals are linear and bounds far these are independent draws from the
+posterior. It is an approximation elsewhere, which follows curved sets of equivalent models and
+reaches all minima. ``benchmarks/calibration.py`` measures it. Markov chains take a hundred times as
+many models where the data leave much open.
 
 Draws that would be beyond a bound lie at it, while the posterior has no such atom. Each parameter j
 at a bound is drawn again along the line :math:`\theta + t v`, :math:`v_j` one range inwards, on
@@ -213,9 +208,9 @@ class _Scaled:
     def evaluate(
         self, problem: Problem, theta: Floats, derivatives: bool, second: bool
     ) -> Evaluation:
-        """Return the misfit and the distance; residuals take derivatives, whether asked or not."""
-        del derivatives
-        return self.of(problem.evaluate(theta, second=second))
+        """Return the misfit and the distance, always with the derivatives that residuals take."""
+        del derivatives, second
+        return self.of(problem.evaluate(theta))
 
     def of(self, found: Evaluation) -> Evaluation:
         """Return them from an evaluation."""

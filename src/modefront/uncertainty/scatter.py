@@ -1,35 +1,18 @@
 r"""Scatter of the solution of a programme by errors of the data: the implicit function theorem.
 
-A solution is where the conditions of Karush, Kuhn and Tucker hold. With the weights w of the
-objectives at it, all of its programmes have
-
-.. math:: \sum_i w_i \, \partial J_i(\theta) = 0
-
-on the parameters that no bound holds. Errors of the data change :math:`J` by :math:`\delta J` and
-:math:`\partial J` by :math:`\delta \partial J` (`modefront.uncertainty.noise`). The solution
-changes such that the conditions remain satisfied (Fiacco 1983, *Introduction to Sensitivity and
-Stability Analysis in Nonlinear Programming*, section 2.4):
+Where the conditions of Karush, Kuhn and Tucker hold, :math:`\sum_i w_i \, \partial J_i = 0` on the
+parameters that no bound holds. Errors of the data change :math:`J` by :math:`\delta J` and
+:math:`\partial J` by :math:`\delta \partial J`, and the solution such that the conditions remain
+satisfied (Fiacco 1983, *Introduction to Sensitivity and Stability Analysis in Nonlinear
+Programming*, section 2.4):
 
 .. math:: W \delta\theta + \partial J^T \delta w = - \delta \partial J^T w, \qquad
     W = \sum_i w_i H_i ,
 
-together with the conditions of the programme on w (`modefront.uncertainty.conditions`):
-
-==================  =====================================================================
-weights given       :math:`\delta w = 0`
-optimal weights     :math:`w = a / J`:
-                    :math:`\delta w = -\operatorname{diag}(a / J^2)
-                    (\partial J\, \delta\theta + \delta J)`
-level               min of the others at :math:`J_i = v`: only :math:`w_i` changes, and
-                    :math:`\partial J_i \delta\theta + \delta J_i = \delta v`
-boundary (NBI)      :math:`J_A = (J^* + P (\beta + \tau e))_A` on the active bounds A, with
-                    :math:`n = P e` and :math:`w_A^T n_A = 1`, and :math:`w_i = \rho / n_i`
-                    on the others:
-                    :math:`(\partial J \delta\theta - n\, \delta\tau)_A = (\delta J^* -
-                    \delta J + \delta P (\beta + \tau e))_A`,
-                    :math:`n_A^T \delta w_A = -w_A^T \delta n_A`,
-                    :math:`\delta w_i = -\rho\, \delta n_i / n_i^2`
-==================  =====================================================================
+together with the conditions of the programme on w (`modefront.uncertainty.conditions`): weights are
+given, :math:`\delta w = 0`; optimal, :math:`w = a / J`; :math:`J_i = v` at a level, where only
+:math:`w_i` changes; or, of a point of NBI, :math:`J_A = (J^* + P (\beta + \tau e))_A` on the active
+bounds A, with :math:`n = P e` and :math:`w_A^T n_A = 1`, and :math:`w_i = \rho / n_i` elsewhere.
 
 With the edges E as columns, :math:`J^* = \operatorname{diag} E` and :math:`P = E - J^* e^T`; of the
 simplex of the ranges, P is diagonal, and their upper ends stay. So points of the front also follow
@@ -39,8 +22,7 @@ more than that of the share :math:`\rho` (`modefront.front.subproblems`); equati
 A parameter at an active bound is fixed. Directions in which no residual changes are left out and
 named, since no data determine them.
 
-The linearisation is valid as long as no active set changes and the solution remains a minimum.
-Reasons to doubt it are returned with it (`modefront.uncertainty.validity`).
+Reasons to doubt the linearisation are returned with it.
 """
 
 from __future__ import annotations
@@ -53,9 +35,8 @@ import scipy.linalg
 from modefront._typing import Bools, Floats
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem
 from modefront.rounding import TINY
-from modefront.uncertainty.conditions import Conditions
+from modefront.uncertainty.conditions import Conditions, LinearisationWarning, std
 from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.validity import LinearisationWarning, std
 
 FLAT = 1e-12
 """Eigenvalue over the greatest one below which a direction changes no residual."""

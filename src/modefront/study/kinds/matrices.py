@@ -17,9 +17,9 @@ from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
 from modefront.models.files import READERS, read_matrix
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import matrices
-from modefront.models.terms import BASE, exponents_of, form_of
+from modefront.models.parameters import BASE, exponents_of, form_of
 from modefront.options import TRUE_OR_FALSE, Option, Table, check_fields, entries, text
-from modefront.programs.mesh import ProgramMesh, read_mesh
+from modefront.programs.base import ProgramMesh, read_mesh
 from modefront.study.kinds.sensors import (
     BY_NODE,
     DOF,

@@ -1,0 +1,196 @@
+"""The methods: how samples are drawn, and the weight of each, of which the mean is P.
+
+Failure is the union of the elementary failures E_oj = {|x_oj| > b}, whose probabilities are known,
+P_oj = 2 Φ(-β_oj) with β_oj = b/σ_oj. Given E_oj, z has the standard normal density but for its
+component u = z·a_oj/σ_oj along the design excitation, which is a normal number beyond ±β_oj. So a
+standard normal z is made a sample given E_oj by putting that component right (S. K. Au, J. L. Beck,
+Probab. Eng. Mech. 16 (2001) 193-207, doi:10.1016/S0266-8920(01)00002-9, sec. 4):
+
+    z* = z + (r - u) a_oj/σ_oj,      r = -Φ⁻¹(v Φ(-β_oj)),   v uniform in (0, 1].
+
+E_oj itself is drawn with probability P_oj/ΣP, so the density of z* is φ(z) N(z)/ΣP with N the
+number of elementary failures that z contains. The weights are
+
+- importance sampling (eqs. 25-29 there): φ/h = ΣP / N(z).
+- additive rules: ΣP · 1[E_oj is the first in time of those that z contains]. With P(A ∪ B) = P(A)
+  + P(B) - P(A ∩ B) the union is a sum of disjoint parts, P_k P(none before | E_k) (K.-V. Yuen,
+  L. S. Katafygiotis, Probab. Eng. Mech. 20 (2005) 109-114, doi:10.1016/j.probengmech.2004.07.003).
+  Its mean over the failures of a sample is 1/N: a check that shares no weight with the first one.
+- directional importance sampling: with z = R e, R is a χ variable of ν degrees of freedom, ν the
+  number of components of z, independent of e, and is integrated out: ΣP · Q(min ρ_oj) / Σ Q(ρ_oj)
+  with Q(ρ) = Γ(ν/2, ρ²/2)/Γ(ν/2) and ρ_oj = b/|x_oj(e)|. By the Rao-Blackwell theorem its variance
+  is no larger than that of the first (cf. M. A. Misraji et al., Mech. Syst. Signal Process. 142
+  (2020) 106621, doi:10.1016/j.ymssp.2020.106621).
+- Monte Carlo: z is standard normal, and the weight 1 where any |x_oj| > b.
+
+Nothing that is computed from z* changes with its sign, so x_oj > b stands for both sides. z is the
+same for all levels.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import gammaincc, gammainccinv, log_ndtr, ndtr, ndtri_exp
+
+from modefront.reliability.estimate import Estimator, Prepare, Weigh
+from modefront.reliability.gaussian import Convolution, GaussianResponse, IndexArray
+from modefront.response.system import FloatArray
+
+NEGLIGIBLE = 1e-22
+"""The Q(ρ_oj) left out, relative to the largest: even millions of them are below rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class ElementaryFailures:
+    """The elementary failures at one barrier, made by `elementary_failures`.
+
+    Attributes
+    ----------
+    response : the map from z to x
+    level : barrier b
+    cumulative : (n_outputs · n,) sums of P_oj over the steps of one output after another
+    """
+
+    response: GaussianResponse
+    level: float
+    cumulative: FloatArray
+
+    @property
+    def total(self) -> float:
+        """ΣP, the sum over all elementary failures, which may exceed 1."""
+        return float(self.cumulative[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class Failed:
+    """Samples, each given an elementary failure drawn with probability P_oj/ΣP.
+
+    Attributes
+    ----------
+    z : (samples, n_inputs, n) z*
+    output, step : (samples,) o and j, counted from 0, of the elementary failure that each sample
+        was given
+    """
+
+    z: FloatArray
+    output: IndexArray
+    step: IndexArray
+
+
+def elementary_failures(response: GaussianResponse, level: float) -> ElementaryFailures:
+    """Return the elementary failures at the barrier `level`."""
+    # Before the load sets in there is no response, and β is infinite.
+    with np.errstate(divide="ignore"):
+        beta = level / response.deviation.ravel()
+    return ElementaryFailures(response, level, np.cumsum(2 * ndtr(-beta)))
+
+
+def given_failure(failures: ElementaryFailures, z: FloatArray, uniform: FloatArray) -> Failed:
+    """Make samples given failure of standard normal ones.
+
+    Parameters
+    ----------
+    failures : the elementary failures, of which one at least has a probability above zero
+    z : (samples, n_inputs, n) standard normal numbers
+    uniform : (2, samples) uniform numbers in [0, 1): the choice of the elementary failure, and 1 -
+        v
+    """
+    response, cumulative = failures.response, failures.cumulative
+    # The last failure of non-zero probability is meant by a number that rounding brings to ΣP.
+    last = int(np.searchsorted(cumulative, cumulative[-1], "left"))
+    drawn = np.minimum(np.searchsorted(cumulative, uniform[0] * cumulative[-1], "right"), last)
+    output, step = np.unravel_index(drawn, response.deviation.shape)
+    a, sigma = response.design_excitation(output, step), response.deviation[output, step]
+    # In logarithms, as far out in the tail 1 - Φ(β) is zero in floating point.
+    r = -ndtri_exp(np.log1p(-uniform[1]) + log_ndtr(-failures.level / sigma))
+    u = np.einsum("sik,sik->s", z, a) / sigma
+    a *= ((r - u) / sigma)[:, None, None]
+    a += z
+    return Failed(a, output, step)
+
+
+Share = Callable[[Failed, float, Iterator[FloatArray]], FloatArray]
+"""(samples, level, |x| by output) → the part of ΣP that each sample stands for, (samples,)."""
+
+
+def conditional(share: Share) -> Prepare:
+    """Return the weights ΣP · share, with the same normal numbers at every level."""
+
+    def prepare(response: GaussianResponse, levels: FloatArray) -> Weigh:
+        everywhere = [elementary_failures(response, level) for level in levels.tolist()]
+
+        def weigh(convolution: Convolution, rng: np.random.Generator, count: int) -> FloatArray:
+            z = rng.standard_normal((count, response.n_inputs, response.n_steps))
+            uniform = rng.random((2, count))
+            weights = np.zeros((levels.size, count))
+            for row, failures in zip(weights, everywhere, strict=True):
+                # At a barrier so high that P is below the smallest float, the estimate is zero;
+                # its coefficient of variation, infinite, says that there were no samples.
+                if failures.total > 0:
+                    failed = given_failure(failures, z, uniform)
+                    magnitudes = convolution.magnitudes(failed.z)
+                    row[:] = failures.total * share(failed, failures.level, magnitudes)
+            return weights
+
+        return weigh
+
+    return prepare
+
+
+def _one_of_all(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> FloatArray:
+    exceedances = np.zeros(failed.z.shape[0])
+    for x in magnitudes:
+        exceedances += np.count_nonzero(x > level, axis=1)
+    # The failure that was drawn is one of them, even where rounding leaves it on the barrier.
+    return 1 / np.maximum(exceedances, 1)
+
+
+def _first(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> FloatArray:
+    first = np.ones(failed.z.shape[0], dtype=bool)
+    steps = np.arange(failed.z.shape[-1])
+    for output, x in enumerate(magnitudes):
+        # At the time of the failure drawn, outputs of lower number come before it.
+        end = failed.step + (output < failed.output)
+        first &= ~np.any((x > level) & (steps < end[:, None]), axis=1)
+    return first.astype(np.float64)
+
+
+def _any_radius(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> FloatArray:
+    count = failed.z.shape[0]
+    half_nu = failed.z[0].size / 2
+    # Below, y = ρ²/2 throughout; x is that of z* and not of e, hence the radius.
+    energy = np.einsum("sik,sik->s", failed.z, failed.z) / 2
+    # Each sample fails, so min ρ is at most its radius, and Q(min ρ) at least Q(radius). Most x
+    # are so small beside the largest that their Q is nothing; they are not worth computing.
+    least = NEGLIGIBLE * gammaincc(half_nu, energy)
+    floor = level * np.sqrt(energy / gammainccinv(half_nu, least))
+    largest = np.zeros(count)
+    total = np.zeros(count)
+    for x in magnitudes:
+        np.maximum(largest, x.max(axis=1), out=largest)
+        # Flat: NumPy finds the few that are true of a row many times faster than of a table.
+        sample, step = np.divmod(np.flatnonzero(x > floor[:, None]), x.shape[1])
+        y = energy[sample] * (level / x[sample, step]) ** 2
+        total += np.bincount(sample, gammaincc(half_nu, y), count)
+    shortest = gammaincc(half_nu, energy * (level / largest) ** 2)
+    return np.asarray(shortest / total, dtype=np.float64)
+
+
+def _counted(response: GaussianResponse, levels: FloatArray) -> Weigh:
+    def weigh(convolution: Convolution, rng: np.random.Generator, count: int) -> FloatArray:
+        z = rng.standard_normal((count, response.n_inputs, response.n_steps))
+        largest = np.zeros(count)
+        for x in convolution.magnitudes(z):
+            np.maximum(largest, x.max(axis=1), out=largest)
+        return (largest > levels[:, None]).astype(np.float64)
+
+    return weigh
+
+
+importance_sampling = Estimator("importance sampling", conditional(_one_of_all))
+directional_importance_sampling = Estimator(
+    "directional importance sampling", conditional(_any_radius)
+)
+additive_rules = Estimator("additive rules", conditional(_first))
+monte_carlo = Estimator("Monte Carlo", _counted)
