@@ -413,11 +413,19 @@ def test_the_chance_of_a_start_is_what_is_not_covered(
 def test_starts_that_lead_to_the_same_value_are_counted_together() -> None:
     known, place = ended(1.0, 5, 1, [1, 1])
     for J in (1.0 + 0.5 * TOLERANCE, 2.0, 5.0):
-        known.note(place, begin(Evaluation(np.zeros(1), np.array([J]))), TOLERANCE)
+        known.note(place, given_model(Evaluation(np.zeros(1), np.array([J]))), TOLERANCE)
     assert known.counts == [2, 2, 1]
     assert known.hits(place, TOLERANCE) == 2
     better = replace(place, incumbent=begin(Evaluation(np.zeros(1), np.array([0.5]))))
     assert known.hits(better, TOLERANCE) == 0
+
+
+def test_all_starts_that_end_at_the_limit_of_iterations_count_as_one_minimum() -> None:
+    known, place = ended(1.0, 10, 1, [1, 1])
+    for J in (1.0, 2.0, 5.0):
+        known.note(place, begin(Evaluation(np.zeros(1), np.array([J]))), TOLERANCE)
+    assert known.counts == [1, 1]
+    assert known.unseen == unseen(10, 3)
 
 
 def test_starts_begin_at_the_problem_s_own_and_cover_each_range_evenly() -> None:
