@@ -14,15 +14,16 @@ interrupted run goes on with the same digits.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Protocol
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Protocol, cast
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
-from modefront.front.front import Front
+from modefront.front.front import Edge, Front
+from modefront.front.gaps import Gap
 from modefront.front.point import Point
 from modefront.models.reduced.certificate import Certificate, Certifier
 from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
@@ -260,35 +261,24 @@ def _with_errors(
     """Return the front with the estimated errors of all its models."""
     minima = [x for edge in front.edges for x in edge.minima]
     reported = _each_once([*_of_the_front(front), *minima, *front.optimal])
-    kept = _certified(problem, model, reported, "front", work)
-    errors = {
-        _key(solution): {name: solution.evaluation.quantities[name] for name in ERRORS}
-        for solution in kept
-    }
+    certified = _certified(problem, model, reported, "front", work)
+    known = {_key(x): x.evaluation.quantities for x in certified}
+    front = replace(front, known=np.zeros((0, front.known.shape[1])))  # it holds in the basis only
+    return cast(Front, _replaced(front, known))
 
-    def known(solution: Solution) -> Solution:
-        quantities = {**solution.evaluation.quantities, **errors[_key(solution)]}
-        return replace(solution, evaluation=replace(solution.evaluation, quantities=quantities))
 
-    return replace(
-        front,
-        points=[replace(point, solution=known(point.solution)) for point in front.points],
-        edges=[
-            replace(edge, best=known(edge.best), minima=list(map(known, edge.minima)))
-            for edge in front.edges
-        ],
-        optimal=list(map(known, front.optimal)),
-        iterated=known(front.iterated) if front.iterated else None,
-        gaps=[
-            replace(
-                gap,
-                end=known(gap.end) if gap.end else None,
-                start=known(gap.start) if gap.start else None,
-            )
-            for gap in front.gaps
-        ],
-        known=np.zeros((0, front.known.shape[1])),  # what the search saw holds in its basis only
-    )
+def _replaced(part: object, known: Mapping[bytes, Mapping[str, Floats]]) -> object:
+    """Return a part of a front of which solutions have the known quantities of their models."""
+    if isinstance(part, Solution):
+        quantities = known.get(_key(part), part.evaluation.quantities)
+        return replace(part, evaluation=replace(part.evaluation, quantities=quantities))
+    if isinstance(part, list | tuple):
+        return type(part)(_replaced(each, known) for each in part)
+    if isinstance(part, Front | Point | Edge | Gap):
+        return replace(
+            part, **{x.name: _replaced(getattr(part, x.name), known) for x in fields(part)}
+        )
+    return part
 
 
 def _certified(

@@ -64,39 +64,29 @@ class FrontAnalysis:
     replicates: Sequence[Mapping[str, Solution]]
 
 
-@dataclass(frozen=True)
-class AnalysisOptions:
-    """Options of the front analysis.
-
-    Attributes
-    ----------
-    pareto : options with which the front was found
-    identifiability, uncertainty : of the study
-    seed : of the run
-    """
-
-    pareto: Pareto
-    identifiability: Identifiability
-    uncertainty: Uncertainty
-    seed: int
-
-
+# 7 arguments: the front, the options of the study, and who does the work.
 def analyse_front(
-    problem: UpdatingProblem, front: Front, options: AnalysisOptions, work: Executor
+    problem: UpdatingProblem,
+    front: Front,
+    pareto: Pareto,
+    identifiability: Identifiability,
+    uncertainty: Uncertainty,
+    seed: int,
+    work: Executor,
 ) -> FrontAnalysis:
-    """Return the analysis of a front."""
-    a, source = problem.properties, options.uncertainty.of(problem.data)
+    """Return the analysis of a front, which was found with the ``pareto`` options."""
+    a, source = problem.properties, uncertainty.of(problem.data)
     sizes = front.scale if source is not None else None
-    samples = options.uncertainty.bootstrap
+    samples = uncertainty.bootstrap
     solutions = 1 if sizes is None else len(front.points)
     work.expect({"second-derivatives": solutions, "bootstrap": samples})
-    part = _identifiable_part(problem, front, options, work)
+    part = _identifiable_part(problem, front, pareto, identifiability.flat, work)
     points = _points(problem, front, part)
-    manifolds = _manifolds(problem, front, options.identifiability, work)
+    manifolds = _manifolds(problem, front, identifiability, work)
     reference = front.reference
     solved = [SolvedPoint(reference.label, reference.solution, Role("optimal"))]
     if sizes is not None:
-        solved = _solved_points(problem, front, points, part, options)
+        solved = _solved_points(problem, front, points, part, pareto, identifiability.flat)
     known = _locals(problem, solved, sizes, source, work)
     posterior = None
     if reference.kind is Kind.OPTIMAL and reference.label in known:
@@ -106,11 +96,14 @@ def analyse_front(
     if source is not None and sizes is not None:
         alone = front_scatter(problem, solved, known, a, sizes)
         scatter = with_neighbours(front, solved, alone, a, sizes)
-        replicates = _replicates(problem, solved, sizes, source, options, work)
+        seeds = [(b, seed_sequence(seed, "bootstrap", b)) for b in range(1, samples + 1)]
+        again = (problem, solved, sizes, source)
+        tasks = [Task(("bootstrap", b), _replicate, again, each) for b, each in seeds]
+        replicates = work.run(tasks)
     return FrontAnalysis(
         points,
         part,
-        options.identifiability.flat,
+        identifiability.flat,
         manifolds,
         source,
         scatter,
@@ -121,11 +114,10 @@ def analyse_front(
 
 
 def _identifiable_part(
-    problem: UpdatingProblem, front: Front, options: AnalysisOptions, work: Executor
+    problem: UpdatingProblem, front: Front, pareto: Pareto, flat: float, work: Executor
 ) -> Identifiable | None:
     """Return the part of the front that is not flat; None where nothing is flat."""
     along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
-    flat = options.identifiability.flat
     boundary = METHODS[front.method].programme == "boundary"
     if flat == 0 or len(along) < 2 or not boundary:
         return None
@@ -133,7 +125,7 @@ def _identifiable_part(
     edges = [point.solution for point in of_kind(front.points, Kind.EDGE)]
     known = [point.solution for point in front.points]
     sizes = np.ones(n) if front.scale is None else front.scale
-    divisions = (options.pareto.points or default_points(n)) - 1
+    divisions = (pareto.points or default_points(n)) - 1
     return identifiable_part(problem, along, edges, known, flat, sizes, divisions, work)
 
 
@@ -216,7 +208,8 @@ def _solved_points(
     front: Front,
     extra: Sequence[Point],
     part: Identifiable | None,
-    options: AnalysisOptions,
+    pareto: Pareto,
+    flat: float,
 ) -> list[SolvedPoint]:
     """Return the points with what each of them solves, as far as that is a programme.
 
@@ -224,7 +217,6 @@ def _solved_points(
     edges.
     """
     names = problem.objectives
-    tolerance, flat = options.pareto.tolerance, options.identifiability.flat
     edges = {point.name: point for point in of_kind(front.points, Kind.EDGE)}
     cuts = {point.name: point for point in of_kind(extra, Kind.IDENTIFIABLE_EDGE)}
     whole = tuple(edges[name].label for name in names)
@@ -233,14 +225,14 @@ def _solved_points(
     out: list[SolvedPoint] = []
     for i, (name, edge) in enumerate(zip(names, front.edges, strict=True)):
         solution, text = edges[name].solution, edges[name].label
-        if tolerance > 0 and not same(solution, edge.best):
+        if pareto.tolerance > 0 and not same(solution, edge.best):
             out.append(SolvedPoint(f"{text}-best", edge.best, Role("edge", objective=i)))
-            level = Role("level", objective=i, tolerance=tolerance)
+            level = Role("level", objective=i, tolerance=pareto.tolerance)
             out.append(SolvedPoint(text, solution, level))
         else:
             out.append(SolvedPoint(text, edge.best, Role("edge", objective=i)))
     along = METHODS[front.method].programme
-    equations = options.pareto.programme == "equations"
+    equations = pareto.programme == "equations"
     for point in [*front.points, *extra]:
         role: Role | None = None
         match point.kind:
@@ -315,27 +307,6 @@ def _local(
     return Local(point, errors, problem.slopes_at(modes, pairs))
 
 
-def _replicates(
-    problem: UpdatingProblem,
-    points: Sequence[SolvedPoint],
-    sizes: Floats,
-    source: Source,
-    options: AnalysisOptions,
-    work: Executor,
-) -> list[Mapping[str, Solution]]:
-    """Return the points solved again with data drawn again, by label."""
-    count = range(1, options.uncertainty.bootstrap + 1)
-    arguments = (problem, points, sizes, source)
-    tasks = [
-        Task(("bootstrap", b), _replicate, arguments, seed_sequence(options.seed, "bootstrap", b))
-        for b in count
-    ]
-    return [
-        {point.label: solution for point, solution in zip(points, solved, strict=True)}
-        for solved in work.run(tasks)
-    ]
-
-
 def _replicate(
     problem: UpdatingProblem,
     points: Sequence[SolvedPoint],
@@ -343,6 +314,8 @@ def _replicate(
     source: Source,
     *,
     rng: np.random.Generator,
-) -> list[Solution]:
+) -> Mapping[str, Solution]:
+    """Return the points solved again with data drawn again, by label."""
     again = replace(problem, data=redraw(problem.data, source, rng))
-    return solve_again(again, points, problem.properties, sizes)
+    solved = solve_again(again, points, problem.properties, sizes)
+    return {point.label: x for point, x in zip(points, solved, strict=True)}

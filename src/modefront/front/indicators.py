@@ -9,7 +9,7 @@ and a reference set :math:`R`:
 
 (Zitzler & Thiele 1998, doi:10.1007/BFb0056872; Ishibuchi et al. 2015,
 doi:10.1007/978-3-319-15892-1_8). The largest gap is the longest branch of the shortest tree that
-joins all points (for two objectives: the greatest distance of neighbours along the front).
+joins all points.
 """
 
 from __future__ import annotations

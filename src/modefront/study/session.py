@@ -18,7 +18,7 @@ from modefront.analysis.certified import (
     certified_front,
     certified_points,
 )
-from modefront.analysis.front import AnalysisOptions, analyse_front
+from modefront.analysis.front import analyse_front
 from modefront.errors import Fault, InputError, reason
 from modefront.front.front import Front
 from modefront.front.given import Weighted
@@ -284,10 +284,15 @@ class _Session:
             front = replace(front, points=[*front.points, *points])
             count = max(DRAWS, study.uncertainty.draws)
             inference = infer(noise, best.theta, count, study.seed, work)
-        options = AnalysisOptions(
-            study.pareto, study.identifiability, study.uncertainty, study.seed
+        analysis = analyse_front(
+            problem,
+            front,
+            study.pareto,
+            study.identifiability,
+            study.uncertainty,
+            study.seed,
+            work,
         )
-        analysis = analyse_front(problem, front, options, work)
         (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
         extra = [*analysis.points, Point(Kind.NOMINAL, given(nominal))]
         analysis = replace(analysis, points=certified_points(problem, extra, work))
