@@ -16,18 +16,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Protocol, cast
+from typing import Any, Protocol
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
-from modefront.front.front import Edge, Front
+from modefront.front.front import Edge, Front, best_minima
 from modefront.front.gaps import Gap
 from modefront.front.point import Point
 from modefront.models.reduced.certificate import Certificate, Certifier
 from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
-from modefront.optim.lexicographic import EXACT
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import Solution
 from modefront.pairing.match import match, modes_needed
@@ -234,15 +233,8 @@ def _wrong(problem: UpdatingProblem, model: ReducedModel, front: Front) -> list[
 
 def _candidates(problem: UpdatingProblem, front: Front) -> list[Solution]:
     """Return the models that are reported, and minima that may be the best ones, each once."""
-    models = list(_of_the_front(front))
-    for i, edge in enumerate(front.edges):
-        most = (1 + CLOSE) * edge.best.J[i] + EXACT * front.sizes[i]
-        models += [solution for solution in edge.minima if solution.J[i] <= most]
-    if front.optimal:
-        programme = LogSum(problem.properties)
-        most = programme.value(front.optimal[0].J) + CLOSE * problem.properties.sum()
-        models += [solution for solution in front.optimal if programme.value(solution.J) <= most]
-    return _each_once(models)
+    minima = best_minima(front, problem.properties, CLOSE)
+    return _each_once([*_of_the_front(front), *(x for *_, some in minima for x in some)])
 
 
 def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Floats]:
@@ -264,10 +256,11 @@ def _with_errors(
     certified = _certified(problem, model, reported, "front", work)
     known = {_key(x): x.evaluation.quantities for x in certified}
     front = replace(front, known=np.zeros((0, front.known.shape[1])))  # it holds in the basis only
-    return cast(Front, _replaced(front, known))
+    out: Front = _replaced(front, known)
+    return out
 
 
-def _replaced(part: object, known: Mapping[bytes, Mapping[str, Floats]]) -> object:
+def _replaced(part: Any, known: Mapping[bytes, Mapping[str, Floats]]) -> Any:
     """Return a part of a front of which solutions have the known quantities of their models."""
     if isinstance(part, Solution):
         quantities = known.get(_key(part), part.evaluation.quantities)
@@ -275,9 +268,8 @@ def _replaced(part: object, known: Mapping[bytes, Mapping[str, Floats]]) -> obje
     if isinstance(part, list | tuple):
         return type(part)(_replaced(each, known) for each in part)
     if isinstance(part, Front | Point | Edge | Gap):
-        return replace(
-            part, **{x.name: _replaced(getattr(part, x.name), known) for x in fields(part)}
-        )
+        changed = {x.name: _replaced(getattr(part, x.name), known) for x in fields(part)}
+        return replace(part, **changed)
     return part
 
 

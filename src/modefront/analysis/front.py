@@ -10,17 +10,17 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.analysis.flat import Identifiable, identifiable_part, same
 from modefront.analysis.manifold import Manifold, equivalent_models
-from modefront.front.front import Front
+from modefront.front.front import Front, best_minima
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
-from modefront.front.point import Kind, Point, label, of_kind
+from modefront.front.point import Kind, Point, of_kind
 from modefront.front.simplex import Payoff, default_points
 from modefront.identifiability.combinations import without_effect
 from modefront.identifiability.options import Identifiability
 from modefront.identifiability.scale import scale_at
-from modefront.optim.lexicographic import EXACT, TIE
+from modefront.optim.lexicographic import TIE
 from modefront.optim.problem import Evaluation
-from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
+from modefront.optim.scalarisation import Scalarisation, weighted
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
@@ -151,30 +151,12 @@ def _manifolds(
     out: list[tuple[str, Sequence[Manifold]]] = []
     if options.models == 0:
         return out
-    for i, (name, programme, minima) in enumerate(_equivalent_minima(problem, front)):
+    for i, (name, programme, best) in enumerate(best_minima(front, problem.properties, TIE)):
+        minima = [x.evaluation for x in best]
         before = [manifold for _, manifold in followed(out)]
         arguments = (problem, programme, minima, options, before)
         (manifolds,) = work.run([Task(("manifold", i + 1, name), _equivalent, arguments)])
         out.append((name, manifolds))
-    return out
-
-
-def _equivalent_minima(
-    problem: UpdatingProblem, front: Front
-) -> list[tuple[str, Scalarisation, list[Evaluation]]]:
-    """Return each group, and the optimal weights, with its programme and all its best minima."""
-    out: list[tuple[str, Scalarisation, list[Evaluation]]] = []
-    a = problem.properties
-    sizes = np.ones(a.size) if front.scale is None else front.scale
-    for i, (name, edge) in enumerate(zip(problem.objectives, front.edges, strict=True)):
-        level = (1 + TIE) * edge.best.J[i] + EXACT * sizes[i]
-        minima = [x.evaluation for x in edge.minima if x.J[i] <= level]
-        out.append((name, weighted(np.eye(a.size)[i] / sizes), minima))
-    if front.optimal:
-        programme = LogSum(a)
-        level = programme.value(front.optimal[0].J) + TIE * a.sum()
-        minima = [x.evaluation for x in front.optimal if programme.value(x.J) <= level]
-        out.append((label(Kind.OPTIMAL), programme, minima))
     return out
 
 

@@ -40,7 +40,7 @@ class Archive:
             return
         kept = (self.J < J).any(axis=1)
         if not kept.all():
-            self.thetas = [x for x, is_kept in zip(self.thetas, kept, strict=True) if is_kept]
+            self.thetas = [self.thetas[k] for k in np.flatnonzero(kept)]
         self.thetas.append(theta)
         self.J = np.vstack([self.J[kept], J])
 

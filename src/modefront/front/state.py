@@ -149,11 +149,15 @@ class State:
         return np.flatnonzero((values < known) | (self.orders.greatest == 0)).tolist()
 
     def _challenge(self, place: Place, solution: Solution) -> float:
-        """Let a model compete for a place; return the gain where it had been solved, else 0."""
+        """Let a model compete for a place; return the gain where it had been solved, else 0.
+
+        What is open starts from any model that is better, if its derivatives are known.
+        """
         if place.closed and not place.subproblem.competes:
             return 0.0
+        ready = not place.closed and solution.evaluation.derivatives
         gain = place.subproblem.gain(solution.J, place.incumbent)
-        if gain <= self.tolerance:
+        if gain <= (0.0 if ready else self.tolerance):
             return 0.0
         was_closed, place.closed = place.closed, False
         place.incumbent = solution

@@ -107,10 +107,6 @@ class Subproblem(Protocol):
     def gain(self, J: Floats, known: Solution) -> float:
         """Return how much better objectives (n,) are than a known model: over what that has."""
 
-    def weights(self, known: Solution) -> Floats:
-        """Return the slope (n,) of what is minimised at a known solution."""
-        return self.programme.gradient(known.J)
-
     def is_near(self, J: Floats, /) -> Bools:
         """Return which models of objectives (models, n) may lead to a solution by a few steps."""
         return np.ones(len(J), dtype=np.bool_)

@@ -35,9 +35,6 @@ WEAK = 1e-2
 ROUNDING = 1e-9
 """Change of residuals over the measured values, for a unit of a parameter, that is rounding."""
 
-ELSEWHERE = 2
-"""Models at which a group is tried that does not change at the nominal one."""
-
 CRITICAL = 10.0
 """Collinearity index from which parameters count as not told apart."""
 
@@ -98,7 +95,7 @@ def combinations(
         residuals = problem.residuals(theta)
     every = np.ones(len(residuals)) if weights is None else weights
     w = every if group is None else np.eye(len(residuals))[group]
-    G = np.concatenate([np.sqrt(w[i]) * residuals[i].dr for i in np.flatnonzero(w)])
+    G = np.concatenate([np.sqrt(w[i]) * residuals[i].dr for i in np.flatnonzero(w).tolist()])
     least = ROUNDING * float(np.sqrt(w @ sizes(problem) ** 2))
     return decompose(G * (scale or scale_at(problem, theta)).unit, least)
 
@@ -157,13 +154,13 @@ def _changed(problem: UpdatingProblem, evaluation: Evaluation, scale: Scale) -> 
 def unchanged_groups(problem: UpdatingProblem) -> list[int]:
     """Return the groups that no parameter changes, from 0.
 
-    Where nothing changes at the nominal parameters, other ones within the bounds are looked at:
+    Where nothing changes at the nominal parameters, two others within the bounds are looked at:
     a derivative may vanish for symmetry.
     """
     still, first = np.ones(len(problem.objectives), dtype=bool), problem.evaluate(problem.start)
     if not first.feasible:
         return []
-    u = np.random.default_rng(0).uniform(size=(ELSEWHERE, first.theta.size))
+    u = np.random.default_rng(0).uniform(size=(2, first.theta.size))
     for theta in [first.theta, *(problem.lower + u * (problem.upper - problem.lower))]:
         if not still.any():
             break

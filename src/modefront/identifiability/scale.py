@@ -31,7 +31,7 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats
 from modefront.linalg.affine import DenseAffine, SparseAffine
-from modefront.linalg.factorisation import Factorisation, SingularMatrixError
+from modefront.linalg.factorisation import SingularMatrixError
 from modefront.models.local import matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.modes import sparse
@@ -93,9 +93,8 @@ class Scale:
     @cached_property
     def scalings(self) -> list[Scaling]:
         """Changes that scale matrices as a whole, looked for when they are first asked for."""
-        if self.model is None:
-            return []
-        return whole_scalings(self.model, self.theta, self.unit)
+        model = self.model
+        return [] if model is None else whole_scalings(model, self.theta, self.unit)
 
 
 def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
@@ -147,17 +146,19 @@ def _of_stiffness(model: MatrixModel, theta: Floats, shift: float) -> Floats:
 
 
 def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: float) -> Floats:
-    """Return the same for sparse matrices.
-
-    Where no degree of freedom tells it, it is found by power iteration in the norm of K, from one
-    motion for all parameters.
-    """
+    """Return the same for sparse matrices, by power iteration in the norm of K where need be."""
     known = _of_single_terms(stiffness, theta)
     if np.isfinite(known).all():
         return known
-    factor = _definite(model, theta, shift)
+    factor = sparse.regular_factor(model.pencil, theta) if model.floating else None
     if factor is None:
-        return np.zeros(theta.size)
+        K, M = model.pencil.K.at(theta).data, model.pencil.M.at(theta).data
+        try:
+            factor = model.pencil.factor(K, M, -shift if model.floating else 0.0)
+        except SingularMatrixError:
+            return np.zeros(theta.size)
+        if factor.negative:
+            return np.zeros(theta.size)
     start = np.random.default_rng(0).standard_normal((stiffness.size, 1))
     F = stiffness.derivatives_times(theta, start)[:, 0]
     dK = [stiffness.derivative(theta, j) for j in range(theta.size)]
@@ -196,19 +197,6 @@ def _of_single_terms(stiffness: SparseAffine, theta: Floats) -> Floats:
     return np.where(alone[rates.argmax(axis=0)] | (out == 0), out, np.nan)
 
 
-def _definite(model: MatrixModel, theta: Floats, shift: float) -> Factorisation | None:
-    """Return the factor of K, or of K + shift M where K is singular; None if it is indefinite."""
-    K, M = model.pencil.K.at(theta).data, model.pencil.M.at(theta).data
-    regular = sparse.regular_factor(model.pencil, theta) if model.floating else None
-    if regular is not None:
-        return regular
-    try:
-        factor = model.pencil.factor(K, M, -shift if model.floating else 0.0)
-    except SingularMatrixError:
-        return None
-    return factor if factor.negative == 0 else None
-
-
 def _of_mass(mass: DenseAffine | SparseAffine, theta: Floats) -> Floats:
     """Return the greatest relative change of an entry on the diagonal of M, (p,)."""
     diagonals = _diagonals(mass)  # (N, terms)
@@ -228,8 +216,7 @@ def _diagonals(matrix: DenseAffine | SparseAffine) -> Floats:
 def whole_scalings(model: MatrixModel, theta: Floats, unit: Floats) -> list[Scaling]:
     """Return the changes of the parameters that scale K, M, or both as a whole, if there are any.
 
-    Of several that do, it is the one nearest to theta, which scales all parameters; distances are
-    in units, shape (parameters,).
+    Of several that do, it is the one nearest to theta, in units (parameters,).
     """
     (RK, K), (RM, M) = (_rows(matrix, theta) for matrix in (model.stiffness, model.mass))
     both = np.vstack([RK, RM])
