@@ -14,9 +14,9 @@ interrupted run goes on with the same digits.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -56,13 +56,6 @@ ERRORS = ("eigenvalue_error", "shape_error")
 """Names under which the estimates are kept with a solution."""
 
 
-class Search(Protocol):
-    """The search for a front, see `modefront.front.pareto.pareto_front`."""
-
-    def __call__(self, *, work: Executor, known: Front | None) -> Front:
-        """Return the front."""
-
-
 @record
 @dataclass(frozen=True)
 class SnapshotTaken:
@@ -82,8 +75,10 @@ class SnapshotTaken:
     modes: int
 
 
-def certified_front(problem: UpdatingProblem, search: Search, work: Executor) -> Front:
-    """Return the front that a search leads to.
+def certified_front(
+    problem: UpdatingProblem, search: Callable[..., Front], work: Executor
+) -> Front:
+    """Return the front that a search, called with ``work`` and a ``known`` front, leads to.
 
     On a reduced model, the estimated errors are among the quantities of the solutions. They are
     above the tolerance where it could not be met: for want of memory, or because the model has no
