@@ -17,7 +17,7 @@ from modefront.front.front import Edge, Front
 from modefront.front.gaps import Gap, gaps
 from modefront.front.methods import METHODS
 from modefront.front.options import MOST, Pareto
-from modefront.front.point import Kind, Point, label, of_kind
+from modefront.front.point import Kind, Point, label
 from modefront.front.proposers.base import Proposer, Rate, at, evaluated
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
@@ -129,10 +129,15 @@ class _Run:
         bests = self._reported(sizes, "last")
         points, places, beta = self._points(target, bests)
         if METHODS[self.options.method].programme is None and target is not None:
-            points = self._evolved()
+            options = self.options
+            rng = np.random.default_rng(seed_sequence(self.seed, options.method))
+            extent = (options.population, options.evaluations)
+            points = evolve_front(self.problem, options.method, *extent, rng, self.needed)
         optimal = self._optimal(weighted, bests, points, sizes)
         weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
-        iterated = self._iterated(weighted, bests, sizes)
+        equal = self.place("weights", Kind.EQUAL.value, "").incumbent
+        arguments = (self.problem, self.a, sizes, equal)
+        (iterated,) = self.work.run([Task(("iterated-weights",), iterate_weights, arguments)])
         method, ends = self.options.method, zip(self.problem.objectives, bests, strict=True)
         along = [Point(Kind.FRONT, x, method, i + 1) for i, x in enumerate(points)]
         return Front(
@@ -397,14 +402,6 @@ class _Run:
         found = self.work.run(tasks)
         return [x or best for x, best in zip(found, bests, strict=True)]
 
-    def _evolved(self) -> list[Solution]:
-        """Return the nondominated models of the last population of an evolutionary method."""
-        options = self.options
-        rng = np.random.default_rng(seed_sequence(self.seed, options.method))
-        population, evaluations = options.population, options.evaluations
-        arguments = (self.problem, options.method, population, evaluations, rng, self.needed)
-        return evolve_front(*arguments)
-
     def _gaps(self, points: Sequence[Solution], target: Payoff | None) -> Sequence[Gap]:
         """Return the gaps of a front of two objectives."""
         if self.n != 2 or target is None or len(points) < 2 or self.options.method != "nbi":
@@ -432,16 +429,6 @@ class _Run:
         ]
         minima = self.state.distinct(x for x in self.work.run(tasks) if x and x.converged)
         return accepted(self.problem, minima, self.a, sizes)
-
-    def _iterated(
-        self, models: Sequence[Point], bests: Sequence[Solution], sizes: Floats
-    ) -> Solution | None:
-        """Return the fixed point of the iteration of the weights."""
-        equal = of_kind(models, Kind.EQUAL)
-        first = equal[0].solution if equal else bests[0]
-        arguments = (self.problem, self.a, sizes, first)
-        (fixed,) = self.work.run([Task(("iterated-weights",), iterate_weights, arguments)])
-        return fixed
 
 
 def _is_on_normal(solution: Solution, point: LatticePoint) -> bool:
