@@ -41,7 +41,7 @@ from modefront.front.simplex import lattice, spanned
 from modefront.front.state import Place, State
 from modefront.front.subproblems import SAMPLE, Least, Subproblem, Weights
 from modefront.front.subproblems import Point as LatticePoint
-from modefront.optim.problem import Evaluation
+from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.optim.sqp import given as given_model
 from modefront.work.costs import counted
@@ -413,11 +413,19 @@ def test_the_chance_of_a_start_is_what_is_not_covered(
 def test_starts_that_lead_to_the_same_value_are_counted_together() -> None:
     known, place = ended(1.0, 5, 1, [1, 1])
     for J in (1.0 + 0.5 * TOLERANCE, 2.0, 5.0):
-        known.note(place, begin(Evaluation(np.zeros(1), np.array([J]))), TOLERANCE)
+        known.note(place, given_model(Evaluation(np.zeros(1), np.array([J]))), TOLERANCE)
     assert known.counts == [2, 2, 1]
     assert known.hits(place, TOLERANCE) == 2
     better = replace(place, incumbent=begin(Evaluation(np.zeros(1), np.array([0.5]))))
     assert known.hits(better, TOLERANCE) == 0
+
+
+def test_all_starts_that_end_at_the_limit_of_iterations_count_as_one_minimum() -> None:
+    known, place = ended(1.0, 10, 1, [1, 1])
+    for J in (1.0, 2.0, 5.0):
+        known.note(place, begin(Evaluation(np.zeros(1), np.array([J]))), TOLERANCE)
+    assert known.counts == [1, 1]
+    assert known.unseen == unseen(10, 3)
 
 
 def test_starts_begin_at_the_problem_s_own_and_cover_each_range_evenly() -> None:
@@ -584,3 +592,22 @@ def test_models_that_cannot_be_evaluated_do_not_compete() -> None:
     assert state.tell(0, before[0], True, outcome) == 0.0
     assert all(x is place.incumbent for x, place in zip(before, state.places, strict=True))
     assert len(state.models) == 1
+
+
+@pytest.mark.parametrize(("status", "closed"), [("EXHAUSTED", False), ("CONVERGED", True)])
+def test_what_gained_until_the_limit_of_iterations_is_searched_on(
+    status: str, closed: bool
+) -> None:
+    problem = box(circles, [-1, -1], [2, 2])
+    state = state_of(problem, anchors(problem)[:1], [[0.5, 0.5]])
+    place = state.places[0]
+
+    def moved(of: Problem, share: float) -> Solution:
+        better = of.evaluate(share * place.incumbent.theta)
+        return replace(begin(better), status=Status[status])
+
+    state.tell(0, place.incumbent, True, recorded(moved, None, problem, 0.5))
+    assert place.incumbent.theta.tolist() == [0.25, 0.25]
+    assert place.closed == closed
+    state.tell(0, place.incumbent, True, recorded(moved, None, problem, 1.0))
+    assert place.closed, "it gains no more"

@@ -19,7 +19,6 @@ from modefront._typing import Floats
 from modefront.findings.knowledge import alike, free_in_words, summary
 from modefront.identifiability.combinations import (
     combinations,
-    combinations_at,
     unchanged_groups,
     without_effect,
 )
@@ -316,7 +315,7 @@ def test_rounding_determines_nothing() -> None:
     evaluation = problem.evaluate(problem.start)
     for result in (
         combinations(problem, problem.start, 1),
-        combinations_at(problem, evaluation, 1),
+        combinations(problem, evaluation, 1),
     ):
         assert [combination.share for combination in result] == [0.0]
 

@@ -10,14 +10,14 @@ from modefront.optim.scalarisation import (
     Scalarisation,
     achievement,
     constrained,
-    level,
     weighted,
 )
 
 ONES = np.ones(2)
+LEVEL = constrained(np.array([0.0, 1 / 5]), np.array([[1 / 2, 0.0]]), np.array([0.3 / 2]))
 PROGRAMMES = [
     weighted(np.array([1.0, 3.0])),
-    level(1, 0, 0.3, np.array([2.0, 5.0])),
+    LEVEL,
     achievement(1e-3 * ONES, np.eye(2), np.array([0.2, 0.1])),
     LogSum(np.array([3.0, 9.0])),
     LogSum(np.array([3.0, 9.0]), np.array([0.5, 0.1])),
@@ -39,7 +39,7 @@ def test_derivatives_are_those_of_the_value(programme: Scalarisation, x: float, 
 
 
 def test_a_level_is_met_where_the_constraint_vanishes() -> None:
-    programme = level(1, 0, 0.3, np.array([2.0, 5.0]))
+    programme = LEVEL
     assert programme.constraints.at(np.array([0.3, 7.0])) == pytest.approx(0.0)
     assert programme.constraints.at(np.array([0.5, 7.0])) == pytest.approx(0.1), "over the scale"
     assert programme.value(np.array([0.3, 7.0])) == pytest.approx(7.0 / 5)

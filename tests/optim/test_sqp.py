@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from problems import Derivatives, Known, bowls, box, circles, curved, sphere
 
 from modefront._typing import Floats
-from modefront.optim.merit import Merit, Multipliers, projected, surplus
+from modefront.optim.linearised import Merit, Multipliers, projected, surplus
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives
-from modefront.optim.scalarisation import Scalarisation, achievement, level, weighted
+from modefront.optim.scalarisation import Scalarisation, achievement, constrained, weighted
 from modefront.optim.second import learned_from
 from modefront.optim.sqp import Options, Solution, Status, begin, solve
 
@@ -43,7 +43,7 @@ def test_bounds_hold_exactly() -> None:
 
 def test_levels_are_met() -> None:
     problem = box(curved, [-2, -2], [2, 2])
-    programme = level(1, 0, 0.16, np.ones(2))
+    programme = constrained(np.array([0.0, 1.0]), np.array([[1.0, 0.0]]), np.array([0.16]))
     result = solve(problem, programme, begin(problem.evaluate(np.array([0.1, 0.3]))))
     assert result.converged
     assert result.theta == pytest.approx([0.4, 0.16], abs=1e-6)
@@ -257,7 +257,7 @@ def test_a_maximum_is_found_within_constraints_too() -> None:
     class Both:
         """A maximum with a constraint."""
 
-        constraints = level(1, 0, 0.3, np.ones(3)).constraints
+        constraints = constrained(np.eye(3)[1], np.eye(3)[[0]], np.array([0.3])).constraints
         maximised = achievement(np.zeros(3), np.eye(3)[1:], np.zeros(2)).maximised
 
         def value(self, J: Floats) -> float:

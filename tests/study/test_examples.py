@@ -13,9 +13,12 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.data.csv import read_csv
 from modefront.errors import InputError
+from modefront.front.options import Pareto
+from modefront.front.pareto import pareto_front
 from modefront.study.check import check
 from modefront.study.examples import names, write_example
 from modefront.study.file import load
+from modefront.work.costs import counted
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -98,6 +101,17 @@ def test_more_parameters_than_data_are_not_determined(tmp_path: Path) -> None:
     assert "determined" not in results["trust"].values
     assert all(held(results, truth))
     assert any(sentence.startswith("Measure the mode") for sentence in results.verdict)
+
+
+@pytest.mark.slow(2)
+def test_a_front_of_objectives_that_nearly_tie_ends_long_before_the_budget(tmp_path: Path) -> None:
+    """Edges are told apart by less than counts, and go back and forth as models are found."""
+    write_example("hammer-test", tmp_path / "new")
+    problem = load(tmp_path / "new" / "study.toml").problem
+    with counted() as costs:
+        front = pareto_front(problem, problem.properties, Pareto(points=20))
+    assert front.open == ()
+    assert costs.eigenproblems < 3000
 
 
 @pytest.mark.slow(3)

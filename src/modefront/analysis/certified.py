@@ -14,19 +14,19 @@ interrupted run goes on with the same digits.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Protocol
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
-from modefront.front.front import Front
+from modefront.front.front import Edge, Front, best_minima
+from modefront.front.gaps import Gap
 from modefront.front.point import Point
 from modefront.models.reduced.certificate import Certificate, Certifier
 from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
-from modefront.optim.lexicographic import EXACT
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import Solution
 from modefront.pairing.match import match, modes_needed
@@ -56,13 +56,6 @@ ERRORS = ("eigenvalue_error", "shape_error")
 """Names under which the estimates are kept with a solution."""
 
 
-class Search(Protocol):
-    """The search for a front, see `modefront.front.pareto.pareto_front`."""
-
-    def __call__(self, *, work: Executor, known: Front | None) -> Front:
-        """Return the front."""
-
-
 @record
 @dataclass(frozen=True)
 class SnapshotTaken:
@@ -82,8 +75,10 @@ class SnapshotTaken:
     modes: int
 
 
-def certified_front(problem: UpdatingProblem, search: Search, work: Executor) -> Front:
-    """Return the front that a search leads to.
+def certified_front(
+    problem: UpdatingProblem, search: Callable[..., Front], work: Executor
+) -> Front:
+    """Return the front that a search, called with ``work`` and a ``known`` front, leads to.
 
     On a reduced model, the estimated errors are among the quantities of the solutions. They are
     above the tolerance where it could not be met: for want of memory, or because the model has no
@@ -233,15 +228,8 @@ def _wrong(problem: UpdatingProblem, model: ReducedModel, front: Front) -> list[
 
 def _candidates(problem: UpdatingProblem, front: Front) -> list[Solution]:
     """Return the models that are reported, and minima that may be the best ones, each once."""
-    models = list(_of_the_front(front))
-    for i, edge in enumerate(front.edges):
-        most = (1 + CLOSE) * edge.best.J[i] + EXACT * front.sizes[i]
-        models += [solution for solution in edge.minima if solution.J[i] <= most]
-    if front.optimal:
-        programme = LogSum(problem.properties)
-        most = programme.value(front.optimal[0].J) + CLOSE * problem.properties.sum()
-        models += [solution for solution in front.optimal if programme.value(solution.J) <= most]
-    return _each_once(models)
+    minima = best_minima(front, problem.properties, CLOSE)
+    return _each_once([*_of_the_front(front), *(x for *_, some in minima for x in some)])
 
 
 def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Floats]:
@@ -260,35 +248,24 @@ def _with_errors(
     """Return the front with the estimated errors of all its models."""
     minima = [x for edge in front.edges for x in edge.minima]
     reported = _each_once([*_of_the_front(front), *minima, *front.optimal])
-    kept = _certified(problem, model, reported, "front", work)
-    errors = {
-        _key(solution): {name: solution.evaluation.quantities[name] for name in ERRORS}
-        for solution in kept
-    }
+    certified = _certified(problem, model, reported, "front", work)
+    known = {_key(x): x.evaluation.quantities for x in certified}
+    front = replace(front, known=np.zeros((0, front.known.shape[1])))  # it holds in the basis only
+    out: Front = _replaced(front, known)
+    return out
 
-    def known(solution: Solution) -> Solution:
-        quantities = {**solution.evaluation.quantities, **errors[_key(solution)]}
-        return replace(solution, evaluation=replace(solution.evaluation, quantities=quantities))
 
-    return replace(
-        front,
-        points=[replace(point, solution=known(point.solution)) for point in front.points],
-        edges=[
-            replace(edge, best=known(edge.best), minima=list(map(known, edge.minima)))
-            for edge in front.edges
-        ],
-        optimal=list(map(known, front.optimal)),
-        iterated=known(front.iterated) if front.iterated else None,
-        gaps=[
-            replace(
-                gap,
-                end=known(gap.end) if gap.end else None,
-                start=known(gap.start) if gap.start else None,
-            )
-            for gap in front.gaps
-        ],
-        known=np.zeros((0, front.known.shape[1])),  # what the search saw holds in its basis only
-    )
+def _replaced(part: Any, known: Mapping[bytes, Mapping[str, Floats]]) -> Any:
+    """Return a part of a front of which solutions have the known quantities of their models."""
+    if isinstance(part, Solution):
+        quantities = known.get(_key(part), part.evaluation.quantities)
+        return replace(part, evaluation=replace(part.evaluation, quantities=quantities))
+    if isinstance(part, list | tuple):
+        return type(part)(_replaced(each, known) for each in part)
+    if isinstance(part, Front | Point | Edge | Gap):
+        changed = {x.name: _replaced(getattr(part, x.name), known) for x in fields(part)}
+        return replace(part, **changed)
+    return part
 
 
 def _certified(

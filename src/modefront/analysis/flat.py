@@ -1,14 +1,10 @@
 r"""Flat parts of a front: where one objective hardly changes while others do.
 
-The models next to an edge may all be nearly as good in its objective, far from each other as they
-are: the data do not say which of them it is. Such a part of the front is flat: points with
-
-.. math:: J_i \le (1 + \epsilon) \min J_i
-
-spread over much of the range of another objective. The identifiable part of the front begins where
-the best of the others at that level lies (`modefront.front.subproblems.near_best`), and is covered
-by points of its own. Of three and more objectives the flat part is a patch, and that point is one
-of its border: points of the new simplex that come to lie in the patch are left out.
+A part of the front is flat whose points with :math:`J_i \le (1 + \epsilon) \min J_i` spread over
+much of the range of another objective. The identifiable part begins where the best of the others at
+that level lies (`modefront.front.subproblems.near_best`), and is covered by points of its own. Of
+three and more objectives that is one point of the border of a patch: points of the new simplex that
+come to lie in the patch are left out.
 """
 
 from __future__ import annotations

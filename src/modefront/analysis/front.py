@@ -10,17 +10,17 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.analysis.flat import Identifiable, identifiable_part, same
 from modefront.analysis.manifold import Manifold, equivalent_models
-from modefront.front.front import Front
+from modefront.front.front import Front, best_minima
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
-from modefront.front.point import Kind, Point, label, of_kind
+from modefront.front.point import Kind, Point, of_kind
 from modefront.front.simplex import Payoff, default_points
 from modefront.identifiability.combinations import without_effect
 from modefront.identifiability.options import Identifiability
 from modefront.identifiability.scale import scale_at
-from modefront.optim.lexicographic import EXACT, TIE
+from modefront.optim.lexicographic import TIE
 from modefront.optim.problem import Evaluation
-from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
+from modefront.optim.scalarisation import Scalarisation, weighted
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
@@ -63,39 +63,29 @@ class FrontAnalysis:
     replicates: Sequence[Mapping[str, Solution]]
 
 
-@dataclass(frozen=True)
-class AnalysisOptions:
-    """Options of the front analysis.
-
-    Attributes
-    ----------
-    pareto : options with which the front was found
-    identifiability, uncertainty : of the study
-    seed : of the run
-    """
-
-    pareto: Pareto
-    identifiability: Identifiability
-    uncertainty: Uncertainty
-    seed: int
-
-
+# 7 arguments: the front, the options of the study, and who does the work.
 def analyse_front(
-    problem: UpdatingProblem, front: Front, options: AnalysisOptions, work: Executor
+    problem: UpdatingProblem,
+    front: Front,
+    pareto: Pareto,
+    identifiability: Identifiability,
+    uncertainty: Uncertainty,
+    seed: int,
+    work: Executor,
 ) -> FrontAnalysis:
-    """Return the analysis of a front."""
-    a, source = problem.properties, options.uncertainty.of(problem.data)
+    """Return the analysis of a front, which was found with the ``pareto`` options."""
+    a, source = problem.properties, uncertainty.of(problem.data)
     sizes = front.scale if source is not None else None
-    samples = options.uncertainty.bootstrap
+    samples = uncertainty.bootstrap
     solutions = 1 if sizes is None else len(front.points)
     work.expect({"second-derivatives": solutions, "bootstrap": samples})
-    part = _identifiable_part(problem, front, options, work)
+    part = _identifiable_part(problem, front, pareto, identifiability.flat, work)
     points = _points(problem, front, part)
-    manifolds = _manifolds(problem, front, options.identifiability, work)
+    manifolds = _manifolds(problem, front, identifiability, work)
     reference = front.reference
     solved = [SolvedPoint(reference.label, reference.solution, Role("optimal"))]
     if sizes is not None:
-        solved = _solved_points(problem, front, points, part, options)
+        solved = _solved_points(problem, front, points, part, pareto, identifiability.flat)
     known = _locals(problem, solved, sizes, source, work)
     posterior = None
     if reference.kind is Kind.OPTIMAL and reference.label in known:
@@ -105,11 +95,14 @@ def analyse_front(
     if source is not None and sizes is not None:
         alone = front_scatter(problem, solved, known, a, sizes)
         scatter = with_neighbours(front, solved, alone, a, sizes)
-        replicates = _replicates(problem, solved, sizes, source, options, work)
+        seeds = [(b, seed_sequence(seed, "bootstrap", b)) for b in range(1, samples + 1)]
+        again = (problem, solved, sizes, source)
+        tasks = [Task(("bootstrap", b), _replicate, again, each) for b, each in seeds]
+        replicates = work.run(tasks)
     return FrontAnalysis(
         points,
         part,
-        options.identifiability.flat,
+        identifiability.flat,
         manifolds,
         source,
         scatter,
@@ -120,11 +113,10 @@ def analyse_front(
 
 
 def _identifiable_part(
-    problem: UpdatingProblem, front: Front, options: AnalysisOptions, work: Executor
+    problem: UpdatingProblem, front: Front, pareto: Pareto, flat: float, work: Executor
 ) -> Identifiable | None:
     """Return the part of the front that is not flat; None where nothing is flat."""
     along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
-    flat = options.identifiability.flat
     boundary = METHODS[front.method].programme == "boundary"
     if flat == 0 or len(along) < 2 or not boundary:
         return None
@@ -132,7 +124,7 @@ def _identifiable_part(
     edges = [point.solution for point in of_kind(front.points, Kind.EDGE)]
     known = [point.solution for point in front.points]
     sizes = np.ones(n) if front.scale is None else front.scale
-    divisions = (options.pareto.points or default_points(n)) - 1
+    divisions = (pareto.points or default_points(n)) - 1
     return identifiable_part(problem, along, edges, known, flat, sizes, divisions, work)
 
 
@@ -158,30 +150,12 @@ def _manifolds(
     out: list[tuple[str, Sequence[Manifold]]] = []
     if options.models == 0:
         return out
-    for i, (name, programme, minima) in enumerate(_equivalent_minima(problem, front)):
+    for i, (name, programme, best) in enumerate(best_minima(front, problem.properties, TIE)):
+        minima = [x.evaluation for x in best]
         before = [manifold for _, manifold in followed(out)]
         arguments = (problem, programme, minima, options, before)
         (manifolds,) = work.run([Task(("manifold", i + 1, name), _equivalent, arguments)])
         out.append((name, manifolds))
-    return out
-
-
-def _equivalent_minima(
-    problem: UpdatingProblem, front: Front
-) -> list[tuple[str, Scalarisation, list[Evaluation]]]:
-    """Return each group, and the optimal weights, with its programme and all its best minima."""
-    out: list[tuple[str, Scalarisation, list[Evaluation]]] = []
-    a = problem.properties
-    sizes = np.ones(a.size) if front.scale is None else front.scale
-    for i, (name, edge) in enumerate(zip(problem.objectives, front.edges, strict=True)):
-        level = (1 + TIE) * edge.best.J[i] + EXACT * sizes[i]
-        minima = [x.evaluation for x in edge.minima if x.J[i] <= level]
-        out.append((name, weighted(np.eye(a.size)[i] / sizes), minima))
-    if front.optimal:
-        programme = LogSum(a)
-        level = programme.value(front.optimal[0].J) + TIE * a.sum()
-        minima = [x.evaluation for x in front.optimal if programme.value(x.J) <= level]
-        out.append((label(Kind.OPTIMAL), programme, minima))
     return out
 
 
@@ -215,7 +189,8 @@ def _solved_points(
     front: Front,
     extra: Sequence[Point],
     part: Identifiable | None,
-    options: AnalysisOptions,
+    pareto: Pareto,
+    flat: float,
 ) -> list[SolvedPoint]:
     """Return the points with what each of them solves, as far as that is a programme.
 
@@ -223,7 +198,6 @@ def _solved_points(
     edges.
     """
     names = problem.objectives
-    tolerance, flat = options.pareto.tolerance, options.identifiability.flat
     edges = {point.name: point for point in of_kind(front.points, Kind.EDGE)}
     cuts = {point.name: point for point in of_kind(extra, Kind.IDENTIFIABLE_EDGE)}
     whole = tuple(edges[name].label for name in names)
@@ -232,14 +206,14 @@ def _solved_points(
     out: list[SolvedPoint] = []
     for i, (name, edge) in enumerate(zip(names, front.edges, strict=True)):
         solution, text = edges[name].solution, edges[name].label
-        if tolerance > 0 and not same(solution, edge.best):
+        if pareto.tolerance > 0 and not same(solution, edge.best):
             out.append(SolvedPoint(f"{text}-best", edge.best, Role("edge", objective=i)))
-            level = Role("level", objective=i, tolerance=tolerance)
+            level = Role("level", objective=i, tolerance=pareto.tolerance)
             out.append(SolvedPoint(text, solution, level))
         else:
             out.append(SolvedPoint(text, edge.best, Role("edge", objective=i)))
     along = METHODS[front.method].programme
-    equations = options.pareto.programme == "equations"
+    equations = pareto.programme == "equations"
     for point in [*front.points, *extra]:
         role: Role | None = None
         match point.kind:
@@ -314,27 +288,6 @@ def _local(
     return Local(point, errors, problem.slopes_at(modes, pairs))
 
 
-def _replicates(
-    problem: UpdatingProblem,
-    points: Sequence[SolvedPoint],
-    sizes: Floats,
-    source: Source,
-    options: AnalysisOptions,
-    work: Executor,
-) -> list[Mapping[str, Solution]]:
-    """Return the points solved again with data drawn again, by label."""
-    count = range(1, options.uncertainty.bootstrap + 1)
-    arguments = (problem, points, sizes, source)
-    tasks = [
-        Task(("bootstrap", b), _replicate, arguments, seed_sequence(options.seed, "bootstrap", b))
-        for b in count
-    ]
-    return [
-        {point.label: solution for point, solution in zip(points, solved, strict=True)}
-        for solved in work.run(tasks)
-    ]
-
-
 def _replicate(
     problem: UpdatingProblem,
     points: Sequence[SolvedPoint],
@@ -342,6 +295,8 @@ def _replicate(
     source: Source,
     *,
     rng: np.random.Generator,
-) -> list[Solution]:
+) -> Mapping[str, Solution]:
+    """Return the points solved again with data drawn again, by label."""
     again = replace(problem, data=redraw(problem.data, source, rng))
-    return solve_again(again, points, problem.properties, sizes)
+    solved = solve_again(again, points, problem.properties, sizes)
+    return {point.label: x for point, x in zip(points, solved, strict=True)}

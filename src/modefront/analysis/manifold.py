@@ -1,9 +1,8 @@
 r"""Equivalent models: manifolds of minima, followed and sampled to their ends.
 
 Where data do not determine all parameters, the minimisers of a scalarisation f(J) form a manifold
-(Katafygiotis & Lam 2002, Earthquake Engineering and Structural Dynamics 31, 791-812). Its tangents
-and the corrections that lead back to it are those of `modefront.analysis.tangents`. How far it is
-followed depends on its dimension d.
+(Katafygiotis & Lam 2002, doi:10.1002/eqe.122). Its tangents and the corrections that lead back to
+it are those of `modefront.analysis.tangents`. How far it is followed depends on its dimension d.
 
 * Curves and surfaces (d = 1, 2) are covered. New points grow from points by steps of length h until
   every step from every point arrives next to a known one (a packing, as in Henderson 2002,
@@ -11,32 +10,21 @@ followed depends on its dimension d.
   ends on them, and one that starts at a bound and would cross it goes along it. A surface has half
   of the models that are wanted, and h is no less than these allow; if they do not cover it, it is
   treated like what follows, from all of its points.
-* A covering of more dimensions takes a number of points that grows like :math:`h^{-d}`. What is
-  wanted of them is how far each parameter can go: :math:`\max \pm u_j` on the manifold, from the
-  best point that is known, by steps that are best on the tangents,
+* Of more dimensions, it is found how far each parameter can go: :math:`\max \pm u_j` on the
+  manifold, from the best point that is known, by steps that are best on the tangents T (p, d),
 
   .. math:: \max_y \pm (T y)_j \quad\text{subject to}\quad 0 \le u + T y \le 1, \quad
       \|T y\|_\infty \le H ,
 
-  linear programmes, each step corrected. What is reached is a local maximum: a parameter goes so
-  far at least. No evaluation is spent on a parameter that is known to reach its bound.
+  linear programmes, each step corrected. A parameter goes as far as these reach at least.
 
-So found are all minima that one can get to from the start. Another minimum lies on a manifold that
-is known if a walk along that one, towards it, arrives there. Then it is not followed again, nor
-where it is the minimum of another programme that is as good on all of the manifold. Not found are
-other pieces of the set of minima, which need starts of their own, and what branches off with
-another dimension. Sheets nearer to one another than h are not told apart. The evaluations of all
-manifolds of a programme are bounded; where they are spent, what is known until then is returned.
+Another minimum lies on a manifold that is known if a walk along that one, towards it, arrives
+there. Then it is not followed again, nor where it is the minimum of another programme that is as
+good on all of the manifold. Not found are other pieces of the set of minima, and what branches off
+with another dimension. Sheets nearer to one another than h are not told apart. The evaluations of
+all manifolds of a programme are bounded.
 
-Variables are :math:`u = (\theta - lower) / (upper - lower)`.
-
-========  =======  =================================================================
-symbol    shape    meaning
-========  =======  =================================================================
-d         ()       dimension of the manifold; 0 is an isolated minimum
-h, H      ()       distance of neighbouring points, and longest step of a walk, in u
-T         (p, d)   orthonormal basis of the tangent space, in u
-========  =======  =================================================================
+Variables are :math:`u = (\theta - lower) / (upper - lower)`, in which h and H are measured.
 """
 
 from __future__ import annotations

@@ -5,27 +5,16 @@ The tangent space of the minimisers of f(J) is the null space of the second deri
 .. math:: B = \sum_i w_i \, \partial^2 J_i + \partial J^T f'' \partial J, \qquad
     w = \partial f / \partial J
 
-within the variables that no bound holds. In it, either no residual changes to first order, or
-residuals turn while the sum of their squares stays. What changes residuals a little is weakly
-determined and no tangent. A step along the tangents is corrected back to the manifold across them,
-by Newton's method on a basis Q of their complement,
+within the variables that no bound holds; what changes residuals a little is weakly determined and
+no tangent. A step along the tangents T (p, d) is corrected back to the manifold across them, by
+Newton's method on a basis Q of their complement,
 
 .. math:: s = -Q\, (Q^T B Q)^{-1} Q^T g, \qquad g = w^T \partial J ,
 
 until s vanishes; where residuals vanish, with Gauss-Newton's G, which is B on the manifold and
-leads farther. Every evaluation gives B, exactly, so that a point needs no other one for its
-tangents. Of a model without exact second derivatives B is that of Gauss-Newton: the tangents are
-the directions in which no residual changes.
-
-========  =========  ==========================================================
-symbol    shape      meaning
-========  =========  ==========================================================
-u         (p,)       :math:`(\theta - lower) / (upper - lower)`
-d         ()         dimension of the manifold; 0 is an isolated minimum
-T         (p, d)     orthonormal basis of the tangent space, in u
-B, G      (p, p)     second derivatives of f(J), and Gauss-Newton's, in u
-g         (p,)       slope of f(J), in u
-========  =========  ==========================================================
+leads farther. Every evaluation gives B, so that a point needs no other one for its tangents. Of a
+model without exact second derivatives B is that of Gauss-Newton: the tangents are the directions in
+which no residual changes. Variables are :math:`u = (\theta - lower) / (upper - lower)`.
 """
 
 from __future__ import annotations

@@ -8,8 +8,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.findings.record import Finding, found
-from modefront.identifiability.collinearity import pairs
-from modefront.identifiability.combinations import NONE, WEAK, Combination
+from modefront.identifiability.combinations import NONE, WEAK, Combination, pairs
 from modefront.identifiability.scale import Scale
 from modefront.identifiability.sparse import SAME, sparse_basis
 from modefront.residuals.groups import Group

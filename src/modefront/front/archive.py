@@ -16,44 +16,33 @@ from modefront.work.task import Task
 
 @dataclass
 class Archive:
-    """The models that no other evaluated model dominates: ``theta`` (., p) and ``J`` (., n)."""
+    """The models that no other evaluated model dominates: ``theta`` (., p) and ``J`` (., n).
+
+    They are in the order in which they were evaluated.
+    """
 
     parameters: int
     objectives: int
-    _theta: Floats = field(init=False, repr=False)
-    _J: Floats = field(init=False, repr=False)
-    _count: int = 0
+    thetas: list[Floats] = field(default_factory=list)
+    J: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        self._theta = np.zeros((1, self.parameters))  # the room doubles when it is full
-        self._J = np.zeros((1, self.objectives))
+        self.J = np.zeros((0, self.objectives))
 
     @property
     def theta(self) -> Floats:
-        """Parameters (models, p), in the order in which they were evaluated."""
-        return self._theta[: self._count]
-
-    @property
-    def J(self) -> Floats:
-        """Objectives (models, n), likewise."""
-        return self._J[: self._count]
+        """Parameters (models, p)."""
+        return np.array(self.thetas).reshape(-1, self.parameters)
 
     def add(self, theta: Floats, J: Floats) -> None:
         """Keep a model, unless another one is nowhere worse, and drop those that it dominates."""
-        if not np.isfinite(J).all():
+        if not np.isfinite(J).all() or not (self.J > J).any(axis=1).all():
             return
-        worse = self.J > J
-        if not worse.any(axis=1).all():
-            return
-        kept = np.flatnonzero((self.J < J).any(axis=1))
-        if kept.size < self._count:
-            self._theta[: kept.size], self._J[: kept.size] = self._theta[kept], self._J[kept]
-            self._count = kept.size
-        if self._count == len(self._J):
-            self._theta = np.concatenate([self._theta, np.zeros_like(self._theta)])
-            self._J = np.concatenate([self._J, np.zeros_like(self._J)])
-        self._theta[self._count], self._J[self._count] = theta, J
-        self._count += 1
+        kept = (self.J < J).any(axis=1)
+        if not kept.all():
+            self.thetas = [self.thetas[k] for k in np.flatnonzero(kept)]
+        self.thetas.append(theta)
+        self.J = np.vstack([self.J[kept], J])
 
 
 @dataclass

@@ -1,12 +1,8 @@
-"""Evolutionary methods, from pymoo (the extra ``evolutionary``): SPEA2 and NSGA-II.
+"""Evolutionary methods, from pymoo (the extra ``evolutionary``), to be compared with.
 
-They are here to be compared with. They use no derivatives and stop when their evaluations are
-spent, with no test of how far their points are from the front: none of them counts as converged.
-(Zitzler, Laumanns & Thiele 2001, doi:10.3929/ethz-a-004284029; Deb et al. 2002,
-doi:10.1109/4235.996017.)
-
-With a seed, pymoo asks for the same models in the same order as long as it is told the same
-objectives. So a generation's evaluations are a task, and a run that is continued is played
+They use no derivatives and stop when their evaluations are spent: none of their points counts as
+converged. With a seed, pymoo asks for the same models in the same order as long as it is told the
+same objectives. So a generation's evaluations are a task, and a run that is continued is played
 again with those that are kept, without solving anything, up to where it stopped.
 """
 
@@ -37,8 +33,7 @@ def evolve_front(
 ) -> list[Solution]:
     """Return the non-dominated models of the last population, ascending in the first objective.
 
-    ``evaluations`` is the budget; whole generations of size ``population`` are spent of it. The
-    models that are returned are evaluated once more, for their quantities.
+    ``evaluations`` is the budget; whole generations of size ``population`` are spent of it.
     """
     from pymoo.core.evaluator import Evaluator
     from pymoo.core.problem import Problem as Described
@@ -55,27 +50,23 @@ def evolve_front(
         seed=int(rng.integers(2**31)),
         verbose=False,
     )
-    spent = 0
+    spent, known = 0, dict[bytes, Evaluation]()
     while spent == 0 or spent + population <= evaluations:
         proposals = algorithm.ask()
         thetas = proposals.get("X")
         # Another version of pymoo may ask for other models.
         key = ("front", method, spent, f"{zlib.crc32(thetas.tobytes()):x}")
-        (J,) = work.run([Task(key, _objectives, (problem, thetas))])
+        (members,) = work.run([Task(key, _members, (problem, thetas))])
+        known |= {theta.tobytes(): x for theta, x in zip(thetas, members, strict=True)}
         spent += len(proposals)
-        F = np.nan_to_num(J, posinf=UNDEFINED)
+        F = np.nan_to_num(np.array([x.J for x in members]), posinf=UNDEFINED)
         Evaluator().eval(StaticProblem(described, F=F), proposals)
         algorithm.tell(infills=proposals)
     F = algorithm.pop.get("F")
     chosen = nondominated(F) & (UNDEFINED > F).all(axis=1)
     last = algorithm.pop.get("X")[chosen][np.lexsort(F[chosen].T[::-1])]
-    members = work.run([Task(("known", method), _members, (problem, last))])[0]
-    return [Solution(x, np.full(n, np.nan), 0.0, Status.SAMPLED, 0) for x in members]
-
-
-def _objectives(problem: Problem, thetas: Floats) -> Floats:
-    """Return the objectives (members, n) of models (members, p), moved into the bounds."""
-    return np.array([x.J for x in _members(problem, thetas)])
+    found = (known[theta.tobytes()] for theta in last)
+    return [Solution(x, np.full(n, np.nan), 0.0, Status.SAMPLED, 0) for x in found]
 
 
 def _members(problem: Problem, thetas: Floats) -> list[Evaluation]:

@@ -9,8 +9,10 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.front.gaps import Gap
-from modefront.front.point import Point, reference
+from modefront.front.point import Kind, Point, label, of_kind, reference
 from modefront.front.simplex import Payoff
+from modefront.optim.lexicographic import EXACT
+from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
 from modefront.optim.sqp import Solution
 
 
@@ -80,3 +82,26 @@ class Front:
     def scale(self) -> Floats | None:
         """Range of each objective over the edges, shape (n,)."""
         return self.target.scale if self.target else None
+
+
+def best_minima(
+    front: Front, a: Floats, share: float
+) -> list[tuple[str, Scalarisation, list[Solution]]]:
+    """Return each objective, and the optimal weights, with its programme and all its best minima.
+
+    They exceed the best one by a ``share`` of it, or of ``a`` (n,), the numbers of properties, in
+    the logarithms of optimal weights. An objective that is fitted exactly counts as zero.
+    """
+    out: list[tuple[str, Scalarisation, list[Solution]]] = []
+    names = [point.name for point in of_kind(front.points, Kind.EDGE)]
+    scale = np.ones(a.size) if front.scale is None else front.scale
+    for i, (name, edge) in enumerate(zip(names, front.edges, strict=True)):
+        most = (1 + share) * edge.best.J[i] + EXACT * front.sizes[i]
+        programme = weighted(np.eye(a.size)[i] / scale)
+        out.append((name, programme, [x for x in edge.minima if x.J[i] <= most]))
+    if front.optimal:
+        value = LogSum(a).value
+        most = value(front.optimal[0].J) + share * float(a.sum())
+        best = [x for x in front.optimal if value(x.J) <= most]
+        out.append((label(Kind.OPTIMAL), LogSum(a), best))
+    return out

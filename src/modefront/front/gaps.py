@@ -1,12 +1,10 @@
 r"""Where the branches of a disconnected front of two objectives end.
 
-Points of the lattice whose normal passes through a gap all lead to the same model: the end of one
-branch at which one objective is least within it, and less than the normal asks for of the other
-one. It has *slack* in that one. If its least objective is the second, the branch before the gap
-ends there; if the first, the branch behind the gap starts there. The other branch comes to the same
-level of that objective at the other side of the gap, which is solved for, from the point next to
-the gap: the least of the objective with slack, at that level. Where the other branch has a point
-with slack at the gap, too, that is where it ends.
+A point of the lattice whose normal passes through a gap lies at the end of one branch, and has
+*slack*: less of an objective than the normal asks for. If its least objective is the second, the
+branch before the gap ends there; if the first, the branch behind the gap starts there. The other
+branch is solved, from the point next to the gap, for its least of the objective with slack at the
+same level of the other. Where it has a point with slack at the gap, too, that is where it ends.
 
 Equations have no slack. Between points that are none of them dominated, but have dominated ones
 between them, the branch behind starts at its own least first objective, if that lies to the right
@@ -25,7 +23,7 @@ import numpy as np
 from modefront._typing import Bools, Floats, Ints
 from modefront.front.subproblems import RHO
 from modefront.optim.problem import Problem
-from modefront.optim.scalarisation import level, weighted
+from modefront.optim.scalarisation import constrained, weighted
 from modefront.optim.sqp import TIGHT, Solution, solve
 from modefront.work.task import IMMEDIATE, Executor, Task
 
@@ -115,7 +113,8 @@ def _ends(
         """Return where the branch of a point has as much of an objective as the other end."""
         if other is None:
             return None
-        goal = level(1 - i, i, float(other.J[i]), scale)
+        unit = np.eye(2) / scale
+        goal = constrained(unit[1 - i], unit[[i]], other.J[[i]] / scale[i])
         return _converged(solve(problem, goal, of, TIGHT))
 
     a = before[-1]

@@ -9,12 +9,13 @@ and a reference set :math:`R`:
 
 (Zitzler & Thiele 1998, doi:10.1007/BFb0056872; Ishibuchi et al. 2015,
 doi:10.1007/978-3-319-15892-1_8). The largest gap is the longest branch of the shortest tree that
-joins all points (for two objectives: the greatest distance of neighbours along the front).
+joins all points.
 """
 
 from __future__ import annotations
 
 import importlib.util
+from collections.abc import Iterable
 
 import numpy as np
 from scipy.sparse.csgraph import minimum_spanning_tree
@@ -24,6 +25,7 @@ from modefront.front.dominance import nondominated
 from modefront.front.front import Front
 from modefront.front.gaps import branches_of
 from modefront.front.point import Kind, of_kind
+from modefront.optim.sqp import Solution
 
 REFERENCE = 1.1
 """Each coordinate of the point up to which the hypervolume counts."""
@@ -90,19 +92,21 @@ def coverage(front: Front) -> dict[str, float]:
     if front.target is None or not along:
         return dict.fromkeys(names, float("nan"))
     utopia, scale = front.target.utopia, front.target.scale
-    reported = [point.solution for point in front.points]
-    reported += [solution for edge in front.edges for solution in edge.minima]
-    reported += [*front.optimal]
-    J = np.array([solution.J for solution in along])
-    everything = np.array([solution.J for solution in reported])
-    optimal = nondominated(J)
-    Y = (J - utopia) / scale
-    R = (everything[nondominated(everything)] - utopia) / scale
-    parts = branches_of(along, optimal, front.gaps) if front.gaps else []
-    branches = [np.array([(solution.J - utopia) / scale for solution in part]) for part in parts]
-    gap = max(
-        largest_gap(part[(part <= REFERENCE).all(axis=1)])
-        for part in branches or [Y[optimal]]
-        if len(part)
+
+    def units(solutions: Iterable[Solution]) -> Floats:
+        return (np.array([x.J for x in solutions]) - utopia) / scale
+
+    Y = units(along)
+    optimal = nondominated(Y)
+    R = units(
+        [
+            *(point.solution for point in front.points),
+            *(solution for edge in front.edges for solution in edge.minima),
+            *front.optimal,
+        ]
     )
+    parts = branches_of(along, optimal, front.gaps) if front.gaps else []
+    branches = [units(part) for part in parts if part] or [Y[optimal]]
+    gap = max(largest_gap(part[(part <= REFERENCE).all(axis=1)]) for part in branches)
+    R = R[nondominated(R)]
     return dict(zip(names, (hypervolume(Y[optimal]), igd_plus(Y[optimal], R), gap), strict=True))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-from itertools import count, pairwise
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain, count, pairwise
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from modefront.front.front import Edge, Front
 from modefront.front.gaps import Gap, gaps
 from modefront.front.methods import METHODS
 from modefront.front.options import MOST, Pareto
-from modefront.front.point import Kind, Point, label, of_kind
+from modefront.front.point import Kind, Point, label
 from modefront.front.proposers.base import Proposer, Rate, at, evaluated
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
@@ -79,38 +79,36 @@ def pareto_front(
     With a ``known`` front of nearly the same problem, its models are solved for again, and nothing
     else is sought. Raises UnfinishedError where no edge can be found.
     """
-    run = _Run(problem, a, options or Pareto(), seed, search or Search(), tuple(given), work, known)
+    run = _Run(problem, a, options or Pareto(), seed, search or Search(), given, work, known)
     return run.front()
 
 
+@dataclass
 class _Run:
     """A search for a front; see `pareto_front`."""
 
-    # 8 arguments: those of `pareto_front`.
-    def __init__(
-        self,
-        problem: Problem,
-        a: Floats,
-        options: Pareto,
-        seed: int,
-        search: Search,
-        given: tuple[tuple[str, Floats], ...],
-        work: Executor,
-        known: Front | None,
-    ) -> None:
-        self.problem, self.a, self.options, self.given = problem, a, options, given
-        self.known, self.seed, self.n = known, seed, len(problem.objectives)
-        self.state = State(problem, search.tolerance, Archive(problem.lower.size, self.n))
-        self.needed = Counted(self.state, work)
-        self.work = Counted(self.state, work, search.evaluations)
-        self._swept: dict[Key, Floats] = {}
-        rng = np.random.default_rng(seed_sequence(seed, "search"))
+    problem: Problem
+    a: Floats
+    options: Pareto
+    seed: int
+    search: Search
+    given: Sequence[tuple[str, Floats]]
+    executor: Executor
+    known: Front | None
+
+    def __post_init__(self) -> None:
+        self.n = len(self.problem.objectives)
+        archive = Archive(self.problem.lower.size, self.n)
+        self.state = State(self.problem, self.search.tolerance, archive)
+        self.needed = Counted(self.state, self.executor)
+        self.work = Counted(self.state, self.executor, self.search.evaluations)
+        rng = np.random.default_rng(seed_sequence(self.seed, "search"))
         self.starts, self.rivals = Starts(rng), Rivals()
         proposers: list[Proposer] = [Polish()]
-        if known is None:
-            others = np.random.default_rng(seed_sequence(seed, "evolution"))
+        if self.known is None:
+            others = np.random.default_rng(seed_sequence(self.seed, "evolution"))
             proposers += [self.rivals, self.starts, Evolution(others, self.starts)]
-        self.loop = Loop(self.state, proposers, search, work)
+        self.loop = Loop(self.state, proposers, self.search, self.executor)
 
     def front(self) -> Front:
         """Return all that is found."""
@@ -131,20 +129,20 @@ class _Run:
         bests = self._reported(sizes, "last")
         points, places, beta = self._points(target, bests)
         if METHODS[self.options.method].programme is None and target is not None:
-            points = self._evolved()
+            options = self.options
+            rng = np.random.default_rng(seed_sequence(self.seed, options.method))
+            extent = (options.population, options.evaluations)
+            points = evolve_front(self.problem, options.method, *extent, rng, self.needed)
         optimal = self._optimal(weighted, bests, points, sizes)
         weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
-        iterated = self._iterated(weighted, bests, sizes)
+        equal = self.place("weights", Kind.EQUAL.value, "").incumbent
+        arguments = (self.problem, self.a, sizes, equal)
+        (iterated,) = self.work.run([Task(("iterated-weights",), iterate_weights, arguments)])
+        method, ends = self.options.method, zip(self.problem.objectives, bests, strict=True)
+        along = [Point(Kind.FRONT, x, method, i + 1) for i, x in enumerate(points)]
         return Front(
-            self.options.method,
-            [
-                *(Point(Kind.FRONT, x, self.options.method, i + 1) for i, x in enumerate(points)),
-                *(
-                    Point(Kind.EDGE, x, name)
-                    for name, x in zip(self.problem.objectives, bests, strict=True)
-                ),
-                *weighted,
-            ],
+            method,
+            [*along, *(Point(Kind.EDGE, x, name) for name, x in ends), *weighted],
             edges,
             optimal,
             iterated,
@@ -153,7 +151,7 @@ class _Run:
             self._gaps(points, target),
             beta,
             places,
-            self.state.archive.J.copy(),
+            self.state.archive.J,
             sizes,
             self._open(),
         )
@@ -218,23 +216,25 @@ class _Run:
         divisions = (self.options.points or default_points(self.n)) - 1
         counts = [tuple(map(int, row)) for row in lattice(self.n, divisions)]
         target: Payoff | None = None
+        seen: list[Payoff] = []  # of minima that tie, edges may go back and forth
         for turn in count():
             bests = self._reported(sizes, turn)
             new = payoff(bests, sizes, self._others(bests, sizes))
             if new is None:
                 self._drop_points()
                 return target
-            if target is not None and _are_alike(new, target):
+            if any(_are_alike(new, x) for x in seen):
                 break
             target = new
+            seen.append(new)
             if METHODS[self.options.method].programme is None:
                 break  # its points are the models of a population
             self._drop_points()
-            self._add_points(target, counts)
-            self._run_front()
-            self._grow(target)
-            self._fill(target, len(counts))
-            self._refine(target)
+            more = (self._beyond(), self._apart(target, len(counts)), self._halfway(target))
+            for new_points in chain([counts], *more):
+                self._add_points(target, new_points)
+                self.rivals.rate = Rate()
+                self.loop.run("front")
         return target
 
     def _others(self, bests: Sequence[Solution], sizes: Floats) -> list[Solution]:
@@ -254,22 +254,16 @@ class _Run:
             self.loop.run("ranges")
         return [self.place(*key).incumbent for key in keys]
 
-    def _run_front(self) -> None:
-        """Search for the points that are there."""
-        self.rivals.rate = Rate()
-        self.loop.run("front")
-
     def _add_points(self, target: Payoff, counts: Sequence[tuple[int, ...]]) -> None:
         """Add points of the lattice."""
         new: list[Subproblem] = []
+        equations = self.options.programme == "equations"
         for row in counts:
             beta = np.array(row) / sum(row)
-            if self.options.method == "weights":
-                w = np.maximum(beta, TIE)
-                new.append(Weights(w, ("sweep", *row), EXACT * float(w @ target.scale)))
-                self._swept[new[-1].key] = beta
-            else:
-                new.append(LatticePoint(beta, row, target, self.options.programme == "equations"))
+            w = np.maximum(beta, TIE)
+            swept = Weights(w, ("sweep", *row), EXACT * float(w @ target.scale))
+            is_swept = self.options.method == "weights"
+            new.append(swept if is_swept else LatticePoint(beta, row, target, equations))
         self.state.add(new)
 
     def _drop_points(self) -> None:
@@ -281,8 +275,8 @@ class _Run:
         pairs = ((x, x.subproblem) for x in self.places)
         return [(x, point) for x, point in pairs if isinstance(point, LatticePoint)]
 
-    def _grow(self, target: Payoff) -> None:
-        """Add points beside such as lie on their normals, while there are any beyond the simplex.
+    def _beyond(self) -> Iterator[list[tuple[int, ...]]]:
+        """Yield points beside such as lie on their normals, while there are any beyond the simplex.
 
         The simplex between the edges of more than two objectives does not cover the whole front. At
         most as many points are added as there are within it.
@@ -290,23 +284,17 @@ class _Run:
         most = 2 * len(self._lattice())
         while self.n > 2:
             here = self._lattice()
-            taken = {point.place for _, point in here}
-            beyond: set[tuple[int, ...]] = set()
-            for x, point in here:
-                if x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE:
-                    beyond.update(neighbours(point.place))
-            added = sorted(beyond - taken)[: most - len(here)]
+            at_points = [point.place for x, point in here if _is_on_normal(x.incumbent, point)]
+            beyond = {place for point in at_points for place in neighbours(point)}
+            added = sorted(beyond - {point.place for _, point in here})[: most - len(here)]
             if not added:
+                lost = {p.key for _, p in here if min(p.place) < 0 and p.place not in at_points}
+                self.state.keep([x for x in self.places if x.subproblem.key not in lost])
                 break
-            self._add_points(target, added)
-            self._run_front()
-        for x, point in self._lattice():
-            on_normal = x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE
-            if min(point.place) < 0 and not on_normal:
-                self.state.keep([other for other in self.places if other is not x])
+            yield added
 
-    def _fill(self, target: Payoff, asked: int) -> None:
-        """Add points at models that all points are far from, until as many as asked are distinct.
+    def _apart(self, target: Payoff, asked: int) -> Iterator[list[tuple[int, ...]]]:
+        """Yield points at models that all points are far from, until as many as asked are distinct.
 
         Far is a model that each point is behind in some objective, over the ranges (the additive
         epsilon indicator; Zitzler et al. 2003, doi:10.1109/TEVC.2003.810758).
@@ -325,11 +313,10 @@ class _Run:
                 k = int(behind.argmax())
                 added.add(nearest(target.place(J[k] * target.scale), MOST))
                 behind = np.minimum(behind, (J[k] - J).max(axis=1))
-            self._add_points(target, sorted(added))
-            self._run_front()
+            yield sorted(added)
 
-    def _refine(self, target: Payoff) -> None:
-        """Add points half-way between neighbours of two objectives that are too far apart."""
+    def _halfway(self, target: Payoff) -> Iterator[list[tuple[int, ...]]]:
+        """Yield points half-way between neighbours of two objectives that are too far apart."""
         size = self.options.refined
         for _ in range(int(np.ceil(-np.log2(size))) if size else 0):
             here = sorted(self._lattice(), key=lambda pair: -float(pair[1].beta[0]))
@@ -343,8 +330,7 @@ class _Run:
                     new.append(tuple((middle // np.gcd.reduce(middle)).tolist()))
             if not new:
                 break
-            self._add_points(target, new)
-            self._run_front()
+            yield new
 
     def _complete(self) -> None:
         """Evaluate the derivatives of incumbents that no search has started from: at the budget."""
@@ -389,7 +375,8 @@ class _Run:
         beta = [point.beta for _, point in lattice]
         sweep = [x for x in self.places if x.subproblem.key[0] == "sweep"]
         solutions += [x.incumbent for x in sweep]
-        beta += [self._swept[x.subproblem.key] for x in sweep]
+        rows = [np.array(x.subproblem.key[1:], dtype=float) for x in sweep]
+        beta += [row / row.sum() for row in rows]
         kept = distinct_points(solutions, target.scale)
         J = np.array([x.J for x in kept])
         apart = [(np.abs(J - x.J) / target.scale).max(axis=1) for x in solutions]
@@ -414,14 +401,6 @@ class _Run:
         ]
         found = self.work.run(tasks)
         return [x or best for x, best in zip(found, bests, strict=True)]
-
-    def _evolved(self) -> list[Solution]:
-        """Return the nondominated models of the last population of an evolutionary method."""
-        options = self.options
-        rng = np.random.default_rng(seed_sequence(self.seed, options.method))
-        population, evaluations = options.population, options.evaluations
-        arguments = (self.problem, options.method, population, evaluations, rng, self.needed)
-        return evolve_front(*arguments)
 
     def _gaps(self, points: Sequence[Solution], target: Payoff | None) -> Sequence[Gap]:
         """Return the gaps of a front of two objectives."""
@@ -451,15 +430,10 @@ class _Run:
         minima = self.state.distinct(x for x in self.work.run(tasks) if x and x.converged)
         return accepted(self.problem, minima, self.a, sizes)
 
-    def _iterated(
-        self, models: Sequence[Point], bests: Sequence[Solution], sizes: Floats
-    ) -> Solution | None:
-        """Return the fixed point of the iteration of the weights."""
-        equal = of_kind(models, Kind.EQUAL)
-        first = equal[0].solution if equal else bests[0]
-        arguments = (self.problem, self.a, sizes, first)
-        (fixed,) = self.work.run([Task(("iterated-weights",), iterate_weights, arguments)])
-        return fixed
+
+def _is_on_normal(solution: Solution, point: LatticePoint) -> bool:
+    """Return whether the solution of a point lies on its normal."""
+    return solution.converged and point.spread(solution.J) < LOOSE
 
 
 def _are_alike(one: Payoff, other: Payoff) -> bool:

@@ -111,15 +111,11 @@ class Loop:
         offers = []
         confirming = self.state.evaluations < CONFIRMING * self.search.evaluations
         for place, proposer in enumerate(self.proposers):
-            cost = self._cost(proposer.name)
+            tries, spent = self.costs.get(proposer.name, (0, 0))
+            cost = (spent + USUAL) / (tries + 1)  # that a search is expected to take
             for offer in proposer.offers(self.state, BATCH):
                 doubt = offer.unseen if confirming else 0.0
                 if max(offer.chance, doubt) >= self.search.doubt:
                     offers.append((offer.chance / cost, -place, proposer, offer))
         offers.sort(key=lambda each: each[:2], reverse=True)
         return [(proposer, offer) for _, _, proposer, offer in offers]
-
-    def _cost(self, name: str) -> float:
-        """Return the evaluations that a search is expected to take."""
-        tries, spent = self.costs.get(name, (0, 0))
-        return (spent + USUAL) / (tries + 1)

@@ -158,11 +158,11 @@ def payoff(
     each: where the simplex between the edges is flat, its place takes that of the ranges over the
     edges and these, whose corners need not be attained.
     """
-    if (EXACT * sizes[:, None] >= simplex([*edges])).all():
+    if (EXACT * sizes[:, None] >= simplex(edges)).all():
         return None
-    everything = [*edges, *others]
-    worst = [max(everything, key=lambda x: float(x.J[i])) for i in range(len(edges))]
-    return spanned(edges, worst if others else (), sizes)
+    count = len(edges) if others else 0
+    worst = [max([*edges, *others], key=lambda x: float(x.J[i])) for i in range(count)]
+    return spanned(edges, worst, sizes)
 
 
 def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats) -> Payoff | None:

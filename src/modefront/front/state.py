@@ -13,7 +13,7 @@ from modefront.front.archive import Archive, Outcome, limited
 from modefront.front.dominance import SAME
 from modefront.front.subproblems import Order, Subproblem, together
 from modefront.optim.problem import Evaluation, Problem
-from modefront.optim.sqp import Solution, begin
+from modefront.optim.sqp import Solution, Status, begin
 from modefront.work.task import Executor, Task
 
 DISTINCT = 1e-3
@@ -86,7 +86,7 @@ class State:
         """Return the best of the known models in a subproblem."""
         order = subproblem.order
         k = int(order.value(self.archive.J).argmin())
-        best = begin(Evaluation(self.archive.theta[k].copy(), self.archive.J[k].copy()))
+        best = begin(Evaluation(self.archive.thetas[k], self.archive.J[k]))
         values = order.value(np.array([x.J for x in self.models])) if self.models else ()
         near = int(np.argmin(values)) if self.models else -1
         # a model whose derivatives are known saves an evaluation
@@ -109,13 +109,15 @@ class State:
         gain = 0.0
         if final and solution:
             place = self.places[k]
-            is_incumbent = start is place.incumbent
+            is_incumbent, own = start is place.incumbent, 0.0
             if solution.feasible:
                 own = place.subproblem.gain(solution.J, place.incumbent)
                 gain = max(gain, own)
                 if self._replaces(solution, own, place, is_incumbent):
                     place.incumbent, is_incumbent = solution, True
-            place.closed = place.closed or is_incumbent
+            # a search that was cut off while it gained goes on from there
+            ended = solution.status is not Status.EXHAUSTED or own <= self.tolerance
+            place.closed = place.closed or (is_incumbent and ended)
         if len(outcome.J):
             values = self.orders.value(outcome.J[:, None])
             best = values.argmin(axis=0)
@@ -147,11 +149,15 @@ class State:
         return np.flatnonzero((values < known) | (self.orders.greatest == 0)).tolist()
 
     def _challenge(self, place: Place, solution: Solution) -> float:
-        """Let a model compete for a place; return the gain where it had been solved, else 0."""
+        """Let a model compete for a place; return the gain where it had been solved, else 0.
+
+        What is open starts from any model that is better, if its derivatives are known.
+        """
         if place.closed and not place.subproblem.competes:
             return 0.0
+        ready = not place.closed and solution.evaluation.derivatives
         gain = place.subproblem.gain(solution.J, place.incumbent)
-        if gain <= self.tolerance:
+        if gain <= (0.0 if ready else self.tolerance):
             return 0.0
         was_closed, place.closed = place.closed, False
         place.incumbent = solution

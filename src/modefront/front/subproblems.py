@@ -1,31 +1,15 @@
 r"""Subproblems: an order on the objectives J, a programme that a local solver minimises.
 
-The search for a front (`modefront.front.search`) is decomposed into subproblems, as in MOEA/D
-(Zhang & Li 2007, doi:10.1109/TEVC.2007.892759). Each orders all models by J alone, so that whatever
-model one of them meets competes for the place of the best in all others.
+Each orders all models by J alone, so that whatever model one of them meets competes for the place
+of the best in all others (`docs/methods/nbi.md`).
 
 - **Edge** of objective i: least :math:`J_i`, and of such models the least
   :math:`\sum_{j \ne i} J_j / c_j` (`modefront.optim.lexicographic`).
 - **Weights** w: least :math:`w^T J`.
-- **Point** :math:`\beta` of the lattice: with the excess of J over :math:`\Phi \beta` along the
-  normal, :math:`c_i = (y_i - (\Phi \beta)_i) / r_i`, least
-
-  .. math:: \max_i c_i + \rho \sum_i c_i
-
-  (Pascoletti & Serafini 1984, doi:10.1007/BF00934564). Where all :math:`c_i` are equal, this is the
-  point of normal-boundary intersection (Das & Dennis 1998, doi:10.1137/S1052623496307510), which
-  has equations in the place of the maximum; elsewhere it lies on the border of the front. The small
-  share :math:`\rho` of all objectives keeps every weight positive, and every solution Pareto
-  optimal (Wierzbicki 1980, doi:10.1007/978-3-642-48782-8_32).
-
-========  =======  ==========================================================
-symbol    shape    meaning
-========  =======  ==========================================================
-c         (n,)     typical sizes of the objectives; excess of a point
-y         (n,)     objectives over the utopia point, in units of their ranges
-Phi       (n, n)   corners of the simplex, one a column, in the same units
-r         (n,)     normal towards greater objectives, Phi e
-========  =======  ==========================================================
+- **Point** :math:`\beta` of the lattice: least :math:`\max_i c_i + \rho \sum_i c_i`, with the
+  excess of J over :math:`\Phi \beta` along the normal, :math:`c_i = (y_i - (\Phi \beta)_i) / r_i`,
+  where y are the objectives over the utopia point in units of their ranges, :math:`\Phi` (n, n) the
+  corners of the simplex and r = :math:`\Phi e` the normal towards greater objectives.
 """
 
 from __future__ import annotations
@@ -122,10 +106,6 @@ class Subproblem(Protocol):
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return how much better objectives (n,) are than a known model: over what that has."""
-
-    def weights(self, known: Solution) -> Floats:
-        """Return the slope (n,) of what is minimised at a known solution."""
-        return self.programme.gradient(known.J)
 
     def is_near(self, J: Floats, /) -> Bools:
         """Return which models of objectives (models, n) may lead to a solution by a few steps."""

@@ -1,24 +1,14 @@
-r"""Weighted residuals, with weights that are given, equal, or optimal.
+r"""Weighted residuals with optimal weights (`docs/methods/weighted.md`).
 
 Optimal weights minimise :math:`I(\theta) = \sum_i a_i \ln J_i(\theta)`, equation (8), where
 :math:`a_i` counts the measured properties of a group; the model then minimises
-:math:`\sum_i w_i J_i` with :math:`w_i = a_i / J_i`. Where a group can be fitted exactly, I falls to
-minus infinity there, which says nothing about the model: the minimum that is meant is the regular
-one, at which every :math:`J_i` is positive. A minimum is accepted if it is regular itself, whatever
-is known of other models:
-
-* no objective vanishes at it, and
-* the second derivatives of I are positive in all directions in which residuals change and no bound
-  holds it,
+:math:`\sum_i w_i J_i` with :math:`w_i = a_i / J_i`. A minimum is accepted if it is regular itself,
+whatever is known of other models: no objective vanishes at it, and the second derivatives
 
 .. math:: \nabla^2 I = \sum_i \frac{a_i}{J_i} H_i - \sum_i \frac{a_i}{J_i^2} \partial J_i
-    \partial J_i^T .
+    \partial J_i^T
 
-With more parameters than data there may be none: I falls all the way to the edge at which a group
-is fitted exactly. An expectation of the noise puts an end to that (`modefront.uncertainty.prior`).
-
-The iteration :math:`w_i \leftarrow a_i / J_i(\arg\min \sum w_i J_i)` has the same stationary points
-as I and serves as a check.
+are positive in all directions in which residuals change and no bound holds it.
 """
 
 from __future__ import annotations

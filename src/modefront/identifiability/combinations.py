@@ -7,12 +7,15 @@ The Jacobian of the weighted residuals with respect to changes of the parameters
 
 has singular values :math:`\sigma_k` and right singular vectors :math:`v_k`. A direction v with a
 small :math:`\sigma` hardly changes any residual: the data do not determine it. The Gauss-Newton
-second derivatives are :math:`H_i = 2\, \partial r_i^T \partial r_i`. G follows from them as well,
-up to a rotation of its rows that changes neither :math:`\sigma` nor v, to half of the digits.
+second derivatives are :math:`H_i = 2\, \partial r_i^T \partial r_i`.
 
 A change of the residuals by 1e-9 of the measured values, for a whole unit of a parameter, is the
-rounding of derivatives: what is below it is no change (`rounding`). A column of G below it belongs
+rounding of derivatives: what is below it is no change. A column of G below it belongs
 to a parameter without effect.
+
+With its columns scaled to length one, :math:`\tilde g_j`, the collinearity index of parameters is
+:math:`1 / \sqrt{\lambda_{\min}(\tilde G^T \tilde G)}` (Brun, Reichert & Künsch 2001,
+doi:10.1029/2000WR900350, eq. 2; they call 10 to 20 critical).
 """
 
 from __future__ import annotations
@@ -32,8 +35,11 @@ WEAK = 1e-2
 ROUNDING = 1e-9
 """Change of residuals over the measured values, for a unit of a parameter, that is rounding."""
 
-ELSEWHERE = 2
-"""Models at which a group is tried that does not change at the nominal one."""
+CRITICAL = 10.0
+"""Collinearity index from which parameters count as not told apart."""
+
+_LARGEST = 1e8
+"""Greatest collinearity index; columns beyond it are parallel but for rounding."""
 
 NONE = 1e-7
 """Singular value over the greatest one, below which a combination is not determined at all."""
@@ -57,7 +63,7 @@ class Combination:
 
 def combinations(
     problem: UpdatingProblem,
-    theta: Floats,
+    theta: Floats | Evaluation,
     group: int | None = None,
     weights: Floats | None = None,
     scale: Scale | None = None,
@@ -69,7 +75,8 @@ def combinations(
     problem
         The updating problem.
     theta
-        Parameters (p,) of the model at which the residuals are linearised.
+        Parameters (p,) of the model at which the residuals are linearised, or its evaluation with
+        derivatives.
     group
         Number of the group whose residuals determine them, from 0; None for all groups together.
     weights
@@ -82,40 +89,49 @@ def combinations(
     ModelError
         If the model has no modes at ``theta``.
     """
-    residuals = problem.residuals(theta)
-    w = np.ones(len(residuals)) if weights is None else weights
-    roots, chosen = np.sqrt(w), range(len(residuals)) if group is None else [group]
-    G = np.concatenate([roots[i] * residuals[i].dr for i in chosen])
-    unit = (scale or scale_at(problem, theta)).unit
-    return decompose(G * unit, rounding(problem, group, w))
+    if isinstance(theta, Evaluation):
+        residuals, theta = theta.residuals, theta.theta
+    else:
+        residuals = problem.residuals(theta)
+    every = np.ones(len(residuals)) if weights is None else weights
+    w = every if group is None else np.eye(len(residuals))[group]
+    G = np.concatenate([np.sqrt(w[i]) * residuals[i].dr for i in np.flatnonzero(w).tolist()])
+    least = ROUNDING * float(np.sqrt(w @ sizes(problem) ** 2))
+    return decompose(G * (scale or scale_at(problem, theta)).unit, least)
 
 
-def combinations_at(
-    problem: UpdatingProblem,
-    evaluation: Evaluation,
-    group: int | None = None,
-    weights: Floats | None = None,
-    scale: Scale | None = None,
-) -> list[Combination]:
-    """Return the same from an evaluation with derivatives, without another one."""
-    w = np.ones(len(evaluation.J)) if weights is None else weights
-    lam, V = np.linalg.eigh(
-        gram(evaluation, w, scale or scale_at(problem, evaluation.theta), group)
-    )
-    return decompose(np.sqrt(np.maximum(lam, 0.0))[:, None] * V.T, rounding(problem, group, w))
-
-
-def gram(evaluation: Evaluation, weights: Floats, scale: Scale, group: int | None = None) -> Floats:
-    """Return G^T G, shape (parameters, parameters), of one group alone or of all with weights."""
-    every = evaluation.gauss_newton
-    H = every[group] if group is not None else np.tensordot(weights, every, axes=1)
+def gram(evaluation: Evaluation, weights: Floats, scale: Scale) -> Floats:
+    """Return G^T G, shape (parameters, parameters), of all groups with weights (groups,)."""
+    H = np.tensordot(weights, evaluation.gauss_newton, axes=1)
     return np.asarray(H / 2 * np.outer(scale.unit, scale.unit))
 
 
-def rounding(problem: UpdatingProblem, group: int | None, weights: Floats) -> float:
-    """Return the length of a column of G below which it is rounding; see `combinations`."""
-    size = sizes(problem)
-    return ROUNDING * float(size[group] if group is not None else np.sqrt(weights @ size**2))
+def cosines(gram: Floats) -> Floats:
+    """Return cosines between the columns of G, (p, p), from G^T G; 0 for columns that vanish."""
+    length = np.sqrt(np.diag(gram))
+    product = np.outer(length, length)
+    out = np.divide(gram, product, out=np.zeros_like(gram), where=product > 0)
+    return np.clip(out, -1.0, 1.0)
+
+
+def index(gram: Floats) -> float:
+    """Return the collinearity index of all parameters; infinite for parallel ones.
+
+    >>> round(index(np.array([[1.0, 0.6], [0.6, 1.0]])), 4)
+    1.5811
+    """
+    return _index_of(float(np.linalg.eigvalsh(cosines(gram))[0]))
+
+
+def pairs(gram: Floats) -> list[tuple[int, int, float]]:
+    """Return the pairs of parameters with a critical index, most alike first."""
+    least = 1 - np.abs(cosines(gram))
+    two = np.argwhere(np.triu(least <= CRITICAL**-2, 1)).tolist()
+    return sorted(((i, j, _index_of(least[i, j])) for i, j in two), key=lambda pair: -pair[2])
+
+
+def _index_of(least: float) -> float:
+    return least**-0.5 if least > _LARGEST**-2 else np.inf
 
 
 def sizes(problem: UpdatingProblem) -> Floats:
@@ -138,20 +154,19 @@ def _changed(problem: UpdatingProblem, evaluation: Evaluation, scale: Scale) -> 
 def unchanged_groups(problem: UpdatingProblem) -> list[int]:
     """Return the groups that no parameter changes, from 0.
 
-    Where nothing changes at the nominal parameters, other ones within the bounds are looked at:
+    Where nothing changes at the nominal parameters, two others within the bounds are looked at:
     a derivative may vanish for symmetry.
     """
-    evaluation = problem.evaluate(problem.start)
-    if not evaluation.feasible:
+    still, first = np.ones(len(problem.objectives), dtype=bool), problem.evaluate(problem.start)
+    if not first.feasible:
         return []
-    still = ~_changed(problem, evaluation, scale_at(problem, evaluation.theta)).any(axis=1)
-    u = np.random.default_rng(0).uniform(
-        size=(ELSEWHERE if still.any() else 0, evaluation.theta.size)
-    )
-    for theta in problem.lower + u * (problem.upper - problem.lower):
-        other = problem.evaluate(theta)
+    u = np.random.default_rng(0).uniform(size=(2, first.theta.size))
+    for theta in [first.theta, *(problem.lower + u * (problem.upper - problem.lower))]:
+        if not still.any():
+            break
+        other = first if theta is first.theta else problem.evaluate(theta)
         if other.feasible:
-            moved = np.abs(np.sqrt(other.J) - np.sqrt(evaluation.J)) > ROUNDING * sizes(problem)
+            moved = np.abs(np.sqrt(other.J) - np.sqrt(first.J)) > ROUNDING * sizes(problem)
             still &= ~moved & ~_changed(problem, other, scale_at(problem, theta)).any(axis=1)
     return np.flatnonzero(still).tolist()
 
@@ -185,10 +200,9 @@ def decompose(G: Floats, least: float = 0.0) -> list[Combination]:
 def _told_apart(Vt: Floats) -> Floats:
     """Return the orthonormal rows (k, p) that a rule chooses of the space that given ones span.
 
-    The sign of a singular vector is arbitrary, and so is the basis of those of equal singular
-    values; both would be those of the machine. The first row is the one that has the greatest share
-    of a single parameter, the next one that of what is left; its greatest component is positive.
-    Of almost equal shares, the first parameter counts.
+    Signs of singular vectors are arbitrary, and so is the basis of those of equal singular values.
+    The first row is the one that has the greatest share of a single parameter, the next one that of
+    what is left; its greatest component is positive.
 
     >>> rows = _told_apart(np.array([[-0.6, -0.8, 0.0], [0.8, -0.6, 0.0]]))
     >>> (rows.round(9) + 0.0).tolist()

@@ -11,24 +11,12 @@ change by which, to first order,
   diagonal of M is 1; or
 * the whole range between its bounds is gone through,
 
-whichever is the least. In a chain of springs :math:`k_i = \theta_i k_{0i}` it is
-:math:`s_i = \theta_i`, with :math:`k_i = (1 + \alpha_i) k_{0i}` it is
-:math:`s_i = 1 + \alpha_i`, and in N/m it is :math:`k_i`. Where a member is not the only one
-that carries a motion, as in most frames, the bounds say how much it may change. Of models without
-matrices, only the range is known.
+whichever is the least. Of models without matrices, only the range is known.
 
 A combination of parameters that scales all of K or all of M is looked for in the same matrices:
 :math:`\sum_j y_j\, \partial K / \partial \theta_j = K` at
 :math:`\sum_j y_j\, \partial M / \partial \theta_j = 0`, and so on. Mode shapes do not change along
 it, and it deserves its name.
-
-========  ==========  ====================================================
-symbol    shape       meaning
-========  ==========  ====================================================
-s         (p,)        units
-dK, dM    (p, N, N)   derivatives of the matrices with respect to theta
-y         (p,)        change of theta that scales a matrix as a whole
-========  ==========  ====================================================
 """
 
 from __future__ import annotations
@@ -43,8 +31,8 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats
 from modefront.linalg.affine import DenseAffine, SparseAffine
-from modefront.linalg.factorisation import Factorisation, SingularMatrixError
-from modefront.models.base import matrices_at
+from modefront.linalg.factorisation import SingularMatrixError
+from modefront.models.local import matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.modes import sparse
 from modefront.residuals.problem import UpdatingProblem
@@ -105,9 +93,8 @@ class Scale:
     @cached_property
     def scalings(self) -> list[Scaling]:
         """Changes that scale matrices as a whole, looked for when they are first asked for."""
-        if self.model is None:
-            return []
-        return whole_scalings(self.model, self.theta, self.unit)
+        model = self.model
+        return [] if model is None else whole_scalings(model, self.theta, self.unit)
 
 
 def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
@@ -115,27 +102,17 @@ def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
     for of, last in _LAST:
         if of() is problem and np.array_equal(last.theta, theta):
             return last
-    scale = _scale_at(problem, theta.copy())
-    _LAST[:] = [(ref(problem, _forget), scale)]
+    unit, model = problem.upper - problem.lower, matrices_at(problem.model, theta)
+    if model is not None:
+        per_K, per_M = _of_stiffness(model, theta, _shift(problem)), _of_mass(model.mass, theta)
+        unit = 1 / np.maximum(np.maximum(per_K, per_M), 1 / unit)
+    scale = Scale(theta.copy(), unit, problem.lower > 0, model)
+    # with a problem that is no more, its model goes
+    _LAST[:] = [(ref(problem, lambda _: _LAST.clear()), scale)]
     return scale
 
 
 _LAST: list[tuple[ref[UpdatingProblem], Scale]] = []
-
-
-def _forget(gone: ref[UpdatingProblem]) -> None:
-    """Drop the scale of a problem that is no more, and with it the model."""
-    _LAST[:] = [last for last in _LAST if last[0] is not gone]
-
-
-def _scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
-    span, model = problem.upper - problem.lower, matrices_at(problem.model, theta)
-    positive = problem.lower > 0
-    if model is None:
-        return Scale(theta, span, positive)
-    per_K, per_M = _of_stiffness(model, theta, _shift(problem)), _of_mass(model.mass, theta)
-    unit = 1 / np.maximum(np.maximum(per_K, per_M), 1 / span)
-    return Scale(theta, unit, positive, model)
 
 
 def _shift(problem: UpdatingProblem) -> float:
@@ -151,51 +128,37 @@ def _of_stiffness(model: MatrixModel, theta: Floats, shift: float) -> Floats:
 
     Where the structure can move as a rigid body, K + shift M takes the place of K.
     """
-    if isinstance(model.stiffness, DenseAffine):
-        return _dense(model.stiffness, model.mass, theta, shift)
-    return _sparse(model, model.stiffness, theta, shift)
-
-
-def _dense(
-    stiffness: DenseAffine, mass: DenseAffine | SparseAffine, theta: Floats, shift: float
-) -> Floats:
+    stiffness = model.stiffness
+    if not isinstance(stiffness, DenseAffine):
+        return _sparse(model, stiffness, theta, shift)
     K = stiffness.at(theta)
     d = 1 / np.sqrt(np.maximum(np.diag(K), np.finfo(float).tiny))
     lam = scipy.linalg.eigvalsh(K * np.outer(d, d), check_finite=False)
     if lam[0] <= SINGULAR * lam.size * lam[-1]:
-        K = K + shift * _dense_at(mass, theta)
+        M = model.mass.at(theta)
+        K = K + shift * (M if isinstance(M, np.ndarray) else M.toarray())
+    changes = stiffness.coefficients.jacobian(theta).T
+    dK = [np.tensordot(change, stiffness.terms, axes=1) for change in changes]
     try:
-        L = scipy.linalg.cholesky(K, lower=True, check_finite=False)
+        return np.array([np.abs(scipy.linalg.eigvalsh(A, K)).max(initial=0.0) for A in dK])
     except np.linalg.LinAlgError:
         return np.zeros(theta.size)
-    dc = stiffness.coefficients.jacobian(theta)
-    out = np.zeros(theta.size)
-    for j, column in enumerate(dc.T):
-        dK = np.tensordot(column, stiffness.terms, axes=1)
-        half = scipy.linalg.solve_triangular(L, dK, lower=True, check_finite=False)
-        whole = scipy.linalg.solve_triangular(L, half.T, lower=True, check_finite=False)
-        out[j] = np.abs(np.linalg.eigvalsh((whole + whole.T) / 2)).max(initial=0.0)
-    return out
-
-
-def _dense_at(matrix: DenseAffine | SparseAffine, theta: Floats) -> Floats:
-    if isinstance(matrix, DenseAffine):
-        return matrix.at(theta)
-    return np.asarray(matrix.at(theta).toarray())
 
 
 def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: float) -> Floats:
-    """Return the same for sparse matrices.
-
-    Where no degree of freedom tells it, it is found by power iteration in the norm of K, from one
-    motion for all parameters.
-    """
+    """Return the same for sparse matrices, by power iteration in the norm of K where need be."""
     known = _of_single_terms(stiffness, theta)
     if np.isfinite(known).all():
         return known
-    factor = _definite(model, theta, shift)
+    factor = sparse.regular_factor(model.pencil, theta) if model.floating else None
     if factor is None:
-        return np.zeros(theta.size)
+        K, M = model.pencil.K.at(theta).data, model.pencil.M.at(theta).data
+        try:
+            factor = model.pencil.factor(K, M, -shift if model.floating else 0.0)
+        except SingularMatrixError:
+            return np.zeros(theta.size)
+        if factor.negative:
+            return np.zeros(theta.size)
     start = np.random.default_rng(0).standard_normal((stiffness.size, 1))
     F = stiffness.derivatives_times(theta, start)[:, 0]
     dK = [stiffness.derivative(theta, j) for j in range(theta.size)]
@@ -234,19 +197,6 @@ def _of_single_terms(stiffness: SparseAffine, theta: Floats) -> Floats:
     return np.where(alone[rates.argmax(axis=0)] | (out == 0), out, np.nan)
 
 
-def _definite(model: MatrixModel, theta: Floats, shift: float) -> Factorisation | None:
-    """Return the factor of K, or of K + shift M where K is singular; None if it is indefinite."""
-    K, M = model.pencil.K.at(theta).data, model.pencil.M.at(theta).data
-    regular = sparse.regular_factor(model.pencil, theta) if model.floating else None
-    if regular is not None:
-        return regular
-    try:
-        factor = model.pencil.factor(K, M, -shift if model.floating else 0.0)
-    except SingularMatrixError:
-        return None
-    return factor if factor.negative == 0 else None
-
-
 def _of_mass(mass: DenseAffine | SparseAffine, theta: Floats) -> Floats:
     """Return the greatest relative change of an entry on the diagonal of M, (p,)."""
     diagonals = _diagonals(mass)  # (N, terms)
@@ -266,8 +216,7 @@ def _diagonals(matrix: DenseAffine | SparseAffine) -> Floats:
 def whole_scalings(model: MatrixModel, theta: Floats, unit: Floats) -> list[Scaling]:
     """Return the changes of the parameters that scale K, M, or both as a whole, if there are any.
 
-    Of several that do, it is the one nearest to theta, which scales all parameters; distances are
-    in units, shape (parameters,).
+    Of several that do, it is the one nearest to theta, in units (parameters,).
     """
     (RK, K), (RM, M) = (_rows(matrix, theta) for matrix in (model.stiffness, model.mass))
     both = np.vstack([RK, RM])

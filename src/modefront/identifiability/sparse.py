@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+import scipy.linalg
 
 from modefront._typing import Floats
 
@@ -38,7 +39,9 @@ def sparse_basis(
     for v in _pairs_within(outside, alone):
         if len(basis) < d and holds(v):
             basis = _longer(basis, v)
-    for row in sorted(_eliminate(Q.T), key=lambda row: int((np.abs(row) > SAME).sum())):
+    pivots = scipy.linalg.qr(Q.T, mode="r", pivoting=True)[1][:d]
+    eliminated = np.linalg.solve(Q[pivots].T, Q.T)
+    for row in sorted(eliminated, key=lambda row: int((np.abs(row) > SAME).sum())):
         basis = _longer(basis, row / np.linalg.norm(row)) if len(basis) < d else basis
     return np.array(basis).T
 
@@ -64,17 +67,3 @@ def _pairs_within(outside: Floats, alone: Sequence[int]) -> list[Floats]:
             v[[i, j]] = V[:, 0] * np.sign(V[np.argmax(np.abs(V[:, 0])), 0])
             out.append(v)
     return out
-
-
-def _eliminate(rows: Floats) -> Floats:
-    """Return the reduced echelon form of rows, pivots chosen by size."""
-    rows = rows.copy()
-    for i in range(len(rows)):
-        block = np.abs(rows[i:])
-        r, c = divmod(int(np.argmax(block)), block.shape[1])
-        rows[[i, i + r]] = rows[[i + r, i]]
-        rows[i] /= rows[i, c]
-        for k in range(len(rows)):
-            if k != i:
-                rows[k] -= rows[k, c] * rows[i]
-    return rows

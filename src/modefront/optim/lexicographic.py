@@ -1,23 +1,13 @@
 r"""The lexicographic minimum below a start: least in one objective, then least in the others.
 
-The minimiser of :math:`J_i` need not be unique. Where parameters outnumber data, a manifold of
-models fits some measurements exactly; mode shapes do not change when all stiffnesses are scaled.
-Of these models, the one that is best in the others is the limit of the minimisers of
+It is the limit, for :math:`\varepsilon \to 0`, of the minimisers of
 
-.. math:: J_i / c_i + \varepsilon \sum_{j \ne i} J_j / c_j, \qquad \varepsilon \to 0
+.. math:: J_i / c_i + \varepsilon \sum_{j \ne i} J_j / c_j
 
-(Ehrgott, *Multicriteria Optimization*, 2005, section 5.1). They form a smooth path, on which
-each is found from the one before by a few steps of Newton's method, as the second derivatives are
-exact however narrow the valley is: near the manifold, with residuals
-:math:`r_i = \varepsilon \mu / 2`, these of :math:`J_i / \varepsilon` hold the curvature
-:math:`\sum_k \mu_k \nabla^2 r_k` of the manifold itself. The limit is extrapolated
+with typical sizes c (n,) of the objectives (Ehrgott, *Multicriteria Optimization*, 2005, section
+5.1). They form a smooth path, on which each is found from the one before by a few steps of Newton's
+method, as the second derivatives are exact however narrow the valley is. The limit is extrapolated
 from the last two: their distance from it is proportional to :math:`\varepsilon`.
-
-========  =======  =================================
-symbol    shape    meaning
-========  =======  =================================
-c         (n,)     typical sizes of the objectives
-========  =======  =================================
 """
 
 from __future__ import annotations
@@ -29,7 +19,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.scalarisation import Linear, weighted
-from modefront.optim.sqp import Options, Solution, solve
+from modefront.optim.sqp import Options, Solution, Status, solve
 
 EXACT = 1e-10
 """An objective below this share of its typical size is fitted exactly: residuals of 1e-5 of their
@@ -90,13 +80,15 @@ class Lexicographic:
     ) -> Solution:
         """Return the lexicographic minimum below a start.
 
-        A minimum of the first objective that exceeds the ``least`` one is left where it is.
+        A minimum of the first objective that exceeds the ``least`` one is left where it is, and so
+        is a model on the way to one, at the limit of iterations.
         """
         i = self.objective
         best = _solved(problem, self.programme(0.0), replace(start, evaluations=0), options)
         above = best.feasible and best.J[i] > least + self.margin(least)
         alone = self.sizes.size == 1 or not best.feasible
-        if above or alone or not self.is_open(problem, best.evaluation):
+        unfinished = best.status is Status.EXHAUSTED
+        if above or alone or unfinished or not self.is_open(problem, best.evaluation):
             return best
         spent = best.evaluations
         for epsilon, begins in ((1 / RATIO, start), (1 / RATIO**4, best)):

@@ -142,7 +142,7 @@ class Problem(Protocol):
         """
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Wrapped:
     """A problem that is evaluated in another way, and is the same in everything else.
 
@@ -158,25 +158,10 @@ class Wrapped:
     evaluation: Callable[[Problem, Floats, bool, bool], Evaluation]
     names: tuple[str, ...] | None = None
 
-    @property
-    def objectives(self) -> tuple[str, ...]:
-        """Names of the objectives."""
-        return self.problem.objectives if self.names is None else self.names
-
-    @property
-    def lower(self) -> Floats:
-        """Lower bounds, shape (p,)."""
-        return self.problem.lower
-
-    @property
-    def upper(self) -> Floats:
-        """Upper bounds, shape (p,)."""
-        return self.problem.upper
-
-    @property
-    def start(self) -> Floats:
-        """The first guess of the problem, shape (p,)."""
-        return self.problem.start
+    def __post_init__(self) -> None:
+        self.objectives = self.problem.objectives if self.names is None else self.names
+        self.lower, self.upper = self.problem.lower, self.problem.upper
+        self.start = self.problem.start
 
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False

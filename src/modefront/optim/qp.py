@@ -16,10 +16,10 @@ null space of the working set, its absolute value is used: variables that are he
 the maximum have no say in it. Without functions (m = 0), the maximum is left out.
 
 Of many variables, hundreds may end at the box, and each change of the working set takes a
-decomposition. They are therefore held and let go many at once first, as long as what is minimised
-falls: a step ends at its projection onto the box, and where it stays inside, all that have a wrong
+decomposition. They are therefore held and let go many at once, as long as what is minimised falls:
+a step ends at its projection onto the box, and where it stays inside, all that have a wrong
 multiplier are let go (Moré & Toraldo 1991, doi:10.1137/0801008). Functions join and leave one by
-one, as above. The method above starts from there, and has little left to do.
+one.
 
 ========  =========  ================================================================
 symbol    shape      meaning
@@ -135,23 +135,25 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
     free = (s > lo) & (s < hi)
     width = float((hi - lo).max())
     active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
-    if s.size >= MANY:
-        s, free, active, solved = _many_at_once(qp, s, free, active, width)
-        if solved:
-            return QuadraticStep(s, active)
+    many = s.size >= MANY
     for _ in range(PASSES * (s.size + len(qp.C))):
         d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
         bound = np.where(d > 0, hi, lo)
         share = np.divide(bound - s, d, out=np.full(s.size, np.inf), where=d != 0)
         stop = int(share.argmin())
         within, (joining, met) = float(share[stop]), _met(qp, s, d, active)
-        if min(within, met) < 1:
-            s = _clipped(s + min(within, met) * d, lo, hi)
-            if met < within:
-                active = [*active, joining]
+        if met < min(within, 1):
+            s, active = _clipped(s + met * d, lo, hi), [*active, joining]
+            continue
+        if within < 1:
+            new = _projected(qp, s, d, active, free) if many else None
+            if new is None:
+                held = share <= within if many else np.arange(s.size) == stop
+                s = np.where(held, bound, _clipped(s + within * d, lo, hi))
+                free = free & ~held
             else:
-                s[stop] = bound[stop]
-                free[stop] = False
+                s, free = new, free & (new > lo) & (new < hi)
+                active = qp.attaining(s, active)
             continue
         s = _clipped(s + d, lo, hi)
         if free.all() and len(active) < 2:
@@ -161,45 +163,11 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
             active = kept
             continue
         gain = _gain(slope, free, s <= lo, s >= hi)
-        if gain.max() <= FLAT * scale:
-            break
-        free[int(gain.argmax())] = True
-    return QuadraticStep(s, active)
-
-
-def _many_at_once(
-    qp: QuadraticProgramme, s: Floats, free: Bools, active: list[int], width: float
-) -> tuple[Floats, Bools, list[int], bool]:
-    """Return a step, its free variables and active functions, and whether it is the solution."""
-    for _ in range(s.size):
-        d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
-        joining, met = _met(qp, s, d, active)
-        end = s + min(met, 1.0) * d
-        if not ((end > qp.lo) & (end < qp.hi))[free].all():
-            new = _projected(qp, s, d, active, free)
-            if new is None:
-                stopped = free & ((s <= qp.lo) & (d < 0) | (s >= qp.hi) & (d > 0))
-                if not stopped.any():
-                    break
-                free = free & ~stopped
-            else:
-                s, free = new, free & (new > qp.lo) & (new < qp.hi)
-                active = qp.attaining(s, active)
-            continue
-        s = end
-        if met < 1:
-            active = [*active, joining]
-            continue
-        kept, slope, scale = _stationarity(qp, s, active, free)
-        if len(kept) < len(active):
-            active = kept
-            continue
-        gain = _gain(slope, free, s <= qp.lo, s >= qp.hi)
         wrong = gain > FLAT * scale
         if not wrong.any():
-            return s, free, active, True
-        free = free | wrong
-    return s, free, active, False
+            break
+        free = free | (wrong if many else np.arange(s.size) == gain.argmax())
+    return QuadraticStep(s, active)
 
 
 def _stationarity(

@@ -151,9 +151,3 @@ def achievement(w: Floats, C: Floats, d: Floats) -> Linear:
     Wierzbicki 1980, doi:10.1007/978-3-642-48782-8_32.
     """
     return Linear(w, no_rows(w.size), Rows(C, d))
-
-
-def level(minimised: int, fixed: int, value: float, scale: Floats) -> Linear:
-    """Return min J_minimised subject to J_fixed = value, in units of ``scale``."""
-    unit = np.eye(scale.size) / scale
-    return constrained(unit[minimised], unit[[fixed]], np.array([value / scale[fixed]]))

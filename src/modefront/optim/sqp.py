@@ -11,18 +11,16 @@ of the objectives, the Hessian of the Lagrangian is
 
 .. math:: B = \sum_i w_i H_i + \partial J^T f'' \partial J
 
-with the second derivatives :math:`H_i` of the objectives. Where a problem does not know these, such
-as a model that is a function of the user's, :math:`H_i` is the part that it knows (Gauss-Newton's),
-and the rest :math:`S_i` is learned from differences of gradients (`modefront.optim.second`). Where
-residuals vanish, S is a burden: B is taken with it or without it, whichever predicted the last step
-better (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965).
+with the second derivatives :math:`H_i` of the objectives. Where a problem does not know these,
+:math:`H_i` is the part that it knows (Gauss-Newton's), and the rest :math:`S_i` is learned from
+differences of gradients (`modefront.optim.second`). Where residuals vanish, S is a burden: B is
+taken with it or without it, whichever predicted the last step better (Dennis, Gay & Welsch 1981,
+doi:10.1145/355958.355965).
 
 Steps solve a quadratic programme within a box, the trust region; they are judged by the augmented
-Lagrangian (`modefront.optim.merit`) which, unlike an exact penalty, does not reject good steps
-near the solution. Far from it, multipliers may be absurd: they are bounded. One attempt is made to
-leave a stationary point with clearly negative curvature. Where the objectives are known no better
-than the steps promise, a solution ends before its tolerances are met. Where they jump, it ends with
-a status of its own, and another one is sought from the other side.
+Lagrangian (`modefront.optim.linearised`) which, unlike an exact penalty, does not reject good steps
+near the solution. One attempt is made to leave a stationary point with clearly negative curvature.
+Where the objectives jump, a solution ends, and another one is sought from the other side.
 
 =========  =========  ==================================================================
 symbol     shape      meaning
@@ -47,8 +45,7 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Floats
-from modefront.optim.linearised import length, linearised
-from modefront.optim.merit import PENALTY, Merit, Multipliers
+from modefront.optim.linearised import PENALTY, Merit, Multipliers, length, linearised
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation

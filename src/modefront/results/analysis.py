@@ -12,11 +12,12 @@ from modefront.analysis.front import FrontAnalysis
 from modefront.front.front import Front
 from modefront.front.methods import METHODS
 from modefront.front.point import Kind, Point, of_kind
-from modefront.identifiability.collinearity import cosines, index
 from modefront.identifiability.combinations import (
     Combination,
-    combinations_at,
+    combinations,
+    cosines,
     gram,
+    index,
     optimal_weights,
     without_effect,
 )
@@ -66,12 +67,12 @@ def determinations(problem: UpdatingProblem, front: Front) -> list[Determination
         weights = optimal_weights(problem.properties, evaluation.J)
         scale = scale_at(problem, evaluation.theta)
         idle = without_effect(problem, evaluation, scale)
-        combinations = [
-            (name, combinations_at(problem, evaluation, i, weights, scale)) for name, i in every
+        of_data = [
+            (name, combinations(problem, evaluation, i, weights, scale)) for name, i in every
         ]
         effects = gram(evaluation, weights, scale)
         effects[idle] = effects[:, idle] = 0.0
-        out.append(Determination(point, scale, idle, combinations, effects))
+        out.append(Determination(point, scale, idle, of_data, effects))
     return out
 
 
@@ -101,21 +102,21 @@ def _identifiability(determined: Sequence[Determination]) -> Values:
     rows = [
         (each.point.label, name, combination, each.scale.unit)
         for each in determined
-        for name, combinations in each.combinations
-        for combination in combinations
+        for name, of_data in each.combinations
+        for combination in of_data
     ]
-    at, of, combinations, unit = zip(*rows, strict=True)
+    at, of, chosen, unit = zip(*rows, strict=True)
     effects = determined[0].effects
     active = np.flatnonzero(np.diag(effects) > 0).tolist()
     return {
         "combination_at": at,
         "combination_of": of,
-        "combination_direction": [x.direction for x in combinations],
+        "combination_direction": [x.direction for x in chosen],
         "combination_unit": unit,
-        "combination_sensitivity": [x.sensitivity for x in combinations],
-        "combination_share": [x.share for x in combinations],
+        "combination_sensitivity": [x.sensitivity for x in chosen],
+        "combination_share": [x.share for x in chosen],
         "collinearity": cosines(effects),
-        "collinearity_index": index(effects, active) if active else np.nan,
+        "collinearity_index": index(effects[np.ix_(active, active)]) if active else np.nan,
     }
 
 

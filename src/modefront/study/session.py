@@ -19,7 +19,7 @@ from modefront.analysis.certified import (
     certified_front,
     certified_points,
 )
-from modefront.analysis.front import AnalysisOptions, analyse_front
+from modefront.analysis.front import analyse_front
 from modefront.errors import Fault, InputError, writing
 from modefront.front.front import Front
 from modefront.front.given import Weighted
@@ -264,8 +264,15 @@ def _results(study: Study, work: Run) -> xr.Dataset:
         front = replace(front, points=[*front.points, *points])
         count = max(DRAWS, study.uncertainty.draws)
         inference = infer(noise, best.theta, count, study.seed, work)
-    options = AnalysisOptions(study.pareto, study.identifiability, study.uncertainty, study.seed)
-    analysis = analyse_front(problem, front, options, work)
+    analysis = analyse_front(
+        problem,
+        front,
+        study.pareto,
+        study.identifiability,
+        study.uncertainty,
+        study.seed,
+        work,
+    )
     (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
     extra = [*analysis.points, Point(Kind.NOMINAL, given(nominal))]
     analysis = replace(analysis, points=certified_points(problem, extra, work))

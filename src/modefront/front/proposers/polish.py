@@ -43,13 +43,6 @@ class Polish:
                     if (key, start.theta.tobytes()) not in self._tried:
                         yield solve_from(k, place, start, 1.0)
 
-    def learn(self, state: State, offer: Offer, outcome: Outcome, _: float) -> None:
-        """Let the new model start what is open and lies nearer to it than the incumbents do."""
+    def learn(self, state: State, offer: Offer, _: Outcome, __: float) -> None:
+        """Remember from which model a place was solved."""
         self._tried.add((state.places[offer.place].subproblem.key, offer.start.theta.tobytes()))
-        solution = outcome.result
-        if not (solution.feasible and solution.evaluation.derivatives):
-            return
-        for k in state.behind(state.orders.value(solution.J)):
-            place = state.places[k]
-            if not place.closed and place.subproblem.gain(solution.J, place.incumbent) > 0:
-                place.incumbent = solution

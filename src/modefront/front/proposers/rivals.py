@@ -17,14 +17,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from modefront._typing import Floats
 from modefront.front.archive import Outcome
 from modefront.front.proposers.base import Offer, Rate, approach_from
 from modefront.front.state import DISTINCT, State
-from modefront.front.subproblems import Subproblem
-from modefront.linalg.small import lstsq
 from modefront.optim.linearised import linearised
-from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution
 
 REACH = 0.3
@@ -82,34 +78,14 @@ class Rivals:
 
 def predicted_gain(state: State, k: int, model: Solution) -> float:
     """Return the gain that a model's own derivatives promise a subproblem, 0 for its incumbent."""
-    place = state.places[k]
+    place, evaluation = state.places[k], model.evaluation
     if np.abs((model.theta - place.incumbent.theta) / state.span).max() <= DISTINCT:
         return 0.0
-    w = place.subproblem.weights(place.incumbent)
-    if is_hopeless(model.evaluation, w, float(w @ place.incumbent.J)):
-        return 0.0
-    J = promised(state.problem, place.subproblem, model.evaluation)
-    return place.subproblem.gain(J, place.incumbent)
-
-
-def promised(problem: Problem, subproblem: Subproblem, evaluation: Evaluation) -> Floats:
-    """Return the objectives (n,) that one step from a model leads to, or its own if better."""
-    local = linearised(problem, subproblem.programme, evaluation)
+    local = linearised(state.problem, place.subproblem.programme, evaluation)
     _, step, _ = local.step(evaluation.H, REACH, None)
     change = step.s * local.span
     J = evaluation.J + evaluation.dJ @ change + 0.5 * (evaluation.H @ change @ change)
     squares = [np.sum((each.r + each.dr @ change) ** 2) for each in evaluation.residuals]
     J = np.maximum(J, squares or 0.0)
-    promise, own = subproblem.order.value(np.array([J, evaluation.J]))
-    return J if promise < own else evaluation.J
-
-
-def is_hopeless(evaluation: Evaluation, w: Floats, level: float) -> bool:
-    """Return whether w^T J of residuals that change linearly is above a level wherever it goes."""
-    if not evaluation.residuals or (w < 0).any():
-        return False
-    roots = np.sqrt(w)
-    r = np.concatenate([root * x.r for root, x in zip(roots, evaluation.residuals, strict=True)])
-    dr = np.vstack([root * x.dr for root, x in zip(roots, evaluation.residuals, strict=True)])
-    least = r - dr @ lstsq(dr, r)
-    return bool(least @ least > level)
+    promise, own = place.subproblem.order.value(np.array([J, evaluation.J]))
+    return place.subproblem.gain(J if promise < own else evaluation.J, place.incumbent)

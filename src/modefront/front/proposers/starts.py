@@ -8,10 +8,10 @@ minima would be reached is expected to be (Boender & Rinnooy Kan 1987, doi:10.10
 That bounds the chance that the next start gains, and so does the rate at which starts have gained.
 As long as hardly any start has led to the best model, it may be one of many that are met once: then
 starts go on, however small the chance of a single one is, until that part is small or the best
-model is met again.
+model is met again. Starts that end at the limit of iterations have met no minimum: all of them
+together count as one, since nothing tells their valleys apart.
 
-Points of the lattice share their starts: each takes a few steps from a random model towards a
-random point; whether it is followed is left to `modefront.front.proposers.rivals`.
+Points of the lattice have none: they start from what others have found.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.archive import Outcome
-from modefront.front.proposers.base import USUAL, Offer, Rate, approach_from, at, solve_from
+from modefront.front.proposers.base import USUAL, Offer, Rate, at, solve_from
 from modefront.front.state import Place, State
 from modefront.front.subproblems import is_along
-from modefront.optim.sqp import Solution
+from modefront.optim.sqp import Solution, Status
 from modefront.work.task import Key
 
 SURE = 2
@@ -42,14 +42,19 @@ class Minima:
     rate : of the starts
     ends : minima of different values
     counts : number of starts that led to each
+    cut : whether some start ended at the limit of iterations
     """
 
     rate: Rate = field(default_factory=Rate)
     ends: list[Solution] = field(default_factory=list)
     counts: list[int] = field(default_factory=list)
+    cut: bool = False
 
     def note(self, place: Place, solution: Solution, tolerance: float) -> None:
-        """Count a minimum."""
+        """Count the end of a start."""
+        if solution.status is Status.EXHAUSTED:
+            self.cut = True
+            return
         for k, end in enumerate(self.ends):
             if _equal(place, solution, end, tolerance):
                 self.counts[k] += 1
@@ -65,7 +70,7 @@ class Minima:
     @property
     def unseen(self) -> float:
         """Part of the box from which unseen minima are reached."""
-        return unseen(self.rate.tries, len(self.ends))
+        return unseen(self.rate.tries, len(self.ends) + self.cut)
 
     @property
     def chance(self) -> float:
@@ -85,24 +90,21 @@ def _equal(place: Place, x: Solution, y: Solution, tolerance: float) -> bool:
 
 @dataclass
 class Starts:
-    """Proposes random starts for some subproblems.
+    """Proposes random starts for edges and weighted models.
 
     Attributes
     ----------
     rng : random numbers
     minima : of each subproblem, by its key
-    along : rate of the starts that all points of the lattice share
     """
 
     rng: np.random.Generator
     name: str = "starts"
     minima: dict[Key, Minima] = field(default_factory=dict)
-    along: Rate = field(default_factory=Rate)
     _queue: list[Floats] = field(default_factory=list)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
-        """Yield random starts of each subproblem that is worth one."""
-        points = [k for k, place in enumerate(state.places) if is_along(place.subproblem)]
+        """Yield random starts of each of them."""
         for k, place in enumerate(state.places):
             if is_along(place.subproblem):
                 continue
@@ -112,19 +114,11 @@ class Starts:
                 theta = state.problem.start if number == 0 else self._next(state)
                 offer = solve_from(k, place, at(theta), known.chance)
                 yield replace(offer, unseen=doubt)
-        for _ in range(most if points else 0):
-            k = points[int(self.rng.integers(len(points)))]
-            start = at(self._next(state))
-            yield approach_from(k, state.places[k], start, self.along.recent)
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
         """Count the start, and keep its minimum if it is new."""
         place, solution = state.places[offer.place], outcome.result
-        gained = gain > state.tolerance
-        if is_along(place.subproblem):
-            self.along.note(gained)
-            return
-        self.of(place).rate.note(gained)
+        self.of(place).rate.note(gain > state.tolerance)
         if solution.feasible:
             self.of(place).note(place, solution, state.tolerance)
 
