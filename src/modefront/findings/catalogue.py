@@ -1,6 +1,7 @@
 """All kinds of findings, the most important first: how severe each is, and its sentence.
 
 In sentences, ``{name}`` is a value, and ``{it|them}`` has the words for one and several subjects.
+Those of mistakes say what is wrong before the first semicolon, and what mends it behind.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from enum import Enum
 class Severity(Enum):
     """How severe a finding is, and which question it answers."""
 
+    MISTAKE = "what is wrong with model or data"
     FAILURE = "what was not done"
     FIT = "how well the models do"
     CAUTION = "what to beware of"
@@ -19,11 +21,129 @@ class Severity(Enum):
     DETAIL = "how it was found; only in full lists"
 
 
-FAILURE, FIT, CAUTION, OPEN, DETAIL = Severity
+MISTAKE, FAILURE, FIT, CAUTION, OPEN, DETAIL = Severity
 
 DETERMINE = "{where}{subject} determine {rank} of {combinations} of parameters{free}"
 
 CATALOGUE: Mapping[str, tuple[Severity, str]] = {
+    "derivatives": (
+        MISTAKE,
+        "derivatives {verdict} finite differences{doubt} (relative {error:.1e})",
+    ),
+    "superfluous": (
+        MISTAKE,
+        "fix {subject} at the nominal value{|s}, or measure more; the data determine the other "
+        "parameters without {it|them}",
+    ),
+    "first-this": (MISTAKE, "put this right first: it changes what the data determine"),
+    "frequency-factor": (
+        MISTAKE,
+        "all measured frequencies are about {factor:.3g} times the model's: {looks}; {mend}",
+    ),
+    "other-quantity": (
+        MISTAKE,
+        "the column 'frequency' looks like {quantity}: mode {mode} has {given:.4g}, which is "
+        "{better:.4g} Hz; give frequencies in Hz",
+    ),
+    "set-factor": (
+        MISTAKE,
+        "all frequencies of set {set} are {size} those of {other}{looks}; {mend}",
+    ),
+    "set-numbers": (
+        MISTAKE,
+        "modes {modes} of set {set} are modes {of} of {other}, by frequencies and shapes; number "
+        "the modes of set {set} like those of {other}",
+    ),
+    "reversed-sensor": (
+        MISTAKE,
+        "sensor {sensor} is reversed in {where}; check the direction of {sensor}, and change the "
+        "sign of its column, or of the direction in the model",
+    ),
+    "exchanged-sensors": (
+        MISTAKE,
+        "sensors {sensors} are exchanged in {where}; check the cables of {sensors}, and exchange "
+        "their columns or sensors",
+    ),
+    "counted-from-one": (
+        MISTAKE,
+        "the {what} of the sensors look as if they were counted from 1; count {what} from 0: "
+        "subtract 1 from each in [model.sensors]",
+    ),
+    "wrong-direction": (
+        MISTAKE,
+        "direction {given} of {sensors} does not match the data: {better} does; check along which "
+        'axis {sensors} measure{s}, and write direction = "{better}"{turn}',
+    ),
+    "wrong-place": (
+        MISTAKE,
+        "sensor {sensor} fits the data at {place} and not at {given}{too}; check where {sensor} "
+        "was in the test, and write its place in [model.sensors]",
+    ),
+    "nominal-value": (
+        MISTAKE,
+        "the nominal value of {name} is {given:.4g}, and the data say about {better:.4g}; check "
+        "the unit of {name}, its nominal value and its bounds",
+    ),
+    "bound": (
+        MISTAKE,
+        "the {side} bound {bound:.4g} of {name} excludes the values that fit the data; widen the "
+        "bounds of {name}, or find what else differs between model and structure",
+    ),
+    "odd-frequency": (
+        MISTAKE,
+        "{who} in the frequency of mode {mode}: {f:.5g} and {other:.5g} Hz, {percent:+.1f} %; "
+        "{look} value",
+    ),
+    "odd-shape": (MISTAKE, "{who} in the shape of mode {mode}; {look} shape"),
+    "damping": (
+        MISTAKE,
+        "damping of {least:.3g} to {greatest:.3g} looks like percent; give the ratio to critical "
+        "damping: divide the column 'damping' by 100",
+    ),
+    "foreign-mode": (
+        MISTAKE,
+        "measured mode {mode}{at} resembles none of the model's; check its shape, refine the "
+        "model, or leave it out of the groups",
+    ),
+    "outside-model": (
+        MISTAKE,
+        "measured mode {subject} at {measured:.4g} Hz is outside what the model has: its {modes} "
+        "end at {highest:.4g} Hz; refine the model, or leave the mode out of all groups",
+    ),
+    "beyond-candidates": (
+        MISTAKE,
+        "measured mode {subject} resembles model mode {later} at {f:.4g} Hz (MAC {mac:.2f}), which "
+        "is not looked at, and none of those that are (MAC {best:.2f} or less); set spare = "
+        "{spare} in [pairing]",
+    ),
+    "distant-pair": (
+        MISTAKE,
+        "measured mode {subject} at {measured:.4g} Hz is paired with model mode {model} at "
+        "{f:.4g} Hz{alike}, though model mode {near} at {near_f:.4g} Hz is near; set window = 1.5 "
+        "in [pairing]",
+    ),
+    "far-from-model": (
+        MISTAKE,
+        "measured mode {subject} at {measured:.4g} Hz is paired with model mode {model} at "
+        "{f:.4g} Hz{alike}: none that is like it is near; check its frequency and shape, or leave "
+        "the mode out of all groups",
+    ),
+    "data-direction": (
+        MISTAKE,
+        "sensor {subject} is along {model} in the model, but takes {data} of the data; write the "
+        "same direction in [model.sensors] and [data.sensors]",
+    ),
+    "unused-group": (
+        MISTAKE,
+        "mesh group '{subject}' of {cells} {type} cells has no elements and holds nothing; give it "
+        'a [[model.group]] name = "{subject}", or leave it out of the mesh',
+    ),
+    "compared-pair": (
+        MISTAKE,
+        "modes {subject} of the data are a pair of one frequency: their shapes are any two of a "
+        "plane, and group '{group}' compares them one by one; write subspace = [{modes}], and the "
+        "other modes in shape = […]",
+    ),
     "changed": (FAILURE, "{subject}"),
     "not-converged": (FAILURE, "not converged: {subject}"),
     "inaccurate": (FAILURE, "modes are less accurate than asked for at {subject}"),

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from modefront.diagnosis.notes import Note
 from modefront.errors import InputError, ModelError
+from modefront.findings.record import Finding
 from modefront.front.options import Pareto
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
@@ -98,7 +98,7 @@ def load(path: Path | str) -> Study:
         _digest(json.dumps(front, sort_keys=True).encode(), root.files),
         problem,
         reduction.fallback(problem.model),
-        tuple(note for note in root.notes if isinstance(note, Note)),
+        tuple(note for note in root.notes if isinstance(note, Finding)),
     )
     return Study(
         problem,

@@ -10,9 +10,9 @@ from dataclasses import replace
 from typing import TypeVar, get_args
 
 from modefront.data.modal import ModalData
-from modefront.diagnosis.notes import ComparedPair
 from modefront.errors import Fault, InputError
 from modefront.findings.knowledge import enumeration
+from modefront.findings.record import found
 from modefront.front.given import Weighted, label_faults
 from modefront.models.base import Model
 from modefront.models.parameters import Parameter
@@ -121,7 +121,11 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
             continue
         chosen = {kind.name: rs for kind, rs in group.positions(data)}
         single = {data.modes[r] for r in chosen.get("shape", ())}
-        root.notes += [ComparedPair(pair, group.name) for pair in data.pairs if single & set(pair)]
+        root.notes += [
+            found("compared-pair", f"{a} and {b}", group=group.name, modes=f"{a}, {b}")
+            for a, b in data.pairs
+            if single & {a, b}
+        ]
         members = frozenset((kind.name, r) for kind, rs in group.positions(data) for r in rs)
         if members in held:  # their objectives could not differ
             expected = f"other members than those of '{held[members]}'"
