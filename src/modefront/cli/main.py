@@ -30,6 +30,12 @@ if TYPE_CHECKING:
     from modefront.work.costs import Costs
     from modefront.work.task import Backend
 
+PATH = click.Path(path_type=Path)
+
+FORMAT = click.option(
+    "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
+)
+
 OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; 130 is that of shells for an interrupt."""
 
@@ -64,9 +70,10 @@ LISTS: Mapping[str, str] = {
 
 def _full_lists(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command with an option for each of `LISTS`."""
-    for name, text in reversed(list(LISTS.items())):
-        option = click.option(f"--{name}", "lists", flag_value=name, multiple=True, help=text)
-        command = option(command)
+    for name, text in reversed(LISTS.items()):
+        command = click.option(f"--{name}", "lists", flag_value=name, multiple=True, help=text)(
+            command
+        )
     return command
 
 
@@ -80,7 +87,7 @@ def cli(context: click.Context) -> None:
 
 
 @cli.command()
-@click.argument("directory", type=click.Path(path_type=Path))
+@click.argument("directory", type=PATH)
 @click.option("--example", default="three-story-c0", show_default=True, help="Which example.")
 def init(directory: Path, example: str) -> None:
     """Write a study that runs at once into DIRECTORY."""
@@ -103,7 +110,7 @@ def schema() -> None:
 
 
 @cli.command()
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=PATH)
 @click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
 def check(study: Path, every: bool) -> None:
     """Say all that is wrong with STUDY, and prove its derivatives."""
@@ -129,12 +136,12 @@ def check(study: Path, every: bool) -> None:
 
 
 @cli.command()
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=PATH)
 @click.option(
     "-o",
     "--output",
     "directory",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="Folder of the results  [default: the study file's name with -results]",
 )
 @click.option("--fresh", is_flag=True, help="Start over; earlier work is set aside, not deleted.")
@@ -189,10 +196,8 @@ def run(
 
 
 @cli.command()
-@click.argument("directory", type=click.Path(path_type=Path))
-@click.option(
-    "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
-)
+@click.argument("directory", type=PATH)
+@FORMAT
 @click.option("--figures", is_flag=True, help="Draw all pictures into DIRECTORY/figures.")
 @click.option(
     "--figure-format",
@@ -230,10 +235,8 @@ def show(
 
 
 @cli.command()
-@click.argument("directories", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option(
-    "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
-)
+@click.argument("directories", nargs=-1, required=True, type=PATH)
+@FORMAT
 @click.option("--all", "every", is_flag=True, help="All parameters and predictions.")
 def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
     """Set the results in several DIRECTORIES side by side."""
@@ -248,16 +251,13 @@ def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
 
 
 @cli.command()
-@click.argument("directories", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("directories", nargs=-1, required=True, type=PATH)
 @click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="HTML file  [default: report.html in the first DIRECTORY]",
+    "-o", "--output", type=PATH, help="HTML file  [default: report.html in the first DIRECTORY]"
 )
 @click.option(
     "--figures",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="Write figures 2 to 7 of the paper into this folder, in place of the HTML file.",
 )
 def report(directories: tuple[Path, ...], output: Path | None, figures: Path | None) -> None:
@@ -281,11 +281,11 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
 
 
 @cli.command()
-@click.argument("test", type=click.Path(path_type=Path))
+@click.argument("test", type=PATH)
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
+    type=PATH,
     required=True,
     help="Modal data: a CSV file, or .uff for dataset 55.",
 )
@@ -297,12 +297,12 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
 )
 @click.option(
     "--figures",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="Folder for pictures: stabilisation diagram, mode indicators, functions, auto-MAC.",
 )
 @click.option(
     "--report",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE.html",
     help="One HTML file to look at, in which poles are chosen for the test file.",
 )
@@ -336,7 +336,7 @@ def identify(
 @click.argument(
     "program", type=click.Choice(["calculix", "abaqus", "nastran", "ansys", "opensees"])
 )
-@click.argument("base", type=click.Path(path_type=Path))
+@click.argument("base", type=PATH)
 @click.option(
     "--parameter",
     "parameters",
@@ -372,23 +372,17 @@ def identify(
 )
 @click.option(
     "--dofs",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="CSV node,direction, one row a degree of freedom, where the program's files have none.",
 )
-@click.option(
-    "--deck", type=click.Path(path_type=Path), help="The deck, if it is not beside the matrices."
-)
+@click.option("--deck", type=PATH, help="The deck, if it is not beside the matrices.")
 @click.option("--stiffness-name", metavar="NAME", help="Name of K in a file of several matrices.")
 @click.option("--mass-name", metavar="NAME", help="Name of M likewise.")
 @click.option(
     "--modes", type=click.IntRange(0), help="Frequencies to compute  [default: 6 if it is quick]"
 )
 @click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    required=True,
-    help="Folder for the study; one that has none.",
+    "-o", "--output", type=PATH, required=True, help="Folder for the study; one that has none."
 )
 def import_(program: str, base: Path, output: Path, **given: Any) -> None:
     """Turn the matrices of a finite-element PROGRAM into a study.
@@ -404,18 +398,13 @@ def import_(program: str, base: Path, output: Path, **given: Any) -> None:
 
 
 @cli.command()
-@click.argument("directory", type=click.Path(path_type=Path))
+@click.argument("directory", type=PATH)
 @click.option("--point", metavar="LABEL", help="Which model  [default: the one the data prefer]")
 @click.option(
-    "--study",
-    type=click.Path(path_type=Path),
-    help="The study of the results  [default: found where it was run]",
+    "--study", type=PATH, help="The study of the results  [default: found where it was run]"
 )
 @click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="Folder for the files  [default: export-LABEL in DIRECTORY]",
+    "-o", "--output", type=PATH, help="Folder for the files  [default: export-LABEL in DIRECTORY]"
 )
 @click.option("--modes", type=click.IntRange(1), help="Mode shapes  [default: as many as measured]")
 def export(

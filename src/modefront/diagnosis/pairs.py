@@ -53,5 +53,5 @@ def bad_pairs(comparison: Comparison) -> Iterator[Finding]:
                 f=float(f[q]),
                 alike="" if np.isnan(value) else f" (MAC {value:.2f})",
                 near=near + 1,
-                near_f=float(f[near]),
+                there=float(f[near]),
             )

@@ -1,11 +1,12 @@
 """The first answer: which model to use and why, how sure it is, and what the front says.
 
-`SENTENCES` has all it can say; docs/verdicts.md says of each what it means and what to do.
+`modefront.findings.catalogue.VERDICT` has all it can say; docs/verdicts.md says of each what it
+means and what to do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain
 from textwrap import wrap
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats
+from modefront.findings.catalogue import VERDICT
 from modefront.findings.knowledge import enumeration
 from modefront.front.point import Kind, preferred
 from modefront.predictions.registry import predictions_in
@@ -47,49 +49,6 @@ FORETOLD = 2
 
 TWINS = 0.9
 """Correlation of draws, without its sign, from which two parameters are known only together."""
-
-SENTENCES: Mapping[str, str] = {
-    "do-not-use": "Do not use any of these models: {why}.",
-    "far": "errors of {group} are {misfit:.2g} times those expected",
-    "worse": "{group} fits worse than at the nominal model",
-    "use": "Use {reference}: its errors over those expected are {errors}.",
-    "unjudged": "Use {reference}: it has {fit}; the nominal model has {nominal}.",
-    "bought": "But {why}: ask what the model lacks.",
-    "not-judged": (
-        "How sure it is, or whether to use no model, is not judged with weight = 0 in [noise]; "
-        "without that line it is."
-    ),
-    "lacks": "They are larger than noise: the model lacks something.",
-    "at-bound": "{at}: widen {it}, or ask what the model lacks.",
-    "at-harmless-bound": "{at}: wider bounds lower no errors by more than {gain:.0f} %.",
-    "at-wrong-bound": (
-        "{at}. With {where}, errors of {group} are {after:.2g} of those expected instead of "
-        "{before:.2g}: widen {its} bounds, or ask what the model lacks."
-    ),
-    "assumed": "Assumed: {assumed}; say yours in [noise].",
-    "unlike": (
-        "Shapes at these sensors do not tell which modes of the model are those measured as "
-        "{modes}: frequencies decide here. The front pairs them by the MAC, and may be wrong."
-    ),
-    "determined": "Determined (90 %): {parameters}.",
-    "partly": "Partly (90 %): {parameters}.",
-    "not determined": "Not determined (90 %): {parameters}.",
-    "measure": "Measure {what}: the interval of {name} becomes {gain:.0f} % narrower.",
-    "leave-open-less": "Or leave open less, in [[parameter]] of {lines}.",
-    "agree": (
-        "Along the front errors of {group} change by {change:.2g} of those expected: the "
-        "compromise hardly matters."
-    ),
-    "compromise": (
-        "The front is a compromise: along it errors of {group} change by {change:.2g} times those "
-        "expected."
-    ),
-    "prediction": (
-        "{name}, {place}: {quantity} {low:.3g} to {high:.3g} (90 %), {least:.3g} to {greatest:.3g} "
-        "over the front."
-    ),
-}
-"""Each sentence of the first answer, and each reason of a refusal, by its name."""
 
 
 def with_verdict(data: xr.Dataset) -> xr.Dataset:
@@ -128,7 +87,7 @@ def _unjudged(data: xr.Dataset) -> Iterator[str]:
 
 
 def _say(kind: str, **values: Any) -> str:
-    return SENTENCES[kind].format(**values)
+    return VERDICT[kind].format(**values)
 
 
 def _with_room(sentences: Sequence[str]) -> list[str]:
