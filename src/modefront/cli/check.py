@@ -94,9 +94,9 @@ def _print_sensors(screen: Screen, beside: Comparison, most: int | None) -> None
 def _print_sensitivities(screen: Screen, sensitivities: Sensitivities, most: int | None) -> None:
     """Print the sensitivities, parameters × modes; of many parameters, the first ones."""
     columns = ["parameter", *(f"f{mode}" for mode in sensitivities.modes), "shapes"]
-    values = np.column_stack([sensitivities.frequency, sensitivities.shape])
+    values = np.column_stack([sensitivities.frequency, sensitivities.shape]).round(3)
     rows = [
-        [name, *(number(x, ".3f" if abs(x) < 10 else ".2g", "") for x in row)]
+        [name, *(number(x + 0.0, ".3f" if abs(x) < 10 else ".2g", "") for x in row)]
         for name, row in zip(sensitivities.parameters, values, strict=True)
     ]
     rest = f"; {len(rows) - ROWS} more with --all" * (most is not None and len(rows) > ROWS)

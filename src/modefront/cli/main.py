@@ -124,7 +124,7 @@ def check(study: Path, every: bool) -> None:
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
     say_estimate(estimate(loaded))
-    say(f"at most {loaded.search.evaluations:,} evaluations of the search: [search] evaluations")
+    say(f"a search ends after {loaded.search.evaluations:,} evaluations: [search] evaluations")
     if not findings.sound and findings.mistakes:
         raise UnfinishedError(
             "the derivatives cannot be proved before what is warned of first is put right"
@@ -227,6 +227,7 @@ def show(
 
         for path in write_figures(data, directory / "figures", picture):
             say(f"wrote {path}")
+        say_next("report", directory)
         return
     if form == "json":
         print(as_json(data))
@@ -267,6 +268,7 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
 
         path = write_report(directories, output)
         say(f"wrote {path} ({path.stat().st_size / 1e6:.2f} MB): open it in a browser")
+        say_next("export", directories[0])
         return
     from modefront.plots import paper_figures
     from modefront.results.compare import read_together
@@ -278,6 +280,7 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
     for number, what in ((6, "peaks of the frequency response"), (7, "probabilities of failure")):
         if f"figure-{number}" not in [path.stem for path in paths]:
             say(f"figure {number} is left out: no study predicts {what}")
+    say_next("report", *directories)
 
 
 @cli.command()
@@ -418,6 +421,7 @@ def export(
         say(f"wrote {file}")
     for what in exported.missing:
         say(f"not written: {what}")
+    say_next("show", directory, "--points")
 
 
 def _run(

@@ -80,6 +80,8 @@ def print_results(
         screen.show([*title, *screen.sentence(by)])
         for name in (name for name in LISTS if name in lists):
             LISTS[name](screen, data)
+        screen.blank()
+        _say_further(screen, folder)
         return
     show, predicted = command("show", folder), "range" in data.sizes
     said = [line for text in verdict_of(data) for line in screen.sentence(text)]
@@ -90,8 +92,13 @@ def print_results(
     lines = [*title, *said, BLANK, *models_in(screen, data, most, f"{show} --models")]
     room = max(HEIGHT - len(lines) - 5, LEAST)
     screen.show([*lines, BLANK, *_findings(screen, data, room, f"{show} --findings"), BLANK])
+    _say_further(screen, folder)
+
+
+def _say_further(screen: Screen, folder: Path | str) -> None:
     screen.say(f"what a finding means: {PAGE}")
-    screen.show([(f"all: {show} --all", ""), (f"next: {command('report', folder)}", "")])
+    screen.say(f"all: {command('show', folder, '--all')}")
+    screen.say(f"next: {command('report', folder)}")
 
 
 def _findings(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Line]:
