@@ -16,7 +16,8 @@ def test_each_command_names_the_next_until_the_report(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    words, done = ["init", "my study"], []
+    words = ["init", "my study"]
+    done: list[str] = []
     while words and len(done) < 6:
         assert command(*words) == 0
         done.append(words[0])

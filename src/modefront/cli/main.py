@@ -13,6 +13,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from modefront.work.task import Backend
 
 PATH = click.Path(path_type=Path)
+
+_output = partial(click.option, "-o", "--output", type=PATH)
 
 FORMAT = click.option(
     "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
@@ -70,10 +73,9 @@ LISTS: Mapping[str, str] = {
 
 def _full_lists(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command with an option for each of `LISTS`."""
-    for name, text in reversed(LISTS.items()):
-        command = click.option(f"--{name}", "lists", flag_value=name, multiple=True, help=text)(
-            command
-        )
+    for name, text in reversed(list(LISTS.items())):
+        option = click.option(f"--{name}", "lists", flag_value=name, multiple=True, help=text)
+        command = option(command)
     return command
 
 
@@ -137,13 +139,7 @@ def check(study: Path, every: bool) -> None:
 
 @cli.command()
 @click.argument("study", type=PATH)
-@click.option(
-    "-o",
-    "--output",
-    "directory",
-    type=PATH,
-    help="Folder of the results  [default: the study file's name with -results]",
-)
+@_output("directory", help="Folder of the results  [default: the study file's name with -results]")
 @click.option("--fresh", is_flag=True, help="Start over; earlier work is set aside, not deleted.")
 @click.option(
     "--refine",
@@ -253,9 +249,7 @@ def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
 
 @cli.command()
 @click.argument("directories", nargs=-1, required=True, type=PATH)
-@click.option(
-    "-o", "--output", type=PATH, help="HTML file  [default: report.html in the first DIRECTORY]"
-)
+@_output(help="HTML file  [default: report.html in the first DIRECTORY]")
 @click.option(
     "--figures",
     type=PATH,
@@ -285,13 +279,7 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
 
 @cli.command()
 @click.argument("test", type=PATH)
-@click.option(
-    "-o",
-    "--output",
-    type=PATH,
-    required=True,
-    help="Modal data: a CSV file, or .uff for dataset 55.",
-)
+@_output(help="Modal data: a CSV file, or .uff for dataset 55.", required=True)
 @click.option(
     "--band",
     type=(click.FloatRange(0), click.FloatRange(0, min_open=True)),
@@ -384,9 +372,7 @@ def identify(
 @click.option(
     "--modes", type=click.IntRange(0), help="Frequencies to compute  [default: 6 if it is quick]"
 )
-@click.option(
-    "-o", "--output", type=PATH, required=True, help="Folder for the study; one that has none."
-)
+@_output(help="Folder for the study; one that has none.", required=True)
 def import_(program: str, base: Path, output: Path, **given: Any) -> None:
     """Turn the matrices of a finite-element PROGRAM into a study.
 
@@ -406,9 +392,7 @@ def import_(program: str, base: Path, output: Path, **given: Any) -> None:
 @click.option(
     "--study", type=PATH, help="The study of the results  [default: found where it was run]"
 )
-@click.option(
-    "-o", "--output", type=PATH, help="Folder for the files  [default: export-LABEL in DIRECTORY]"
-)
+@_output(help="Folder for the files  [default: export-LABEL in DIRECTORY]")
 @click.option("--modes", type=click.IntRange(1), help="Mode shapes  [default: as many as measured]")
 def export(
     directory: Path, point: str | None, study: Path | None, output: Path | None, modes: int | None

@@ -19,6 +19,7 @@ from modefront.cli.terminal import command, say_next
 from modefront.findings.catalogue import Severity
 from modefront.findings.record import PAGE
 from modefront.results.remarks import digest, findings_of, headlines
+from modefront.results.selection import verdict
 from modefront.study.estimate import Estimate
 from modefront.work.costs import Costs
 
@@ -50,7 +51,7 @@ def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
     screen = Screen.of_output()
     screen.say(f"{data.attrs.get('study', '')}: results in {folder}", style="bold")
     failures = [str(x) for x in findings_of(data) if x.severity is Severity.FAILURE]
-    said = verdict_of(data)
+    said = verdict(data)
     whole = command("show", folder, "--findings")
     for line in [*said, *failures] if said else digest(headlines(data), whole):
         screen.say(line, start="  ")
@@ -62,11 +63,6 @@ def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
         spent += f", {costs.certificates} certificates in {costs.certificate_time:.3g} s"
     screen.say(spent)
     say_next("show", folder)
-
-
-def verdict_of(data: xr.Dataset) -> list[str]:
-    """Return the sentences of the first answer."""
-    return str(data.attrs.get("verdict", "")).splitlines()
 
 
 def print_results(
@@ -84,7 +80,7 @@ def print_results(
         _say_further(screen, folder)
         return
     show, predicted = command("show", folder), "range" in data.sizes
-    said = [line for text in verdict_of(data) for line in screen.sentence(text)]
+    said = [line for text in verdict(data) for line in screen.sentence(text)]
     if predicted:
         full = f"{show} --predictions"
         said += [BLANK, *predictions_in_short(screen, data, PREDICTIONS, full)]
@@ -120,7 +116,7 @@ def as_json(data: xr.Dataset) -> str:
     """Return the dataset as JSON: attributes, and each variable with dimensions and values."""
     found = findings_of(data, full=True)
     sections = {
-        "verdict": verdict_of(data),
+        "verdict": verdict(data),
         "attributes": {str(k): as_plain(np.asarray(value)) for k, value in data.attrs.items()},
         "variables": {
             str(name): {"dimensions": list(map(str, x.dims)), "values": as_plain(x.values)}

@@ -134,9 +134,9 @@ def run(
     Parameters
     ----------
     study
-        The study, the path of its file, or a problem with the options that are usual. A study that was read from a file
-        continues where an interrupted run stopped: tasks that are done are not done again. One
-        that was made in Python starts over.
+        The study, the path of its file, or a problem with the options that are usual. A study that
+        was read from a file continues where an interrupted run stopped: tasks that are done are not
+        done again. One that was made in Python starts over.
     folder
         Folder for ``results.nc`` and the results of the tasks; made where there is none. None to
         write nothing.
