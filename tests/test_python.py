@@ -27,6 +27,18 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+def test_a_study_is_run_by_its_path_as_a_text_or_a_path(tmp_path: Path) -> None:
+    write_example("three-story-c0", tmp_path)
+    path = tmp_path / "study.toml"
+    text = path.read_text().replace("points = 20", "points = 2")
+    path.write_text(text + "\n[search]\ndoubt = 0.5\n")
+    first, second = mf.run(str(path)), mf.run(path, tmp_path / "results")
+    np.testing.assert_array_equal(first["theta"], second["theta"])
+    assert (tmp_path / "results" / "results.nc").is_file()
+    with pytest.raises(mf.InputError, match=r"none\.toml"):
+        mf.run("none.toml")
+
+
 def assert_short(shown: Any) -> None:
     assert 1 <= len(repr(shown).splitlines()) <= 20
     assert "<" in shown._repr_html_()

@@ -17,6 +17,14 @@ export function number(x: number | null | undefined, digits = 4): string {
   return text.replace(/-/g, MINUS);
 }
 
+/** Returns a parameter with its standard deviation, or with what holds or leaves it. */
+export function scattered(x: number | null, std: number | null, bounds: readonly (number | null)[]): string {
+  const value = number(x);
+  if (std === 0) return value + (x === bounds[0] ? ", at its lower bound" : x === bounds[1] ? ", at its upper bound" : "");
+  if (std === null) return value;
+  return Number.isFinite(std) ? `${value} ± ${number(std, 2)}` : `${value}, open`;
+}
+
 /** Returns an interval in digits that tell its ends apart. */
 export function between([low, high]: [number, number]): string {
   const apart = Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (high - low))) + 1;

@@ -145,22 +145,50 @@ function walker(state: State): HTMLElement {
   );
 }
 
-/** Opens all that is folded before the page is printed, makes tables fit, and undoes it after. */
+/** Opens all that is folded before the page is printed, splits wide tables, and undoes it after. */
 function printing(): void {
   const WIDTH = 600; // of what A4 shows, in px
   let opened: HTMLDetailsElement[] = [];
-  const tables = (): HTMLTableElement[] => [...document.querySelectorAll<HTMLTableElement>(".scroll table")];
+  let wide: HTMLTableElement[] = [];
+  let copies: HTMLTableElement[] = [];
   window.addEventListener("beforeprint", () => {
     opened = [...document.querySelectorAll<HTMLDetailsElement>("details:not([open])")];
     for (const details of opened) {
       details.open = true;
       details.dispatchEvent(new Event("toggle")); // what is filled when it is opened, is filled now
     }
-    for (const table of tables()) table.style.zoom = String(Math.min(1, WIDTH / table.scrollWidth));
+    wide = [...document.querySelectorAll<HTMLTableElement>(".scroll table")].filter((table) => table.scrollWidth > WIDTH);
+    copies = wide.flatMap((table) => {
+      const blocks = split(table, WIDTH);
+      table.after(...blocks);
+      table.hidden = true;
+      return blocks;
+    });
   });
   window.addEventListener("afterprint", () => {
     opened.forEach((details) => (details.open = false));
-    for (const table of tables()) table.style.zoom = "";
+    copies.forEach((table) => table.remove());
+    wide.forEach((table) => (table.hidden = false));
+  });
+}
+
+/** Returns copies of a table with as many columns as fit a width, the first one in each. */
+function split(table: HTMLTableElement, width: number): HTMLTableElement[] {
+  const [first, ...widths] = [...table.rows[0].cells].map((cell) => cell.offsetWidth);
+  const blocks: number[][] = [];
+  let room = 0;
+  widths.forEach((needed, k) => {
+    if (!blocks.length || needed > room) {
+      blocks.push([0]);
+      room = width - first;
+    }
+    blocks[blocks.length - 1].push(k + 1);
+    room -= needed;
+  });
+  return blocks.map((columns) => {
+    const copy = table.cloneNode(true) as HTMLTableElement;
+    for (const row of copy.rows) [...row.cells].filter((_, k) => !columns.includes(k)).forEach((cell) => cell.remove());
+    return copy;
   });
 }
 

@@ -155,7 +155,7 @@ def test_from_nothing_to_results(modefront_: Run, tmp_path: Path) -> None:
     status, out, err = modefront_("check", folder / "study.toml")
     assert (status, err) == (0, "")
     assert out.endswith(f"next: modefront run {folder / 'study.toml'}\n")
-    assert "at most 20,000 evaluations of the search" in out
+    assert "a search ends after 20,000 evaluations" in out
     assert "derivatives agree with finite differences" in out
     assert "no warnings" in out
     found = sorted(path.name for path in folder.iterdir())

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from modefront.results.verdict import SENTENCES
+from modefront.findings.catalogue import VERDICT
 
 DOCS = Path(__file__).parents[2] / "docs"
 TEXT = (DOCS / "verdicts.md").read_text(encoding="utf-8")
@@ -17,13 +17,13 @@ HOW_TO = ("verdicts", "choose", "read-a-front", "modes-swap", "undetermined", "l
 
 
 def test_the_page_has_every_sentence_and_no_other() -> None:
-    assert list(SECTIONS) == list(SENTENCES)
+    assert list(SECTIONS) == list(VERDICT)
 
 
-@pytest.mark.parametrize("kind", SENTENCES)
+@pytest.mark.parametrize("kind", VERDICT)
 def test_the_example_is_what_the_sentence_says_and_advice_follows(kind: str) -> None:
     example, _, advice = SECTIONS[kind].partition("\n")
-    parts = re.split(r"\{[a-z]+(?::[^{}]*)?\}", SENTENCES[kind])
+    parts = re.split(r"\{[a-z]+(?::[^{}]*)?\}", VERDICT[kind])
     assert re.fullmatch(".+".join(map(re.escape, parts)), example.removeprefix("> "))
     assert len(advice.split()) > 5
 

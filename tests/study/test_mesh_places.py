@@ -169,4 +169,4 @@ def test_groups_of_med_files(tmp_path: Path) -> None:
     # A group of cells that have elements by another group is no mistake.
     assert unused_groups(read, (name for name in ["members"]), []) == []
     (unused,) = unused_groups(read, ["beam"], [])
-    assert (unused.name, unused.cells) == ("members", 3)
+    assert (unused.subject, unused.numbers["cells"]) == ("members", 3)

@@ -308,7 +308,7 @@ def test_modes_outside_the_model_and_pairs_far_apart(tmp_path: Path) -> None:
     findings = findings_of(spoilt(tmp_path / "b", CHAIN, data=far))
     assert any(
         "measured mode 3 at 3 Hz is paired with model mode 3 at 17.89 Hz" in text
-        and "set window = 1.5 in [pairing]" in text
+        and "none that is like it is near; check its frequency and shape" in text
         for text in findings.warnings
     )
 
@@ -339,13 +339,13 @@ def test_the_table_sets_nominal_beside_measured_in_80_columns(tmp_path: Path) ->
     assert result.exception is None, result.output
     lines = result.output.replace(str(tmp_path), "").splitlines()
     assert max(map(len, lines)) <= 80
-    header = next(line for line in lines if "measured Hz" in line)
-    assert " ".join(header.split()) == "mode measured Hz model Hz error % MAC model mode"
-    assert sum("COMAC" in line for line in lines) >= 2
+    header = next(line for line in lines if line.startswith("mode "))
+    assert header.split() == ["mode", "Hz", "Hz", "%", "MAC", "mode"]
+    assert sum("COMAC by sensor" in line for line in lines) == 1
     assert any(line.split()[:4] == ["parameter", "f1", "f2", "f3"] for line in lines)
 
 
-def test_parameters_that_act_alike_are_to_be_grouped(tmp_path: Path) -> None:
+def test_parameters_that_the_data_do_not_determine_are_to_be_fixed(tmp_path: Path) -> None:
     masses = ('stiffness_parameters = ["theta1", "theta2", "theta3"]', "")
     study = spoilt(tmp_path, CHAIN, masses, ("[[parameter]]", "[[parameter]]"))
     text = study.read_text(encoding="utf-8").replace(
@@ -354,8 +354,7 @@ def test_parameters_that_act_alike_are_to_be_grouped(tmp_path: Path) -> None:
         'mass_parameters = ["", "", "theta3"]\nsensors =',
     )
     study.write_text(text.replace('frequency = "all"', "frequency = [1]"), encoding="utf-8")
-    advice = findings_of(study).sensitivities.advice
-    assert len(advice) == 3
+    assert findings_of(study).sensitivities.superfluous
 
 
 def test_a_nominal_value_off_by_a_thousand(tmp_path: Path) -> None:

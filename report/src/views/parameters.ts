@@ -1,7 +1,7 @@
 // Parameters of all models, a row each.
 
 import { h, section, sized } from "../dom";
-import { between, number } from "../format";
+import { between, number, scattered } from "../format";
 import type { State } from "../state";
 import { strips, type Strip } from "./strips";
 import type { Tip } from "./tip";
@@ -24,13 +24,9 @@ export function parametersView(state: State, tip: Tip): HTMLElement {
       domain: from === null || to === null ? undefined : [from, to],
       interval,
       text: (i) => {
-        const value = number(front.theta[i][j], 4);
-        if (interval && i === front.reference) {
-          return `${value} (${between(interval)})`;
-        }
-        const scatter = std(i);
-        if (scatter === null) return value;
-        return Number.isFinite(scatter) ? `${value} ± ${number(scatter, 2)}` : `${value}, open`;
+        const value = front.theta[i][j];
+        if (interval && i === front.reference) return `${number(value)} (${between(interval)})`;
+        return scattered(value, std(i), front.bounds[j]);
       },
     };
   });

@@ -174,6 +174,7 @@ export function shapeView(state: State): HTMLElement {
     renderer.draw(panels, camera, panelWidth, height);
     overlay.setAttribute("width", String(width));
     overlay.setAttribute("height", String(height));
+    for (const svg of [plain, overlay]) svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const project = camera.projection(panelWidth, height);
     overlay.replaceChildren(
       ...pointers.map((sets, k) => {

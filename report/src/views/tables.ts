@@ -3,7 +3,7 @@
 import { csv, download, everything, fileName, type Cell } from "../csv";
 import { frequencyError, type Front } from "../data";
 import { h, section } from "../dom";
-import { fixed, number } from "../format";
+import { fixed, number, scattered } from "../format";
 import type { State } from "../state";
 
 /** Makes the view: the chosen model beside the nominal one and the best, then all models. */
@@ -49,10 +49,7 @@ function sideBySide(front: Front, chosen: number): HTMLElement {
   const rows: [string, (i: number) => string][] = [
     ...front.parameters.map((name, j): [string, (i: number) => string] => [
       name,
-      (i) => {
-        const std = front.thetaStd?.[i]?.[j] ?? null;
-        return number(front.theta[i][j]) + (std === null ? "" : ` ± ${number(std, 2)}`);
-      },
+      (i) => scattered(front.theta[i][j], front.thetaStd?.[i]?.[j] ?? null, front.bounds[j]),
     ]),
     ...front.modes.map((r, k): [string, (i: number) => string] => [
       `error of frequency ${r}, %`,

@@ -13,6 +13,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +30,14 @@ if TYPE_CHECKING:
     from modefront.study.definition import Study
     from modefront.work.costs import Costs
     from modefront.work.task import Backend
+
+PATH = click.Path(path_type=Path)
+
+_output = partial(click.option, "-o", "--output", type=PATH)
+
+FORMAT = click.option(
+    "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
+)
 
 OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; 130 is that of shells for an interrupt."""
@@ -80,7 +89,7 @@ def cli(context: click.Context) -> None:
 
 
 @cli.command()
-@click.argument("directory", type=click.Path(path_type=Path))
+@click.argument("directory", type=PATH)
 @click.option("--example", default="three-story-c0", show_default=True, help="Which example.")
 def init(directory: Path, example: str) -> None:
     """Write a study that runs at once into DIRECTORY."""
@@ -103,7 +112,7 @@ def schema() -> None:
 
 
 @cli.command()
-@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("study", type=PATH)
 @click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
 def check(study: Path, every: bool) -> None:
     """Say all that is wrong with STUDY, and prove its derivatives."""
@@ -117,7 +126,7 @@ def check(study: Path, every: bool) -> None:
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
     say_estimate(estimate(loaded))
-    say(f"at most {loaded.search.evaluations:,} evaluations of the search: [search] evaluations")
+    say(f"a search ends after {loaded.search.evaluations:,} evaluations: [search] evaluations")
     if not findings.sound and findings.mistakes:
         raise UnfinishedError(
             "the derivatives cannot be proved before what is warned of first is put right"
@@ -129,14 +138,8 @@ def check(study: Path, every: bool) -> None:
 
 
 @cli.command()
-@click.argument("study", type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    "directory",
-    type=click.Path(path_type=Path),
-    help="Folder of the results  [default: the study file's name with -results]",
-)
+@click.argument("study", type=PATH)
+@_output("directory", help="Folder of the results  [default: the study file's name with -results]")
 @click.option("--fresh", is_flag=True, help="Start over; earlier work is set aside, not deleted.")
 @click.option(
     "--refine",
@@ -189,10 +192,8 @@ def run(
 
 
 @cli.command()
-@click.argument("directory", type=click.Path(path_type=Path))
-@click.option(
-    "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
-)
+@click.argument("directory", type=PATH)
+@FORMAT
 @click.option("--figures", is_flag=True, help="Draw all pictures into DIRECTORY/figures.")
 @click.option(
     "--figure-format",
@@ -222,6 +223,7 @@ def show(
 
         for path in write_figures(data, directory / "figures", picture):
             say(f"wrote {path}")
+        say_next("report", directory)
         return
     if form == "json":
         print(as_json(data))
@@ -230,10 +232,8 @@ def show(
 
 
 @cli.command()
-@click.argument("directories", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option(
-    "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
-)
+@click.argument("directories", nargs=-1, required=True, type=PATH)
+@FORMAT
 @click.option("--all", "every", is_flag=True, help="All parameters and predictions.")
 def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
     """Set the results in several DIRECTORIES side by side."""
@@ -248,16 +248,11 @@ def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
 
 
 @cli.command()
-@click.argument("directories", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="HTML file  [default: report.html in the first DIRECTORY]",
-)
+@click.argument("directories", nargs=-1, required=True, type=PATH)
+@_output(help="HTML file  [default: report.html in the first DIRECTORY]")
 @click.option(
     "--figures",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="Write figures 2 to 7 of the paper into this folder, in place of the HTML file.",
 )
 def report(directories: tuple[Path, ...], output: Path | None, figures: Path | None) -> None:
@@ -267,6 +262,7 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
 
         path = write_report(directories, output)
         say(f"wrote {path} ({path.stat().st_size / 1e6:.2f} MB): open it in a browser")
+        say_next("export", directories[0])
         return
     from modefront.plots import paper_figures
     from modefront.results.compare import read_together
@@ -278,17 +274,12 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
     for number, what in ((6, "peaks of the frequency response"), (7, "probabilities of failure")):
         if f"figure-{number}" not in [path.stem for path in paths]:
             say(f"figure {number} is left out: no study predicts {what}")
+    say_next("report", *directories)
 
 
 @cli.command()
-@click.argument("test", type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    required=True,
-    help="Modal data: a CSV file, or .uff for dataset 55.",
-)
+@click.argument("test", type=PATH)
+@_output(help="Modal data: a CSV file, or .uff for dataset 55.", required=True)
 @click.option(
     "--band",
     type=(click.FloatRange(0), click.FloatRange(0, min_open=True)),
@@ -297,12 +288,12 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
 )
 @click.option(
     "--figures",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="Folder for pictures: stabilisation diagram, mode indicators, functions, auto-MAC.",
 )
 @click.option(
     "--report",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE.html",
     help="One HTML file to look at, in which poles are chosen for the test file.",
 )
@@ -336,7 +327,7 @@ def identify(
 @click.argument(
     "program", type=click.Choice(["calculix", "abaqus", "nastran", "ansys", "opensees"])
 )
-@click.argument("base", type=click.Path(path_type=Path))
+@click.argument("base", type=PATH)
 @click.option(
     "--parameter",
     "parameters",
@@ -372,24 +363,16 @@ def identify(
 )
 @click.option(
     "--dofs",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="CSV node,direction, one row a degree of freedom, where the program's files have none.",
 )
-@click.option(
-    "--deck", type=click.Path(path_type=Path), help="The deck, if it is not beside the matrices."
-)
+@click.option("--deck", type=PATH, help="The deck, if it is not beside the matrices.")
 @click.option("--stiffness-name", metavar="NAME", help="Name of K in a file of several matrices.")
 @click.option("--mass-name", metavar="NAME", help="Name of M likewise.")
 @click.option(
     "--modes", type=click.IntRange(0), help="Frequencies to compute  [default: 6 if it is quick]"
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    required=True,
-    help="Folder for the study; one that has none.",
-)
+@_output(help="Folder for the study; one that has none.", required=True)
 def import_(program: str, base: Path, output: Path, **given: Any) -> None:
     """Turn the matrices of a finite-element PROGRAM into a study.
 
@@ -404,19 +387,12 @@ def import_(program: str, base: Path, output: Path, **given: Any) -> None:
 
 
 @cli.command()
-@click.argument("directory", type=click.Path(path_type=Path))
+@click.argument("directory", type=PATH)
 @click.option("--point", metavar="LABEL", help="Which model  [default: the one the data prefer]")
 @click.option(
-    "--study",
-    type=click.Path(path_type=Path),
-    help="The study of the results  [default: found where it was run]",
+    "--study", type=PATH, help="The study of the results  [default: found where it was run]"
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="Folder for the files  [default: export-LABEL in DIRECTORY]",
-)
+@_output(help="Folder for the files  [default: export-LABEL in DIRECTORY]")
 @click.option("--modes", type=click.IntRange(1), help="Mode shapes  [default: as many as measured]")
 def export(
     directory: Path, point: str | None, study: Path | None, output: Path | None, modes: int | None
@@ -429,6 +405,7 @@ def export(
         say(f"wrote {file}")
     for what in exported.missing:
         say(f"not written: {what}")
+    say_next("show", directory, "--points")
 
 
 def _run(

@@ -14,7 +14,8 @@ import xarray as xr
 
 from modefront._typing import Floats, Ints
 from modefront.cli.layout import BLANK, Line, Screen, number, plural
-from modefront.front.point import Kind, preferred
+from modefront.front.point import Kind
+from modefront.results.selection import reference
 
 FEWEST = 3
 """Parameters and modes that a table keeps, however long it is."""
@@ -31,11 +32,6 @@ def first_models(data: xr.Dataset) -> list[int]:
         *np.flatnonzero(kinds == Kind.EDGE.value).tolist(),
     ]
     return list(dict.fromkeys(chosen))
-
-
-def reference(data: xr.Dataset) -> int:
-    """Return the position of the model that the data prefer."""
-    return [str(x) for x in data["label"].values].index(preferred(data.attrs))
 
 
 def print_models(screen: Screen, data: xr.Dataset) -> None:

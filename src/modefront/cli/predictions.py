@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from modefront.cli.layout import Line, Screen, number, plural
-from modefront.cli.overview import reference
 from modefront.front.point import INTERNAL, preferred
 from modefront.predictions.registry import RecordedPrediction, predictions_in
+from modefront.results.selection import reference
 
 DRAWN = ("mean", "5 %", "95 %")
 """Statistics of models drawn from the posterior that are shown."""

@@ -19,6 +19,7 @@ from modefront.cli.terminal import command, say_next
 from modefront.findings.catalogue import Severity
 from modefront.findings.record import PAGE
 from modefront.results.remarks import digest, findings_of, headlines
+from modefront.results.selection import verdict
 from modefront.study.estimate import Estimate
 from modefront.work.costs import Costs
 
@@ -50,7 +51,7 @@ def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
     screen = Screen.of_output()
     screen.say(f"{data.attrs.get('study', '')}: results in {folder}", style="bold")
     failures = [str(x) for x in findings_of(data) if x.severity is Severity.FAILURE]
-    said = verdict_of(data)
+    said = verdict(data)
     whole = command("show", folder, "--findings")
     for line in [*said, *failures] if said else digest(headlines(data), whole):
         screen.say(line, start="  ")
@@ -64,11 +65,6 @@ def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
     say_next("show", folder)
 
 
-def verdict_of(data: xr.Dataset) -> list[str]:
-    """Return the sentences of the first answer."""
-    return str(data.attrs.get("verdict", "")).splitlines()
-
-
 def print_results(
     data: xr.Dataset, lists: Sequence[str] = (), folder: Path | str = "DIRECTORY"
 ) -> None:
@@ -80,9 +76,11 @@ def print_results(
         screen.show([*title, *screen.sentence(by)])
         for name in (name for name in LISTS if name in lists):
             LISTS[name](screen, data)
+        screen.blank()
+        _say_further(screen, folder)
         return
     show, predicted = command("show", folder), "range" in data.sizes
-    said = [line for text in verdict_of(data) for line in screen.sentence(text)]
+    said = [line for text in verdict(data) for line in screen.sentence(text)]
     if predicted:
         full = f"{show} --predictions"
         said += [BLANK, *predictions_in_short(screen, data, PREDICTIONS, full)]
@@ -90,8 +88,13 @@ def print_results(
     lines = [*title, *said, BLANK, *models_in(screen, data, most, f"{show} --models")]
     room = max(HEIGHT - len(lines) - 5, LEAST)
     screen.show([*lines, BLANK, *_findings(screen, data, room, f"{show} --findings"), BLANK])
+    _say_further(screen, folder)
+
+
+def _say_further(screen: Screen, folder: Path | str) -> None:
     screen.say(f"what a finding means: {PAGE}")
-    screen.show([(f"all: {show} --all", ""), (f"next: {command('report', folder)}", "")])
+    screen.say(f"all: {command('show', folder, '--all')}")
+    screen.say(f"next: {command('report', folder)}")
 
 
 def _findings(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Line]:
@@ -113,7 +116,7 @@ def as_json(data: xr.Dataset) -> str:
     """Return the dataset as JSON: attributes, and each variable with dimensions and values."""
     found = findings_of(data, full=True)
     sections = {
-        "verdict": verdict_of(data),
+        "verdict": verdict(data),
         "attributes": {str(k): as_plain(np.asarray(value)) for k, value in data.attrs.items()},
         "variables": {
             str(name): {"dimensions": list(map(str, x.dims)), "values": as_plain(x.values)}

@@ -3,77 +3,55 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.measured import log_frequencies, mac_values
+from modefront.findings.record import Finding, found
 
-FAR = float(np.log(2.0))
-"""Logarithm of the ratio of the frequencies of a pair from which on they are far apart."""
-
-BEYOND = float(np.log(1.5))
-"""Logarithm of a measured frequency over the model's highest from which on it is outside."""
+FAR, NEAR = np.log(2.0), np.log(1.5)
+"""Logarithms of ratios of frequencies: pairs are far apart, and a window of a study is usual."""
 
 POOR, GOOD = 0.5, 0.8
 """MAC below which a pair is poor, and from which on a mode is found."""
 
 
-@dataclass(frozen=True)
-class PairRemark:
-    """A measured mode that the nominal model pairs badly, or does not have.
-
-    Attributes
-    ----------
-    kind : "distant-pair", "beyond-candidates" or "outside-model"
-    subject : the measured mode
-    text : what is wrong and what mends it
-    """
-
-    kind: str
-    subject: tuple[str, ...]
-    text: str
-
-    def __str__(self) -> str:
-        """Return the text."""
-        return self.text
-
-
-def pair_remarks(comparison: Comparison) -> Iterator[PairRemark]:
-    """Yield the remarks on the pairs of the nominal model with data without mistakes."""
+def bad_pairs(comparison: Comparison) -> Iterator[Finding]:
+    """Yield the measured modes that the nominal model pairs badly, or does not have."""
     view, f, low = comparison.view, comparison.frequency, comparison.candidates
-    logs = log_frequencies(f)
+    logs, modes = log_frequencies(f), comparison.data.modes
     mac = mac_values(view.mean, view.known, comparison.phi)
-    for r, mode in enumerate(comparison.data.modes):
-        subject, log, measured = (str(mode),), view.logs[r], float(np.exp(view.logs[r]))
+    for r, (mode, log) in enumerate(zip(modes, view.logs, strict=True)):
         q, later = int(comparison.pairs.index[r]), int(np.argmax(mac[r]))
-        if log > logs.max() + BEYOND:
+        measured = float(np.exp(log))
+        if log > logs.max() + NEAR:
             whole = f.size == comparison.problem.model.size
-            end = f"{f.size} modes end" if whole else f"{f.size} lowest modes end"
-            yield PairRemark(
-                "outside-model",
-                subject,
-                f"measured mode {mode} at {measured:.4g} Hz is outside what the model has: its "
-                f"{end} at {f.max():.4g} Hz; refine the model, or leave the mode out of all groups",
+            end = f"{f.size} modes" if whole else f"{f.size} lowest modes"
+            yield found(
+                "outside-model", str(mode), measured=measured, modes=end, highest=float(f.max())
             )
         elif later >= low and mac[r, later] > GOOD and mac[r, :low].max() < POOR:
-            yield PairRemark(
+            yield found(
                 "beyond-candidates",
-                subject,
-                f"measured mode {mode} resembles model mode {later + 1} at {f[later]:.4g} Hz (MAC "
-                f"{mac[r, later]:.2f}), which is not looked at; the best of those that are has MAC "
-                f"{mac[r, :low].max():.2f}; set spare = {later + 1 - len(comparison.data.modes)} "
-                "in [pairing]",
+                str(mode),
+                later=later + 1,
+                f=float(f[later]),
+                mac=float(mac[r, later]),
+                best=float(mac[r, :low].max()),
+                spare=later + 1 - len(modes),
             )
         elif abs(log - logs[q]) > FAR:
-            value = comparison.pairs.mac[r]
-            alike = "" if np.isnan(value) else f" (MAC {value:.2f})"
-            near = int(np.argmin(np.abs(log - logs)))
-            yield PairRemark(
-                "distant-pair",
-                subject,
-                f"measured mode {mode} at {measured:.4g} Hz is paired with model mode {q + 1} at "
-                f"{f[q]:.4g} Hz{alike}; set window = 1.5 in [pairing]; the nearest is model mode "
-                f"{near + 1} at {f[near]:.4g} Hz",
+            value, apart = comparison.pairs.mac[r], np.abs(log - logs[:low])
+            fits = (apart < NEAR) & ~(mac[r, :low] < POOR)
+            near = int(np.argmin(np.where(fits, apart, np.inf)))
+            yield found(
+                "distant-pair" if fits.any() else "far-from-model",
+                str(mode),
+                measured=measured,
+                model=q + 1,
+                f=float(f[q]),
+                alike="" if np.isnan(value) else f" (MAC {value:.2f})",
+                near=near + 1,
+                there=float(f[near]),
             )

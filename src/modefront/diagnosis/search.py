@@ -14,7 +14,9 @@ from modefront.diagnosis.comparison import Comparison, compare, of_few_sets
 from modefront.diagnosis.evidence import Point, Quick, State, point, quick
 from modefront.diagnosis.mistakes import MISTAKES
 from modefront.diagnosis.mistakes.record import Mistake, Setting, Variant
-from modefront.diagnosis.pairs import PairRemark, pair_remarks
+from modefront.diagnosis.pairs import bad_pairs
+from modefront.findings.catalogue import CATALOGUE
+from modefront.findings.record import Finding
 
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
@@ -82,7 +84,6 @@ class Found:
     kind : of `modefront.diagnosis.mistakes.MISTAKES`
     subject : what it blames
     numbers : names and numbers of its sentence
-    sentence, remedy : what is wrong, and what mends it
     gain : logarithm of the odds against the best explanation without it
     others : mistakes one of which may be there instead
     evidence : how a MAC value changes
@@ -91,17 +92,22 @@ class Found:
     kind: str
     subject: tuple[str, ...]
     numbers: Mapping[str, Any]
-    sentence: str
-    remedy: str
     gain: float
     others: tuple[Found, ...] = ()
     evidence: str = ""
 
     def __str__(self) -> str:
         """Return what is wrong and what mends it."""
-        either = "".join(f", or {other.sentence}" for other in self.others)
+        wrong, remedy = self.halves
+        either = "".join(f", or {other.halves[0]}" for other in self.others)
         unsure = " (the data cannot tell)" if either else ""
-        return f"{self.sentence}{either}{unsure}{self.evidence}; {self.remedy}"
+        return f"{wrong}{either}{unsure}{self.evidence}; {remedy}"
+
+    @property
+    def halves(self) -> tuple[str, str]:
+        """What is wrong, and what mends it."""
+        wrong, _, remedy = CATALOGUE[self.kind][1].partition("; ")
+        return wrong.format(**self.numbers), remedy.format(**self.numbers)
 
 
 @dataclass(eq=False)
@@ -309,14 +315,13 @@ def _exceeds(other: Explanation, best: Explanation) -> bool:
 
 
 def _found(step: Step, gain: float, others: tuple[Found, ...] = (), evidence: str = "") -> Found:
-    """Return the record of a mistake, in words."""
-    mistake, variant = step.mistake, step.variant
-    sentence, remedy = (x.format(**variant.numbers) for x in (mistake.sentence, mistake.remedy))
-    parts = variant.subject, variant.numbers, sentence, remedy
-    return Found(mistake.kind, *parts, float(gain), others, evidence)
+    """Return the record of a mistake."""
+    variant = step.variant
+    kind, subject = step.mistake.kind, variant.subject
+    return Found(kind, subject, variant.numbers, float(gain), others, evidence)
 
 
-def diagnose(comparison: Comparison) -> list[Found | PairRemark]:
+def diagnose(comparison: Comparison) -> list[Found | Finding]:
     """Return the mistakes of a model or its data; of many data sets, some are looked at.
 
     Pairs are looked at without these mistakes.
@@ -336,4 +341,4 @@ def diagnose(comparison: Comparison) -> list[Found | PairRemark]:
         if model is not None and state.selection is not None:
             problem = replace(problem, model=replace(model, selection=state.selection))
         comparison = compare(replace(problem, data=data, start=state.start))
-    return [*found, *(each for each in pair_remarks(comparison) if each.subject[0] not in foreign)]
+    return [*found, *(each for each in bad_pairs(comparison) if each.subject not in foreign)]

@@ -1,4 +1,4 @@
-r"""Sensitivities of the measured modes to the parameters, and what to fix or to group.
+r"""Sensitivities of the measured modes to the parameters, and which of these to fix.
 
 The table has :math:`(\theta_j / f_r)\, \partial f_r / \partial \theta_j`, the change of a frequency
 in percent for one percent of a parameter, and the change of all shapes together,
@@ -9,7 +9,6 @@ changed by a hundredth of their range instead.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,9 +18,6 @@ from modefront._typing import Floats
 from modefront.identifiability.combinations import WEAK, decompose, optimal_weights, without_effect
 from modefront.identifiability.scale import scale_at
 from modefront.residuals.problem import UpdatingProblem
-
-ALIKE = 0.98
-"""Cosine of the changes that two parameters make from which on they are grouped."""
 
 
 @dataclass(frozen=True)
@@ -34,14 +30,14 @@ class Sensitivities:
     modes : measured modes
     frequency : (parameters, modes) percent of the frequency for a percent of the parameter
     shape : (parameters,) percent of all shapes together
-    advice : for each parameter "fix", "group with NAME" or nothing
+    superfluous : parameters to fix, so that the data determine the others
     """
 
     parameters: tuple[str, ...]
     modes: tuple[int, ...]
     frequency: Floats
     shape: Floats
-    advice: tuple[str, ...]
+    superfluous: tuple[str, ...]
 
 
 def sensitivities(problem: UpdatingProblem) -> Sensitivities:
@@ -69,48 +65,23 @@ def sensitivities(problem: UpdatingProblem) -> Sensitivities:
         change, square[:, None], out=np.zeros(change.shape), where=square[:, None] > 0
     )
     shape = np.sqrt(np.asarray(share.sum(axis=0)))
-    return Sensitivities(
-        problem.model.parameters, problem.data.modes, frequency, shape, tuple(advice(problem))
-    )
-
-
-def advice(problem: UpdatingProblem) -> list[str]:
-    """Return which parameters to fix or to group, because the data do not determine them.
-
-    Parameters without effect are fixed. Of those that act alike, the later ones are grouped with
-    the first. Of the rest, the parameters of which the others leave least, as long as some
-    combination is hardly determined (singular value below 1 % of the greatest).
-    """
     names = problem.model.parameters
-    out = [""] * len(names)
+    fixed = tuple(names[j] for j in superfluous(problem))
+    return Sensitivities(names, problem.data.modes, frequency, shape, fixed)
+
+
+def superfluous(problem: UpdatingProblem) -> list[int]:
+    """Return the parameters with an effect of which the others leave least.
+
+    Without them no combination is hardly determined (singular value below 1 % of the greatest).
+    """
     nominal, scale = problem.evaluate(problem.start), scale_at(problem, problem.start)
-    for j in without_effect(problem, nominal, scale):
-        out[j] = "fix: no effect"
+    idle = without_effect(problem, nominal, scale)
     roots = np.sqrt(optimal_weights(problem.properties, nominal.J))
-    residuals = problem.residuals(problem.start)
-    G = (
-        np.concatenate([w * residual.dr for w, residual in zip(roots, residuals, strict=True)])
-        * scale.unit
-    )
-    size = np.linalg.norm(G, axis=0)
-    kept = [j for j in range(len(names)) if not out[j] and size[j] > 0]
-    for position, j in enumerate(kept):
-        for i in kept[:position]:
-            if not out[i] and abs(G[:, i] @ G[:, j]) > ALIKE * size[i] * size[j]:
-                out[j] = f"group with {names[i]}"
-                break
-    kept = [j for j in kept if not out[j]]
-    for j in _superfluous(G, kept):
-        out[j] = "fix: not determined"
-    return out
-
-
-def _superfluous(G: Floats, kept: Sequence[int]) -> list[int]:
-    """Return the columns of G to leave out so that all combinations of the rest are determined."""
-    if not kept:
-        return []
-    order = scipy.linalg.qr(G[:, kept], mode="r", pivoting=True)[1]
-    chosen = [kept[int(i)] for i in order]
+    residuals = zip(roots, problem.residuals(problem.start), strict=True)
+    G = np.concatenate([w * residual.dr for w, residual in residuals]) * scale.unit
+    kept = np.setdiff1d(np.flatnonzero(G.any(axis=0)), idle)
+    chosen = kept[scipy.linalg.qr(G[:, kept], mode="r", pivoting=True)[1]].tolist()
     out: list[int] = []
     while len(chosen) > 1 and decompose(G[:, chosen])[-1].share < WEAK:
         out.append(chosen.pop())

@@ -30,9 +30,14 @@ SHOWN = 3
 """Directions that are not determined, at most, that a sentence names one by one."""
 
 
-def enumeration(names: Sequence[str]) -> str:
-    """Return names as a text: "a, b and c"."""
-    *first, last = names
+def enumeration(names: Sequence[str], most: int | None = None) -> str:
+    """Return names as a text, the first of many.
+
+    >>> enumeration(["a", "b", "c"]), enumeration(["a", "b", "c"], 2)
+    ('a, b and c', 'a, b and 1 more')
+    """
+    rest = 0 if most is None else max(len(names) - most, 0)
+    *first, last = [*names[:most], f"{rest} more"] if rest else names
     return f"{', '.join(first)} and {last}" if first else last
 
 

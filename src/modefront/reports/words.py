@@ -10,6 +10,7 @@ import xarray as xr
 from modefront.findings.catalogue import Severity
 from modefront.front.methods import METHODS
 from modefront.results.remarks import findings_of
+from modefront.results.selection import verdict
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ def topics(data: xr.Dataset) -> list[Topic]:
 
     failed = of(Severity.FAILURE) or ("All models that were solved for converged.",)
     all_topics = (
-        Topic("", tuple(str(data.attrs.get("verdict", "")).splitlines())),
+        Topic("", tuple(verdict(data))),
         Topic("How well the best models do", of(Severity.FIT)),
         Topic("What to beware of", (*failed, *of(Severity.CAUTION))),
         Topic("What the data leave open", of(Severity.OPEN)),

@@ -23,6 +23,7 @@ from modefront.results.analysis import Values, left_open
 from modefront.results.findings import as_values
 from modefront.results.predictions import by_kind
 from modefront.results.schema import described
+from modefront.results.selection import reference
 from modefront.uncertainty.inference import Inference
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.prediction import (
@@ -124,14 +125,14 @@ def posterior_models(
     if posterior is None:
         return PosteriorModels(None, none, [found("no-posterior")] if draws else [])
     limits = []
-    theta, reference = data["theta"].values[_reference(data)], preferred(data.attrs)
+    theta, best = data["theta"].values[reference(data)], preferred(data.attrs)
     parted = zip(problem.model.parameters, left_open(posterior.free), strict=True)
     names = [name for name, is_open in parted if is_open]
     if names:
-        limits.append(found("open-in-posterior", enumeration(names), reference=reference))
+        limits.append(found("open-in-posterior", enumeration(names), reference=best))
     differences = stencil(theta, posterior.axes, problem.lower, problem.upper)
     if differences is None:
-        limits.append(found("no-room", str(reference)))
+        limits.append(found("no-room", str(best)))
     if draws and drawn is None:
         rng = np.random.default_rng(seed_sequence(runner.seed, "posterior"))
         bounds = problem.lower, problem.upper
@@ -168,11 +169,6 @@ def with_posterior(
     return data.assign(described(values, kinds_in(data))).assign_coords(coordinates)
 
 
-def _reference(data: xr.Dataset) -> int:
-    """Return the position of the model around which the posterior lies."""
-    return [str(x) for x in data["label"].values].index(preferred(data.attrs))
-
-
 def _stacked(
     predictions: Sequence[Prediction], rows: Sequence[Sequence[Predicted]]
 ) -> dict[str, Floats]:
@@ -202,7 +198,7 @@ def _to_first_order(
     out: Values = {}
     unknown = np.zeros(data.sizes[kind.dimension], dtype=np.bool_)
     for variable in kind.ranged:
-        middle = data[variable.name].values[_reference(data)]
+        middle = data[variable.name].values[reference(data)]
         beside = values[variable.key].reshape(m, 2, -1)
         with np.errstate(divide="ignore", invalid="ignore"):
             change = (np.log(middle), np.log(beside)) if variable.logarithmic else (middle, beside)
@@ -217,9 +213,9 @@ def _to_first_order(
             out[f"{name}_std"] = lognormal_std(middle, std)
         else:
             out |= {f"{name}_std": std, f"{name}_covariance": C}
-    reference = preferred(data.attrs)
+    best = preferred(data.attrs)
     return out, [
-        found("no-deviation", str(name), reference=reference, undefined=kind.undefined)
+        found("no-deviation", str(name), reference=best, undefined=kind.undefined)
         for name in data[kind.dimension].values[unknown]
     ]
 
@@ -246,7 +242,7 @@ def _of_samples(
     first = kind.variables[0]
     missing = np.isnan(values[first.key]).sum(axis=0)
     missing -= np.repeat(failed, [len(each.places) for each in predictions])
-    missing[np.isnan(data[first.name].values[_reference(data)])] = 0
+    missing[np.isnan(data[first.name].values[reference(data)])] = 0
     limits += [
         found("unsolved-draws", str(name), count=int(count), drawn=n, what=kind.absent)
         for name, count in zip(data[kind.dimension].values, missing, strict=True)

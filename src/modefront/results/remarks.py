@@ -178,18 +178,18 @@ def _misfit(data: xr.Dataset) -> Iterator[Finding]:
         return
     nominal, beside = data["kind"].values == Kind.NOMINAL.value, ""
     if nominal.any() and np.isfinite(data["frequency"].values[nominal]).any():
-        beside = f"; the nominal model has {_fit(data, nominal)}"
+        beside = f"; the nominal model has {fit_of(data, nominal)}"
     yield found(
         "misfit",
         best,
         models=int(chosen.sum()),
-        whole=_fit(data, chosen, whole=True),
-        reference=_fit(data, data["label"].values == best),
+        whole=fit_of(data, chosen, whole=True),
+        reference=fit_of(data, data["label"].values == best),
         nominal=beside,
     )
 
 
-def _fit(data: xr.Dataset, chosen: Bools, *, whole: bool = False) -> str:
+def fit_of(data: xr.Dataset, chosen: Bools, *, whole: bool = False) -> str:
     """Return the worst error of a frequency and the least MAC of models, in a whole sentence."""
     with np.errstate(divide="ignore", invalid="ignore"):
         f = data["frequency"].values[chosen] / data["measured_frequency"].values

@@ -24,7 +24,7 @@ from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.remarks import CHANGED, headlines
-from modefront.results.selection import front_points
+from modefront.results.selection import front_points, verdict
 from modefront.results.shapes import PairedShapes, paired_shapes
 from modefront.results.vtu import write_vtu
 
@@ -192,7 +192,7 @@ class Results:
     @property
     def verdict(self) -> list[str]:
         """The first answer: which model to use, how sure it is, and what the front says."""
-        return str(self.attrs.get("verdict", "")).splitlines()
+        return verdict(self.dataset)
 
     @property
     def optimal(self) -> ReportedModel | None:

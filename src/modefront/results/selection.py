@@ -6,12 +6,22 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Ints
-from modefront.front.point import Kind
+from modefront.front.point import Kind, preferred
 
 
 def front_points(data: xr.Dataset) -> Ints:
     """Return the positions of the points of the front, in their order along it."""
     return np.flatnonzero(data["kind"].values == Kind.FRONT.value)
+
+
+def reference(data: xr.Dataset) -> int:
+    """Return the position of the model that the data prefer."""
+    return [str(x) for x in data["label"].values].index(preferred(data.attrs))
+
+
+def verdict(data: xr.Dataset) -> list[str]:
+    """Return the sentences of the first answer."""
+    return str(data.attrs.get("verdict", "")).splitlines()
 
 
 def not_converged(data: xr.Dataset) -> list[str]:

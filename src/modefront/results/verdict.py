@@ -1,11 +1,12 @@
 """The first answer: which model to use and why, how sure it is, and what the front says.
 
-`SENTENCES` has all it can say; docs/verdicts.md says of each what it means and what to do.
+`modefront.findings.catalogue.VERDICT` has all it can say; docs/verdicts.md says of each what it
+means and what to do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain
 from textwrap import wrap
 from typing import Any
@@ -14,10 +15,12 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats
+from modefront.findings.catalogue import VERDICT
 from modefront.findings.knowledge import enumeration
-from modefront.front.point import Kind
+from modefront.front.point import Kind, preferred
 from modefront.predictions.registry import predictions_in
 from modefront.results.posterior import TRUST
+from modefront.results.remarks import fit_of
 from modefront.results.selection import front_points
 
 FAR = 10.0
@@ -47,60 +50,21 @@ FORETOLD = 2
 TWINS = 0.9
 """Correlation of draws, without its sign, from which two parameters are known only together."""
 
-SENTENCES: Mapping[str, str] = {
-    "do-not-use": "Do not use any of these models: {why}.",
-    "far": "errors of {group} are {misfit:.2g} times those expected",
-    "worse": "{group} fits worse than at the nominal model",
-    "use": "Use {reference}: its errors over those expected are {errors}.",
-    "lacks": "They are larger than noise: the model lacks something.",
-    "at-bound": "{at}: widen {it}, or ask what the model lacks.",
-    "at-harmless-bound": "{at}: wider bounds lower no errors by more than {gain:.0f} %.",
-    "at-wrong-bound": (
-        "{at}. With {where}, errors of {group} are {after:.2g} of those expected instead of "
-        "{before:.2g}: widen {its} bounds, or ask what the model lacks."
-    ),
-    "assumed": "Assumed: {assumed}; say yours in [noise].",
-    "unlike": (
-        "Shapes at these sensors do not tell which modes of the model are those measured as "
-        "{modes}: frequencies decide here. The front pairs them by the MAC, and may be wrong."
-    ),
-    "determined": "Determined (90 %): {parameters}.",
-    "partly": "Partly (90 %): {parameters}.",
-    "not determined": "Not determined (90 %): {parameters}.",
-    "measure": "Measure {what}: the interval of {name} becomes {gain:.0f} % narrower.",
-    "leave-open-less": "Or leave open less, in [[parameter]] of {lines}.",
-    "agree": (
-        "Along the front errors of {group} change by {change:.2g} of those expected: the "
-        "compromise hardly matters."
-    ),
-    "compromise": (
-        "The front is a compromise: along it errors of {group} change by {change:.2g} times those "
-        "expected."
-    ),
-    "prediction": (
-        "{name}, {place}: {quantity} {low:.3g} to {high:.3g} (90 %), {least:.3g} to {greatest:.3g} "
-        "over the front."
-    ),
-}
-"""Each sentence of the first answer, and each reason of a refusal, by its name."""
-
 
 def with_verdict(data: xr.Dataset) -> xr.Dataset:
     """Return results with the first answer, and without a reference where no model is to be used.
 
-    It has `LINES` lines at most, and none where nothing is expected of the errors. What has no room
-    is left to the tables below it. Where no model is to be used, nothing is said of parameters, the
-    front and predictions.
+    It has `LINES` lines at most. What has no room is left to the tables below it. Where no model is
+    to be used, nothing is said of parameters, the front and predictions; where nothing is expected
+    of the errors, only how well the reference fits.
     """
     if "misfit" not in data:
-        return data.assign_attrs(verdict="")
+        return data.assign_attrs(verdict="\n".join(_unjudged(data)))
     groups = list(map(str, data["group"].values))
     refused = refusals(groups, data["misfit"].values, data["nominal_misfit"].values)
     said = [*_at_bounds(data), *_assumed(data), *_pairs(data)]
     if refused:
-        more = [f"{len(refused) - NAMED} more"] * (len(refused) > NAMED)
-        why = enumeration([*refused[:NAMED], *more])
-        said.insert(0, _say("do-not-use", why=why))
+        said.insert(0, _say("do-not-use", why=enumeration(refused, NAMED)))
         data = data.assign_attrs(reference="")
     else:
         further = (_parameters(data), _front(data), _next(data), _predictions(data))
@@ -108,8 +72,22 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     return data.assign_attrs(verdict="\n".join(_with_room(said)))
 
 
+def _unjudged(data: xr.Dataset) -> Iterator[str]:
+    """Yield how well the reference fits, where nothing is expected of the errors."""
+    labels, reference = data["label"].values, preferred(data.attrs)
+    is_nominal = data["kind"].values == Kind.NOMINAL.value
+    fit = fit_of(data, labels == reference, whole=True)
+    nominal = fit_of(data, is_nominal)
+    yield _say("unjudged", reference=reference, fit=fit, nominal=nominal)
+    error, before = (data["error"].values[x][0] for x in (labels == reference, is_nominal))
+    worse = [_say("worse", group=x) for x in data["group"].values[error > WORSE * before]]
+    if worse:
+        yield _say("bought", why=enumeration(worse, NAMED))
+    yield _say("not-judged")
+
+
 def _say(kind: str, **values: Any) -> str:
-    return SENTENCES[kind].format(**values)
+    return VERDICT[kind].format(**values)
 
 
 def _with_room(sentences: Sequence[str]) -> list[str]:
@@ -134,8 +112,8 @@ def refusals(groups: Sequence[str], misfit: Floats, nominal: Floats) -> list[str
 def _use(data: xr.Dataset) -> str:
     """Return that the reference can be used, and how well it fits."""
     misfit, groups = data["misfit"].values, data["group"].values
-    worst = np.argsort(-misfit)[:NAMED] if misfit.size > NAMED else np.arange(misfit.size)
-    size = _some([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], misfit.size)
+    worst = np.argsort(-misfit) if misfit.size > NAMED else np.arange(misfit.size)
+    size = enumeration([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], NAMED)
     use = _say("use", reference=data.attrs["reference"], errors=size)
     return f"{use} {_say('lacks')}" if (misfit > LARGE).any() else use
 
@@ -151,8 +129,7 @@ def _at_bounds(data: xr.Dataset) -> Iterator[str]:
     held = np.flatnonzero(sides)
     if not held.size:
         return
-    more = f" and {held.size - NAMED} more" * (held.size > NAMED)
-    said = f"{enumeration([at[j] for j in held[:NAMED]])}{more}"
+    said = enumeration([at[j] for j in held], NAMED)
     if "freed_theta" not in data:
         yield _say("at-bound", at=said, it="it" if held.size == 1 else "them")
         return
@@ -162,12 +139,11 @@ def _at_bounds(data: xr.Dataset) -> Iterator[str]:
     if not beyond or before[i] - after[i] < GAIN * before[i]:
         yield _say("at-harmless-bound", at=said, gain=100 * GAIN)
         return
-    where = enumeration([f"{names[j]} = {free[j]:.3g}" for j in beyond[:NAMED]])
-    further = f" and {len(beyond) - NAMED} more" * (len(beyond) > NAMED)
+    where = enumeration([f"{names[j]} = {free[j]:.3g}" for j in beyond], NAMED)
     yield _say(
         "at-wrong-bound",
         at=said,
-        where=where + further,
+        where=where,
         group=data["group"].values[i],
         after=after[i],
         before=before[i],
@@ -194,11 +170,10 @@ def _parameters(data: xr.Dataset) -> Iterator[str]:
     for trust in TRUST:
         own = np.flatnonzero(data["trust"].values == trust).tolist()
         parts = [
-            f"{data['parameter'].values[j]} {_interval(theta[j], low[j], high[j])}"
-            for j in own[:NAMED]
+            f"{data['parameter'].values[j]} {_interval(theta[j], low[j], high[j])}" for j in own
         ]
         if own:
-            yield _say(trust, parameters=_some(parts, len(own)))
+            yield _say(trust, parameters=enumeration(parts, NAMED))
 
 
 def _interval(value: float, low: float, high: float) -> str:
@@ -210,10 +185,6 @@ def _interval(value: float, low: float, high: float) -> str:
     size, width = max(abs(low), abs(high)), high - low
     digits = max(3, min(int(np.ceil(np.log10(size / width))) + 1, 9)) if width > 0 else 3
     return f"{value:.{digits + 1}g} ({low:.{digits}g} to {high:.{digits}g})"
-
-
-def _some(parts: Sequence[str], count: int, mark: str = ", ") -> str:
-    return mark.join(parts) + f" and {count - len(parts)} more" * (count > len(parts))
 
 
 def _front(data: xr.Dataset) -> Iterator[str]:
@@ -271,7 +242,7 @@ def _next(data: xr.Dataset) -> Iterator[str]:
         yield _say("measure", what=what, name=name, gain=100 * gain[c])
     lines = _closed(data["parameter"].values.tolist(), data["sample_theta"].values, trust.tolist())
     if lines:
-        yield _say("leave-open-less", lines=_some(lines[:NAMED], len(lines), "; "))
+        yield _say("leave-open-less", lines=enumeration(lines, NAMED))
 
 
 def _closed(names: Sequence[str], samples: Floats, trust: Sequence[str]) -> list[str]:

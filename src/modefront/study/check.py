@@ -23,8 +23,6 @@ from threadpoolctl import threadpool_limits
 from modefront._typing import Floats
 from modefront.brief import as_html
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
-from modefront.diagnosis.notes import Note
-from modefront.diagnosis.pairs import PairRemark
 from modefront.diagnosis.search import Found, diagnose
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
 from modefront.errors import Fault, ModelError, refuse
@@ -36,6 +34,7 @@ from modefront.findings.knowledge import (
     no_effect,
     summary,
 )
+from modefront.findings.record import Finding
 from modefront.identifiability.combinations import (
     NONE,
     WEAK,
@@ -74,10 +73,13 @@ KEPT = 500
 """Models that a search keeps with their second derivatives, some."""
 
 
-HARMLESS = ("damping", "unused-group", "distant-pair", "beyond-candidates", "foreign-mode")
+HARMLESS = (
+    *("damping", "unused-group", "distant-pair", "far-from-model"),
+    *("beyond-candidates", "foreign-mode"),
+)
 """Mistakes that leave the residuals as they are, or that need not be mistakes."""
 
-Mistake = Found | PairRemark | Note
+Mistake = Found | Finding
 """What looks wrong: a record with a kind and a subject, and a sentence as its text."""
 
 

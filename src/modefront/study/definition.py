@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Annotated
 
 from modefront.brief import as_html
-from modefront.diagnosis.notes import Note
 from modefront.errors import Fault, InputError, refuse
+from modefront.findings.record import Finding
 from modefront.front.given import Weighted, label_faults
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
@@ -49,7 +49,7 @@ class Origin:
     work: str
     problem: UpdatingProblem
     remark: str = ""
-    notes: tuple[Note, ...] = ()
+    notes: tuple[Finding, ...] = ()
 
 
 # 12 fields: the problem, where it was read, and each table of options.

@@ -12,9 +12,9 @@ from typing import Any, get_args
 import numpy as np
 
 from modefront.data.modal import ModalData
-from modefront.diagnosis.notes import ComparedPair, Note
 from modefront.errors import Fault, InputError, ModelError
 from modefront.findings.knowledge import enumeration
+from modefront.findings.record import Finding, found
 from modefront.front.given import Weighted, label_faults
 from modefront.front.options import Pareto
 from modefront.front.search import Search
@@ -122,7 +122,7 @@ def load(path: Path | str) -> Study:
         _digest(json.dumps(front, sort_keys=True).encode(), root.files),
         problem,
         reduction.fallback(problem.model),
-        tuple(note for note in root.notes if isinstance(note, Note)),
+        tuple(note for note in root.notes if isinstance(note, Finding)),
     )
     return Study(
         problem,
@@ -239,7 +239,11 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
             continue
         chosen = {kind.name: rs for kind, rs in group.positions(data)}
         single = {data.modes[r] for r in chosen.get("shape", ())}
-        root.notes += [ComparedPair(pair, group.name) for pair in data.pairs if single & set(pair)]
+        root.notes += [
+            found("compared-pair", f"{a} and {b}", group=group.name, modes=f"{a}, {b}")
+            for a, b in data.pairs
+            if single & {a, b}
+        ]
         members = frozenset((kind.name, r) for kind, rs in group.positions(data) for r in rs)
         if members in held:  # their objectives could not differ
             expected = f"other members than those of '{held[members]}'"

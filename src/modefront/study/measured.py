@@ -12,11 +12,12 @@ from modefront._typing import Floats
 from modefront.data.csv import read_csv
 from modefront.data.modal import ModalData
 from modefront.data.uff import NodalModes, is_universal, read_uff55
-from modefront.diagnosis.notes import DataDirection, axis_name
+from modefront.diagnosis.notes import axis_name
 from modefront.errors import InputError, reason, suggestion
 from modefront.families import Family
 from modefront.fem.check import unit_vector
 from modefront.fem.section import FemError
+from modefront.findings.record import found
 from modefront.inputs import file_size, wrong
 from modefront.json_schema import NAME, any_of, closed
 from modefront.models.base import Model
@@ -143,7 +144,8 @@ def _of_nodes(
         axis = None if in_space is None else in_space.sensor_directions[s]
         in_data = modes.in_space(*place)
         if axis is not None and axis.any() and abs(axis @ in_data[:3]) < 0.5:
-            table.notes.append(DataDirection(name, axis_name(axis), axis_name(in_data)))
+            names = axis_name(axis), axis_name(in_data)
+            table.notes.append(found("data-direction", name, model=names[0], data=names[1]))
     if len(table.faults) > before:
         return None
     for name, (node, direction) in placed.items():

@@ -120,7 +120,7 @@ def solve(
 
 # 7 arguments: the study, and how it is run by keyword.
 def run(
-    study: Study | UpdatingProblem,
+    study: Study | UpdatingProblem | Path | str,
     folder: Path | str | None = None,
     *,
     fresh: bool = False,
@@ -134,9 +134,9 @@ def run(
     Parameters
     ----------
     study
-        The study, or a problem with the options that are usual. A study that was read from a file
-        continues where an interrupted run stopped: tasks that are done are not done again. One
-        that was made in Python starts over.
+        The study, the path of its file, or a problem with the options that are usual. A study that
+        was read from a file continues where an interrupted run stopped: tasks that are done are not
+        done again. One that was made in Python starts over.
     folder
         Folder for ``results.nc`` and the results of the tasks; made where there is none. None to
         write nothing.
@@ -162,7 +162,10 @@ def run(
     UnfinishedError
         If the work cannot be done; what is done is kept.
     """
+    from modefront.study.file import load
+
     carrier = backend(workers, scheduler)
+    study = load(study) if isinstance(study, Path | str) else study
     return run_on(carrier, study, folder, fresh=fresh, refined=refined, progress=progress)
 
 

@@ -18,12 +18,7 @@ WIDER = 4.0
 """Factor by which a bound is moved away."""
 
 
-@mistake(
-    "nominal-value",
-    USUAL,
-    "the nominal value of {name} is {given:.4g}, and the data say about {better:.4g}",
-    "check the unit of {name}, its nominal value and its bounds",
-)
+@mistake("nominal-value", USUAL)
 def wrong_nominal_value(setting: Setting) -> Iterator[Variant]:
     """Yield powers of ten on each positive parameter and its bounds."""
     state = setting.state
@@ -41,12 +36,7 @@ def wrong_nominal_value(setting: Setting) -> Iterator[Variant]:
         yield Variant((name,), change, numbers, price)
 
 
-@mistake(
-    "bound",
-    RARE,
-    "the {side} bound {bound:.4g} of {name} excludes the values that fit the data",
-    "widen the bounds of {name}, or find what else differs between model and structure",
-)
+@mistake("bound", RARE)
 def excluding_bound(setting: Setting) -> Iterator[Variant]:
     """Yield bounds at which the fit ends, moved away."""
     state, theta = setting.state, setting.points[-1].theta

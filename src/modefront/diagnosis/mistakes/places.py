@@ -12,18 +12,19 @@ import scipy.sparse
 
 from modefront.diagnosis.evidence import State
 from modefront.diagnosis.mistakes.record import (
+    MANY,
     OFTEN,
     TRIED,
     USUAL,
     Change,
     Setting,
     Variant,
-    enumerated,
     mistake,
     one_of,
     promising,
 )
 from modefront.diagnosis.notes import ALONG, axis_name
+from modefront.findings.knowledge import enumeration
 from modefront.models.geometry import Geometry
 from modefront.rounding import ACCUMULATED
 
@@ -66,12 +67,7 @@ def in_space(setting: Setting) -> Geometry | None:
     return geometry if geometry is not None and len(geometry.axes) > 1 else None
 
 
-@mistake(
-    "wrong-place",
-    USUAL,
-    "sensor {sensor} fits the data at {place} and not at {given}{too}",
-    "check where {sensor} was in the test, and write its place in [model.sensors]",
-)
+@mistake("wrong-place", USUAL)
 def wrong_place(setting: Setting) -> Iterator[Variant]:
     """Yield sensors at other nodes, directions kept; in a chain, at other degrees of freedom."""
     selection, geometry = setting.state.selection, in_space(setting)
@@ -110,7 +106,7 @@ def wrong_place(setting: Setting) -> Iterator[Variant]:
             "sensor": name,
             "given": _place(geometry, place),
             "place": _place(geometry, k),
-            "too": f", where the model has {enumerated(others)} too" if others else "",
+            "too": f", where the model has {enumeration(others, MANY)} too" if others else "",
         }
         less = OFTEN_SHARED if others else 0.0
         yield Variant((name,), change, numbers, price - less)
@@ -122,12 +118,7 @@ def _place(geometry: Geometry | None, k: int) -> str:
     return f"({', '.join(f'{x:.4g}' for x in geometry.nodes[k])})"
 
 
-@mistake(
-    "wrong-direction",
-    OFTEN,
-    "direction {given} of {sensors} does not match the data: {better} does",
-    'check along which axis {sensors} measure{s}, and write direction = "{better}"{turn}',
-)
+@mistake("wrong-direction", OFTEN)
 def wrong_direction(setting: Setting) -> Iterator[Variant]:
     """Yield other directions: of single sensors, of all along an axis, of two axes exchanged."""
     geometry = in_space(setting)
@@ -171,7 +162,7 @@ def _turned(
     sensors = tuple(setting.sensors[s] for s in some)
     before, after = names or (axis_name(given[some[0]]), axis_name(new[0]))
     numbers = {
-        "sensors": enumerated(sensors),
+        "sensors": enumeration(sensors, MANY),
         "given": before,
         "better": after,
         "s": "s" * (len(some) == 1),
@@ -180,12 +171,7 @@ def _turned(
     return Variant(sensors, relocated(some, sensor_directions=new), numbers, price)
 
 
-@mistake(
-    "counted-from-one",
-    USUAL,
-    "the {what} of the sensors look as if they were counted from 1",
-    "count {what} from 0: subtract 1 from each in [model.sensors]",
-)
+@mistake("counted-from-one", USUAL)
 def counted_from_one(setting: Setting) -> Iterator[Variant]:
     """Yield all sensors at the node, or the degree of freedom, before their own."""
     geometry, selection = in_space(setting), setting.state.selection

@@ -1,8 +1,8 @@
-"""A mistake as a record: who may have made it where, how likely, in which words, what mends it.
+"""A mistake as a record: who may have made it where, and how likely.
 
 A mistake has a probability with which a study has one; its variants share it. A variant says whom
-it blames, how data or model look without it, and the names and numbers of the sentence, in which
-they stand in braces.
+it blames, how data or model look without it, and the names and numbers of the sentence that
+`modefront.findings.catalogue` has of its kind.
 """
 
 from __future__ import annotations
@@ -17,12 +17,16 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.diagnosis.evidence import OF_MODEL, Point, State
 from modefront.diagnosis.student import loss
+from modefront.findings.knowledge import enumeration
 
 RARE, USUAL, OFTEN = 0.005, 0.02, 0.05
 """Probabilities with which a study has a mistake."""
 
 TRIED = 40
 """Variants of a mistake that are tried where there are many: those that promise most."""
+
+MANY = 6
+"""Names that a sentence has, at most."""
 
 Change: TypeAlias = Callable[[State], State]
 
@@ -61,7 +65,7 @@ class Setting:
 
     def others(self, k: int) -> str:
         """Return the names of the data sets besides one."""
-        return enumerated([name for i, name in enumerate(self.sets) if i != k], 2)
+        return enumeration([name for i, name in enumerate(self.sets) if i != k], 2)
 
     def gain(self, s: int, rows: scipy.sparse.csr_array) -> Floats:
         """Return by how much the cost falls with sensor s at other rows (places, N), (places,)."""
@@ -106,22 +110,17 @@ class Mistake:
     ----------
     kind : name
     probability : with which a study has one
-    sentence, remedy : what is wrong, and what mends it
     variants : yields the variants in a setting
     """
 
     kind: str
     probability: float
-    sentence: str
-    remedy: str
     variants: Variants
 
 
-def mistake(
-    kind: str, probability: float, sentence: str, remedy: str
-) -> Callable[[Variants], Mistake]:
+def mistake(kind: str, probability: float) -> Callable[[Variants], Mistake]:
     """Return the decorator of a function that yields variants, which makes a mistake of it."""
-    return lambda variants: Mistake(kind, probability, sentence, remedy, variants)
+    return lambda variants: Mistake(kind, probability, variants)
 
 
 def promising(found: Iterable[tuple[float, Variant]]) -> Iterator[Variant]:
@@ -143,15 +142,3 @@ def changed(part: str, new: Callable[[Floats], Floats]) -> Change:
         return replace(state, data=replace(state.data, **values))
 
     return change
-
-
-def enumerated(names: Sequence[str], most: int = 6) -> str:
-    """Return names as a text, the first of many.
-
-    >>> enumerated(["a", "b", "c"], 2)
-    'a, b and 1 more'
-    """
-    shown = list(names[:most])
-    if len(names) > most:
-        return f"{', '.join(shown)} and {len(names) - most} more"
-    return " and ".join([*([", ".join(shown[:-1])] if shown[1:] else []), *shown[-1:]])

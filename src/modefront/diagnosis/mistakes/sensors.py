@@ -9,6 +9,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.diagnosis.evidence import OF_MODEL
 from modefront.diagnosis.mistakes.record import (
+    MANY,
     OFTEN,
     TRIED,
     USUAL,
@@ -16,12 +17,12 @@ from modefront.diagnosis.mistakes.record import (
     Setting,
     Variant,
     changed,
-    enumerated,
     mistake,
     one_of,
     promising,
 )
 from modefront.diagnosis.student import loss
+from modefront.findings.knowledge import enumeration
 
 
 def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
@@ -32,7 +33,7 @@ def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
     every = list(range(len(sets)))
     some = [[k] for k in every] if len(sets) > 1 else []
     some += [[j for j in every if j != k] for k in every] if len(sets) == 3 else []
-    named = [(part, enumerated([sets[k] for k in part])) for part in some]
+    named = [(part, enumeration([sets[k] for k in part], MANY)) for part in some]
     return [
         (every, "all data"),
         *((part, f"set{'s' * (len(part) > 1)} {names}") for part, names in named),
@@ -50,13 +51,7 @@ def permuted(sets: list[int], sensors: list[int], order: list[int], sign: float)
     return changed("shape", new)
 
 
-@mistake(
-    "reversed-sensor",
-    OFTEN,
-    "sensor {sensor} is reversed in {where}",
-    "check the direction of {sensor}, and change the sign of its column, or of the direction in "
-    "the model",
-)
+@mistake("reversed-sensor", OFTEN)
 def reversed_sensor(setting: Setting) -> Iterator[Variant]:
     """Yield every sensor; of many, those after whose reversal residuals are the least."""
     where, found = parts(setting.sets), []
@@ -74,12 +69,7 @@ def reversed_sensor(setting: Setting) -> Iterator[Variant]:
     yield from promising(found)
 
 
-@mistake(
-    "exchanged-sensors",
-    USUAL,
-    "sensors {sensors} are exchanged in {where}",
-    "check the cables of {sensors}, and exchange their columns or sensors",
-)
+@mistake("exchanged-sensors", USUAL)
 def exchanged_sensors(setting: Setting) -> Iterator[Variant]:
     """Yield pairs of sensors; of many, those after whose exchange residuals are the least."""
     where, found, count = parts(setting.sets), [], len(setting.measured)
@@ -95,7 +85,7 @@ def exchanged_sensors(setting: Setting) -> Iterator[Variant]:
         for i, j in pairs[best].tolist():
             s, t = setting.measured[i], setting.measured[j]
             names = setting.sensors[s], setting.sensors[t]
-            numbers = {"sensors": enumerated(names), "where": name}
+            numbers = {"sensors": enumeration(names), "where": name}
             change = permuted(sets, [s, t], [t, s], 1.0)
             found.append((float(gain[i, j]), Variant((*names, name), change, numbers, price)))
     yield from promising(found)

@@ -11,16 +11,17 @@ from modefront._typing import Floats, Ints
 from modefront.diagnosis.evidence import State
 from modefront.diagnosis.measured import assigned, mac_values, median
 from modefront.diagnosis.mistakes.record import (
+    MANY,
     OFTEN,
     USUAL,
     Setting,
     Variant,
     changed,
-    enumerated,
     mistake,
     one_of,
 )
 from modefront.diagnosis.student import NOTHING
+from modefront.findings.knowledge import enumeration
 
 WRONG = {"frequency": 0.2, "shape": 1.0}
 """Scale of values that are wrong: of logarithms of frequencies, and of shapes."""
@@ -35,12 +36,7 @@ LOOKS = {
 """Causes of factors on the frequencies of a set."""
 
 
-@mistake(
-    "set-factor",
-    USUAL,
-    "all frequencies of set {set} are {size} those of {other}{looks}",
-    "{mend}",
-)
+@mistake("set-factor", USUAL)
 def set_factor(setting: Setting) -> Iterator[Variant]:
     """Yield the median ratio of the frequencies of each set to those of the others."""
     f = setting.state.data.frequency
@@ -70,12 +66,7 @@ def set_factor(setting: Setting) -> Iterator[Variant]:
         yield Variant((setting.sets[k],), changed("frequency", new), numbers, price)
 
 
-@mistake(
-    "set-numbers",
-    USUAL,
-    "modes {modes} of set {set} are modes {of} of {other}, by frequencies and shapes",
-    "number the modes of set {set} like those of {other}",
-)
+@mistake("set-numbers", USUAL)
 def other_numbers(setting: Setting) -> Iterator[Variant]:
     """Yield the numbering of the modes of each set that makes it most like the others.
 
@@ -99,24 +90,21 @@ def other_numbers(setting: Setting) -> Iterator[Variant]:
                 values[k, index] = getattr(state.data, name)[k]
             return replace(state, data=replace(state.data, **parts))
 
-        modes, of = (enumerated([str(setting.modes[r]) for r in x]) for x in (rows, index[rows]))
+        modes, of = (
+            enumeration([str(setting.modes[r]) for r in x], MANY) for x in (rows, index[rows])
+        )
         numbers = {"set": setting.sets[k], "other": setting.others(k), "modes": modes, "of": of}
         yield Variant((setting.sets[k],), change, numbers, one_of(len(setting.sets)))
 
 
-@mistake(
-    "odd-frequency",
-    OFTEN,
-    "{who} in the frequency of mode {mode}: {f:.5g} and {other:.5g} Hz, {percent:+.1f} %",
-    "{look} value",
-)
+@mistake("odd-frequency", OFTEN)
 def odd_frequency(setting: Setting) -> Iterator[Variant]:
     """Yield the frequency of each mode that differs most from those of other sets."""
     data = setting.state.data
     yield from _odd(setting, "frequency", np.abs(np.log(data.frequency) - data.logs))
 
 
-@mistake("odd-shape", OFTEN, "{who} in the shape of mode {mode}", "{look} shape")
+@mistake("odd-shape", OFTEN)
 def odd_shape(setting: Setting) -> Iterator[Variant]:
     """Yield the shape of each mode that differs most from those of other sets."""
     data = setting.state.data
@@ -152,7 +140,7 @@ def _odd(setting: Setting, part: str, away: Floats) -> Iterator[Variant]:
                 value, other = float(f[known[1]]), float(f[known[0]])
             numbers = {
                 "mode": mode,
-                "who": f"set {odd} disagrees with {enumerated(names, 3)}"
+                "who": f"set {odd} disagrees with {enumeration(names, 3)}"
                 if is_clear
                 else f"sets {two[0]} and {two[1]} disagree",
                 "look": f"look at set {odd} again, or leave out its"
@@ -163,12 +151,7 @@ def _odd(setting: Setting, part: str, away: Floats) -> Iterator[Variant]:
             yield Variant((str(mode), *([odd] if is_clear else [])), change, numbers, price)
 
 
-@mistake(
-    "foreign-mode",
-    USUAL,
-    "measured mode {mode}{at} resembles none of the model's",
-    "check its shape, refine the model, or leave it out of the groups",
-)
+@mistake("foreign-mode", USUAL)
 def foreign_mode(setting: Setting) -> Iterator[Variant]:
     """Yield modes that the model does not have."""
     for r, mode in enumerate(setting.modes):

@@ -58,12 +58,7 @@ REACH = 0.25
 """Logarithm of a factor beside a known one that parameters make up for, as in a poor model."""
 
 
-@mistake(
-    "frequency-factor",
-    OFTEN,
-    "all measured frequencies are about {factor:.3g} times the model's: {looks}",
-    "{mend}",
-)
+@mistake("frequency-factor", OFTEN)
 def frequency_factor(setting: Setting) -> Iterator[Variant]:
     """Yield known factors on all frequencies, and others that pairs show."""
     price = one_of(len(UNITS))
@@ -97,13 +92,7 @@ def _ratios(setting: Setting) -> set[float]:
     return {float(np.exp(round(float(value), 4))) for value in out}
 
 
-@mistake(
-    "other-quantity",
-    RARE,
-    "the column 'frequency' looks like {quantity}: mode {mode} has {given:.4g}, which is "
-    "{better:.4g} Hz",
-    "give frequencies in Hz",
-)
+@mistake("other-quantity", RARE)
 def other_quantity(setting: Setting) -> Iterator[Variant]:
     """Yield quantities that are no frequencies."""
     known = np.flatnonzero(np.isfinite(setting.state.data.logs))
@@ -118,12 +107,7 @@ def other_quantity(setting: Setting) -> Iterator[Variant]:
         yield Variant(("frequencies",), changed("frequency", new), numbers)
 
 
-@mistake(
-    "damping",
-    OFTEN,
-    "damping of {least:.3g} to {greatest:.3g} looks like percent",
-    "give the ratio to critical damping: divide the column 'damping' by 100",
-)
+@mistake("damping", OFTEN)
 def damping_in_percent(setting: Setting) -> Iterator[Variant]:
     """Yield damping over 100."""
     known = setting.state.data.damping[np.isfinite(setting.state.data.damping)]
