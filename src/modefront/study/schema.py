@@ -65,7 +65,7 @@ def study_schema() -> dict[str, Any]:
     }
     required = ["study", "data", "model", "parameter", "group"]
     head = {"$schema": "http://json-schema.org/draft-07/schema#", "title": "modefront study"}
-    return {**head, **closed(tables, required)}
+    return {**head, **closed(tables, required), **_drawn_to_predict()}
 
 
 def as_text() -> str:
@@ -151,3 +151,13 @@ def _predict() -> Schema:
     )
     lists = {key: array(schema_of(each), 1) for key, each in CLASSES.items()}
     return closed({"slack": slack.schema, **lists}, [])
+
+
+def _drawn_to_predict() -> Schema:
+    """Return what a schema says in addition of a study: models are drawn for predictions only."""
+    draws = {"required": ["draws"], "properties": {"draws": {"minimum": 1}}, **OPEN}
+    some = {"anyOf": [{"required": [key]} for key in CLASSES]}
+    return {
+        "if": {"required": ["uncertainty"], "properties": {"uncertainty": draws}, **OPEN},
+        "then": {"required": ["predict"], "properties": {"predict": some}, **OPEN},
+    }
