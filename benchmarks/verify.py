@@ -98,7 +98,8 @@ def both_kinds(
     """Yield the errors of quadrilaterals and of triangles."""
     for triangles, kind in ((False, "quadrilaterals"), (True, "triangles")):
         error = 100 * elements.relative(found, reference, 16, triangles)
-        ours = f"{error.min():+.2f} to {error.max():+.2f} %"
+        least, greatest = (f"{x:+.2f}" for x in (error.min(), error.max()))
+        ours = f"{least} %" if least == greatest else f"{least} to {greatest} %"
         holds = bool(np.abs(error).max() <= target)
         yield Row(f"{name}, {kind}", f"within {target:g} %", ours, holds)
 
@@ -219,20 +220,21 @@ PARTS = (
     ),
     Part(
         "Hammer tests",
-        "Errors of the best of three orders of sdypy-EMA, which is given the true frequencies, on "
-        "the same simulated blows.",
+        "Errors of identified modes on the same simulated blows. The target is the best of three "
+        "model orders of sdypy-EMA, which is told the true frequencies.",
         identification,
     ),
     Part(
         "Ambient tests",
-        "Four simulated tests of one setup. Errors of the best of three orders of pyOMA2 "
-        "(stochastic subspace identification), which is given the true frequencies, over the "
-        "modes that all find.",
+        "Four simulated tests of one setup. The target is the best of three model orders of pyOMA2 "
+        "(stochastic subspace identification), which is told the true frequencies. Errors are "
+        "those of the modes that all find.",
         ambient_identification,
     ),
     Part(
         "Evolutionary methods",
-        "Hypervolume of the front by NSGA-II and SMS-EMOA (pymoo) with as many evaluations.",
+        "Hypervolume of the front (the more, the better) on test functions for optimisers. The "
+        "target is the better one of NSGA-II and SMS-EMOA (pymoo) with as many evaluations.",
         evolution,
     ),
 )
@@ -264,8 +266,9 @@ def main() -> None:
         print(text[-1], f"{time.process_time() - before:.0f} s of processor time", flush=True)
     head = f"""# What was compared
 
-`python3 tasks.py verify` makes this page. {held} of {total} comparisons hold.
-Where ours falls short, the row says so.
+modefront beside published numbers, closed forms and other programs.
+{held} of {total} comparisons hold. Where ours falls short, the row says so.
+`python3 tasks.py verify` makes this page; [terms](terms.md) explains the words.
 """
     print(f"{held} of {total} hold; {time.process_time() - began:.0f} s of processor time")
     if not sys.argv[1:]:

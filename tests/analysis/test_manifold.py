@@ -292,7 +292,7 @@ def extents_by_slsqp(
     ("function", "start", "lower", "upper", "dimension", "most"),
     [
         (hyperplane, [0.6, 0.5, 0.4, 0.5, 0.3, 0.7], [0.0] * 6, [0.9, 1, 1, 0.8, 1, 1], 4, 20),
-        (bent, [0.6, 0.4, -0.4, 0.2, -0.3], [-1.0, -0.2, -1, -1, -1], [1.0, 1, 1, 1, 0.5], 4, 450),
+        (bent, [0.6, 0.4, -0.4, 0.2, -0.3], [-1.0, -0.2, -1, -1, -1], [1.0, 1, 1, 1, 0.5], 4, 500),
     ],
 )
 def test_of_many_dimensions_each_parameter_is_followed_as_far_as_it_goes(

@@ -50,7 +50,7 @@ UNSAID = {
     "files and what is in them": "this column|a quantity|node set of the mesh|nodes from 0",
     "numbers that depend on each other": "as many as|its bounds|lower <|lowest <|rising|step",
     "what the model makes of it": "degrees of freedom from|structure that|that the model uses",
-    "the rest of the study": "without predictions|directions of the base|or a parameter|or 'base'",
+    "the rest of the study": "directions of the base|or a parameter|or 'base'",
     "no number": "found nan|nan]",
     "a whole number with a decimal point": r"from .*\.0$|counted from|freedom from 0",
     "names of materials": "material: expected one of",
@@ -172,6 +172,24 @@ def test_only_universal_files_have_sensors_and_only_others_columns(name: str) ->
     assert not validator.is_valid({"file": name} | columns)
     assert validator.is_valid({"file": f"{name}.csv"} | columns)
     assert not validator.is_valid({"file": f"{name}.csv"} | sensors)
+
+
+def test_models_are_drawn_for_predictions_only(studies: list[Path]) -> None:
+    validator = jsonschema.Draft7Validator(study_schema())
+    study = tomllib.loads(studies[0].read_text()) | {"uncertainty": {"draws": 5}}
+    assert "frf" in study["predict"]
+    assert validator.is_valid(study)
+    assert not validator.is_valid(study | {"predict": {"slack": 0.1}})
+    del study["predict"]
+    assert not validator.is_valid(study)
+    assert validator.is_valid(study | {"uncertainty": {"draws": 0}})
+
+
+def test_a_modulation_has_a_factor_that_is_not_zero() -> None:
+    passages = study_schema()["properties"]["predict"]["properties"]["first_passage"]
+    validator = jsonschema.Draft7Validator(passages["items"]["properties"]["modulation"])
+    assert validator.is_valid([[0, 0], [1, 0.5]])
+    assert not validator.is_valid([[0, 0], [1, 0.0]])
 
 
 def test_what_is_registered_is_in_the_schema(monkeypatch: pytest.MonkeyPatch) -> None:

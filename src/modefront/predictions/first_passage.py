@@ -88,7 +88,7 @@ LEVELS = numbers(
 
 MODULATION = Requirement(
     "a list of [time in s, factor], times rising from 0 or more, one factor not zero",
-    array(pair(NOT_NEGATIVE, NUMBER), 1),
+    {**array(pair(NOT_NEGATIVE, NUMBER), 1), "contains": {"items": [{}, {"not": {"const": 0}}]}},
     lambda value: tuple((float(t), float(q)) for t, q in value),
     _is_modulation,
 )

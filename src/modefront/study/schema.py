@@ -61,7 +61,7 @@ def study_schema() -> dict[str, Any]:
     }
     required = ["study", "data", "model", "parameter", "group"]
     head = {"$schema": "http://json-schema.org/draft-07/schema#", "title": "modefront study"}
-    return {**head, **closed(tables, required)}
+    return {**head, **closed(tables, required), **_drawn_to_predict()}
 
 
 def as_text() -> str:
@@ -110,6 +110,16 @@ def _model(name: str) -> Schema:
     more = {each.name: each.schema for each in options(Reduction) if each.name == "reduction"}
     keys = {"kind": own, **known["properties"], **(more if kind.is_reducible else {})}
     return closed(keys, ["kind", *known["required"]])
+
+
+def _drawn_to_predict() -> Schema:
+    """Return what a schema says in addition of a study: models are drawn for predictions only."""
+    draws = {"required": ["draws"], "properties": {"draws": {"minimum": 1}}, **OPEN}
+    some = {"anyOf": [{"required": [key]} for key in CLASSES]}
+    return {
+        "if": {"required": ["uncertainty"], "properties": {"uncertainty": draws}, **OPEN},
+        "then": {"required": ["predict"], "properties": {"predict": some}, **OPEN},
+    }
 
 
 FAMILIES: tuple[Family[Any], ...] = (CLASSES, KINDS, RESIDUALS, METHODS, READERS)
