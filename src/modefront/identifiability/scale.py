@@ -32,7 +32,7 @@ import scipy.sparse
 from modefront._typing import Bools, Floats
 from modefront.linalg.affine import DenseAffine, SparseAffine
 from modefront.linalg.factorisation import SingularMatrixError
-from modefront.models.local import matrices_at
+from modefront.models.base import matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.modes import sparse
 from modefront.residuals.problem import UpdatingProblem

@@ -171,12 +171,13 @@ def read_dofs(path: Path) -> DofTable:
         expected = "node,direction or node,direction,weight"
         raise wrong(path, expected, ",".join(names), "header")
     ended_column(path, (row[-1] for row in rows if row))
-    table = DofTable(*np.zeros((2, len(rows)), np.intp), np.ones(len(rows)))
+    node, direction = np.zeros((2, len(rows)), np.intp)
+    table = DofTable(node, direction, np.ones(len(rows)))
     numbers = {name: number_of(name) for name in DIRECTIONS} | {str(k): k for k in range(-1, 1000)}
     for k, row in enumerate(rows):
         try:
-            label, direction, *weight = map(str.strip, row)
-            table.node[k], table.direction[k] = int(label), numbers[direction]
+            label, name, *weight = map(str.strip, row)
+            node[k], direction[k] = int(label), numbers[name]
             table.weight[k : k + len(weight)] = [float(x) for x in weight]
             if len(row) != len(names) or not np.isfinite(table.weight[k]):
                 raise ValueError

@@ -70,7 +70,8 @@ class Listed:
 
 def unlabelled(size: int) -> DofTable:
     """Return the table of degrees of freedom that belong to no node."""
-    return DofTable(*np.zeros((2, size), np.intp), np.ones(size))
+    node, direction = np.zeros((2, size), np.intp)
+    return DofTable(node, direction, np.ones(size))
 
 
 def given_table(options: JobOptions, size: int) -> DofTable | None:

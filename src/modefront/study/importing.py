@@ -17,7 +17,7 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.brief import as_html, brief
 from modefront.errors import Fault, InputError, ModelError, refuse, suggestion, writing
-from modefront.fem.dofs import DIRECTIONS
+from modefront.fem.structure import DIRECTIONS
 from modefront.models.dofs import number_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.parameters import exponents_of, form_of
