@@ -266,3 +266,15 @@ def test_monomials_have_exact_second_derivatives(seed: int) -> None:
     linear_one = Monomials(np.array([[0.0, 1], [0, 0]]))
     assert not linear_one.curved
     assert not linear_one.second_derivatives(np.zeros(2), np.ones((1, 2))).any()
+
+
+def test_sums_of_eigenvalues_alone_have_second_derivatives() -> None:
+    size, theta, h = 120, np.array([1.2]), 1e-5
+    line = [spring(size, i, i + 1) for i in range(size - 1)]
+    K = linear([spring(size, 0) + sum(line[60:]), sum(line[:60], np.zeros((size, size)))], 1)
+    M, weights = constant(np.eye(size), 1), np.ones((1, 3))
+    assert lowest_modes(K.at(theta), M.at(theta), 3) is not None
+    found = modes(K, M, np.eye(size), theta, 3, derivatives=True)
+    result = found.second_derivatives(weights, np.zeros((1, size, 3)))
+    ahead, behind = (modes(K, M, np.eye(size), theta + s, 3, True).dlam.sum() for s in (h, -h))
+    assert result == pytest.approx((ahead - behind) / (2 * h), rel=1e-6)

@@ -165,20 +165,12 @@ class DenseAffine:
 
     def at(self, theta: Floats) -> Floats:
         """Return A(theta), shape (N, N)."""
-        return self._at(theta) if self.varies else self._constant
+        return first_axis(self.coefficients.values(theta)[None], self.terms)[0]
 
     @property
     def varies(self) -> bool:
         """Whether the matrix depends on any parameter."""
         return self.coefficients.varies
-
-    @cached_property
-    def _constant(self) -> Floats:
-        """The matrix that does not depend on theta."""
-        return self._at(np.ones(self.coefficients.exponents.shape[1]))
-
-    def _at(self, theta: Floats) -> Floats:
-        return first_axis(self.coefficients.values(theta)[None], self.terms)[0]
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
@@ -250,14 +242,6 @@ class SparseAffine:
 
     def at(self, theta: Floats) -> scipy.sparse.csr_array:
         """Return A(theta), N x N; it holds every entry of the pattern, zero or not."""
-        return self._at(theta) if self.coefficients.varies else self._constant
-
-    @cached_property
-    def _constant(self) -> scipy.sparse.csr_array:
-        """The matrix that does not depend on theta."""
-        return self._at(np.ones(self.coefficients.exponents.shape[1]))
-
-    def _at(self, theta: Floats) -> scipy.sparse.csr_array:
         values = self.terms @ self.coefficients.values(theta)
         shape = self.size, self.size
         return scipy.sparse.csr_array((values, self.indices, self.indptr), shape=shape)
@@ -339,7 +323,7 @@ class SparseAffine:
     def each(self, thetas: Floats, vectors: Floats) -> Floats:
         """Return A(theta_k) v_k for every row of thetas (m, p) and column of vectors (N, m)."""
         if not self.coefficients.varies:
-            return times(self._constant, vectors)
+            return times(self.at(thetas[0]), vectors)
         stack, dof, starts = self._stack
         coefficients = np.transpose([self.coefficients.values(theta) for theta in thetas])
         products, out = times(stack, vectors), np.zeros(vectors.shape)

@@ -136,14 +136,6 @@ def factorise(A: scipy.sparse.sparray) -> Factorisation:
 
 
 @dataclass(frozen=True, eq=False)
-class Placing:
-    """Entry ``take[k]`` of a matrix is entry ``put[k]`` of the lower triangle of the pencil."""
-
-    take: Ints
-    put: Ints
-
-
-@dataclass(frozen=True, eq=False)
 class Pencil:
     """K(theta), M(theta) and the analysis of the union of their patterns.
 
@@ -153,15 +145,16 @@ class Pencil:
     ----------
     K, M : stiffness and mass matrix, N x N
     symbolic : analysis of the union, which has ``entries`` in its lower triangle
-    stiffness, mass : where the entries of K and M go
+    stiffness, mass : (take, put) of K and M: their entry ``take[k]`` is entry ``put[k]`` of the
+        lower triangle
     """
 
     K: SparseAffine
     M: SparseAffine
     symbolic: Symbolic
     entries: int
-    stiffness: Placing
-    mass: Placing
+    stiffness: tuple[Ints, Ints]
+    mass: tuple[Ints, Ints]
 
     @property
     def size(self) -> int:
@@ -173,10 +166,11 @@ class Pencil:
 
         Raises SingularMatrixError where sigma is an eigenvalue.
         """
-        values = np.zeros(self.entries)
-        values[self.stiffness.put] = K[self.stiffness.take]
+        values, (take, put) = np.zeros(self.entries), self.stiffness
+        values[put] = K[take]
         if sigma != 0:
-            values[self.mass.put] -= sigma * M[self.mass.take]
+            take, put = self.mass
+            values[put] -= sigma * M[take]
         return self.symbolic.factor(values)
 
 
@@ -185,8 +179,9 @@ def pencil(K: SparseAffine, M: SparseAffine) -> Pencil:
     (take_K, keys_K), (take_M, keys_M) = _lower(K), _lower(M)
     pattern = lower_pattern(np.concatenate([keys_K, keys_M]), K.size)
     keys = pattern.keys
-    stiffness = Placing(take_K, np.searchsorted(keys, keys_K))
-    mass = Placing(take_M, np.searchsorted(keys, keys_M))
+    stiffness, mass = (
+        (take, np.searchsorted(keys, own)) for take, own in ((take_K, keys_K), (take_M, keys_M))
+    )
     return Pencil(K, M, analyse(pattern), pattern.indices.size, stiffness, mass)
 
 

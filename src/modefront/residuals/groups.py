@@ -137,17 +137,12 @@ def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str
         kinds = " or ".join(KINDS)
         yield "", f"{kinds} with at least one measured mode", "nothing"
     elif data is not None:
-        wrong = [fault for name, modes in group.chosen for fault in _of_kind(name, modes, data)]
+        wrong = []
+        for name, modes in group.chosen:
+            measured = _measured_modes(name, data)
+            for mode in [m for m in modes if m not in measured][:1] if modes != "all" else []:
+                wrong.append((name, f"one of the measured modes {measured}", str(mode)))
         yield from wrong or _of_members(group, data)
-
-
-def _of_kind(name: str, modes: ModeNumbers, data: ModalData) -> Iterator[tuple[str, str, str]]:
-    """Yield the faults of the modes of one kind."""
-    measured = _measured_modes(name, data)
-    known = set(measured)
-    unknown = [mode for mode in modes if mode not in known] if modes != "all" else []
-    if unknown:
-        yield name, f"one of the measured modes {measured}", str(unknown[0])
 
 
 def _of_members(group: Group, data: ModalData) -> Iterator[tuple[str, str, str]]:
