@@ -24,7 +24,7 @@ from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
 from modefront.front.front import Front
 from modefront.front.point import Point
-from modefront.models.reduced.certificate import Certificate, Certifier
+from modefront.models.reduced.basis import Certificate, Certifier
 from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
 from modefront.optim.lexicographic import EXACT
 from modefront.optim.scalarisation import LogSum

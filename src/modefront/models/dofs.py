@@ -171,7 +171,7 @@ def read_dofs(path: Path) -> DofTable:
         expected = "node,direction or node,direction,weight"
         raise wrong(path, expected, ",".join(names), "header")
     ended_column(path, (row[-1] for row in rows if row))
-    table = DofTable(*np.zeros((2, len(rows)), np.intp), np.ones(len(rows)))
+    table = DofTable(np.zeros(len(rows), int), np.zeros(len(rows), int), np.ones(len(rows)))
     numbers = {name: number_of(name) for name in DIRECTIONS} | {str(k): k for k in range(-1, 1000)}
     for k, row in enumerate(rows):
         try:
