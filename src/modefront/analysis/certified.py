@@ -25,7 +25,7 @@ from modefront.errors import ModelError, UnfinishedError
 from modefront.front.front import Edge, Front, best_minima
 from modefront.front.gaps import Gap
 from modefront.front.point import Point
-from modefront.models.reduced.certificate import Certificate, Certifier
+from modefront.models.reduced.basis import Certificate, Certifier
 from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import Solution

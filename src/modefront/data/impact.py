@@ -348,7 +348,19 @@ def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Av
     ``quantity`` is that of the test file, or empty. Raises InputError where records do not fit, or
     no blow of a reference is left.
     """
-    _check_time(blows)
+    first, faults = blows[0].time, list[Fault]()
+    for blow in blows:
+        steps = np.diff(blow.time)
+        if len(steps) < 2 or steps.min() <= 0 or np.ptp(steps) > EVEN * steps.mean():
+            faults.append(Fault(blow.file, blow.place, "a time axis of even steps", "another"))
+        elif len(blow.time) != len(first) or abs(np.ptp(blow.time) / np.ptp(first) - 1) > EVEN:
+            pair = blow.time, first
+            here, there = (f"{len(t)} samples over {np.ptp(t):.6g} s" for t in pair)
+            expected = f"records of {there}, as in {blows[0].file}"
+            faults.append(Fault(blow.file, blow.place, expected, here))
+        elif not all((np.abs(x) <= LARGEST).all() for x in (blow.force, *blow.responses.values())):
+            faults.append(Fault(blow.file, blow.place, EXPECTED, "others"))
+    refuse(faults[:5])
     groups: dict[tuple[str, tuple[str, ...]], list[Blow]] = {}
     for blow in blows:
         groups.setdefault((blow.reference, tuple(blow.responses)), []).append(blow)
@@ -369,24 +381,6 @@ def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Av
                 "constant"
             )
     return Averaged(tuple(channels), tuple(warnings), result.data.decay, noise)
-
-
-def _check_time(blows: Sequence[Blow]) -> None:
-    first, faults = blows[0].time, list[Fault]()
-    for blow in blows:
-        steps = np.diff(blow.time)
-        if len(steps) < 2 or steps.min() <= 0 or np.ptp(steps) > EVEN * steps.mean():
-            faults.append(Fault(blow.file, blow.place, "a time axis of even steps", "another"))
-        elif len(blow.time) != len(first) or abs(np.ptp(blow.time) / np.ptp(first) - 1) > EVEN:
-            expected = f"records of {_extent(first)}, as in {blows[0].file}"
-            faults.append(Fault(blow.file, blow.place, expected, _extent(blow.time)))
-        elif not all((np.abs(x) <= LARGEST).all() for x in (blow.force, *blow.responses.values())):
-            faults.append(Fault(blow.file, blow.place, EXPECTED, "others"))
-    refuse(faults[:5])
-
-
-def _extent(time: Floats) -> str:
-    return f"{len(time)} samples over {np.ptp(time):.6g} s"
 
 
 def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:

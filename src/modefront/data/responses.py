@@ -236,9 +236,7 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     ``quantity`` is what the test file says, or empty; ``turned`` makes the points of the hammer
     the responses, by reciprocity. Raises InputError with everything that is wrong.
     """
-    _check_axes(channels)
     quantity = _quantity(channels, quantity)
-    _check_values(channels)
     if turned:
         channels = [replace(x, reference=x.response, response=x.reference) for x in channels]
     references = tuple(dict.fromkeys(channel.reference for channel in channels))
@@ -278,11 +276,11 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     return Assembled(data, tuple(warnings))
 
 
-def _check_axes(channels: Sequence[Channel]) -> None:
-    first, faults = channels[0], list[Fault]()
-    ends = [f"{x.frequency[0]:g} to {x.frequency[-1]:g} Hz" for x in channels if len(x.frequency)]
-    for k, channel in enumerate(channels):
-        f = channel.frequency
+def _quantity(channels: Sequence[Channel], declared: str) -> str:
+    """Return what all channels are; raises InputError with what is wrong with any of them."""
+    first, known, faults = channels[0], declared, list[Fault]()
+    for channel in channels:
+        f, bad = channel.frequency, np.flatnonzero(~(np.abs(channel.H) <= LARGEST))
         if not (np.isfinite(f).all() and (np.diff(f) > 0).all() and (f >= 0).all()):
             expected = "frequencies in Hz that ascend from zero or above"
             faults.append(channel.fault(expected, "others"))
@@ -290,36 +288,23 @@ def _check_axes(channels: Sequence[Channel]) -> None:
             expected = f"{len(first.frequency)} lines, as in {first.file}"
             faults.append(channel.fault(expected, f"{len(f)} lines"))
         elif np.abs(f - first.frequency).max() > 1e-6 * first.frequency[-1]:
-            expected = f"the frequency axis of {first.file}, {ends[0]}"
-            faults.append(channel.fault(expected, ends[k]))
-    refuse(faults)
-
-
-def _quantity(channels: Sequence[Channel], declared: str) -> str:
-    known, faults = declared, list[Fault]()
-    for channel in channels:
+            here, there = (f"{x[0]:g} to {x[-1]:g} Hz" for x in (f, first.frequency))
+            faults.append(channel.fault(f"the frequency axis of {first.file}, {there}", here))
         if not channel.quantity and not declared:
             expected = "quantity = 'receptance', 'mobility' or 'accelerance' in [test]"
             faults.append(channel.fault(expected, "a file that does not say it"))
         elif channel.quantity and known and channel.quantity != known:
             faults.append(channel.fault(f"{known}, as in the others", channel.quantity))
-        known = known or channel.quantity
-    refuse(faults[:5])
-    return known
-
-
-def _check_values(channels: Sequence[Channel]) -> None:
-    faults = []
-    for channel in channels:
-        bad = np.flatnonzero(~(np.abs(channel.H) <= LARGEST))
         if len(bad):
-            found = f"{channel.H[bad[0]].real:g} at {channel.frequency[bad[0]]:g} Hz"
+            found = f"{channel.H[bad[0]].real:g} at {f[bad[0]]:g} Hz"
             found += f" and {len(bad) - 1} more" * (len(bad) > 1)
             faults.append(channel.fault(EXPECTED, found))
+        known = known or channel.quantity
     if all(not np.any(channel.H[0] != channel.H) for channel in channels) and not faults:
-        found = "one number" if np.any(channels[0].H) else "only zeros"
-        faults.append(channels[0].fault("functions that are not the same at all lines", found))
+        found = "one number" if np.any(first.H) else "only zeros"
+        faults.append(first.fault("functions that are not the same at all lines", found))
     refuse(faults[:5])
+    return known
 
 
 def _units(
@@ -352,25 +337,19 @@ def _units(
 
 
 def _driving_points(
-    H: Complexes,
-    frequency: Floats,
-    quantity: str,
-    groups: _Groups,
-) -> list[str]:
-    """Return where a driving point gives energy back: its mobility has a negative real part."""
-    out = []
+    H: Complexes, frequency: Floats, quantity: str, groups: _Groups
+) -> Iterator[str]:
+    """Yield where a driving point gives energy back: its mobility has a negative real part."""
     lines = frequency > 0
     s = 2j * np.pi * frequency[lines]
     for (j, i), (first, *_) in groups.items():
-        if first.reference != first.response:
-            continue
         power = (H[0, j, i, lines] * s ** (1 - ORDERS[quantity])).real
-        if np.isfinite(power).all() and power.sum() < -0.5 * np.abs(power).sum():
-            out.append(
+        driven = first.reference == first.response and np.isfinite(power).all()
+        if driven and power.sum() < -0.5 * np.abs(power).sum():
+            yield (
                 f"{first.file}: {first.place}: the driving point has the wrong sign: check the "
                 "directions of hammer and sensor, and the quantity"
             )
-    return out
 
 
 def _reciprocity(

@@ -128,12 +128,13 @@ def matrices_at(model: Model, theta: Floats) -> MatrixModel | None:
     A reduced model has those of the full one; None for a model that has no matrices.
     """
     full: Any = full_of(model)
-    return full.at(theta) if hasattr(full, "at") else None
+    return full.at(theta) if hasattr(type(full), "at") else None
 
 
 def geometry_of(model: Model) -> Geometry | None:
     """Return where the degrees of freedom of a model are; None where that is not known."""
-    return getattr(full_of(model), "geometry", None)
+    full: Any = full_of(model)
+    return full.geometry if hasattr(type(full), "geometry") else None
 
 
 def shapes_at(model: Model, theta: Floats, count: int) -> tuple[Floats, Floats, Floats | None]:
@@ -144,7 +145,7 @@ def shapes_at(model: Model, theta: Floats, count: int) -> tuple[Floats, Floats, 
     matrices. Raises ModelError where the model has no such modes.
     """
     known: Any = model
-    if hasattr(known, "full_modes"):
+    if hasattr(type(known), "full_modes"):
         lowest = known.full_modes(theta, count)
         return lowest.lam, known.selection @ lowest.Phi, lowest.Phi
     modes = model.modes(theta, count, derivatives=False)

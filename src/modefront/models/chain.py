@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import scipy.sparse
@@ -19,9 +18,6 @@ from modefront.errors import Fault, refuse, wrong
 from modefront.models.geometry import chain_geometry
 from modefront.models.matrices import MatrixModel, SensorSpec, matrices
 from modefront.models.parameters import BASE
-
-_Terms = dict[str, dict[tuple[int, int], float]]
-"""Entries of each term by its name, and by row and column."""
 
 
 # 8 arguments: the members of a chain and their parameters, by keyword.
@@ -81,33 +77,25 @@ def chain(
         )
         if len(values) not in lengths
     )
-    K: _Terms = {BASE: {}}
-    M: _Terms = {BASE: {(i, i): float(m) for i, m in enumerate(added)}}
-    for i, (k, name) in enumerate(zip(stiffnesses, stiffness_scales, strict=True)):
-        ends = [mass for mass in (i - 1, i) if 0 <= mass < n]
-        for place in product(ends, ends):
-            _add(K, name or BASE, place, k if place[0] == place[1] else -k)
-    for i, (m, name) in enumerate(zip(masses, mass_scales, strict=True)):
-        _add(M, name or BASE, (i, i), m)
+    # A row a spring: how its length depends on the displacements.
+    stretch = scipy.sparse.diags_array((1.0, -1.0), offsets=(0, -1), shape=(len(stiffnesses), n))
+    K = _terms(stretch.tocsr(), stiffnesses, stiffness_scales)
+    M = _terms(scipy.sparse.eye_array(n, format="csr"), masses, mass_scales)
+    M[BASE] = scipy.sparse.diags_array(np.asarray(added, dtype=float)) + M[BASE]
     if sensors is None:
         sensors = {f"floor{i + 1}": i for i in range(n)}
     base = {"x": [(i, 1.0) for i in range(n)]}
-    model = matrices(
-        parameters, _matrices(K, n), _matrices(M, n), sensors, outputs=outputs, base=base
-    )
+    model = matrices(parameters, K, M, sensors, outputs=outputs, base=base)
     return replace(model, geometry=chain_geometry(n, model.selection))
 
 
-def _add(terms: _Terms, name: str, place: tuple[int, int], value: float) -> None:
-    term = terms.setdefault(name, {})
-    term[place] = term.get(place, 0.0) + value
-
-
-def _matrices(terms: _Terms, n: int) -> dict[str, scipy.sparse.coo_array]:
-    """Return sparse matrices (n, n): full ones, one a parameter, would take n^3 numbers."""
-    out = {}
-    for name, term in terms.items():
-        places = np.array(list(term), dtype=np.int64).reshape(-1, 2)
-        values = np.array(list(term.values()), dtype=float)
-        out[name] = scipy.sparse.coo_array((values, (places[:, 0], places[:, 1])), shape=(n, n))
+def _terms(
+    B: scipy.sparse.csr_array, values: Sequence[float] | Floats, scales: Sequence[str | None]
+) -> dict[str, scipy.sparse.csr_array]:
+    """Return the sums of the values v_i b_i^T b_i of rows of B by the names of their scales."""
+    names, out = np.array([name or BASE for name in scales]), {}
+    for name in dict.fromkeys([BASE, *names.tolist()]):
+        chosen = np.flatnonzero(names == name)
+        diagonal = scipy.sparse.diags_array(np.asarray(values, dtype=float)[chosen])
+        out[name] = (B[chosen].T @ diagonal @ B[chosen]).tocsr()
     return out

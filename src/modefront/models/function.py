@@ -90,8 +90,8 @@ class CheckedFunction:
         """
         place = self._place(theta)
         returned = self._call(theta.copy(), place, RETURNED)
-        K = _real(returned[0], f"{place}: K", size)
-        M = _real(returned[1], f"{place}: M", K.shape[0])
+        K = _checked(returned[0], f"{place}: K", size)
+        M = _checked(returned[1], f"{place}: M", K.shape[0])
         if not derivatives:
             return (K, ()), (M, ())
         if len(returned) == 4:
@@ -139,7 +139,7 @@ class CheckedFunction:
             warnings.simplefilter("error", ComplexWarning)
             returned = self._call(moved, place, expected)
         K, M = (
-            _checked(A, f"{place}: {what}", size)
+            _checked(A, f"{place}: {what}", size, real=False)
             for what, A in zip("KM", returned[:2], strict=True)
         )
         return _imaginary(K, h), _imaginary(M, h)
@@ -151,7 +151,7 @@ class CheckedFunction:
         if len(slopes) != len(self.names):
             raise wrong(place, expected, f"{len(slopes)}")
         return tuple(
-            None if slope is None else _real(slope, f"{place} of {name}", size)
+            None if slope is None else _checked(slope, f"{place} of {name}", size)
             for name, slope in zip(self.names, slopes, strict=True)
         )
 
@@ -326,14 +326,7 @@ def _affine(known: Tangent, theta: Floats) -> DenseAffine | SparseAffine:
     return sparse_affine(terms, coefficients, matrix.shape[0])
 
 
-def _real(value: Matrix, place: str, size: int | None) -> Any:
-    A = _checked(value, place, size)
-    if A.dtype.kind == "c":
-        raise wrong(place, "real numbers for real parameters", "complex numbers")
-    return A
-
-
-def _checked(value: Matrix, place: str, size: int | None) -> Any:
+def _checked(value: Matrix, place: str, size: int | None, real: bool = True) -> Any:
     """Return a symmetric matrix, an array up to `DENSE` degrees of freedom, else a sparse one."""
     try:
         A: Any = value if scipy.sparse.issparse(value) else np.asarray(value)
@@ -346,6 +339,8 @@ def _checked(value: Matrix, place: str, size: int | None) -> Any:
         raise wrong(place, f"a matrix {n} x {n}", found)
     if A.dtype.kind not in "biufc":
         raise wrong(place, "numbers", str(A.dtype))
+    if real and A.dtype.kind == "c":
+        raise wrong(place, "real numbers for real parameters", "complex numbers")
     A = A.astype(complex if A.dtype.kind == "c" else float)
     if A.shape[0] > DENSE:
         A = scipy.sparse.csr_array(A)

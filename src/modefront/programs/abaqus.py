@@ -60,9 +60,8 @@ def _files(path: Path) -> tuple[Path, Path]:
             raise wrong(path, "matrices of one step, or the name of one of them", names)
         files = files or [job.with_name(job.name + "_STIF1.mtx")]
     stiffness = existing(files[0], "the stiffness of Abaqus", ADVICE)
-    name = re.sub(r"_STIF(\d+)(\.\w+)$", r"_MASS\1\2", stiffness.name)
-    if name == stiffness.name:
-        name = re.sub(r"_stif(\d+)(\.\w+)$", r"_mass\1\2", stiffness.name)
+    name = re.sub(r"_STIF(?=\d+\.\w+$)", "_MASS", stiffness.name)
+    name = re.sub(r"_stif(?=\d+\.\w+$)", "_mass", name)
     return stiffness, existing(stiffness.with_name(name), "the mass of Abaqus", ADVICE)
 
 

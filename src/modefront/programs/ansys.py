@@ -21,7 +21,6 @@ item      meaning (words of the header, counted from 1)
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -155,7 +154,15 @@ def _labels(path: Path, size: int) -> DofTable:
     mapping = path.with_name(path.name + ".mapping")
     maps = [path.with_name(f"{path.name}_{name}.mmf") for name in ("nod2bcs", "back")]
     if mapping.is_file():
-        table = _mapping(mapping)
+        directions = {x: k for k, x in enumerate(("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"), 1)}
+        lines = mapping.read_text(encoding="utf-8", errors="replace").splitlines()
+        rows = [x for x in map(str.split, lines) if len(x) > 2 and "".join(x[:2]).isdigit()]
+        listed = sorted((int(a), int(b), directions.get(c.upper(), 0)) for a, b, c, *_ in rows)
+        number, node, direction = np.array(listed, dtype=np.intp).reshape(-1, 3).T
+        if not np.array_equal(number, np.arange(1, len(listed) + 1)):
+            expected = "one line for each equation: equation, node, direction"
+            raise wrong(mapping, expected, "others")
+        table = DofTable(node, direction, np.ones(len(listed)))
     elif all(file.is_file() for file in maps):
         table = _maps(maps[0], maps[1])
     else:
@@ -163,20 +170,6 @@ def _labels(path: Path, size: int) -> DofTable:
     if table.size != size:
         raise wrong(path, f"{size} degrees of freedom in the table of nodes", str(table.size))
     return table
-
-
-def _mapping(path: Path) -> DofTable:
-    rows: list[tuple[int, int, int]] = []
-    directions = {x: k for k, x in enumerate(("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"), 1)}
-    with path.open(encoding="utf-8", errors="replace", newline="") as stream:
-        for row in csv.reader(stream, delimiter=" ", skipinitialspace=True):
-            items = [item for item in row if item]
-            if len(items) >= 3 and items[0].isdigit() and items[1].isdigit():
-                rows.append((int(items[0]), int(items[1]), directions.get(items[2].upper(), 0)))
-    table = np.array(sorted(rows), dtype=np.intp).reshape(-1, 3)
-    if not np.array_equal(table[:, 0], np.arange(1, len(table) + 1)):
-        raise wrong(path, "one line for each equation: equation, node, direction", "others")
-    return DofTable(table[:, 1], table[:, 2], np.ones(len(table)))
 
 
 def _maps(nod2bcs: Path, back: Path) -> DofTable:

@@ -195,7 +195,15 @@ def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
             continue
         if line.lstrip().upper().startswith("ENDDATA"):
             break
-        name, fields = _fields(line)
+        if "," in line:
+            name, *fields = (part.strip() for part in line.split(","))
+        else:
+            line = line.expandtabs(8)
+            name = line[:8].strip()
+            width = 16 if "*" in name[:1] + name[-1:] else 8
+            fields = [line[k : k + width].strip() for k in range(8, 72, width)]
+        count = 4 if "*" in name[:1] + name[-1:] else 8  # of large fields, and of others
+        fields = (fields + [""] * count)[:count]
         if name in ("", "+", "*") or name[0] in "+*":
             card += fields
             continue
@@ -204,18 +212,6 @@ def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
         begins, card = number, [name.rstrip("*").upper(), *fields]
     if card:
         yield begins, card + EMPTY
-
-
-def _fields(line: str) -> tuple[str, list[str]]:
-    """Return the name of a line and its 8 (in large fields 4) data fields."""
-    if "," in line:
-        name, *fields = (part.strip() for part in line.split(","))
-        count = 4 if name.endswith("*") or name.startswith("*") else 8
-        return name, (fields + [""] * count)[:count]
-    line = line.expandtabs(8)
-    name = line[:8].strip()
-    width = 16 if name.endswith("*") or name.startswith("*") else 8
-    return name, [line[k : k + width].strip() for k in range(8, 72, width)]
 
 
 def _whole(text: str) -> int:

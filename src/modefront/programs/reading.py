@@ -70,8 +70,7 @@ class Listed:
 
 def unlabelled(size: int) -> DofTable:
     """Return the table of degrees of freedom that belong to no node."""
-    node, direction = np.zeros((2, size), np.intp)
-    return DofTable(node, direction, np.ones(size))
+    return DofTable(np.zeros(size, int), np.zeros(size, int), np.ones(size))
 
 
 def given_table(options: JobOptions, size: int) -> DofTable | None:

@@ -19,15 +19,17 @@ from modefront.linalg.affine import DenseAffine
 from modefront.models.base import passed_on
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.basis import (
+    LATER,
     Basis,
+    Certifier,
     CorrectionRequest,
     empty,
     extended,
     lacking_lengths,
+    level,
     with_derivatives,
     with_modes,
 )
-from modefront.models.reduced.certificate import LATER, Certifier, level
 from modefront.modes import dense
 from modefront.modes.eigensolvers import FullModes
 from modefront.modes.result import Modes
