@@ -213,12 +213,10 @@ def _changes(
 
 def _term_names(names: Sequence[str], functions: Mapping[str, Sequence[str]]) -> list[str]:
     """Return the terms: those declared for a parameter, or the parameter itself."""
-    faults = [
-        Fault("", "--function", "a parameter", suggestion(name, names))
-        for name in functions
-        if name not in names
-    ]
+    faults = []
     for name, terms in functions.items():
+        if name not in names:
+            faults.append(Fault("", "--function", "a parameter", suggestion(name, names)))
         for term in terms:
             exponents = exponents_of(term, names)
             if exponents is None or not exponents.any():

@@ -92,9 +92,7 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     before = len(table.faults)
     read = table.record(Matrices)
     terms = {key: _terms(table, key, parameters) for key in ("stiffness", "mass")}
-    size = _common_size(table, terms)
-    if size is not None:
-        _check_entries(table, terms, size)
+    size = _size(table, terms)
     dofs = table.content("dofs", read_dofs)
     if dofs is not None and size not in (None, dofs.size):
         expected = f"{size} rows, one a degree of freedom"
@@ -127,11 +125,15 @@ def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy
         if exponents_of(name, parameters) is None:
             table.fault(name, form_of(name), suggestion(name, [BASE, *parameters]))
             continue
-        file = _file(table, name)
-        if file is None:
+        if isinstance(table.values[name], dict):
+            inner = table.table(name)
+            known = inner.read(OF_SEVERAL) if inner else None
+        else:
+            known = {"file": table.value(name, FILE)}
+        if not known or not known["file"]:
             continue
         try:
-            out[name] = read_matrix(table.path(file[0]), file[1])
+            out[name] = read_matrix(table.path(known["file"]), known.get("name"))
         except InputError as error:  # the file, in which there may be several, under its key
             table.faults += [
                 replace(x, place=f"{table.place} {name}, {x.place}") for x in error.faults
@@ -161,20 +163,11 @@ def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_arr
     return Geometry(mesh.coordinates, cells, motion[translations.ravel()], nodes, directions)
 
 
-def _file(table: Table, key: str) -> tuple[str, str | None] | None:
-    """Return the name of a file and, where given, that of a matrix in it."""
-    if not isinstance(table.values[key], dict):
-        name = table.value(key, FILE)
-        return None if name is None else (name, None)
-    inner = table.table(key)
-    read = inner and inner.read(OF_SEVERAL)
-    return (read["file"], read.get("name")) if read else None
+def _size(model: Table, terms: Mapping[str, dict[str, scipy.sparse.coo_array]]) -> int | None:
+    """Return the N of most N x N matrices; a fault names those that differ, which are left out.
 
-
-def _common_size(
-    model: Table, terms: Mapping[str, dict[str, scipy.sparse.coo_array]]
-) -> int | None:
-    """Return the N of most N x N matrices; a fault names those that differ, which are left out."""
+    So do a mass that is zero, and degrees of freedom with neither stiffness nor mass.
+    """
     counts = [A.shape[0] for known in terms.values() for A in known.values()]
     if not counts:
         return None
@@ -185,22 +178,16 @@ def _common_size(
                 others, size = f"{common} x {common}, as the other matrices", A.shape[0]
                 model.fault(f"{key} {name}", others, f"{size} x {size}")
                 del known[name]
-    return common
-
-
-def _check_entries(
-    model: Table, matrices: Mapping[str, Mapping[str, scipy.sparse.coo_array]], size: int
-) -> None:
-    """Note a mass that is zero, and degrees of freedom with neither stiffness nor mass."""
-    mass = matrices["mass"]
+    mass = terms["mass"]
     if mass and not any(A.nnz for A in mass.values()):
         model.fault("mass", "a mass matrix that is not zero", "only zeros")
-    elif all(matrices.values()) and not model.faults:
-        rows = [A.row for terms in matrices.values() for A in terms.values()]
-        empty = np.setdiff1d(np.arange(size), np.concatenate(rows))
+    elif all(terms.values()) and not model.faults:
+        rows = [A.row for known in terms.values() for A in known.values()]
+        empty = np.setdiff1d(np.arange(common), np.concatenate(rows))
         if empty.size:
             expected = "stiffness or mass at every degree of freedom"
             model.fault("", expected, f"neither at {empty[0]} (from 0)")
+    return common
 
 
 MATRICES = ModelKind("matrices", read_matrices, table=Matrices)
