@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from rich.cells import cell_len
+from rich.cells import cell_len, chop_cells
 from rich.console import Console
 from rich.text import Text
 
@@ -176,9 +176,9 @@ class _Grid:
         out.append((self._joined(["─" * width for width in widths], widths), "dim"))
         for row in self.rows:
             if len(row) == 1:
-                out += [(line, "italic") for line in _wrapped(row[0], whole)]
+                out += [(line, "italic") for line in _broken(row[0], whole)]
                 continue
-            cells = [_wrapped(row[j], width) for j, width in zip(order, widths, strict=True)]
+            cells = [_broken(row[j], width) for j, width in zip(order, widths, strict=True)]
             depth = max(map(len, cells))
             cells = [cell + [""] * (depth - len(cell)) for cell in cells]
             out += [(self._joined(parts, widths), "") for parts in zip(*cells, strict=True)]
@@ -210,12 +210,27 @@ def _titled(title: str, width: int) -> list[str]:
                 lines[-1] = joined
             else:
                 lines.append(part)
-    return [piece for line in lines for piece in _wrapped(line, width)]
+    return [piece for line in lines for piece in _broken(line, width)]
+
+
+def _broken(text: str, width: int) -> list[str]:
+    """Return a text over lines: at words where that is possible."""
+    if cell_len(text) <= width:
+        return [text]
+    return _wrapped(text, width)
 
 
 def _wrapped(text: str, width: int, *, whole: bool = False) -> list[str]:
     """Return lines of at most this width; longer words are broken, or left ``whole``."""
-    lines = Text(" ".join(text.split())).wrap(
-        Console(), width, overflow="ignore" if whole else "fold"
-    )
-    return [line.plain.rstrip() for line in lines] or [""]
+    lines = [""]
+    for word in text.split():
+        joined = f"{lines[-1]} {word}" if lines[-1] else word
+        if cell_len(joined) <= width:
+            lines[-1] = joined
+            continue
+        pieces = [word] if whole or cell_len(word) <= width else chop_cells(word, width)
+        if lines[-1]:
+            lines.append("")
+        lines[-1] = pieces[0]
+        lines += pieces[1:]
+    return lines

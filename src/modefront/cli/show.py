@@ -32,7 +32,7 @@ TABLE = 14
 PREDICTIONS = 4
 """Predictions on the first screen."""
 
-LEAST = 6
+LEAST = 4
 """Lines of the first screen for findings, at least."""
 
 
@@ -98,14 +98,14 @@ def _say_further(screen: Screen, folder: Path | str) -> None:
 
 
 def _findings(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Line]:
-    """Return the first findings, in ``most`` lines or in those of the first two where more."""
+    """Return the first findings, in ``most`` lines or in those of the first one where more."""
     sentences = headlines(data)
     blocks = [screen.sentence(text, start="- ") for text in sentences]
     if sum(map(len, blocks)) <= most:
         return [line for block in blocks for line in block]
     out: list[Line] = []
     count = 0
-    while count < len(blocks) and (count < 2 or len(out) + len(blocks[count]) < most):
+    while count < len(blocks) and (count < 1 or len(out) + len(blocks[count]) < most):
         out += blocks[count]
         count += 1
     *_, more = digest(sentences, full, count)
