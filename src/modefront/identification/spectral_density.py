@@ -7,13 +7,15 @@ complex normal and independent, with the spectral density matrix
           h_{rk} = \frac{2\zeta_r x^q}{1 - x^2 + 2\mathrm{i}\zeta_r x},\quad x = \omega_k/\omega_r:
 
 S is the spectral density of the modal forces, h is 1 in size at resonance, and B the density of
-noise and of all that is flat over the band, modes far away among it. The forces of those modes are
-related to the forces of the modes in the band, as one wind drives all of them: what a force
-:math:`f_r` moves is :math:`(\varphi_r h_r + \rho_r) f_r`, with a real vector :math:`\rho_r`.
-Without it the flank of a mode that is raised by the interference moves its frequency. A slope of S
-over the band is a part of :math:`\rho_r` along :math:`\varphi_r`, as far as it is linear. So
-:math:`\Psi = [\Phi, R]` and :math:`H = [\operatorname{diag} h;\ I]`, R the vectors of the modes in
-the band. Imaginary parts of :math:`\rho_r` along :math:`\varphi_r` have the form of
+noise and of all that is flat over the band. The forces of modes far away are related to those of
+the modes in the band, as one wind drives all of them: what a force :math:`f_r` moves is
+:math:`(\varphi_r h_r + \rho_r + y \sigma_r) f_r`, with real vectors :math:`\rho_r` and
+:math:`\sigma_r` for the flanks of those modes, linear in :math:`y = \omega / \omega_m - 1` from the
+middle of the band on, as the two residual terms of a frequency response function are. Without them
+the interference raises one flank of a mode and moves its frequency. A slope of S over the band is a
+part of :math:`\rho_r` along :math:`\varphi_r`, and its curvature one of :math:`\sigma_r`. So
+:math:`\Psi = [\Phi, R]` and :math:`H = [\operatorname{diag} h;\ I;\ y I]`, R the vectors of the
+modes in the band. Imaginary parts of :math:`\rho_r` along :math:`\varphi_r` have the form of
 :math:`|h_r|^2`, as S has: they cannot be told from it.
 
 Of the modes that the model has, the first ones are in the band; the others lie beside it, and only
@@ -36,7 +38,7 @@ forces have the mean :math:`D\hat\Psi^T F` and the covariance D, and B becomes t
 symbol          meaning
 ==============  ========================================================================
 Phi             (sensors, modes) real shapes of unit norm
-R               (sensors, modes in the band or none) what their forces move besides
+R               (sensors, 2 x modes in the band, or none) what their forces move besides
 Psi, H          (sensors, columns), (columns, modes); columns are modes in the band, R, modes
                 beside it
 S = L L^*       (modes, modes) spectral density of the modal forces, L lower triangular
@@ -56,7 +58,7 @@ close) modes, Mech. Syst. Signal Process. 132 (2019) 490-511, doi:10.1016/j.ymss
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 
 import numpy as np
@@ -72,6 +74,12 @@ TOLERANCE = 1e-2
 
 MOST_STEPS = 60
 """Steps to a maximum, at most."""
+
+MOST_OF_BACKGROUND = 0.9
+"""Share of the background that a step takes away, at most."""
+
+TERMS = 2
+"""Terms of what a force moves besides, over frequency: a constant and a slope."""
 
 LONGEST = 1.0
 """Change of ln zeta, and of ln omega in half bandwidths, in one step, at most."""
@@ -119,7 +127,9 @@ class Density:
     root : (modes, modes) L
     background : (sensors, sensors) B
     free : number of the modes that are in the band, the first ones
-    coherent : (sensors, free) R, or (sensors, 0) for a model without it
+    coherent : (sensors, terms x free) R, all constants first; no terms for a model without it
+    middle : rad/s, where the slopes of R are 0
+    precision : (terms x free,) of normal distributions of the columns of R a priori, about 0
     """
 
     omega: Floats
@@ -129,6 +139,8 @@ class Density:
     background: Floats
     free: int
     coherent: Floats
+    middle: float = 1.0
+    precision: Floats = field(default_factory=lambda: np.zeros(0))
 
     @property
     def columns(self) -> Floats:
@@ -157,14 +169,24 @@ class Density:
         """Return H at circular frequencies, (lines, columns, modes)."""
         eye = np.eye(len(self.omega))
         of_modes = self.response(omega, order).T[:, :, None] * eye
-        constant = np.repeat(eye[None, : self.moving - self.free], len(omega), axis=0)
-        parts = [of_modes[:, : self.free], constant, of_modes[:, self.free :]]
+        terms = range(self.coherent.shape[1] // max(self.free, 1))
+        y = (omega / self.middle - 1)[:, None, None]
+        smooth = [y**term * eye[: self.free] for term in terms]
+        parts = [of_modes[:, : self.free], *smooth, of_modes[:, self.free :]]
         out: Complexes = np.concatenate(parts, axis=1)
         return out
 
-    def with_coherent(self) -> Density:
-        """Return the same model with R = 0 as parameters."""
-        return replace(self, coherent=np.zeros((len(self.phi), self.free)))
+    def with_coherent(self, band: Band) -> Density:
+        """Return the same model with R = 0 as parameters, in the middle of a band.
+
+        A priori, either term is at the ends of the band as large as what the mode itself does.
+        """
+        n, ends = len(self.phi), band.omega[[0, -1]]
+        size = np.mean(np.abs(self.response(ends, band.order)[: self.free]) ** 2, axis=1)
+        reach = np.ptp(ends) / ends.sum()
+        precision = (n * reach ** (2 * np.arange(TERMS))[:, None] / size).ravel()
+        R = np.zeros((n, len(precision)))
+        return replace(self, coherent=R, middle=float(ends.mean()), precision=precision)
 
     def without(self, mode: int) -> Density:
         """Return the model without one of its modes, and without R."""
@@ -177,6 +199,7 @@ class Density:
             root=root_of(self.force[np.ix_(kept, kept)]),
             free=self.free - (mode < self.free),
             coherent=self.coherent[:, :0],
+            precision=self.precision[:0],
         )
 
 
@@ -219,14 +242,19 @@ class Fit:
         scale = 1 / np.sqrt(np.where(diagonal > TINY, diagonal, 1.0))
         return A * np.outer(scale, scale), scale
 
+    @cached_property
+    def root(self) -> Floats:
+        """A square root of the covariance of all parameters, with as many columns."""
+        A, scale = self.scaled()
+        value, vector = la.eigh(A)
+        out: Floats = scale[:, None] * vector / np.sqrt(np.maximum(value, 1e-13))
+        return out
+
     def covariance(self, mode: int) -> Floats:
         """Return the covariance of ln omega, ln zeta and the shape of a free mode."""
         n, m = len(self.model.phi), self.model.free
         first = self.model.moving * n + mode
-        rows = [first, first + m, *range(mode * n, (mode + 1) * n)]
-        A, scale = self.scaled()
-        value, vector = la.eigh(A)
-        half = (scale[:, None] * vector)[rows] / np.sqrt(np.maximum(value, 1e-13))
+        half = self.root[[first, first + m, *range(mode * n, (mode + 1) * n)]]
         out: Floats = half @ half.T
         return out
 
@@ -272,6 +300,7 @@ def _matrices(band: Band, model: Density) -> _Matrices:
     weight = band.count.sum() + PRIOR + n
     cost = weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total + _prior(band))
     cost += band.count @ np.linalg.slogdet(A)[1] - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
+    cost += np.sum(model.precision * model.coherent**2) / 2
     return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, float(cost))
 
 
@@ -287,8 +316,12 @@ def evaluate(band: Band, model: Density) -> Fit:
     poles = 2 * np.sum(d * np.hstack([NW, NW]), axis=0).real
     whole = (x.h.conj().swapaxes(1, 2) @ W @ x.h).sum(axis=0).T
     forces = (J.reshape(len(J), whole.size) @ whole.ravel()).real
+    columns[m : model.moving] += (model.precision * model.coherent).T
     gradient = np.concatenate([columns[: model.moving].ravel(), poles, forces])
-    return Fit(model, x.cost, gradient, _information(model, x, c, d, J), _bending(whole.T))
+    information = _information(model, x, c, d, J)
+    prior = np.arange(m * len(columns.T), model.moving * len(columns.T))
+    information[prior, prior] += model.precision.repeat(len(columns.T))
+    return Fit(model, x.cost, gradient, information, _bending(whole.T))
 
 
 def modal_responses(
@@ -433,10 +466,9 @@ def _background(band: Band, model: Density, x: _Matrices) -> Floats:
     half = U @ (beside - beside @ U @ U.T)
     rest = right - U @ (U.T @ right)
     Z = (rest - rest @ U @ U.T) / weight + half + half.T + U @ inside @ U.T
-    Z = (Z + Z.T) / 2
-    if la.eigvalsh(Z)[0] < -0.9:
-        return after
-    out: Floats = R @ (np.eye(n) + Z) @ R.T
+    value, vector = la.eigh((Z + Z.T) / 2)
+    root = R @ vector * np.sqrt(1 + np.maximum(value, -MOST_OF_BACKGROUND))
+    out: Floats = root @ root.T
     return out
 
 
@@ -506,5 +538,5 @@ def _normalised(model: Density) -> Density:
         model,
         phi=model.phi / norm,
         root=model.root * norm[:, None],
-        coherent=model.coherent / norm[: model.moving - model.free],
+        coherent=model.coherent / np.resize(norm[: model.free], model.coherent.shape[1]),
     )

@@ -304,7 +304,7 @@ def _of_group(
     else:
         return []
     if last:
-        fit = spectral_density.maximise(band, fit.model.with_coherent())
+        fit = spectral_density.maximise(band, fit.model.with_coherent(band))
     model, out = fit.model, []
     visible = _shares(band, model)
     for r in range(model.free):
@@ -437,15 +437,12 @@ def _completed(
             known = [row for row in rows if row is not None]
             least = float(chi2.isf(FALSE, len(setup.records.sensors)))
             found = _fitted(setup, [*known, *tried], least, last=True)
-            for r, start in zip(lacking, tried, strict=True):
-                near = [
-                    m for m in found if abs(m.omega - start.omega) < 2 * max(m.half, start.half)
-                ]
-                near = [
-                    m for m in near if all(abs(m.omega - o.omega) > 1e-3 * m.half for o in known)
-                ]
-                if near:
-                    rows[r] = min(near, key=lambda m: abs(m.omega - start.omega))
+            omega = np.array([mode.omega for mode in (*tried, *known)])
+            for mode in found:
+                nearest = int(np.abs(omega - mode.omega).argmin())
+                reach = 2 * max(mode.half, tried[nearest].half) if nearest < len(tried) else 0.0
+                if abs(omega[nearest] - mode.omega) < reach:
+                    rows[lacking[nearest]] = mode
         out.append((setup, rows))
     return out
 
