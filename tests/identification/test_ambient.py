@@ -10,7 +10,7 @@ from modefront._typing import Complexes, Floats
 from modefront.data.records import Records
 from modefront.identification import spectral_density
 from modefront.identification.methods.ambient import identify
-from modefront.identification.setups import merged_shape
+from modefront.identification.sets import merged_shape
 from modefront.identification.spectral_density import Band, Density
 
 SENSORS, LINES = 4, 30

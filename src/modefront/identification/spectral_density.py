@@ -1,11 +1,8 @@
 r"""The likelihood of the Fourier transforms of ambient records, in a band with a few modes.
 
 The transforms :math:`F_k` of the records of all sensors at the lines :math:`\omega_k` are circular
-complex normal and independent, with the spectral density matrix
-
-.. math:: E_k = \Psi N_k \Psi^T + B,\qquad N_k = H_k S H_k^*,\qquad
-          h_{rk} = \frac{2\zeta_r x^q}{1 - x^2 + 2\mathrm{i}\zeta_r x},\quad x = \omega_k/\omega_r:
-
+complex normal and independent, with the spectral density matrix :math:`E_k = \Psi N_k \Psi^T + B`,
+:math:`N_k = H_k S H_k^*`, and the likelihood and h of docs/methods/identification.md:
 S is the spectral density of the modal forces, h is 1 in size at resonance, and B the density of
 noise and of all that is flat over the band. The forces of modes far away are related to those of
 the modes in the band, as one wind drives all of them: what a force :math:`f_r` moves is
@@ -48,12 +45,9 @@ Q               :math:`N C N = N - D`
 q               differentiations of the displacement in the records
 ==============  ========================================================================
 
-Sources: Au, Fast Bayesian FFT method for ambient modal identification with separated modes, J. Eng.
-Mech. 137 (2011) 214-226, doi:10.1061/(ASCE)EM.1943-7889.0000213; Au, Fast Bayesian ambient modal
-identification in the frequency domain, part I: posterior most probable value, Mech. Syst. Signal
-Process. 26 (2012) 60-75, doi:10.1016/j.ymssp.2011.06.017 (close modes); Li & Au, An
-expectation-maximization algorithm for Bayesian operational modal analysis with multiple (possibly
-close) modes, Mech. Syst. Signal Process. 132 (2019) 490-511, doi:10.1016/j.ymssp.2019.06.036.
+Sources: Au, Mech. Syst. Signal Process. 26 (2012) 60-75, doi:10.1016/j.ymssp.2011.06.017 (close
+modes); Li & Au, Mech. Syst. Signal Process. 132 (2019) 490-511, doi:10.1016/j.ymssp.2019.06.036
+(expectation and maximisation).
 """
 
 from __future__ import annotations
@@ -291,17 +285,27 @@ def _matrices(band: Band, model: Density) -> _Matrices:
     inverse = np.linalg.inv(B)
     hat = inverse @ psi
     P = psi.T @ hat
-    left = h.conj().swapaxes(1, 2)
-    A = np.eye(len(model.omega)) + model.force @ (left @ P @ h)
-    D: Complexes = np.asarray(h @ np.linalg.solve(A, model.force[None]) @ left, complex)
-    N, Y = h @ model.force @ left, np.eye(len(P)) - D @ P
+    N, D, determinant = _of_responses(h @ model.root, P)
+    Y = np.eye(len(P)) - D @ P
     seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape)
     own, weighted = hat.T @ seen, band.count[:, None, None] * D
     weight = band.count.sum() + PRIOR + n
     cost = weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total + _prior(band))
-    cost += band.count @ np.linalg.slogdet(A)[1] - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
+    cost += band.count @ determinant - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
     cost += np.sum(model.precision * model.coherent**2) / 2
     return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, float(cost))
+
+
+def _of_responses(root: Complexes, P: Floats) -> tuple[Complexes, Complexes, Floats]:
+    """Return N, D and the logarithm of det(I + N P) at all lines, from H L.
+
+    D is H L (I + L^* H^* P H L)^-1 L^* H^*, of which no rounding makes the inverse singular.
+    """
+    adjoint = root.conj().swapaxes(1, 2)
+    value, vector = np.linalg.eigh(adjoint @ P @ root)
+    value = np.maximum(value, 0.0)
+    half = root @ vector / np.sqrt(1 + value)[:, None]
+    return root @ adjoint, half @ half.conj().swapaxes(1, 2), np.log1p(value).sum(axis=1)
 
 
 def evaluate(band: Band, model: Density) -> Fit:
@@ -333,8 +337,7 @@ def modal_responses(
     """
     h, psi = model.lifted(omega, order), model.columns
     hat = la.solve(model.background, psi, assume_a="pos")
-    N = h @ model.force @ h.conj().swapaxes(1, 2)
-    D = np.linalg.solve(np.eye(len(hat.T)) + N @ (psi.T @ hat), N)
+    N, D, _ = _of_responses(h @ model.root, psi.T @ hat)
     Q = np.einsum("krr->rk", N - D).real
     return np.einsum("krs,sk->rk", D, hat.T @ F), Q
 
