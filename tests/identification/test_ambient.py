@@ -114,6 +114,18 @@ def test_every_fit_ends_at_a_minimum_of_shapes_poles_forces_and_background() -> 
         assert spectral_density.evaluate(band, other).cost > fit.cost - 0.01
 
 
+def test_a_background_that_starts_far_too_high_is_left_in_a_few_steps() -> None:
+    rng = np.random.default_rng(8)
+    model = replace(_model(rng), background=1e-5 * np.eye(SENSORS))
+    band = replace(_band(rng), count=np.full(LINES, 40.0), floor=np.full(SENSORS, 1e-5))
+    root = np.linalg.cholesky(_density(band, model))
+    F = np.einsum("kij,kbj->kbi", root, _circular(rng, LINES, 40, SENSORS))
+    band = replace(band, power=np.einsum("kbi,kbj->kij", F, F.conj()) / 80)
+    fit = spectral_density.maximise(band, replace(model, background=0.1 * np.eye(SENSORS)), 30)
+    assert fit.converged
+    assert np.trace(fit.model.background) < 1e-4
+
+
 def test_bending_is_the_second_change_of_the_cost_where_forces_vanish() -> None:
     rng = np.random.default_rng(6)
     model, band = _model(rng), _band(rng)
