@@ -10,7 +10,7 @@ from modefront._typing import Complexes, Floats
 from modefront.data.records import Records
 from modefront.identification import spectral_density
 from modefront.identification.methods.ambient import identify
-from modefront.identification.setups import merged_shape
+from modefront.identification.sets import merged_shape
 from modefront.identification.spectral_density import Band, Density
 
 SENSORS, LINES = 4, 30
@@ -42,7 +42,10 @@ def _density(band: Band, model: Density) -> Complexes:
     """Return E at all lines as its definition has it."""
     h = model.response(band.omega, band.order)
     a = np.einsum("jr,rk->kjr", model.phi, h)
-    a[:, :, : model.coherent.shape[1]] += model.coherent
+    y = band.omega / model.middle - 1
+    for term in range(model.coherent.shape[1] // 2):
+        part = model.coherent[:, 2 * term : 2 * term + 2]
+        a[:, :, :2] += y[:, None, None] ** term * part
     out: Complexes = a @ model.force @ a.conj().swapaxes(1, 2) + model.background
     return out
 
@@ -65,18 +68,20 @@ def _moved(model: Density, parameter: int, step: float) -> Density:
     return replace(model, omega=new_omega, zeta=new_zeta, phi=phi, root=L, coherent=coherent)
 
 
-@pytest.mark.parametrize("coherent", [0, 2])
+@pytest.mark.parametrize("coherent", [0, 4])
 def test_cost_and_derivatives_are_those_of_the_whole_density(coherent: int) -> None:
     rng = np.random.default_rng(0)
     model, band = _model(rng), _band(rng)
-    model = replace(model, coherent=0.3 * rng.standard_normal((SENSORS, coherent)))
+    R, precision = 0.3 * rng.standard_normal((SENSORS, coherent)), np.arange(1.0, coherent + 1)
+    model = replace(model, coherent=R, middle=9.5, precision=precision)
     fit = spectral_density.evaluate(band, model)
 
     def cost(model: Density) -> float:
         E, B = _density(band, model), model.background
         single = np.linalg.slogdet(E)[1] + np.einsum("kii->k", np.linalg.solve(E, band.power)).real
         prior = np.linalg.slogdet(B)[1] + np.linalg.inv(B).diagonal() @ band.floor
-        return float(band.count @ single + (spectral_density.PRIOR + SENSORS) * prior)
+        prior = (spectral_density.PRIOR + SENSORS) * prior
+        return float(band.count @ single + prior + precision @ (model.coherent**2).sum(axis=0) / 2)
 
     count, step = len(fit.gradient), 1e-6
     pairs = [(_moved(model, k, step), _moved(model, k, -step)) for k in range(count)]
@@ -85,7 +90,9 @@ def test_cost_and_derivatives_are_those_of_the_whole_density(coherent: int) -> N
     np.testing.assert_allclose(fit.gradient, slopes, atol=1e-7 * np.abs(slopes).max())
     inverse = np.linalg.inv(_density(band, model))
     dE = [inverse @ (_density(band, a) - _density(band, b)) / (2 * step) for a, b in pairs]
-    expected = [[np.einsum("k,kij,kji", band.count, a, b).real for b in dE] for a in dE]
+    expected = np.array([[np.einsum("k,kij,kji", band.count, a, b).real for b in dE] for a in dE])
+    constants = np.arange(2 * SENSORS, (2 + coherent) * SENSORS)
+    expected[constants, constants] += precision.repeat(SENSORS)
     np.testing.assert_allclose(fit.information, expected, atol=1e-7 * np.abs(expected).max())
 
 
@@ -105,6 +112,18 @@ def test_every_fit_ends_at_a_minimum_of_shapes_poles_forces_and_background() -> 
     for change in (0.99, 1.01):
         other = replace(fit.model, background=change * fit.model.background)
         assert spectral_density.evaluate(band, other).cost > fit.cost - 0.01
+
+
+def test_a_background_that_starts_far_too_high_is_left_in_a_few_steps() -> None:
+    rng = np.random.default_rng(8)
+    model = replace(_model(rng), background=1e-5 * np.eye(SENSORS))
+    band = replace(_band(rng), count=np.full(LINES, 40.0), floor=np.full(SENSORS, 1e-5))
+    root = np.linalg.cholesky(_density(band, model))
+    F = np.einsum("kij,kbj->kbi", root, _circular(rng, LINES, 40, SENSORS))
+    band = replace(band, power=np.einsum("kbi,kbj->kij", F, F.conj()) / 80)
+    fit = spectral_density.maximise(band, replace(model, background=0.1 * np.eye(SENSORS)), 30)
+    assert fit.converged
+    assert np.trace(fit.model.background) < 1e-4
 
 
 def test_bending_is_the_second_change_of_the_cost_where_forces_vanish() -> None:

@@ -11,7 +11,7 @@ maximum likelihood     `modal_model`
 modes that data need   `selection`
 standard deviations    `statistics`, `shapes`
 one data set           `methods`, a file a method; `record` is what they return
-several data sets      `sets`
-ambient records        `spectra`, `spectral_density`; several setups: `setups`
+several sets, setups   `sets`
+ambient records        `spectra`, `spectral_density`
 =====================  ================================================================
 """

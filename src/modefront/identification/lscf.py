@@ -1,19 +1,10 @@
 r"""The least-squares complex frequency-domain method, common denominator and poly-reference.
 
-Over a band, the functions between all references and response *i* are modelled by a right matrix
-fraction with a common denominator,
-
-.. math:: H_i(\omega) = B_i(z)\,A(z)^{-1},\qquad A = \sum_{m=0}^{p} z^m A_m,\quad
-          B_i = \sum_{m=0}^{p} z^m B_{im},\qquad z = e^{c\,(s - s_1)},
-
-with the arc of z over the band, :math:`s_1 = 2\pi\mathrm{i} f_1`, as generalised frequency. With
-one column of references it is the common-denominator model. The coefficients are complex: a band
-holds the poles of positive frequency, and those of negative frequency are far away and smooth,
-so the numerator takes them. Multiplying by A makes the error linear,
-
-.. math:: e_i = H_i A - B_i = Y_i \alpha - X \beta_i,
-
-and eliminating every :math:`\beta_i` from the normal equations leaves
+The matrix fraction :math:`H_i = B_i(z)\,A(z)^{-1}` of docs/methods/identification.md is over
+:math:`z = e^{c\,(s - s_1)}`, an arc over the band from :math:`s_1 = 2\pi\mathrm{i} f_1` on. Its
+coefficients are complex: poles of negative frequency are far away and smooth, so the numerator
+takes them. The error :math:`e_i = H_i A - B_i = Y_i \alpha - X \beta_i` is linear, and eliminating
+every :math:`\beta_i` from the normal equations leaves
 
 .. math:: M \alpha = 0,\qquad M = \sum_i T_i - S_i^H R_i^{-1} S_i .
 
@@ -30,13 +21,9 @@ R, S, T              :math:`X^H W X`, :math:`-X^H W Y`, :math:`Y^H W Y` of one r
 w                    weights 1/var H, the mean over all functions
 ===================  =====================================================================
 
-Sources: Guillaume, Verboven, Vanlanduit, Van der Auweraer & Peeters, A poly-reference
-implementation of the least-squares complex frequency-domain estimator, IMAC XXI (2003);
-Peeters, Van der Auweraer, Guillaume & Leuridan, The PolyMAX frequency-domain method,
-Shock Vib. 11 (2004) 395-409, doi:10.1155/2004/523692; Cauberghe, Guillaume, Verboven,
-Vanlanduit & Parloo, On the influence of the parameter constraint on the stability of the poles
-and the discrimination capabilities of the stabilisation diagrams, Mech. Syst. Signal Process. 19
-(2005) 989-1014, doi:10.1016/j.ymssp.2004.08.003.
+Sources: Peeters, Van der Auweraer, Guillaume & Leuridan, Shock Vib. 11 (2004) 395-409,
+doi:10.1155/2004/523692; Cauberghe, Guillaume, Verboven, Vanlanduit & Parloo, Mech. Syst. Signal
+Process. 19 (2005) 989-1014, doi:10.1016/j.ymssp.2004.08.003 (the constraint).
 """
 
 from __future__ import annotations

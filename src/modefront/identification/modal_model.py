@@ -1,23 +1,12 @@
 r"""The maximum-likelihood modal model by variable projection.
 
-The functions of one data set are (Ewins, *Modal Testing*, 2nd ed., 2000, sec. 2.8)
-
-.. math:: H_{ji}(s) = s^q\Bigl[\sum_r \Bigl(\frac{L_{rj}\varphi_{ri}}{s-\lambda_r}
-          + \frac{L_{rj}^*\varphi_{ri}^*}{s-\lambda_r^*}\Bigr)
-          + \sum_k R_{kji}\,s^{k}\Bigr],\qquad s = \mathrm{i}\omega,
-
-(of records with an exponential window :math:`e^{-dt}`, at :math:`s = \mathrm{i}\omega + d`, so that
-poles are those without it), with q = 0, 1, 2 for receptance, mobility, accelerance, and real
-residuals R of modes outside the band: k = -2 and 0 are the lower and the upper one, further powers
-their next terms. All references share poles and shapes. With errors of H that are independent,
-complex normal and of variance v, the maximum of the likelihood is the minimum of
-
-.. math:: J = \sum_{jik} \frac{|H_{ji}(\omega_k) - \hat H_{ji}(\omega_k)|^2}{v_{jik}}
-            = \|y - \Phi(\alpha) c\|^2 .
-
-Poles and participation factors :math:`\alpha` enter nonlinearly; shapes and residuals c linearly,
-and separately for every response *i*. Variable projection (Golub & Pereyra 1973) eliminates c:
-:math:`c(\alpha) = \Phi^+ y`, and the derivative of the projected residual r is
+The functions of modes and the likelihood are those of docs/methods/identification.md; of records
+with an exponential window :math:`e^{-dt}`, at :math:`s = \mathrm{i}\omega + d`, so that poles are
+those without it. Of the real residuals R, k = -2 and 0 are the lower and the upper one. The cost is
+:math:`J = \|y - \Phi(\alpha) c\|^2`: poles and participation factors :math:`\alpha` enter
+nonlinearly; shapes and residuals c linearly, and separately for every response *i*. Variable
+projection (Golub & Pereyra 1973) eliminates c: :math:`c(\alpha) = \Phi^+ y`, and the derivative of
+the projected residual r is
 
 .. math:: \frac{\partial r}{\partial \alpha} = -P_\perp D - (\Phi^+)^T (\partial\Phi)^T r,
           \qquad D = (\partial\Phi)\,c,\qquad P_\perp = I - \Phi\Phi^+ .
@@ -49,12 +38,8 @@ alpha                Re and Im of lam, then Re and Im of the L that are not held
 c                    Re and Im of phi of one response, then its residuals by reference
 ===================  =====================================================================
 
-Sources: Golub & Pereyra, The differentiation of pseudo-inverses and nonlinear least squares
-problems whose variables separate, SIAM J. Numer. Anal. 10 (1973) 413-432, doi:10.1137/0710036;
-Pintelon & Schoukens, *System Identification: A Frequency Domain Approach*, 2nd ed., 2012,
-doi:10.1002/9781118287422; El-Kafafy, De Troyer, Peeters & Guillaume, Fast maximum-likelihood
-identification of modal parameters with uncertainty intervals: a modal model-based formulation,
-Mech. Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
+Sources: Golub & Pereyra 1973, doi:10.1137/0710036; El-Kafafy, De Troyer, Peeters & Guillaume, Mech.
+Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
 """
 
 from __future__ import annotations
@@ -84,7 +69,7 @@ TINY = float(np.finfo(float).tiny)
 CHUNK = 1 << 20
 """Numbers in an intermediate array of products."""
 
-FEW = 6
+FEW = 16
 """Functions up to which a Gram matrix of each is faster than the products of all pairs."""
 
 PORTION = 1 << 16
@@ -268,7 +253,10 @@ def evaluate(
     right = (G @ lost[..., None])[..., 0]
     c = c + lost
     rho = rho - (lost[None, :, None] @ TM)[:, :, 0]
-    model = replace(_model(lam, L, held, c, len(task.powers)), pairs=pairs)
+    n, powers = len(lam), len(task.powers)
+    phi = (c[:, : 2 * n : 2] + 1j * c[:, 1 : 2 * n : 2]).T
+    residual = c[:, 2 * n :].reshape(len(c), L.shape[1], powers).transpose(2, 1, 0)
+    model = ModalModel(lam, L, held, phi, residual, pairs)
     row, coefficient = derivatives(model, E.shape[0])
     direct = np.zeros((row.size, row.size))
     for j, i in np.ndindex(M.shape[:2]):
@@ -478,13 +466,6 @@ def design(L: Complexes, powers: int) -> Floats:
         k = np.arange(powers)
         T[j, 2 * n + k, 2 * n + powers * j + k] = 1.0
     return T
-
-
-def _model(lam: Complexes, L: Complexes, held: Ints, c: Floats, powers: int) -> ModalModel:
-    n, n_in = L.shape
-    phi = (c[:, : 2 * n : 2] + 1j * c[:, 1 : 2 * n : 2]).T
-    residual = c[:, 2 * n :].reshape(len(c), n_in, powers).transpose(2, 1, 0)
-    return ModalModel(lam, L, held, phi, residual)
 
 
 def free_factors(held: Ints, references: int) -> list[tuple[int, int]]:

@@ -3,12 +3,8 @@ r"""Which modes are in the data: a pole is one where noise alone would hardly ma
 Without a mode the cost J of the fit is greater by :math:`\Delta J`. Where there is no mode, what a
 pole somewhere in the band explains of noise is the greatest singular value of a residue,
 :math:`\Delta J = \sigma_1^2`, of a matrix of references times responses of unit complex normal
-numbers. The expected number of poles with more than x in a band of N lines is, to the leading term
-in the tail,
-
-.. math:: \frac{N}{2\pi}\,(k - 1) \binom{k - 2}{n_\mathrm{ref} - 1}\,
-          P\bigl(\chi^2_{2k} > 2x\bigr),\qquad k = n_\mathrm{ref} + n_\mathrm{resp}:
-
+numbers. The expected number of poles with more than x in a band of N lines, to the leading term,
+is in docs/methods/identification.md:
 the tail of the greatest eigenvalue of a complex Wishart matrix times the area of the poles
 that N lines tell apart, :math:`\int\mathrm{d}\omega\,\mathrm{d}\sigma/4\sigma^2` with damping from
 half a line on, as the correlation of two poles is :math:`4\sigma_1\sigma_2/|\lambda_1 +

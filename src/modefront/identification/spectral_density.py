@@ -1,19 +1,18 @@
 r"""The likelihood of the Fourier transforms of ambient records, in a band with a few modes.
 
 The transforms :math:`F_k` of the records of all sensors at the lines :math:`\omega_k` are circular
-complex normal and independent, with the spectral density matrix
-
-.. math:: E_k = \Psi N_k \Psi^T + B,\qquad N_k = H_k S H_k^*,\qquad
-          h_{rk} = \frac{2\zeta_r x^q}{1 - x^2 + 2\mathrm{i}\zeta_r x},\quad x = \omega_k/\omega_r:
-
+complex normal and independent, with the spectral density matrix :math:`E_k = \Psi N_k \Psi^T + B`,
+:math:`N_k = H_k S H_k^*`, and the likelihood and h of docs/methods/identification.md:
 S is the spectral density of the modal forces, h is 1 in size at resonance, and B the density of
-noise and of all that is flat over the band, modes far away among it. The forces of those modes are
-related to the forces of the modes in the band, as one wind drives all of them: what a force
-:math:`f_r` moves is :math:`(\varphi_r h_r + \rho_r) f_r`, with a real vector :math:`\rho_r`.
-Without it the flank of a mode that is raised by the interference moves its frequency. A slope of S
-over the band is a part of :math:`\rho_r` along :math:`\varphi_r`, as far as it is linear. So
-:math:`\Psi = [\Phi, R]` and :math:`H = [\operatorname{diag} h;\ I]`, R the vectors of the modes in
-the band. Imaginary parts of :math:`\rho_r` along :math:`\varphi_r` have the form of
+noise and of all that is flat over the band. The forces of modes far away are related to those of
+the modes in the band, as one wind drives all of them: what a force :math:`f_r` moves is
+:math:`(\varphi_r h_r + \rho_r + y \sigma_r) f_r`, with real vectors :math:`\rho_r` and
+:math:`\sigma_r` for the flanks of those modes, linear in :math:`y = \omega / \omega_m - 1` from the
+middle of the band on, as the two residual terms of a frequency response function are. Without them
+the interference raises one flank of a mode and moves its frequency. A slope of S over the band is a
+part of :math:`\rho_r` along :math:`\varphi_r`, and its curvature one of :math:`\sigma_r`. So
+:math:`\Psi = [\Phi, R]` and :math:`H = [\operatorname{diag} h;\ I;\ y I]`, R the vectors of the
+modes in the band. Imaginary parts of :math:`\rho_r` along :math:`\varphi_r` have the form of
 :math:`|h_r|^2`, as S has: they cannot be told from it.
 
 Of the modes that the model has, the first ones are in the band; the others lie beside it, and only
@@ -36,7 +35,7 @@ forces have the mean :math:`D\hat\Psi^T F` and the covariance D, and B becomes t
 symbol          meaning
 ==============  ========================================================================
 Phi             (sensors, modes) real shapes of unit norm
-R               (sensors, modes in the band or none) what their forces move besides
+R               (sensors, 2 x modes in the band, or none) what their forces move besides
 Psi, H          (sensors, columns), (columns, modes); columns are modes in the band, R, modes
                 beside it
 S = L L^*       (modes, modes) spectral density of the modal forces, L lower triangular
@@ -46,17 +45,14 @@ Q               :math:`N C N = N - D`
 q               differentiations of the displacement in the records
 ==============  ========================================================================
 
-Sources: Au, Fast Bayesian FFT method for ambient modal identification with separated modes, J. Eng.
-Mech. 137 (2011) 214-226, doi:10.1061/(ASCE)EM.1943-7889.0000213; Au, Fast Bayesian ambient modal
-identification in the frequency domain, part I: posterior most probable value, Mech. Syst. Signal
-Process. 26 (2012) 60-75, doi:10.1016/j.ymssp.2011.06.017 (close modes); Li & Au, An
-expectation-maximization algorithm for Bayesian operational modal analysis with multiple (possibly
-close) modes, Mech. Syst. Signal Process. 132 (2019) 490-511, doi:10.1016/j.ymssp.2019.06.036.
+Sources: Au, Mech. Syst. Signal Process. 26 (2012) 60-75, doi:10.1016/j.ymssp.2011.06.017 (close
+modes); Li & Au, Mech. Syst. Signal Process. 132 (2019) 490-511, doi:10.1016/j.ymssp.2019.06.036
+(expectation and maximisation).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 
 import numpy as np
@@ -72,6 +68,12 @@ TOLERANCE = 1e-2
 
 MOST_STEPS = 60
 """Steps to a maximum, at most."""
+
+MOST_OF_BACKGROUND = 0.9
+"""Share of the background that a step takes away, at most."""
+
+TERMS = 2
+"""Terms of what a force moves besides, over frequency: a constant and a slope."""
 
 LONGEST = 1.0
 """Change of ln zeta, and of ln omega in half bandwidths, in one step, at most."""
@@ -119,7 +121,9 @@ class Density:
     root : (modes, modes) L
     background : (sensors, sensors) B
     free : number of the modes that are in the band, the first ones
-    coherent : (sensors, free) R, or (sensors, 0) for a model without it
+    coherent : (sensors, terms x free) R, all constants first; no terms for a model without it
+    middle : rad/s, where the slopes of R are 0
+    precision : (terms x free,) of normal distributions of the columns of R a priori, about 0
     """
 
     omega: Floats
@@ -129,6 +133,8 @@ class Density:
     background: Floats
     free: int
     coherent: Floats
+    middle: float = 1.0
+    precision: Floats = field(default_factory=lambda: np.zeros(0))
 
     @property
     def columns(self) -> Floats:
@@ -157,14 +163,24 @@ class Density:
         """Return H at circular frequencies, (lines, columns, modes)."""
         eye = np.eye(len(self.omega))
         of_modes = self.response(omega, order).T[:, :, None] * eye
-        constant = np.repeat(eye[None, : self.moving - self.free], len(omega), axis=0)
-        parts = [of_modes[:, : self.free], constant, of_modes[:, self.free :]]
+        terms = range(self.coherent.shape[1] // max(self.free, 1))
+        y = (omega / self.middle - 1)[:, None, None]
+        smooth = [y**term * eye[: self.free] for term in terms]
+        parts = [of_modes[:, : self.free], *smooth, of_modes[:, self.free :]]
         out: Complexes = np.concatenate(parts, axis=1)
         return out
 
-    def with_coherent(self) -> Density:
-        """Return the same model with R = 0 as parameters."""
-        return replace(self, coherent=np.zeros((len(self.phi), self.free)))
+    def with_coherent(self, band: Band) -> Density:
+        """Return the same model with R = 0 as parameters, in the middle of a band.
+
+        A priori, either term is at the ends of the band as large as what the mode itself does.
+        """
+        n, ends = len(self.phi), band.omega[[0, -1]]
+        size = np.mean(np.abs(self.response(ends, band.order)[: self.free]) ** 2, axis=1)
+        reach = np.ptp(ends) / ends.sum()
+        precision = (n * reach ** (2 * np.arange(TERMS))[:, None] / size).ravel()
+        R = np.zeros((n, len(precision)))
+        return replace(self, coherent=R, middle=float(ends.mean()), precision=precision)
 
     def without(self, mode: int) -> Density:
         """Return the model without one of its modes, and without R."""
@@ -177,6 +193,7 @@ class Density:
             root=root_of(self.force[np.ix_(kept, kept)]),
             free=self.free - (mode < self.free),
             coherent=self.coherent[:, :0],
+            precision=self.precision[:0],
         )
 
 
@@ -219,14 +236,19 @@ class Fit:
         scale = 1 / np.sqrt(np.where(diagonal > TINY, diagonal, 1.0))
         return A * np.outer(scale, scale), scale
 
+    @cached_property
+    def root(self) -> Floats:
+        """A square root of the covariance of all parameters, with as many columns."""
+        A, scale = self.scaled()
+        value, vector = la.eigh(A)
+        out: Floats = scale[:, None] * vector / np.sqrt(np.maximum(value, 1e-13))
+        return out
+
     def covariance(self, mode: int) -> Floats:
         """Return the covariance of ln omega, ln zeta and the shape of a free mode."""
         n, m = len(self.model.phi), self.model.free
         first = self.model.moving * n + mode
-        rows = [first, first + m, *range(mode * n, (mode + 1) * n)]
-        A, scale = self.scaled()
-        value, vector = la.eigh(A)
-        half = (scale[:, None] * vector)[rows] / np.sqrt(np.maximum(value, 1e-13))
+        half = self.root[[first, first + m, *range(mode * n, (mode + 1) * n)]]
         out: Floats = half @ half.T
         return out
 
@@ -263,16 +285,27 @@ def _matrices(band: Band, model: Density) -> _Matrices:
     inverse = np.linalg.inv(B)
     hat = inverse @ psi
     P = psi.T @ hat
-    left = h.conj().swapaxes(1, 2)
-    A = np.eye(len(model.omega)) + model.force @ (left @ P @ h)
-    D: Complexes = np.asarray(h @ np.linalg.solve(A, model.force[None]) @ left, complex)
-    N, Y = h @ model.force @ left, np.eye(len(P)) - D @ P
+    N, D, determinant = _of_responses(h @ model.root, P)
+    Y = np.eye(len(P)) - D @ P
     seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape)
     own, weighted = hat.T @ seen, band.count[:, None, None] * D
     weight = band.count.sum() + PRIOR + n
     cost = weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total + _prior(band))
-    cost += band.count @ np.linalg.slogdet(A)[1] - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
+    cost += band.count @ determinant - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
+    cost += np.sum(model.precision * model.coherent**2) / 2
     return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, float(cost))
+
+
+def _of_responses(root: Complexes, P: Floats) -> tuple[Complexes, Complexes, Floats]:
+    """Return N, D and the logarithm of det(I + N P) at all lines, from H L.
+
+    D is H L (I + L^* H^* P H L)^-1 L^* H^*, of which no rounding makes the inverse singular.
+    """
+    adjoint = root.conj().swapaxes(1, 2)
+    value, vector = np.linalg.eigh(adjoint @ P @ root)
+    value = np.maximum(value, 0.0)
+    half = root @ vector / np.sqrt(1 + value)[:, None]
+    return root @ adjoint, half @ half.conj().swapaxes(1, 2), np.log1p(value).sum(axis=1)
 
 
 def evaluate(band: Band, model: Density) -> Fit:
@@ -287,8 +320,12 @@ def evaluate(band: Band, model: Density) -> Fit:
     poles = 2 * np.sum(d * np.hstack([NW, NW]), axis=0).real
     whole = (x.h.conj().swapaxes(1, 2) @ W @ x.h).sum(axis=0).T
     forces = (J.reshape(len(J), whole.size) @ whole.ravel()).real
+    columns[m : model.moving] += (model.precision * model.coherent).T
     gradient = np.concatenate([columns[: model.moving].ravel(), poles, forces])
-    return Fit(model, x.cost, gradient, _information(model, x, c, d, J), _bending(whole.T))
+    information = _information(model, x, c, d, J)
+    prior = np.arange(m * len(columns.T), model.moving * len(columns.T))
+    information[prior, prior] += model.precision.repeat(len(columns.T))
+    return Fit(model, x.cost, gradient, information, _bending(whole.T))
 
 
 def modal_responses(
@@ -300,8 +337,7 @@ def modal_responses(
     """
     h, psi = model.lifted(omega, order), model.columns
     hat = la.solve(model.background, psi, assume_a="pos")
-    N = h @ model.force @ h.conj().swapaxes(1, 2)
-    D = np.linalg.solve(np.eye(len(hat.T)) + N @ (psi.T @ hat), N)
+    N, D, _ = _of_responses(h @ model.root, psi.T @ hat)
     Q = np.einsum("krr->rk", N - D).real
     return np.einsum("krs,sk->rk", D, hat.T @ F), Q
 
@@ -433,10 +469,9 @@ def _background(band: Band, model: Density, x: _Matrices) -> Floats:
     half = U @ (beside - beside @ U @ U.T)
     rest = right - U @ (U.T @ right)
     Z = (rest - rest @ U @ U.T) / weight + half + half.T + U @ inside @ U.T
-    Z = (Z + Z.T) / 2
-    if la.eigvalsh(Z)[0] < -0.9:
-        return after
-    out: Floats = R @ (np.eye(n) + Z) @ R.T
+    value, vector = la.eigh((Z + Z.T) / 2)
+    root = R @ vector * np.sqrt(1 + np.maximum(value, -MOST_OF_BACKGROUND))
+    out: Floats = root @ root.T
     return out
 
 
@@ -506,5 +541,5 @@ def _normalised(model: Density) -> Density:
         model,
         phi=model.phi / norm,
         root=model.root * norm[:, None],
-        coherent=model.coherent / norm[: model.moving - model.free],
+        coherent=model.coherent / np.resize(norm[: model.free], model.coherent.shape[1]),
     )

@@ -4,7 +4,9 @@ Poles of the structure come back at every order with nearly the same value and s
 noise do not. Poles of neighbouring orders and all poles together are compared by
 
 .. math:: d(1, 2) = \frac{|\lambda_1 - \lambda_2|}{\max(|\lambda_1|, |\lambda_2|)}
-          + 1 - \mathrm{MAC}(\psi_1, \psi_2).
+          + 1 - \mathrm{MAC}(\psi_1, \psi_2),
+
+with shapes :math:`\psi` by linear least squares at the given poles.
 
 In three stages (Reynders, Houbrechts & De Roeck 2012): (1) every pole is set against the nearest
 one of the order below, and the logarithms of these distances fall into two groups, *stable* and
@@ -14,20 +16,12 @@ share of the orders, from its first one, that contribute a pole. Where Reynders 
 clusters by their size, here they are candidates for the maximum-likelihood model, which has a
 sharper criterion: a likelihood ratio (`modefront.identification.selection`).
 
-===================  =====================================================================
-symbol               meaning
-===================  =====================================================================
-psi                  shapes (poles, responses) by linear least squares at the given poles
-d                    distance of two poles
-===================  =====================================================================
-
-Source: Reynders, Houbrechts & De Roeck, Fully automated (operational) modal analysis, Mech. Syst.
-Signal Process. 29 (2012) 228-250, doi:10.1016/j.ymssp.2012.01.007.
+Source: Reynders, Houbrechts & De Roeck, Mech. Syst. Signal Process. 29 (2012) 228-250,
+doi:10.1016/j.ymssp.2012.01.007.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -129,21 +123,14 @@ def diagram_of(
     sums = lscf.moments(data.H, weight / weight.max(), z, max(orders))
     windowed = lscf.poles(sums, orders, omega[0], rate)
     estimates = [lscf.without_decay(poles, data.decay) for poles in windowed]
+    kept = []
+    for p in estimates:
+        good = -p.value.real < MOST_DAMPING * np.abs(p.value)
+        kept.append(Poles(p.order, p.value[good], p.participation[good]))
     s: Complexes = np.asarray(1j * omega + data.decay, complex)
-    return stabilisation_diagram(estimates, data.H, s, ORDERS[data.quantity])
-
-
-def stabilisation_diagram(
-    estimates: Sequence[Poles], H: Complexes, s: Complexes, quantity_order: int
-) -> tuple[StabilisationDiagram, list[Cluster]]:
-    """Return the diagram of the poles of ascending orders, and its clusters by pole.
-
-    ``H`` is (references, responses, lines) without NaN, at ``s``, which is i omega
-    plus the decay of an exponential window.
-    """
-    kept = [_usable(poles) for poles in estimates]
     lines = _lines_of_shapes(s, np.concatenate([poles.value for poles in kept]))
-    shapes = [shapes_of(poles, H[..., lines], s[lines], quantity_order) for poles in kept]
+    H, q = data.H[..., lines], ORDERS[data.quantity]
+    shapes = [shapes_of(poles, H, s[lines], q) for poles in kept]
     distance = np.concatenate(
         [np.full(len(kept[0].value), np.inf)]
         + [
@@ -175,11 +162,6 @@ def stabilisation_diagram(
         tuple(poles.order for poles in estimates),
     )
     return diagram, _clusters(diagram)
-
-
-def _usable(poles: Poles) -> Poles:
-    good = -poles.value.real < MOST_DAMPING * np.abs(poles.value)
-    return Poles(poles.order, poles.value[good], poles.participation[good])
 
 
 def _lines_of_shapes(s: Complexes, pole: Complexes) -> Bools:

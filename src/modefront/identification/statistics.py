@@ -8,9 +8,8 @@ projected Gauss–Newton matrix A of `modefront.identification.modal_model` and
           \delta c_i = G_i^{-1}\Phi_i^T \delta y_i - Z_i\,\delta\alpha,
 
 and the real and imaginary parts of a weighted residual have variance 1/2 each, so that
-
-.. math:: C_\alpha = \tfrac12 A^{-1},\qquad
-          C_{c_i c_k} = \tfrac12\delta_{ik} G_i^{-1} + Z_i C_\alpha Z_k^T .
+:math:`C_\alpha = \tfrac12 A^{-1}`, :math:`C_{c_i c_k} = \tfrac12\delta_{ik} G_i^{-1} + Z_i C_\alpha
+Z_k^T`.
 
 Two things that are common in tests break the independence, and are measured on the residuals:
 
@@ -37,11 +36,8 @@ Where the residuals are greater than the variance that was given, the model does
 of the data: covariances are multiplied by :math:`\chi^2` over the degrees of freedom, if that is
 above one.
 
-Frequency and damping are :math:`f = |\lambda|/2\pi`, :math:`\zeta = -\operatorname{Re}\lambda /
-|\lambda|`; shapes see `modefront.identification.shapes`.
-
-Source: Pintelon, Guillaume & Schoukens, Uncertainty calculation in (operational) modal analysis,
-Mech. Syst. Signal Process. 21 (2007) 2359-2373, doi:10.1016/j.ymssp.2006.11.007.
+Source: Pintelon, Guillaume & Schoukens, Mech. Syst. Signal Process. 21 (2007) 2359-2373,
+doi:10.1016/j.ymssp.2006.11.007.
 """
 
 from __future__ import annotations
@@ -53,7 +49,6 @@ import numpy as np
 import scipy.fft
 
 from modefront._typing import Complexes, Floats
-from modefront.data.responses import ForceNoise
 from modefront.identification.modal_model import (
     CHUNK,
     Fit,
@@ -68,6 +63,7 @@ from modefront.identification.modal_model import (
 )
 from modefront.identification.noise import square
 from modefront.identification.record import ModeEstimate, Residuals
+from modefront.identification.selection import freedom
 from modefront.identification.shapes import TINY, RealShape, real_plane, real_shape
 
 SIGNIFICANT = 3.0
@@ -87,19 +83,12 @@ def residuals(task: Problem, fit: Fit) -> Residuals:
     """Return correlation and size of the errors from the residuals of a fit."""
     H = synthesise(task, fit.model)
     r = np.where(task.weight > 0, task.H - H, 0)
-    linear = int(np.sum(task.weight.any(axis=(0, 2)))) * fit.inverse.shape[1]
-    freedom = max(task.count - linear - len(fit.gradient), 1)
     size = np.where(task.weight > 0, np.abs(task.H) ** 2, 0).sum(axis=2)
     share = np.sqrt((np.abs(r) ** 2).sum(axis=2) / np.where(size > 0, size, np.nan))
-    chi2 = 2 * fit.cost / freedom
-    force = _known_force(task.force_noise) if task.force_noise else _force(task, H, r)
+    chi2 = 2 * fit.cost / freedom(task, fit)
+    noise = task.force_noise
+    force = _force(task, H, r) if noise is None else np.mean(noise.deviation**2, axis=1)
     return Residuals(chi2, _correlation(task, r), force, share)
-
-
-def _known_force(noise: ForceNoise) -> Floats:
-    """Return the mean variance of the noise of the force channel, relative, (references,)."""
-    out: Floats = np.mean(noise.deviation**2, axis=1)
-    return out
 
 
 def _correlation(task: Problem, r: Complexes) -> Complexes:

@@ -11,7 +11,7 @@ r"""Ambient tests: from the records of all setups to modes, by the likelihood of
    1 for a harmonic; over n samples whose response has the correlations :math:`\rho` at all lags,
    its variance is :math:`4 \sum |\rho|^4 / n`.
 5. Setups are combined: frequencies and damping ratios by their precision and what they scatter
-   between setups (`sets`), shapes by the sensors that setups share (`setups`).
+   between setups (`sets`), shapes by the sensors that setups share.
 """
 
 from __future__ import annotations
@@ -36,11 +36,10 @@ from modefront.identification.record import (
     Residuals,
 )
 from modefront.identification.selection import ALONE, FALSE, LEAST_ORDERS
-from modefront.identification.sets import between, mode_groups
-from modefront.identification.setups import merged_shape
+from modefront.identification.sets import between, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
 from modefront.identification.spectra import Transforms
-from modefront.identification.spectral_density import Band, Density, Fit
+from modefront.identification.spectral_density import Band, Density
 from modefront.identification.stabilisation import (
     StabilisationDiagram,
     diagram_of,
@@ -282,7 +281,8 @@ def _of_group(
     fit = spectral_density.maximise(band, _first(band, [*modes, *beside], len(modes)), TRIAL_STEPS)
     held, patient = np.array([mode.held for mode in modes]), True
     while fit.model.free:
-        without = _without(band, fit)
+        models = [fit.model.without(r) for r in range(fit.model.free)]
+        without = [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
         gain = 2 * (np.array([each.cost for each in without]) - fit.cost)
         worth = np.where(held, np.inf, np.where(_astray(band, fit.model, gain), 0.0, gain))
         if worth.min() >= least:
@@ -304,7 +304,7 @@ def _of_group(
     else:
         return []
     if last:
-        fit = spectral_density.maximise(band, fit.model.with_coherent())
+        fit = spectral_density.maximise(band, fit.model.with_coherent(band))
     model, out = fit.model, []
     visible = _shares(band, model)
     for r in range(model.free):
@@ -339,12 +339,6 @@ def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
     filtered = np.einsum("ri,kij,rj->rk", inverse, band.power, inverse, optimize=True).real
     level = np.sum(filtered * h2, axis=1) / np.sum(h2**2, axis=1)
     return replace(model, root=np.diag(np.sqrt(level)).astype(complex))
-
-
-def _without(band: Band, fit: Fit) -> list[Fit]:
-    """Return the fits without each of the modes in the band, which all else may follow."""
-    models = [fit.model.without(r) for r in range(fit.model.free)]
-    return [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
 
 
 def _astray(band: Band, model: Density, gain: Floats) -> Bools:
@@ -437,15 +431,12 @@ def _completed(
             known = [row for row in rows if row is not None]
             least = float(chi2.isf(FALSE, len(setup.records.sensors)))
             found = _fitted(setup, [*known, *tried], least, last=True)
-            for r, start in zip(lacking, tried, strict=True):
-                near = [
-                    m for m in found if abs(m.omega - start.omega) < 2 * max(m.half, start.half)
-                ]
-                near = [
-                    m for m in near if all(abs(m.omega - o.omega) > 1e-3 * m.half for o in known)
-                ]
-                if near:
-                    rows[r] = min(near, key=lambda m: abs(m.omega - start.omega))
+            omega = np.array([mode.omega for mode in (*tried, *known)])
+            for mode in found:
+                nearest = int(np.abs(omega - mode.omega).argmin())
+                reach = 2 * max(mode.half, tried[nearest].half) if nearest < len(tried) else 0.0
+                if abs(omega[nearest] - mode.omega) < reach:
+                    rows[lacking[nearest]] = mode
         out.append((setup, rows))
     return out
 

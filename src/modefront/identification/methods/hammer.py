@@ -85,8 +85,11 @@ def identify(
         raise ValueError(f"expected {LEAST_LINES} lines in the band, found {len(data.frequency)}")
     if not np.any(np.abs(np.nan_to_num(data.H)) > 0):
         raise ValueError("expected functions that are not zero, found only zeros")
-    kind, variance = weighting(data), _known_variance(data)
-    first = variance_from_differences(data) if variance is None else variance
+    kind = weighting(data)
+    if data.variance is None or kind == "residuals":
+        first = variance_from_differences(data)
+    else:
+        first = fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
     small, shared = _principal(data, first)
     diagram, clusters = diagram_of(small, shared)
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
@@ -125,12 +128,6 @@ def weighting(data: FrequencyResponses) -> Weighting:
     if not known[data.measured.any(axis=2)].all():
         return "residuals"
     return "scaled" if data.scaled else "given"
-
-
-def _known_variance(data: FrequencyResponses) -> Floats | None:
-    if data.variance is None or weighting(data) == "residuals":
-        return None
-    return fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
 
 
 def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
