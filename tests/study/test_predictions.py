@@ -103,9 +103,8 @@ def test_a_band_without_a_peak_is_said_to_have_none(results: xr.Dataset) -> None
     assert np.isnan(results["frf_peak_range"].sel(frf="between: low")).all()
 
 
-def test_ranges_are_those_of_the_front_and_little_more_than_at_its_points(
-    results: xr.Dataset,
-) -> None:
+def test_ranges_are_those_of_the_front_and_not_of_its_points(results: xr.Dataset) -> None:
+    """Of these three points no one is near the least probability, which is within the front."""
     optimal = results.isel(point=results["pareto"].values)
     for name in ("frequency", "frf_peak", "frf_peak_frequency", "failure_probability"):
         least, greatest, spread = results[f"{name}_range"].values
@@ -113,9 +112,10 @@ def test_ranges_are_those_of_the_front_and_little_more_than_at_its_points(
         known = np.isfinite(among).all(axis=0)
         assert (least[known] <= among[0, known]).all()
         assert (greatest[known] >= among[1, known]).all()
-        assert np.array([least, greatest])[:, known] == pytest.approx(among[:, known], rel=0.01)
         assert np.isnan(least[~known]).all()
         np.testing.assert_array_equal(spread, greatest / least)
+    least = results["failure_probability_range"].sel(range="minimum").values
+    assert (least < 0.5 * optimal["failure_probability"].min("point").values).all()
     assert results["range"].values.tolist() == ["minimum", "maximum", "spread"]
 
 
@@ -213,7 +213,7 @@ def test_other_predictions_do_no_old_work_again(
 
     monkeypatch.setattr(Store, "write", note)
     again = run(tmp_path, FRF.replace("damping = [0.02, 0.03]", "damping = 0.05"))
-    evaluated = again.sizes["point"] + AXES
+    evaluated = again.sizes["point"] + AXES + 1
     assert len(written) == evaluated
     assert all(name.startswith("predict-pushed-") for name in written)
     assert (tmp_path / "results" / "results.1.nc").exists(), "other results are kept"
@@ -225,7 +225,8 @@ def test_eigenproblems_of_predictions_are_counted(results: xr.Dataset, tmp_path:
     plain = run(tmp_path, "")
     predictions = 5 + 1
     more = results.attrs["model_evaluations"] - plain.attrs["model_evaluations"]
-    assert more == predictions * (plain.sizes["point"] + AXES) + 1
+    of_ranges = more - predictions * (plain.sizes["point"] + AXES) - 1
+    assert 0 < of_ranges < plain.attrs["model_evaluations"]
     assert results.attrs["prediction_eigensolutions"] == more
     for name in plain.variables:
         np.testing.assert_array_equal(plain[name], results[name])

@@ -88,12 +88,20 @@ class Sampled:
     theta, J : (m, p) and (m, n) parameters and objectives
     is_open : whether others are equivalent to these
     slack : share by which objectives of models may be greater that count
+    between : what has been solved for half-way between two models, for any prediction
     """
 
     theta: Floats
     J: Floats
     is_open: bool
     slack: float = 0.0
+    between: dict[bytes, Solution | None] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def ranges(self) -> Floats:
+        """Ranges of the objectives, (n,); 1 for none."""
+        ranges = np.ptp(self.J, axis=0)
+        return np.where(ranges > 0, ranges, 1.0)
 
 
 @dataclass(frozen=True)
@@ -259,15 +267,15 @@ class _Along:
     Attributes
     ----------
     problem : the problem
+    front : some of its models, and what is known between them
     value : returns the value of a model of the front
-    ranges : (n,) of the objectives
     theta, J, values : of the models
     halved : pairs of models between which the front has been solved for
     """
 
     problem: Problem
+    front: Sampled
     value: Callable[[Floats], float]
-    ranges: Floats
     theta: list[Floats] = field(default_factory=list)
     J: list[Floats] = field(default_factory=list)
     values: list[float] = field(default_factory=list)
@@ -291,7 +299,7 @@ class _Along:
         """Yield the neighbours between which less than the least value may lie."""
         values = np.array(self.values)
         known = np.isfinite(values)
-        scaled = np.array(self.J) / self.ranges
+        scaled = np.array(self.J) / self.front.ranges
         squares = ((scaled[:, None] - scaled) ** 2).sum(axis=2)
         needed = values.min(where=known, initial=np.inf)
         needed -= SURE * np.abs(values).max(where=known, initial=0.0)
@@ -309,20 +317,29 @@ class _Along:
         one, other = self.theta[a], self.theta[b]
         if _apart(self.problem, one, other) <= SURE:
             return
-        unit, J = self.ranges, np.array(self.J)
-        middle = (J[a] + J[b]) / (2 * unit)
+        key = np.append(one, other).tobytes()
+        if key not in self.front.between:
+            self.front.between[key] = self._between(a, b)
+        found = self.front.between[key]
+        known = np.array(self.J)
+        if found and undominated(found.J[None], known, self.front.ranges).all():
+            self.add(found.theta, found.J, self.value(found.theta))
+
+    def _between(self, a: int, b: int) -> Solution | None:
+        """Return the model half-way between two; None where these are as near to it as any."""
+        one, other, unit = self.theta[a], self.theta[b], self.front.ranges
+        ends = np.array([self.J[a], self.J[b]]) / unit
+        middle = ends.mean(axis=0)
         programme = achievement(RHO / unit, np.diag(1 / unit), middle)
-        least = float((J[[a, b]] / unit - middle).max(axis=1).min()) - TIE
         for starts in ([(one + other) / 2], [one, other]):
             found = [
                 solve(self.problem, programme, begin(self.problem.evaluate(start)), _ENOUGH)
                 for start in starts
             ]
             best = min(found, key=lambda x: float((x.J / unit - middle).max()))
-            if (best.J / unit - middle).max() < least:
-                if undominated(best.J[None], J, unit).all():
-                    self.add(best.theta, best.J, self.value(best.theta))
-                return
+            if (best.J / unit - middle).max() < (ends - middle).max(axis=1).min() - TIE:
+                return best
+        return None
 
 
 def _apart(problem: Problem, one: Floats, other: Floats) -> float:
@@ -345,8 +362,7 @@ def extreme(
         here = problem.evaluate(theta)
         return sign * Equivalent(problem, here, front.slack, step).extreme(q, sign)
 
-    ranges = np.ptp(front.J, axis=0)
-    along = _Along(problem, value, np.where(ranges > 0, ranges, 1.0))
+    along = _Along(problem, front, value)
     for theta, J, known in zip(front.theta, front.J, sign * values, strict=True):
         if all(_apart(problem, theta, other) > SURE for other in along.theta):
             along.add(theta, J, value(theta) if front.is_open else float(known))

@@ -7,7 +7,7 @@ models alone.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -99,24 +99,23 @@ class PredictionRunner:
         ``values`` (m, places) are those of its m models by key. The ends have the shape
         (2, places), by the key of each variable of which the range is reported.
         """
-        kind, places = prediction.kind, len(prediction.places)
         mark = hash_text(f"{front.theta.tolist()} {front.is_open} {front.slack}")[:8]
-        tasks = [
-            self._task(
-                prediction,
-                ("least" if sign > 0 else "greatest", variable.key, i + 1, mark),
-                _extreme,
-                (front, values[variable.key], variable, i, sign),
-            )
-            for variable in kind.ranged
+        ends: list[End] = [
+            (variable, i, sign)
+            for variable in prediction.kind.ranged
             for sign in (1.0, -1.0)
-            for i in range(places)
+            for i in range(len(prediction.places))
         ]
-        found = iter(self.work.run(tasks))
-        return {
-            variable.key: np.array([[next(found) for _ in range(places)] for _ in range(2)])
-            for variable in kind.ranged
-        }
+        # Ends share what is solved between points; over equivalent models each is work of its own.
+        parts = [[end] for end in ends] if front.is_open else [ends]
+        tasks = [
+            self._task(prediction, ("ends", k + 1, mark), _ends, (front, values, part))
+            for k, part in enumerate(parts)
+        ]
+        found = np.concatenate(self.work.run(tasks))
+        shape = (len(prediction.kind.ranged), 2, len(prediction.places))
+        keys = (variable.key for variable in prediction.kind.ranged)
+        return dict(zip(keys, found.reshape(shape), strict=True))
 
     def _task(
         self,
@@ -176,30 +175,48 @@ def _at_model(
         return Predicted(values, solved=False)
 
 
-# 8 arguments: the problem and the prediction, and those of `modefront.predictions.ranges.extreme`.
-def _extreme(
+End = tuple[ResultVariable, int, float]
+"""A variable at a place, and whether its least (1) or its greatest value (-1) is sought."""
+
+
+def _ends(
     problem: UpdatingProblem,
     prediction: Prediction,
     numbers: np.random.SeedSequence,
     front: Sampled,
-    values: Floats,
-    variable: ResultVariable,
-    place: int,
-    sign: float,
-) -> float:
-    """Return the least (sign 1) or greatest (-1) value at a place; ``values`` (m, places)."""
-    logarithmic = variable.logarithmic
+    values: Arrays,
+    ends: Sequence[End],
+) -> Floats:
+    """Return the ends of ranges over a front of which the predictions are known."""
+    known: dict[bytes, Arrays] = {}
 
-    def scaled(values: Floats) -> Floats:
-        own = values[..., place]
-        if not logarithmic:
+    def at(theta: Floats) -> Arrays:
+        key = theta.tobytes()
+        if key not in known:
+            known[key] = _at_model(problem, prediction, numbers, theta).values
+        return known[key]
+
+    own = replace(front, between={})  # the same work, whatever was done before in this process
+    return np.array([_end(problem, own, values, at, end) for end in ends])
+
+
+def _end(
+    problem: UpdatingProblem,
+    front: Sampled,
+    values: Arrays,
+    at: Callable[[Floats], Arrays],
+    end: End,
+) -> float:
+    variable, place, sign = end
+
+    def scaled(values: Arrays) -> Floats:
+        own = values[variable.key][..., place]
+        if not variable.logarithmic:
             return own
         return np.log(own, out=np.full(own.shape, np.nan), where=own > 0)
 
-    def q(theta: Floats) -> float:
-        found = _at_model(problem, prediction, numbers, theta)
-        return float(scaled(found.values[variable.key]))
-
-    step = ROUGH if logarithmic else STEP
-    found = extreme(problem, front, scaled(values), q, sign, step)
-    return float(np.exp(found)) if logarithmic else found
+    step = ROUGH if variable.logarithmic else STEP
+    found = extreme(
+        problem, front, scaled(values), lambda theta: float(scaled(at(theta))), sign, step
+    )
+    return float(np.exp(found)) if variable.logarithmic else found

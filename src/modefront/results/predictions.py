@@ -23,10 +23,8 @@ RANGE = ("minimum", "maximum", "spread")
 
 
 def extent(predictions: Sequence[Prediction], models: int) -> dict[str, int]:
-    """Return the expected number of tasks of the predictions of so many models, and their ends."""
-    ends = [2 * len(each.kind.ranged) * len(each.places) for each in predictions]
-    checks = [each.kind.check is not None for each in predictions]
-    return {"predict": models * len(ends) + sum(ends) + sum(checks)}
+    """Return the expected number of tasks of the predictions of so many models, and of ranges."""
+    return {"predict": sum(models + 1 + (each.kind.check is not None) for each in predictions)}
 
 
 def by_kind(
