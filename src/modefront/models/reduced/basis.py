@@ -37,8 +37,7 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
-from modefront.linalg.factorisation import Factorisation, SingularMatrixError
-from modefront.linalg.factorisation import Pencil
+from modefront.linalg.factorisation import Factorisation, Pencil, SingularMatrixError
 from modefront.linalg.products import combine, combine_all, gram, times
 from modefront.models.matrices import MatrixModel
 from modefront.modes import dense
