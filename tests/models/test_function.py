@@ -215,15 +215,15 @@ WRONG: list[tuple[Callable[..., Any], str]] = [
     (spring(1j * np.eye(2)), "K: expected real numbers for real parameters, found complex"),
     (
         spring([[1.0, np.nan], [np.nan, 1.0]]),
-        "K: expected finite numbers up to 1e+100, found nan in row 0, column 1 (from 0)",
+        "K, row 0, column 1 (from 0): expected finite numbers up to 1e+100, found nan",
     ),
     (
         spring(scipy.sparse.csr_array([[1.0, 0.0], [0.0, np.inf]])),
-        "K: expected finite numbers up to 1e+100, found inf in row 1, column 1 (from 0)",
+        "K, row 1, column 1 (from 0): expected finite numbers up to 1e+100, found inf",
     ),
     (
         spring([[1.0, 2.0], [0.0, 1.0]]),
-        "K: expected a symmetric matrix, found 2 in row 0, column 1 (from 0), and 0 across",
+        "K, row 0, column 1 (from 0): expected a symmetric matrix, found 2, and 0 across",
     ),
     (filled, "complex k: expected a function that takes complex parameters, or that returns"),
     (filled_by_rows, "complex k: expected a function that takes complex parameters, or that"),
@@ -253,7 +253,7 @@ def test_a_function_that_fails_later_ends_the_search_and_names_theta() -> None:
         return (theta[0] if theta[0].real < 4 else np.nan) * np.eye(2), np.eye(2)
 
     model = mf.function_model([mf.Parameter("k", 3.0, (1.0, 5.0))], {"one": 0}, function)
-    with pytest.raises(mf.InputError, match=r"matrices\(k = 4.5\): K: expected finite numbers"):
+    with pytest.raises(mf.InputError, match=r"matrices\(k = 4.5\): K, row .*: expected finite numbers"):
         model.modes(np.array([4.5]), 1)
 
 

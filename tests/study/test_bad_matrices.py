@@ -68,7 +68,7 @@ MATRIX_FILES = [
     (
         "K0.mtx",
         f"{MTX} coordinate real general\n2 2 1\n2 2 nan\n".encode(),
-        "row 1, column 1 (from 0): expected finite numbers, found nan",
+        "row 1, column 1 (from 0): expected finite numbers up to 1e+100, found nan",
     ),
     ("K1.npy", b"", UNREADABLE),
     ("K1.npy", b"garbage", UNREADABLE),

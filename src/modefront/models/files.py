@@ -72,7 +72,7 @@ def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_a
     path = Path(path)
     A = read_entries(path, name)
     A.sum_duplicates()
-    symmetric = scipy.sparse.coo_array(symmetrised(A.tocsr(), str(path), "file"))
+    symmetric = scipy.sparse.coo_array(symmetrised(A.tocsr(), str(path), ""))
     symmetric.eliminate_zeros()
     return symmetric
 

@@ -399,20 +399,23 @@ def weights_of(places: Mapping[str, SensorSpec], size: int, place: str) -> dict[
 def symmetrised(A: Any, file: str, place: str) -> Any:
     """Return a matrix, an array or a sparse one, without the rounding in its symmetry.
 
-    Raises InputError, which names the ``file`` and the ``place``, where a number is not finite and
-    where the matrix is not symmetric.
+    Raises InputError, which names the ``file``, the ``place`` and the entry, where a number is not
+    finite and where the matrix is not symmetric.
     """
     entries = A.data if scipy.sparse.issparse(A) else A
     if not (np.abs(entries) <= LARGEST).all():
         B = scipy.sparse.coo_array(A)
         k = int(np.argmin(np.abs(B.data) <= LARGEST))
-        found = f"{B.data[k]:g} in row {B.row[k]}, column {B.col[k]} (from 0)"
-        raise InputError(Fault(file, place, f"finite numbers up to {LARGEST:g}", found))
+        i, j = int(B.row[k]), int(B.col[k])
+        expected, found = f"finite numbers up to {LARGEST:g}", f"{B.data[k]:g}"
+        raise InputError(Fault(file, _entry(place, i, j), expected, found))
     asymmetry = abs(A - A.T)
     if asymmetry.max() > SYMMETRY * abs(A).max():
         i, j = divmod(int(asymmetry.argmax()), A.shape[0])
-        found = (
-            f"{A[i, j]:.6g} in row {i}, column {j} (from 0), and {A[j, i]:.6g} across the diagonal"
-        )
-        raise InputError(Fault(file, place, "a symmetric matrix", found))
+        found = f"{A[i, j]:.6g}, and {A[j, i]:.6g} across the diagonal"
+        raise InputError(Fault(file, _entry(place, i, j), "a symmetric matrix", found))
     return (A + A.T) / 2
+
+
+def _entry(place: str, i: int, j: int) -> str:
+    return f"{place}, row {i}, column {j} (from 0)".removeprefix(", ")
