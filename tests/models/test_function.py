@@ -253,7 +253,8 @@ def test_a_function_that_fails_later_ends_the_search_and_names_theta() -> None:
         return (theta[0] if theta[0].real < 4 else np.nan) * np.eye(2), np.eye(2)
 
     model = mf.function_model([mf.Parameter("k", 3.0, (1.0, 5.0))], {"one": 0}, function)
-    with pytest.raises(mf.InputError, match=r"matrices\(k = 4.5\): K, row .*: expected finite numbers"):
+    says = r"matrices\(k = 4.5\): K, row .*: expected finite numbers"
+    with pytest.raises(mf.InputError, match=says):
         model.modes(np.array([4.5]), 1)
 
 

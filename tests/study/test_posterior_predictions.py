@@ -242,11 +242,11 @@ def test_more_draws_cost_only_themselves(drawn: xr.Dataset, tmp_path: Path) -> N
     for name in ("draw_theta", "draw_frf_peak", "draw_failure_probability"):
         np.testing.assert_array_equal(data[name][:5], drawn[name])
     np.testing.assert_array_equal(data["posterior_frf_peak_std"], drawn["posterior_frf_peak_std"])
-    # The last extent that is told is that of the work: of 8 models, 4 on axes and 7 drawn.
+    # The last extent that is told is that of the work: of 8 models, 4 on axes, 7 drawn, and ranges.
     last = states[-1]
     assert (last.done, last.running) == (last.expected, 0)
     of_predictions = {state.done for state in states if state.stage == "predict"}
-    assert max(of_predictions) - min(of_predictions) == 6 * (8 + 2 * 2 + 7) + 1
+    assert max(of_predictions) - min(of_predictions) == 6 * (8 + 2 * 2 + 7 + 1) + 1
 
 
 def exact_problem() -> mf.UpdatingProblem:

@@ -366,7 +366,9 @@ def test_show_prints_and_draws_predictions(
     names += ["frf-pushed", "frf-shaken", "frf-as-if-shaken", "frf-ridden", "frf-between"]
     names += ["failure-drifts", "uncertainty", "minima"]
     paths = [tmp_path / "results" / "figures" / f"{name}.svg" for name in names]
-    assert out.splitlines() == [f"wrote {path}" for path in paths]
+    *written, following = out.splitlines()
+    assert written == [f"wrote {path}" for path in paths]
+    assert following == f"next: modefront report {tmp_path / 'results'}"
     drawn = [path.read_bytes() for path in paths]
     assert all(b"</svg>" in content for content in drawn)
     assert [

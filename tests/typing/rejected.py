@@ -97,5 +97,5 @@ def results(problem: mf.UpdatingProblem) -> xr.DataArray:
     result.table(3)  # rejected
     result.nominal.theta["k"] = 2.0  # rejected
     mf.run(problem, "results")
-    mf.run("study.toml", "results")  # rejected
+    mf.run(1, "results")  # rejected
     return result["theta"]

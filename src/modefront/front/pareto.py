@@ -216,17 +216,15 @@ class _Run:
         divisions = (self.options.points or default_points(self.n)) - 1
         counts = [tuple(map(int, row)) for row in lattice(self.n, divisions)]
         target: Payoff | None = None
-        seen: list[Payoff] = []  # of minima that tie, edges may go back and forth
         for turn in count():
             bests = self._reported(sizes, turn)
             new = payoff(bests, sizes, self._others(bests, sizes))
             if new is None:
                 self._drop_points()
                 return target
-            if any(_are_alike(new, x) for x in seen):
+            if target is not None and _are_alike(new, target):
                 break
             target = new
-            seen.append(new)
             if METHODS[self.options.method].programme is None:
                 break  # its points are the models of a population
             self._drop_points()

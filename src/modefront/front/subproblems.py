@@ -143,13 +143,14 @@ class Least(Subproblem):
         return _linear(self.search.programme(TIE).w)
 
     def gain(self, J: Floats, known: Solution) -> float:
-        """Return the share by which J_i falls, or where that is tied, the others."""
-        i, before = self.objective, known.J
-        margin = self.search.margin(float(min(J[i], before[i])))
-        if abs(J[i] - before[i]) > margin:
-            return float((before[i] - J[i]) / max(before[i], EXACT * self.sizes[i]))
-        others = self.search.others
-        return float(others @ (before - J)) / max(float(others @ before), EXACT)
+        """Return the share by which J_i falls, or where that is tied, the others, if any do."""
+        i, before, search = self.objective, known.J, self.search
+        if not search.ties(J, before):
+            return 1 - search.level(J[i]) / search.level(before[i])
+        others = search.others
+        gain = float(others @ (before - J)) / max(float(others @ before), EXACT)
+        # Beside an edge, a tie hides what the others cost: the order of models has to agree.
+        return gain if gain * float(self.order.value(before) - self.order.value(J)) > 0 else 0.0
 
     @property
     def programme(self) -> Scalarisation:

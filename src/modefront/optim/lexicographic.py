@@ -26,8 +26,8 @@ EXACT = 1e-10
 typical size, far below the errors of any measurement and above what solutions leave of them."""
 
 TIE = 1e-6
-"""Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal.
-What solutions leave is less: steps of 1e-7 to 1e-8 change a smooth objective by the square."""
+"""Minima of an objective that differ by less than this share are equal, and so are exact fits. What
+solutions leave is less: steps of 1e-7 to 1e-8 change a smooth objective by the square."""
 
 RANK = Options().step
 """Singular value of the residuals' derivatives, over the greatest, that counts as none: the
@@ -57,14 +57,14 @@ class Lexicographic:
         w[self.objective] = 0.0
         return w
 
-    def margin(self, least: float) -> float:
-        """Return the difference from the least value within which values are equal."""
-        return max(TIE * least, EXACT * float(self.sizes[self.objective]))
+    def level(self, value: float) -> float:
+        """Return a value of the first objective, or if it is fitted exactly what counts as that."""
+        return max(value, EXACT * float(self.sizes[self.objective]))
 
     def ties(self, J: Floats, other: Floats) -> bool:
         """Return whether the first objective is as good in both."""
-        i = self.objective
-        return bool(abs(J[i] - other[i]) <= self.margin(float(min(J[i], other[i]))))
+        one, two = self.level(J[self.objective]), self.level(other[self.objective])
+        return abs(one - two) <= TIE * min(one, two)
 
     def is_open(self, problem: Problem, evaluation: Evaluation) -> bool:
         """Return whether some change of parameters may leave the first objective at its minimum."""
@@ -85,7 +85,7 @@ class Lexicographic:
         """
         i = self.objective
         best = _solved(problem, self.programme(0.0), replace(start, evaluations=0), options)
-        above = best.feasible and best.J[i] > least + self.margin(least)
+        above = best.feasible and self.level(best.J[i]) > (1 + TIE) * self.level(least)
         alone = self.sizes.size == 1 or not best.feasible
         unfinished = best.status is Status.EXHAUSTED
         if above or alone or unfinished or not self.is_open(problem, best.evaluation):
