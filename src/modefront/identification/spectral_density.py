@@ -299,13 +299,16 @@ def _matrices(band: Band, model: Density) -> _Matrices:
 def _of_responses(root: Complexes, P: Floats) -> tuple[Complexes, Complexes, Floats]:
     """Return N, D and the logarithm of det(I + N P) at all lines, from H L.
 
-    D is H L (I + L^* H^* P H L)^-1 L^* H^*, of which no rounding makes the inverse singular.
+    D is H L (I + L^* H^* P H L)^-1 L^* H^*, of which no rounding makes the inverse singular. The
+    logarithm is infinite where rounding is all that is known of it: forces that cancel each other.
     """
     adjoint = root.conj().swapaxes(1, 2)
     value, vector = np.linalg.eigh(adjoint @ P @ root)
     value = np.maximum(value, 0.0)
     half = root @ vector / np.sqrt(1 + value)[:, None]
-    return root @ adjoint, half @ half.conj().swapaxes(1, 2), np.log1p(value).sum(axis=1)
+    rounding = np.finfo(float).eps * value.max(axis=1, initial=0.0)
+    determinant = np.where(rounding < TOLERANCE, np.log1p(value).sum(axis=1), np.inf)
+    return root @ adjoint, half @ half.conj().swapaxes(1, 2), determinant
 
 
 def evaluate(band: Band, model: Density) -> Fit:
@@ -458,8 +461,10 @@ def _background(band: Band, model: Density, x: _Matrices) -> Floats:
     right = weight * la.solve_triangular(R, inner.T, lower=True)
     U, T = la.qr(V, mode="economic")
     size = len(T)
-    single = T @ x.weighted.real.sum(axis=0) @ T.T
-    D = (T @ x.D @ T.T).reshape(len(c), -1)
+    value, vector = np.linalg.eigh(T @ x.D @ T.T)
+    bounded = vector * np.minimum(value, 1.0)[:, None]  # V D V^T <= I, but for rounding
+    D = bounded @ vector.conj().swapaxes(1, 2)
+    single, D = np.tensordot(c, D.real, 1), D.reshape(len(c), -1)
     double = ((c[:, None] * D).T @ D).real.reshape(size, size, size, size)
     eye = np.eye(size)
     A = double.transpose(0, 3, 1, 2).reshape(size**2, size**2) + weight * np.eye(size**2)
