@@ -547,7 +547,8 @@ def _step(fit: Fit, damping: float) -> Floats:
     free = directions(fit.model)
     curvature = free.T @ fit.curvature @ free
     diagonal = curvature.diagonal()
-    scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    rounding = np.finfo(float).eps ** 2 * diagonal.max()  # of a dead channel it is all there is
+    scale = 1 / np.sqrt(np.where(diagonal > rounding, diagonal, 1.0))
     scaled = curvature * np.outer(scale, scale) + (damping + 1e-12) * np.eye(len(scale))
     slope = scale * (free.T @ fit.gradient)
     step: Floats = -free @ (scale * la.solve(scaled, slope, assume_a="sym"))

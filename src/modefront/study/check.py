@@ -73,10 +73,14 @@ KEPT = 500
 """Models that a search keeps with their second derivatives, some."""
 
 
-HARMLESS = (
-    *("damping", "unused-group", "distant-pair", "far-from-model"),
-    *("beyond-candidates", "foreign-mode"),
-)
+HARMLESS = {
+    "damping",
+    "unused-group",
+    "distant-pair",
+    "far-from-model",
+    "beyond-candidates",
+    "foreign-mode",
+}
 """Mistakes that leave the residuals as they are, or that need not be mistakes."""
 
 Mistake = Found | Finding
