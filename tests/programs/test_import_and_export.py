@@ -217,6 +217,12 @@ def test_sensors_by_node_that_there_are_not(small: Path, place: str, message: st
         ('dofs = "dofs.csv"', 'dofs = "none.csv"', "a table of degrees of freedom, found no such"),
         ('dofs = "dofs.csv"', 'dofs = "modes.csv"', "expected node,direction"),
         ('mesh = "mesh.npz"', 'mesh = "dofs.csv"', "nodes and elements .mesh.npz."),
+        (
+            'z = { direction = "z"',
+            'z = { direction = "z", node = 0',
+            "node: expected a whole number from 1",
+        ),
+        ('z = { direction = "z"', 'z = { direction = "z", directoin = "x"', "node: expected"),
         ('"k" = "stiffness-k.npz"', '"k^x" = "stiffness-k.npz"', "a product of powers"),
         ('"k" = "stiffness-k.npz"', '"1/k" = "stiffness-k.npz"', None),
         ("bounds = [0.5, 2.0]", "bounds = [-1.0, 2.0]", None),

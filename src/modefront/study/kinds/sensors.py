@@ -158,7 +158,7 @@ def read_places(
     for name, value in table.values.items() if key == "base" else ():
         if isinstance(value, list) and all(fits(dof, DOF) for dof in value):
             table.values[name] = [[dof, 1.0] for dof in value]
-        elif dofs is not None and isinstance(value, dict) and value.get("direction") in DIRECTIONS:
+        elif dofs is not None and value in [{"direction": direction} for direction in DIRECTIONS]:
             table.values[name] = [list(pair) for pair in dofs.of_direction(value["direction"])]
     out: dict[str, SensorSpec] = {}
     for name, value in table.values.items():
