@@ -30,7 +30,7 @@ from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.affine import Monomials, sparse_affine
-from modefront.models.matrices import MatrixModel, affine_model
+from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.modes import dense
@@ -65,9 +65,9 @@ def springs(ends: Ints, k: Floats, member: Ints, mass: Floats, members: int) -> 
                     if other >= 0:
                         K[first, other] -= stiffness
         terms.append(K.tocoo())
-    return affine_model(
-        [f"k{j + 1}" for j in range(members)],
-        ["s"],
+    return MatrixModel(
+        tuple(f"k{j + 1}" for j in range(members)),
+        ("s",),
         scipy.sparse.csr_array(np.eye(1, size)),
         sparse_affine(terms, Monomials(np.eye(members)), size),
         sparse_affine(
@@ -75,7 +75,7 @@ def springs(ends: Ints, k: Floats, member: Ints, mass: Floats, members: int) -> 
             Monomials(np.zeros((1, members))),
             size,
         ),
-    )
+    ).compact()
 
 
 def chain(rng: np.random.Generator, members: int) -> MatrixModel:

@@ -32,7 +32,7 @@ from reduced import MODES, shell, solid, timed
 import modefront as mf
 from modefront.identifiability.options import Identifiability
 from modefront.linalg.affine import Monomials, sparse_affine
-from modefront.models.matrices import MatrixModel, affine_model
+from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
 from modefront.models.reduced.options import estimate
 from modefront.work.costs import counted
@@ -56,13 +56,13 @@ def chain(size: int, members: int) -> MatrixModel:
     selection = scipy.sparse.csr_array(
         (np.ones(12), (np.arange(12), places.astype(int))), shape=(12, size)
     )
-    return affine_model(
-        [f"k{j + 1}" for j in range(members)],
-        [f"s{i + 1}" for i in range(12)],
+    return MatrixModel(
+        tuple(f"k{j + 1}" for j in range(members)),
+        tuple(f"s{i + 1}" for i in range(12)),
         selection,
         sparse_affine(terms, Monomials(np.eye(members)), size),
         sparse_affine([scipy.sparse.eye_array(size)], Monomials(np.zeros((1, members))), size),
-    )
+    ).compact()
 
 
 MODELS = {

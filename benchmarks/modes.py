@@ -29,7 +29,7 @@ import scipy.sparse.linalg
 from modefront import fem
 from modefront._typing import Floats
 from modefront.linalg.affine import Monomials, sparse_affine
-from modefront.models.matrices import MatrixModel, affine_model
+from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
 from modefront.modes import sparse
 from modefront.work.costs import counted
@@ -80,13 +80,13 @@ def plate(free: tuple[int, int, int]) -> MatrixModel:
     selection = scipy.sparse.csr_array(
         (np.ones(SENSORS), (np.arange(SENSORS), dofs)), shape=(SENSORS, size)
     )
-    return affine_model(
-        [f"k{j + 1}" for j in range(PARAMETERS)],
-        [f"s{j + 1}" for j in range(SENSORS)],
+    return MatrixModel(
+        tuple(f"k{j + 1}" for j in range(PARAMETERS)),
+        tuple(f"s{j + 1}" for j in range(SENSORS)),
         selection,
         sparse_affine(K, Monomials(np.eye(PARAMETERS)), size),
         sparse_affine([scipy.sparse.eye_array(size)], Monomials(np.zeros((1, PARAMETERS))), size),
-    )
+    ).compact()
 
 
 def median(run: Callable[[], object], repeats: int) -> float:

@@ -11,7 +11,8 @@ import pytest
 from structures import STEEL, frequencies
 
 from modefront import fem
-from modefront.fem.mesh import CellBlock, Mesh, read_mesh
+from modefront.fem.mesh import Mesh, read_mesh
+from modefront.fem.structure import Cells
 from modefront.isolated import IsolatedError, isolated
 
 meshio = pytest.importorskip("meshio")
@@ -122,7 +123,7 @@ def test_shells_of_nodes_between_corners_are_divided(kind: str, error: float) ->
         "quad8": square[:, :8],
         "quad9": square,
     }[kind]
-    mesh = Mesh(nodes, (CellBlock("plate", kind, cells),), {})
+    mesh = Mesh(nodes, (Cells("plate", kind, cells),), {})
     blocks = mesh.cells_of("plate", "shell")
     assert (
         sum(len(block) for block in blocks) == {"triangle6": 512, "quad8": 320, "quad9": 256}[kind]

@@ -8,7 +8,13 @@ import scipy.sparse
 from hypothesis import given
 from hypothesis import strategies as st
 
-from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
+from modefront.linalg.affine import (
+    DenseAffine,
+    Monomials,
+    SparseAffine,
+    sparse_affine,
+    sparse_rows,
+)
 
 
 def pair(size: int, terms: int, parameters: int, seed: int) -> tuple[SparseAffine, DenseAffine]:
@@ -34,7 +40,9 @@ def test_same_as_dense(case: tuple[int, int, int, int]) -> None:
     assert sparse.size == dense.size
     assert sparse.used.tolist() == dense.used.tolist()
     assert sparse.at(theta).toarray() == pytest.approx(dense.at(theta), abs=1e-12)
-    assert sparse.diagonal(theta) == pytest.approx(np.diag(dense.at(theta)), abs=1e-12)
+    assert sparse.diagonals @ sparse.coefficients.values(theta) == pytest.approx(
+        np.diag(dense.at(theta)), abs=1e-12
+    )
     assert sparse.dense().terms == pytest.approx(dense.terms, abs=0)
     expected = dense.derivatives_times(theta, V)
     assert sparse.derivatives_times(theta, V) == pytest.approx(expected, abs=1e-12)
@@ -90,3 +98,12 @@ def test_only_the_rows_a_term_touches_are_computed() -> None:
     local = scipy.sparse.coo_array(([2.0], ([7], [7])), shape=(size, size))
     A = sparse_affine([local], Monomials(np.eye(1)), size)
     assert A.derivative_rows(np.ones(1), np.ones((size, 3))).nnz == 3
+
+
+def test_rows_are_placed_without_their_zeros_and_what_is_given_stays() -> None:
+    values, columns = np.array([[0.0, 2.0], [3.0, 0.0]]), np.array([[2, 0], [1, 2]])
+    rows = sparse_rows(values, columns, 3)
+    assert rows.toarray().tolist() == [[2, 0, 0], [0, 3, 0]]
+    assert rows.nnz == 2
+    assert values.tolist() == [[0, 2], [3, 0]]
+    assert columns.tolist() == [[2, 0], [1, 2]]

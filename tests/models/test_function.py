@@ -135,9 +135,9 @@ def test_a_shell_of_variable_thickness_is_the_same_dense_and_sparse(divisions: i
 def test_the_pattern_of_sparse_matrices_is_analysed_once() -> None:
     _, function = plate(8)
     model = mf.function_model([mf.Parameter("t", 1.0, (0.5, 2.0))], {"corner": 3}, function)
-    known = model.nominal.pencil.symbolic
-    assert model.at(np.array([1.3])).pencil.symbolic is known
-    assert model.at(np.array([0.6]), derivatives=False).pencil.symbolic is known
+    known = model.nominal.pencil.analysis
+    assert model.at(np.array([1.3])).pencil.analysis is known
+    assert model.at(np.array([0.6]), derivatives=False).pencil.analysis is known
 
 
 @pytest.mark.slow(4)

@@ -16,7 +16,7 @@ from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.linalg.factorisation import SingularMatrixError
-from modefront.models.matrices import MatrixModel, affine_model, matrices
+from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.modes import derivatives as exact
@@ -313,13 +313,13 @@ def two_structures() -> MatrixModel:
     K[0][:half, :half] = 400 * chain
     K[1][half:, half:] = chain + 0.01 * np.diag(np.linspace(0, 1, half))
     selection = scipy.sparse.csr_array(np.eye(size)[[20, 250]])
-    return affine_model(
-        ["k1", "k2"],
-        ["a", "b"],
+    return MatrixModel(
+        ("k1", "k2"),
+        ("a", "b"),
         selection,
         sparse_affine(list(map(scipy.sparse.coo_array, K)), Monomials(np.eye(2)), size),
         sparse_affine([scipy.sparse.eye_array(size)], Monomials(np.zeros((1, 2))), size),
-    )
+    ).compact()
 
 
 def test_a_mode_that_the_basis_misses_is_found_by_inertia(costs: Costs) -> None:
@@ -379,13 +379,13 @@ def square(power: float) -> MatrixModel:
         scipy.sparse.coo_array(np.kron(line, unit)),
         scipy.sparse.coo_array(np.kron(unit, line)),
     ]
-    return affine_model(
-        ["k1", "k2"],
-        ["s"],
+    return MatrixModel(
+        ("k1", "k2"),
+        ("s",),
         scipy.sparse.csr_array(np.eye(1, n * n)),
         sparse_affine(terms, Monomials(np.diag([1.0, power])), n * n),
         sparse_affine([scipy.sparse.eye_array(n * n)], Monomials(np.zeros((1, 2))), n * n),
-    )
+    ).compact()
 
 
 @pytest.mark.parametrize("power", [1.0, 3.0, -1.0])
@@ -416,13 +416,13 @@ def chain(members: int, seed: int) -> MatrixModel:
     D = np.eye(size) - np.eye(size, k=-1)
     terms = [scipy.sparse.coo_array(D.T @ np.diag(k * (member == j)) @ D) for j in range(members)]
     mass = scipy.sparse.dia_array((np.exp(rng.normal(size=size))[None], 0), shape=(size, size))
-    return affine_model(
-        [f"k{j}" for j in range(members)],
-        ["s"],
+    return MatrixModel(
+        tuple(f"k{j}" for j in range(members)),
+        ("s",),
         scipy.sparse.csr_array(np.eye(1, size)),
         sparse_affine(terms, Monomials(np.eye(members)), size),
         sparse_affine([mass], Monomials(np.zeros((1, members))), size),
-    )
+    ).compact()
 
 
 @pytest.mark.parametrize("bounds", [(0.1, 10.0), (0.01, 100.0), (1e-9, 1e-2)])
@@ -459,9 +459,9 @@ def test_a_mode_that_enters_where_two_stiffnesses_drop_is_looked_for() -> None:
         tail[i : i + 2, i : i + 2] += np.array([[1.0, -1.0], [-1.0, 1.0]])
     main = D.T @ D
     names = ("k1", "k2", "k3")
-    full = affine_model(
-        names,
-        ["s"],
+    full = MatrixModel(
+        tuple(names),
+        ("s",),
         scipy.sparse.csr_array(np.eye(1, size)),
         sparse_affine(
             [scipy.sparse.coo_array(A) for A in (main, *springs, tail)],
@@ -469,7 +469,7 @@ def test_a_mode_that_enters_where_two_stiffnesses_drop_is_looked_for() -> None:
             size,
         ),
         sparse_affine([scipy.sparse.eye_array(size)], Monomials(np.zeros((1, 3))), size),
-    )
+    ).compact()
     scale = 1e3
     lower, nominal = np.array([0.5, 1e-3, 1e-3]), np.array([1.0, scale, scale])
     model = ReducedModel(full, 3, nominal, lower, np.array([2.0, scale, scale]), spare=1)

@@ -10,10 +10,8 @@ from hypothesis import strategies as st
 
 from modefront._typing import Floats
 from modefront.linalg.affine import DenseAffine, Monomials
-from modefront.modes import dense
 from modefront.modes.dense import modes
 from modefront.modes.result import Modes
-from modefront.modes.tridiagonal import lowest_modes
 
 SIGMA = mp.mpf(1) / 7
 
@@ -212,32 +210,6 @@ def test_hessians_are_symmetric_and_scale_with_the_matrices(seed: int, power: fl
     assert np.abs(found[1] - found[0]).max() <= 1e-7 * np.abs(found[0]).max()
 
 
-def test_a_few_modes_of_many_are_as_exact_as_all_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    N, p, count = 130, 4, 6
-    part = np.arange(N) * p // N
-    springs = np.zeros((p, N, N))
-    for i in range(N):
-        springs[part[i]] += spring(N, i, i - 1 if i else None)
-    K = affine(springs, np.eye(p) * [1.0, 3, -1, 1] + np.eye(p, p, 1))
-    M = affine(np.array([np.eye(N), np.diag(part == 1.0)]), np.eye(p)[[0, 1]] * [[0], [2]])
-    sensors, theta = np.eye(N)[[20, 70, 129]], np.array([1.0, 1.2, 0.8, 1.1])
-    rng = np.random.default_rng(3)
-    w, v = rng.normal(size=(2, count)), rng.normal(size=(2, 3, count))
-    few = modes(K, M, sensors, theta, count, derivatives=True)
-    assert lowest_modes(K.at(theta), M.at(theta), count), "some of the modes are enough"
-    monkeypatch.setattr(dense, "lowest_modes", lambda *_: None)
-    every = modes(K, M, sensors, theta, count, derivatives=True)
-    assert few.derivatives is not None
-    assert every.derivatives is not None
-    assert few.derivatives.second is not None
-    assert every.derivatives.second is not None
-    signs = np.sign(few.phi * every.phi).max(axis=0)
-    result, expected = few.second_derivatives(w, v), every.second_derivatives(w, v * signs)
-    assert result is not None
-    assert expected is not None
-    assert np.abs(result - expected).max() <= 1e-8 * np.abs(expected).max()
-
-
 def test_coincident_modes_have_no_second_derivatives() -> None:
     terms = np.array([np.diag([1.0, 0, 0]), np.diag([0, 1.0, 0]), np.diag([0, 0, 5.0])])
     K, M = linear(list(terms), 3), constant(np.eye(3), 3)
@@ -273,7 +245,6 @@ def test_sums_of_eigenvalues_alone_have_second_derivatives() -> None:
     line = [spring(size, i, i + 1) for i in range(size - 1)]
     K = linear([spring(size, 0) + sum(line[60:]), sum(line[:60], np.zeros((size, size)))], 1)
     M, weights = constant(np.eye(size), 1), np.ones((1, 3))
-    assert lowest_modes(K.at(theta), M.at(theta), 3) is not None
     found = modes(K, M, np.eye(size), theta, 3, derivatives=True)
     result = found.second_derivatives(weights, np.zeros((1, size, 3)))
     ahead, behind = (modes(K, M, np.eye(size), theta + s, 3, True).dlam.sum() for s in (h, -h))

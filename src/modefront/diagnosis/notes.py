@@ -35,17 +35,17 @@ def unused_groups(mesh: Mesh, elements: Iterable[str], nodes: Iterable[str]) -> 
         tuple(sorted(cell))
         for block in mesh.blocks
         if block.group in with_elements
-        for cell in block.cells.tolist()
+        for cell in block.nodes.tolist()
     }
     out: dict[str, Finding] = {}
     for block in mesh.blocks:
         if (
             block.group in used
             or block.group in out
-            or all(tuple(sorted(cell)) in made for cell in block.cells.tolist())
+            or all(tuple(sorted(cell)) in made for cell in block.nodes.tolist())
         ):
             continue
         out[block.group] = found(
-            "unused-group", block.group, type=block.type, cells=len(block.cells)
+            "unused-group", block.group, type=block.type, cells=len(block.nodes)
         )
     return list(out.values())

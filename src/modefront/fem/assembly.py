@@ -1,20 +1,9 @@
-r"""Matrices of a structure as affine functions of its parameters, `modefront.linalg.affine`.
-
-    K(theta) = sum_j c_j(theta) K_j,   M(theta) = sum_j d_j(theta) M_j,
-    c_j(theta) = prod_i theta_i ** e_ji.
+"""Matrices of a structure as affine functions of its parameters, `modefront.linalg.affine`.
 
 A parameter multiplies a property of named members (theta = 1 is the structure as given): Young's
 modulus and density enter once, thickness as powers from t (membrane, translational mass) to t^5
 (bending of thick shells), the geometric stiffness of a prestress once. Terms of equal exponents
 are one term.
-
-==========  ================================================================
-symbol      meaning
-==========  ================================================================
-theta       parameters, factors on nominal values
-e_ji        exponent of parameter i in term j
-T           (6 nodes, free DOFs): all displacements from the free ones
-==========  ================================================================
 """
 
 from __future__ import annotations
@@ -35,7 +24,7 @@ from modefront.fem.mechanism import check_mechanisms
 from modefront.fem.prestress import check_stability, load_forces, static_state
 from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Parameter, Sensor, Structure
-from modefront.linalg.affine import Monomials, SparseAffine, sparse_affine
+from modefront.linalg.affine import Monomials, SparseAffine, sparse_affine, sparse_rows
 
 
 @dataclass(frozen=True)
@@ -65,16 +54,13 @@ class StructureMatrices:
 def assemble(structure: Structure, *, floating: bool = False) -> StructureMatrices:
     """Check a structure and assemble its terms.
 
+    Raises FemError with everything that is wrong with the structure; where that is nothing, with
+    what makes it a mechanism or its sensors see nothing. Says where, what was expected and found.
+
     Parameters
     ----------
     structure : what to assemble
     floating : whether the structure as a whole may move as a rigid body (as if hung in soft cords)
-
-    Raises
-    ------
-    FemError
-        With everything that is wrong with the structure; where that is nothing, with what makes
-        it a mechanism or its sensors see nothing. Says where, what was expected and found.
     """
     X, checks = check_points(structure.nodes), Checks()
     checks.attempt(check_names, structure)
@@ -202,14 +188,12 @@ def sensor_places(
     What is wrong with them is noted in ``checks``; None where something is.
     """
     tree = KDTree(X[used]) if used.size else None
-    diagonal = float(np.linalg.norm(np.ptp(X[used], axis=0))) if used.size else 0.0
-    rows = np.zeros((len(sensors), 6))
-    nodes = np.zeros(len(sensors), dtype=np.int64)
+    rows, nodes = np.zeros((len(sensors), 6)), np.zeros(len(sensors), dtype=np.int64)
     before = len(checks.messages)
     for n, sensor in enumerate(sensors):
         place = f"sensor {sensor.name!r}"
         vector = checks.attempt(unit_vector, sensor.direction, place)
-        node = checks.attempt(_node, X, sensor, place, used, tree, diagonal)
+        node = checks.attempt(_node, X, sensor, place, used, tree)
         if vector is not None and node is not None:
             rows[n], nodes[n] = vector, node
     return SensorPlaces(nodes, rows) if len(checks.messages) == before else None
@@ -223,18 +207,10 @@ def selection_matrix(
     A sensor at node n along the unit vector a measures a . u_n = a . (T q)_n: one on a slave of a
     rigid link measures what its master moves.
 
-    Raises
-    ------
-    FemError
-        With all sensors that measure what cannot move.
+    Raises FemError with all sensors that measure what cannot move.
     """
-    count, columns = len(sensors), 6 * places.nodes[:, None] + np.arange(6)
-    chosen = sparse.csr_array(
-        (places.directions.ravel(), (np.repeat(np.arange(count), 6), columns.ravel())),
-        shape=(count, dofs.T.shape[0]),
-    )
-    chosen.eliminate_zeros()
-    selection = (chosen @ dofs.T).tocsr()
+    columns = 6 * places.nodes[:, None] + np.arange(6)
+    selection = sparse_rows(places.directions, columns, dofs.T.shape[0]) @ dofs.T
     still = [
         f"sensor {sensors[n].name!r}: expected a direction that can move, but at node"
         f" {places.nodes[n]} direction {sensors[n].direction!r} is held or has no stiffness"
@@ -245,9 +221,7 @@ def selection_matrix(
     return selection
 
 
-def _node(
-    X: Floats, sensor: Sensor, place: str, used: Ints, tree: KDTree | None, diagonal: float
-) -> int:
+def _node(X: Floats, sensor: Sensor, place: str, used: Ints, tree: KDTree | None) -> int:
     if isinstance(sensor.at, int | np.integer):
         return int(node_list(sensor.at, len(X), place)[0])
     point = np.asarray(sensor.at, dtype=float)
@@ -257,6 +231,7 @@ def _node(
         raise FemError(f"{place}: expected a node of an element, found none at all")
     distance, nearest = tree.query(point)
     node = int(used[nearest])
+    diagonal = float(np.linalg.norm(tree.maxes - tree.mins))
     tolerance = SAME_PLACE * diagonal if sensor.tolerance is None else sensor.tolerance
     if distance > tolerance:
         raise FemError(

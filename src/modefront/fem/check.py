@@ -131,10 +131,7 @@ def check_positive(value: float, what: str, place: str) -> None:
 def check_sizes(relative: Floats, cells: Ints, what: str, place: str) -> None:
     """No element has a relative length, area or volume of zero or less.
 
-    Parameters
-    ----------
-    relative : (elements,) smallest det J over the power of the element's extent
-    cells, what, place : for the message
+    That is (elements,) the smallest det J over the power of the element's extent.
     """
     wrong = np.flatnonzero(~(relative > FLAT))
     if len(wrong):

@@ -1,4 +1,4 @@
-r"""Degrees of freedom: which exist, which are held, which follow others.
+"""Degrees of freedom: which exist, which are held, which follow others.
 
 Every node has six possible DOFs u = (x, y, z, rx, ry, rz); those that have stiffness or mass, or
 that a link uses, exist. Supports hold some; by a rigid link those of a slave follow the master's,
@@ -8,13 +8,6 @@ that a link uses, exist. Supports hold some; by a rigid link those of a slave fo
 an interpolating coupling those of a node the mean motion of others, and a support that is not along
 an axis one displacement the others of its node. So all of them are u = T q with the free ones q:
 K_q = T^T K T is exact.
-
-========  =====================================================================
-symbol    meaning
-========  =====================================================================
-q         free DOFs: they exist, and are neither held nor slaves
-T         (6 nodes, free)
-========  =====================================================================
 """
 
 from __future__ import annotations
@@ -31,6 +24,7 @@ from modefront.fem.check import axes_of, direction_indices, node_list
 from modefront.fem.elements.common import cross_matrix
 from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import DIRECTIONS, Coupling, Link, Structure, Support
+from modefront.linalg.affine import sparse_rows
 from modefront.rounding import ACCUMULATED
 
 
@@ -122,19 +116,13 @@ def _followers(
 ) -> Followers:
     """Return the rows of the given directions of slaves (slaves,).
 
-    Parameters
-    ----------
-    masters, weight : nodes (slaves, k), and factors (slaves, 6, k, 6) on their DOFs
+    They follow nodes ``masters`` (slaves, k) by factors (slaves, 6, k, 6) on their DOFs.
     """
-    count, k = masters.shape
+    count = len(masters)
     weight = weight[:, directions].reshape(count * len(directions), -1)
     columns = (6 * masters[:, :, None] + np.arange(6)).reshape(count, -1)
     columns = np.repeat(columns, len(directions), axis=0)
-    rows = sparse.csr_array(
-        (weight.ravel(), columns.ravel(), np.arange(len(weight) + 1) * 6 * k),
-        shape=(len(weight), 6 * len(X)),
-    )
-    rows.eliminate_zeros()
+    rows = sparse_rows(weight, columns, 6 * len(X))
     return Followers((6 * slaves[:, None] + np.array(directions)).ravel(), rows)
 
 
@@ -209,15 +197,10 @@ SKEW = 1e-6
 def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> Dofs:
     """Number the DOFs node by node and build T.
 
-    Parameters
-    ----------
-    exists, held : (nodes, 6), true where an element or link uses the DOF, where a support holds it
-    following : rows of all links, couplings and skew supports; of chains of them too
+    Raises FemError if a DOF is slave twice, slave and held, or follows itself.
 
-    Raises
-    ------
-    FemError
-        If a DOF is slave twice, slave and held, or follows itself.
+    A DOF ``exists`` (nodes, 6) where an element or link uses it, and a support holds those that are
+    ``held`` (nodes, 6). The rows ``following`` of links, couplings and supports may be chains.
     """
     nodes = len(exists)
     none = Followers(np.zeros(0, np.int64), sparse.csr_array((0, 6 * nodes)))
@@ -248,10 +231,7 @@ def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> D
         total, step = total + step @ B, sparse.csr_array(step @ A)
         step.eliminate_zeros()
     refuse(slave[abs(step).sum(1) > 0], "its own master, by way of others")
-    rows = sparse.csr_array((np.ones(len(q)), (q, np.arange(len(q)))), shape=(6 * nodes, len(q)))
-    place = sparse.csr_array(
-        (np.ones(len(slave)), (slave, np.arange(len(slave)))), shape=(6 * nodes, len(slave))
-    )
-    T = sparse.csr_array(rows + place @ total)
-    T.sort_indices()
+    all_rows = sparse.vstack([sparse.eye_array(len(q)), total], format="coo")
+    places = np.append(q, slave)[all_rows.row], all_rows.col
+    T = sparse.csr_array((all_rows.data, places), shape=(6 * nodes, len(q)))
     return Dofs(np.stack(np.divmod(q, 6), 1), T)

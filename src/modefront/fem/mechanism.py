@@ -1,24 +1,13 @@
-r"""Mechanisms: motions of a structure that no stiffness resists, found before any solve.
+"""Mechanisms: motions of a structure that no stiffness resists, found before any solve.
 
 Elements that share a node with rotations (beams, shells) or a face (solids) move together as
 one rigid body when nothing deforms. Every such body b has the motion (t_b, omega_b), in which a
-node at x has
-
-    u = t_b + omega_b x (x - c_b),   omega = omega_b,   all of them: u = H b.
+node at x has u = t_b + omega_b x (x - c_b) and omega = omega_b, all of them: u = H b.
 
 Supports, links, nodes shared by bodies (hinges) and what resists few motions only (springs, bars,
 beams with releases: u^T K u = 0 is as many rows as K has eigenvalues) each set rows of u, or the
 difference of two, to zero. The null space of these rows C is what can move freely. It is found for
 each part, a set of bodies that rows connect.
-
-========  =====================================================================
-symbol    meaning
-========  =====================================================================
-home      body of each node (the one with its rotations, if there is one)
-c_b       centroid of the body's nodes
-H         (6 nodes, 6 bodies) displacements of the nodes from motions of bodies
-C         (rows, 6 bodies); columns of rotations scaled by the body's extent
-========  =====================================================================
 """
 
 from __future__ import annotations
@@ -38,6 +27,7 @@ from modefront.fem.dofs import Followers, rigid_motion
 from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.section import FemError
 from modefront.fem.structure import DIRECTIONS
+from modefront.linalg.affine import sparse_rows
 from modefront.linalg.factorisation import factorise
 from modefront.rounding import ACCUMULATED
 
@@ -101,14 +91,12 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
     A node of solids alone has no rotations, so that solids are connected by faces only; it belongs
     to the body of each.
     """
-    counts = [len(block.cells) for block in elements]
-    first = nodes + np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-    pairs = [np.zeros((0, 2), np.int64)]
-    solid_pairs = [np.zeros((0, 2), np.int64)]
+    none, size = np.zeros((0, 2), np.int64), nodes
+    pairs, solid_pairs = [none], [none]
     faces: dict[int, list[tuple[Ints, Ints]]] = {3: [], 4: []}
-    for block, start in zip(elements, first, strict=False):
+    for block in elements:
         count, k = block.cells.shape
-        vertex = start + np.arange(count)
+        vertex, size = size + np.arange(count), size + count
         to_nodes = np.stack([block.cells.ravel(), np.repeat(vertex, k)], 1)
         if len(block.directions) == 6:
             pairs.append(to_nodes)
@@ -116,7 +104,6 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
         solid_pairs.append(to_nodes)
         for corners in SOLIDS[k].faces:
             faces[len(corners)].append((np.sort(block.cells[:, corners], -1), vertex))
-    size = int(first[-1])
     for sides in faces.values():
         if sides:
             keys = np.concatenate([side[0] for side in sides])
@@ -131,26 +118,17 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
     in_solid = np.zeros(nodes, dtype=bool)
     in_solid[solid[:, 0]] = True
     turns = exists.any(1) & (exists[:, 3:].any(1) | ~in_solid)
-    return np.concatenate(
-        [
-            np.stack([np.flatnonzero(turns), label[:nodes][turns]], 1),
-            np.unique(np.stack([solid[:, 0], label[solid[:, 1]]], 1), axis=0),
-        ]
-    )
+    own = np.stack([np.flatnonzero(turns), label[:nodes][turns]], 1)
+    return np.append(own, np.unique(np.stack([solid[:, 0], label[solid[:, 1]]], 1), axis=0), axis=0)
 
 
 def constraint_rows(
-    X: Floats,
-    bodies: Bodies,
-    soft: Sequence[Block],
-    following: Sequence[Followers],
-    held: Bools,
+    X: Floats, bodies: Bodies, soft: Sequence[Block], following: Sequence[Followers], held: Bools
 ) -> sparse.csr_array:
     """C (rows, 6 bodies), rows of unit length."""
-    nodes = np.flatnonzero(bodies.home >= 0)
-    H = _motions(X, bodies, nodes, bodies.home[nodes], 6 * nodes, 6 * len(X))
+    H = _motions(X, bodies, np.arange(len(X)), bodies.home)
     node, body = bodies.shared.T
-    other = _motions(X, bodies, node, body, 6 * np.arange(len(node)), 6 * len(node))
+    other = _motions(X, bodies, node, body)
     moves = np.arange(6 * len(node)) % 6 < 3
     rows = [
         (other - H[(6 * node[:, None] + np.arange(6)).ravel()])[moves],
@@ -163,18 +141,12 @@ def constraint_rows(
     return sparse.diags_array(1 / np.where(norm > 0, norm, 1)).tocsr() @ C
 
 
-def _motions(
-    X: Floats, bodies: Bodies, node: Ints, body: Ints, first: Ints, size: int
-) -> sparse.csr_array:
-    """Return displacements of nodes in motions of bodies, in six rows each from `first` on."""
-    P = rigid_motion(X[node] - bodies.centre[body])
+def _motions(X: Floats, bodies: Bodies, node: Ints, body: Ints) -> sparse.csr_array:
+    """Return displacements of nodes in motions of bodies, six rows each, zeros for a body -1."""
+    P = rigid_motion(X[node] - bodies.centre[body]) * (body >= 0)[:, None, None]
     P[:, :, 3:] /= bodies.extent[body, None, None]
-    rows, columns = (each[:, None] + np.arange(6) for each in (first, 6 * body))
-    rows, columns = np.broadcast_arrays(rows[:, :, None], columns[:, None])
-    shape = size, 6 * len(bodies.extent)
-    H = sparse.csr_array((P.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
-    H.eliminate_zeros()
-    return H
+    columns = np.repeat(6 * body.clip(0)[:, None] + np.arange(6), 6, axis=0)
+    return sparse_rows(P.reshape(-1, 6), columns, 6 * len(bodies.extent))
 
 
 def _resisted(block: Block, size: int) -> sparse.csr_array:
@@ -187,12 +159,8 @@ def _resisted(block: Block, size: int) -> sparse.csr_array:
     values, vectors = np.linalg.eigh(K / unit[:, :, None] / unit[:, None])
     vectors = vectors * (values > ACCUMULATED * values[:, -1:])[:, None]
     rows = np.swapaxes(vectors, 1, 2) * unit[:, None]
-    count, k = rows.shape[:2]
-    columns = np.repeat(block.dofs(), k, axis=0)
-    pointer = np.arange(count * k + 1) * k
-    out = sparse.csr_array((rows.ravel(), columns.ravel(), pointer), shape=(count * k, size))
-    out.eliminate_zeros()
-    return out
+    columns = np.repeat(block.dofs(), rows.shape[1], axis=0)
+    return sparse_rows(rows.reshape(len(columns), -1), columns, size)
 
 
 def null_space(C: sparse.csr_array, columns: Ints) -> Floats:
@@ -223,26 +191,16 @@ def check_mechanisms(
 ) -> None:
     """Refuse structures with a motion that nothing resists.
 
-    Parameters
-    ----------
-    X : nodes (nodes, 3)
-    blocks, following : what connects them
-    held, exists : (nodes, 6) whether a support holds the DOF and whether it exists
-    floating : whether the structure as a whole may move as a rigid body
+    Raises FemError, which names the nodes of the part that moves, and how.
 
-    Raises
-    ------
-    FemError
-        Names the nodes of the part that moves, and how.
+    A support holds the DOFs ``held`` (nodes, 6) of those that there are; a ``floating`` structure
+    may move as a rigid body as a whole.
     """
     bodies = rigid_bodies(X, [block for block in blocks if block.rigid], exists)
     soft = [block for block in blocks if block.matrices.stiffness and not block.rigid]
     C = constraint_rows(X, bodies, soft, following, held)
     count = len(bodies.extent)
-    body_of = sparse.csr_array(
-        (np.ones(6 * count), (np.arange(6 * count), np.repeat(np.arange(count), 6)))
-    )
-    touches = abs(C) @ body_of
+    touches = abs(C) @ sparse.kron(sparse.eye_array(count), np.ones((6, 1)))
     parts, part_of = connected_components(touches.T @ touches, directed=False)
     loose = 0
     for part in range(parts):
@@ -271,13 +229,7 @@ def _common_motions(bodies: Bodies, inside: Ints) -> Floats:
     return motions.reshape(-1, 6)
 
 
-def _describe(
-    X: Floats,
-    bodies: Bodies,
-    columns: Ints,
-    N: Floats,
-    parts: int,
-) -> str:
+def _describe(X: Floats, bodies: Bodies, columns: Ints, N: Floats, parts: int) -> str:
     """Message that names the nodes that move, how, and a likely reason."""
     share = np.zeros((len(bodies.extent), 6))
     share.ravel()[columns] = (N**2).sum(1)

@@ -15,7 +15,7 @@ import importlib.util
 import io
 import re
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -26,6 +26,7 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.errors import InputError, reason
 from modefront.fem.section import FemError
+from modefront.fem.structure import Cells
 from modefront.hdf5 import check_tree
 from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, refuse_holes
 from modefront.isolated import IsolatedError, isolated
@@ -63,22 +64,6 @@ INCLUDES = re.compile(rb"\*.*\binput\s*=|\*?\s*include\b", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
-class CellBlock:
-    """Cells of one type in one group.
-
-    Attributes
-    ----------
-    group : name
-    type : as meshio and VTK say: line, triangle, quad, hexahedron, tetra10, vertex, ..
-    cells : nodes (cells, k)
-    """
-
-    group: str
-    type: str
-    cells: Ints
-
-
-@dataclass(frozen=True)
 class Mesh:
     """Nodes, blocks of cells and named sets of nodes, as `read_mesh` returns them.
 
@@ -90,7 +75,7 @@ class Mesh:
     """
 
     nodes: Floats
-    blocks: tuple[CellBlock, ...]
+    blocks: tuple[Cells, ...]
     node_sets: Mapping[str, Ints]
 
     def cells_of(self, group: str, kind: Kind) -> tuple[Ints, ...]:
@@ -98,10 +83,8 @@ class Mesh:
 
         Shells of more than 4 nodes are divided into triangles and quadrilaterals.
 
-        Raises
-        ------
-        FemError
-            If there is no such group, or it has cells of which no such elements can be made.
+        Raises FemError if there is no such group, or it has cells of which no such elements can be
+        made.
         """
         blocks = [b for b in self.blocks if b.group == group]
         if not blocks:
@@ -114,20 +97,17 @@ class Mesh:
                     f" made of: {', '.join(CELL_TYPES[kind])}"
                 )
         return tuple(
-            np.concatenate([block.cells[:, part] for part in parts])
+            np.concatenate([block.nodes[:, part] for part in parts])
             for block in blocks
-            for parts in DIVISIONS.get(block.type, [[range(block.cells.shape[1])]])
+            for parts in DIVISIONS.get(block.type, [[range(block.nodes.shape[1])]])
         )
 
     def nodes_of(self, name: str) -> Ints:
         """Nodes of a set, or of the cells of a group, ascending.
 
-        Raises
-        ------
-        FemError
-            If there is neither.
+        Raises FemError if there is neither.
         """
-        blocks = [b.cells.ravel() for b in self.blocks if b.group == name]
+        blocks = [b.nodes.ravel() for b in self.blocks if b.group == name]
         if name in self.node_sets:
             blocks.append(self.node_sets[name])
         if not blocks:
@@ -145,10 +125,8 @@ def read_mesh(path: str | Path) -> Mesh:
     The file is read in a process of its own, with limits on time and memory, and what it refers to
     in other files is refused.
 
-    Raises
-    ------
-    FemError
-        If meshio is not installed, or the file is missing or not a mesh that it can read.
+    Raises FemError if meshio is not installed, or the file is missing or not a mesh that it can
+    read.
     """
     if importlib.util.find_spec("meshio") is None:
         raise FemError("reading meshes needs meshio: install it with `pip install modefront[mesh]`")
@@ -173,7 +151,7 @@ def read_mesh(path: str | Path) -> Mesh:
     return Mesh(
         np.pad(points, ((0, 0), (0, 3 - points.shape[1]))),
         tuple(
-            CellBlock(name, kind, arrays[f"cells {k}"])
+            Cells(name, kind, arrays[f"cells {k}"])
             for k, (name, kind) in enumerate(parts["blocks"])
         ),
         {name: arrays[f"set {k}"] for k, name in enumerate(parts["sets"])},
@@ -256,55 +234,37 @@ def _check_sections(path: Path) -> None:
     lines = [line.strip() for line in path.read_bytes().split(b"\n")]
     if lines[1:] and lines[1].split()[1:2] == [b"1"]:  # binary
         return
-    begin: int | None = None
-    for k, line in enumerate(lines):
-        if begin is None and line:
-            if not line.startswith(b"$") or line.startswith(b"$End"):
-                raise ValueError(f"line {k + 1}: {line!r} in place of the beginning of a section")
-            begin = k
-        elif begin is not None and line.startswith(b"$"):
-            section = lines[begin]
-            check = CHECKS.get((lines[1][:1], section))
-            if line != b"$End" + section[1:] or (check and not check(lines[begin + 1 : k])):
-                raise ValueError(f"line {begin + 1}: {section!r}, other lines than said, or no end")
-            begin = None
-    if begin is not None:
-        raise ValueError(f"line {begin + 1}: a section that has no end")
+    k = 0
+    while (k := next((k for k in range(k, len(lines)) if lines[k]), len(lines))) < len(lines):
+        section, place = lines[k], f"line {k + 1}: {lines[k]!r}"
+        if not section.startswith(b"$") or section.startswith(b"$End"):
+            raise ValueError(f"{place} in place of the beginning of a section")
+        end = next((m for m in range(k + 1, len(lines)) if lines[m].startswith(b"$")), None)
+        if end is None:
+            raise ValueError(f"line {k + 1}: a section that has no end")
+        whole = _is_whole(lines[1][:1], section, lines[k + 1 : end])
+        if lines[end] != b"$End" + section[1:] or not whole:
+            raise ValueError(f"{place}, other lines than said, or no end")
+        k = end + 1
 
 
-def _is_list(lines: list[bytes]) -> bool:
-    """Return whether there are as many lines as the first one says."""
+def _is_whole(version: bytes, section: bytes, lines: list[bytes]) -> bool:
+    """Return whether a section of a version of Gmsh's text has as many entries as it announces."""
+    entry = {b"$Nodes": 2, b"$Elements": 1}.get(section)  # lines of an entry of a block
+    if version not in (b"2", b"4") or not (entry or section == b"$PhysicalNames"):
+        return True
+    if version == b"4" and entry:
+        blocks, total = (int(word) for word in lines[0].split()[:2])
+        position, found = 1, 0
+        for _ in range(blocks):
+            _, _, _, count = (int(word) for word in lines[position].split())
+            position, found = position + 1 + entry * count, found + count
+        return position == len(lines) and found == total
+    for _, kind, tags, *others in (map(int, x.split()) for x in lines[1:] if entry == 1):
+        nodes = len(others) - tags
+        if nodes != CORNERS.get(kind, nodes) or nodes < 0:
+            return False
     return int(lines[0]) == len(lines) - 1
-
-
-def _are_elements(lines: list[bytes]) -> bool:
-    """Return whether they are so many, each with its tags and as many nodes as its type has."""
-    rows = [[int(word) for word in line.split()] for line in lines[1:]]
-    sizes = [CORNERS.get(row[1], len(row) - 3 - row[2]) for row in rows]
-    return _is_list(lines) and all(
-        len(row) == 3 + row[2] + size for row, size in zip(rows, sizes, strict=True)
-    )
-
-
-def _are_blocks(lines: list[bytes], each: int) -> bool:
-    """Return whether there are as many blocks and entries, of some lines each, as is said."""
-    blocks, total = (int(word) for word in lines[0].split()[:2])
-    position, found = 1, 0
-    for _ in range(blocks):
-        _, _, _, count = (int(word) for word in lines[position].split())
-        position, found = position + 1 + each * count, found + count
-    return position == len(lines) and found == total
-
-
-CHECKS: Mapping[tuple[bytes, bytes], Callable[[list[bytes]], bool]] = {
-    (b"2", b"$PhysicalNames"): _is_list,
-    (b"2", b"$Nodes"): _is_list,
-    (b"2", b"$Elements"): _are_elements,
-    (b"4", b"$PhysicalNames"): _is_list,
-    (b"4", b"$Nodes"): lambda lines: _are_blocks(lines, 2),
-    (b"4", b"$Elements"): lambda lines: _are_blocks(lines, 1),
-}
-"""What is announced in sections of Gmsh's text, by the first digit of the format."""
 
 
 def _node_sets(raw: Any) -> dict[str, Ints]:

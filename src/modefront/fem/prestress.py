@@ -1,20 +1,9 @@
-r"""Prestress: static loads, the internal forces that they make, and whether these buckle it.
+"""Prestress: static loads, the internal forces that they make, and whether these buckle it.
 
-At theta = 1 the displacements u = T q under the forces f are the solution of
-
-    T^T K T q = T^T f,
-
+At theta = 1 the displacements u = T q under the forces f are the solution of T^T K T q = T^T f,
 with forces at nodes, gravity f = M a, and the forces that make free strains. The elements turn u
 into internal forces and their geometric stiffness K_G, which is linear in them. The structure with
 it is stable where K + K_G is positive definite: L D L^T has no negative pivots.
-
-========  ===============================================================
-symbol    meaning
-========  ===============================================================
-f, u      forces and displacements (6 nodes,)
-a         acceleration of gravity
-T         all displacements from the free ones q
-========  ===============================================================
 """
 
 from __future__ import annotations
@@ -80,10 +69,7 @@ def static_state(
 ) -> list[Floats]:
     """Return the displacements (6 nodes,) under each of the forces.
 
-    Raises
-    ------
-    FemError
-        If nothing holds the structure, or it is not stable without the loads.
+    Raises FemError if nothing holds the structure, or it is not stable without the loads.
     """
     if floating:
         raise FemError("load: expected a structure that is held, found a floating one")

@@ -1,15 +1,6 @@
-r"""Materials, and sections of beams: constants about principal axes y and z through the centroid.
+"""Materials, and sections of beams: constants about principal axes y and z through the centroid.
 
 Warping is free: where it is held, open thin walls twist less than beams.
-
-=========  ==============================================================
-symbol     meaning
-=========  ==============================================================
-A          area
-I_y, I_z   second moments: I_y = int z^2 dA, I_z = int y^2 dA
-J          torsion constant
-kappa      shear correction factors; `inf` leaves out shear deformation
-=========  ==============================================================
 """
 
 from __future__ import annotations
@@ -68,16 +59,13 @@ class Checks:
 class Material:
     """Isotropic material, in consistent units (SI: Pa, -, kg/m^3).
 
+    Raises FemError if a value is outside its range.
+
     Attributes
     ----------
     E : Young's modulus, > 0
     nu : Poisson's ratio, -1 < nu < 0.5
     rho : density, >= 0
-
-    Raises
-    ------
-    FemError
-        If a value is outside its range.
     """
 
     E: float
@@ -85,7 +73,6 @@ class Material:
     rho: float
 
     def __post_init__(self) -> None:
-        """Refuse values for which the elasticity matrix is not positive definite."""
         for name, value, expected, ok in (
             ("E", self.E, "> 0", self.E > 0),
             ("nu", self.nu, "between -1 and 0.5", -1 < self.nu < 0.5),
@@ -108,17 +95,15 @@ class Material:
 class Orthotropic:
     """Orthotropic material, such as wood or a laminate, by its axes 1, 2 and 3.
 
+    Raises FemError if a value is outside its range, or the elasticity matrix is not positive
+    definite.
+
     Attributes
     ----------
     E : Young's moduli E_1, E_2, E_3, > 0
     nu : Poisson's ratios nu_12, nu_13, nu_23: a stress along 1 strains 2 by -nu_12 / E_1
     G : shear moduli G_12, G_13, G_23, > 0
     rho : density, >= 0
-
-    Raises
-    ------
-    FemError
-        If a value is outside its range, or the elasticity matrix is not positive definite.
     """
 
     E: tuple[float, float, float]
@@ -127,7 +112,6 @@ class Orthotropic:
     rho: float
 
     def __post_init__(self) -> None:
-        """Refuse values for which the elasticity matrix is not positive definite."""
         for name, value in (("E", self.E), ("G", self.G)):
             if len(value) != 3 or not min(value) > 0:
                 raise FemError(f"material: {name} must be three values > 0, found {value!r}")
@@ -157,17 +141,14 @@ def _compliance(E: Sequence[float], nu: Sequence[float], G: Sequence[float]) -> 
 class Section:
     """Section constants of a beam; lengths in the unit of the nodes.
 
+    Raises FemError if a constant is not positive.
+
     Attributes
     ----------
     A, I_y, I_z, J : area, second moments of area and torsion constant, all > 0
     kappa_y, kappa_z : shear correction factors for deflection along y and z; `inf` leaves out shear
         deformation
     shear_centre : its y and z, from the centroid
-
-    Raises
-    ------
-    FemError
-        If a constant is not positive.
     """
 
     A: float
@@ -179,7 +160,6 @@ class Section:
     shear_centre: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        """Refuse constants that leave a motion of the section without stiffness."""
         for name, value in vars(self).items():
             if name != "shear_centre" and not value > 0:
                 raise FemError(f"section: {name} must be > 0, found {value!r}")
@@ -200,10 +180,7 @@ def rectangle(b_y: float, b_z: float) -> Section:
 def hollow_rectangle(b_y: float, b_z: float, wall: float) -> Section:
     """Rectangular tube of outer sides b_y, b_z; J after Bredt, shear on the webs alone.
 
-    Raises
-    ------
-    FemError
-        If the walls meet: 2 wall >= min(b_y, b_z).
+    Raises FemError if the walls meet: 2 wall >= min(b_y, b_z).
     """
     if 2 * wall >= min(b_y, b_z):
         raise FemError(f"section: wall must be < {min(b_y, b_z) / 2}, found {wall}")
@@ -230,10 +207,7 @@ def circle(diameter: float) -> Section:
 def tube(diameter: float, wall: float) -> Section:
     """Circular tube of outer diameter; shear factor 1/2 of a thin wall.
 
-    Raises
-    ------
-    FemError
-        If the wall is not thinner than the radius.
+    Raises FemError if the wall is not thinner than the radius.
     """
     inner = diameter - 2 * wall
     if not 0 < inner < diameter:

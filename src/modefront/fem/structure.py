@@ -12,6 +12,7 @@ from typing import Literal
 
 import numpy.typing as npt
 
+from modefront._typing import Ints
 from modefront.fem.section import Material, Orthotropic, Section
 
 Direction = str | Sequence[float]
@@ -21,6 +22,22 @@ Axes = tuple[Sequence[float], Sequence[float]]
 Quantity = Literal["E", "density", "thickness", "spring", "mass", "prestress"]
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 ALL = DIRECTIONS
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Cells of one type in one group.
+
+    Attributes
+    ----------
+    group : name
+    type : as meshio and VTK say: vertex, line, triangle, quad, hexahedron, tetra10, ..
+    nodes : (cells, k) nodes, counted from 0
+    """
+
+    group: str
+    type: str
+    nodes: Ints
 
 
 @dataclass(frozen=True)

@@ -7,15 +7,6 @@ r"""Matrices that depend on the parameters through products of powers.
 The origin :math:`\theta_0` is 0 but for matrices of which only values and first derivatives at one
 :math:`\theta_0` are known, and are exact there. All terms share one storage (dense, or one sparsity
 pattern), so that assembly is one matrix-vector product with the data of the terms.
-
-========  =====================================================
-symbol    meaning
-========  =====================================================
-A_j       terms, N x N, symmetric
-e         exponents, terms x parameters; a row of zeros is constant
-theta_0   origin of the parameters in the coefficients
-c(theta)  coefficients of the terms
-========  =====================================================
 """
 
 from __future__ import annotations
@@ -246,10 +237,6 @@ class SparseAffine:
         shape = self.size, self.size
         return scipy.sparse.csr_array((values, self.indices, self.indptr), shape=shape)
 
-    def diagonal(self, theta: Floats) -> Floats:
-        """Return the diagonal (N,) of A(theta)."""
-        return np.asarray(self.diagonals @ self.coefficients.values(theta))
-
     @cached_property
     def diagonals(self) -> scipy.sparse.csr_array:
         """The diagonal of each term, (N, terms)."""
@@ -304,32 +291,29 @@ class SparseAffine:
             return np.zeros((len(left), theta.size, theta.size))
         stack, dof, starts = self._stack
         products, forms = times(stack, right), np.zeros((len(left), starts.size - 1))
-        for j, part in enumerate(_parts(starts)):
-            for rows in _blocks(part, FEW):
-                forms[:, j] += np.einsum("krm,rm->k", left[:, dof[rows]], products[rows])
+        for j, rows in self._pieces(FEW):
+            forms[:, j] += np.einsum("krm,rm->k", left[:, dof[rows]], products[rows])
         return self.coefficients.second_derivatives(theta, forms)
 
     def _derivative_parts(
         self, theta: Floats, vectors: Floats
     ) -> Iterator[tuple[int, Ints, Floats]]:
         """Yield, part by part, parameters i, degrees of freedom and their rows of dA/dtheta_i V."""
-        stack, dof, starts = self._stack
-        dc, parts = self.coefficients.jacobian(theta), _parts(starts)
+        (stack, dof, _), dc = self._stack, self.coefficients.jacobian(theta)
         products = times(stack, vectors) if dc.any() else vectors[:0]
-        for j, i in np.argwhere(dc != 0):
-            for rows in _blocks(parts[j], FEW):
+        for j, rows in self._pieces(FEW):
+            for i in np.flatnonzero(dc[j]):
                 yield int(i), dof[rows], dc[j, i] * products[rows]
 
     def each(self, thetas: Floats, vectors: Floats) -> Floats:
         """Return A(theta_k) v_k for every row of thetas (m, p) and column of vectors (N, m)."""
         if not self.coefficients.varies:
             return times(self.at(thetas[0]), vectors)
-        stack, dof, starts = self._stack
+        stack, dof, _ = self._stack
         coefficients = np.transpose([self.coefficients.values(theta) for theta in thetas])
         products, out = times(stack, vectors), np.zeros(vectors.shape)
-        for part, c in zip(_parts(starts), coefficients, strict=True):
-            for rows in _blocks(part, FEW):
-                out[_place(dof[rows])] += products[rows] * c
+        for j, rows in self._pieces(FEW):
+            out[_place(dof[rows])] += products[rows] * coefficients[j]
         return out
 
     def project(self, left: Sequence[Floats], right: Floats) -> Floats:
@@ -340,12 +324,17 @@ class SparseAffine:
         stack, dof, starts = self._stack
         products, ends = times(stack, right), np.cumsum([block.shape[1] for block in left])
         out = np.zeros((starts.size - 1, ends[-1], right.shape[1]))
-        for j, part in enumerate(_parts(starts)):
-            for rows in _blocks(part, ROWS):
-                place, some = _in_a_row(dof[rows], products[rows])
-                for block, end in zip(left, ends, strict=True):
-                    out[j, end - block.shape[1] : end] += gram(block[place], some)
+        for j, rows in self._pieces(ROWS):
+            place, some = _in_a_row(dof[rows], products[rows])
+            for block, end in zip(left, ends, strict=True):
+                out[j, end - block.shape[1] : end] += gram(block[place], some)
         return out
+
+    def _pieces(self, size: int) -> Iterator[tuple[int, slice]]:
+        """Yield terms and some of their rows in the stack, up to ``size`` at once."""
+        for j, (first, last) in enumerate(pairwise(self._stack[2].tolist())):
+            for k in range(first, last, size):
+                yield j, slice(k, min(k + size, last))
 
     @cached_property
     def _stack(self) -> tuple[scipy.sparse.csr_array, Ints, Ints]:
@@ -364,6 +353,15 @@ class SparseAffine:
         parts = terms.data, self.indices[entry], indptr
         stack = scipy.sparse.csr_array(parts, shape=(keys.size, self.size))
         return stack, keys % self.size, starts
+
+
+def sparse_rows(values: Floats, columns: Ints, width: int) -> scipy.sparse.csr_array:
+    """Return the matrix (n, width) with values (n, k) in columns (n, k), without its zeros."""
+    pointer = np.arange(len(values) + 1) * values.shape[1]
+    parts = values.flatten(), columns.flatten(), pointer  # copies, as zeros are taken out in place
+    out = scipy.sparse.csr_array(parts, shape=(len(values), width))
+    out.eliminate_zeros()
+    return out
 
 
 def sparse_affine(
@@ -413,14 +411,6 @@ def _place(dof: Ints) -> slice | Ints:
     """Return ascending degrees of freedom as a range, if they are one."""
     first, last = int(dof[0]), int(dof[-1]) + 1
     return slice(first, last) if last - first == dof.size else dof
-
-
-def _blocks(rows: slice, size: int) -> list[slice]:
-    return [slice(k, min(k + size, rows.stop)) for k in range(rows.start, rows.stop, size)]
-
-
-def _parts(starts: Ints) -> list[slice]:
-    return [slice(*ends) for ends in pairwise(starts.tolist())]
 
 
 def _expand(indptr: Ints32) -> Ints:

@@ -1,21 +1,12 @@
 """Sparse symmetric factorisations A = L D L^T: supernodal Bunch-Kaufman by rslab.
 
 The factors do not depend on the number of threads.
-
-========================  ==================================================================
-symbol                    meaning
-========================  ==================================================================
-A                         symmetric, N x N, may be indefinite
-`LowerPattern`            where A may differ from zero; one pattern for all values of theta
-`Symbolic`                ordering and elimination tree of a pattern, found once
-`Factorisation`           the factors of one A
-========================  ==================================================================
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import rslab
@@ -36,42 +27,6 @@ class SingularMatrixError(ModelError):
 
 
 @dataclass(frozen=True, eq=False)
-class LowerPattern:
-    """Pattern of the lower triangle of a symmetric matrix, by columns.
-
-    Attributes
-    ----------
-    indptr : (N + 1,) where each column starts in ``indices``
-    indices : (entries,) rows, ascending within each column; the diagonal is always there
-    """
-
-    indptr: Ints
-    indices: Ints
-
-    @property
-    def size(self) -> int:
-        """Number of rows and columns N."""
-        return self.indptr.size - 1
-
-    @property
-    def keys(self) -> Ints:
-        """Column * N + row of each entry, ascending."""
-        columns = np.repeat(np.arange(self.size), np.diff(self.indptr))
-        return columns * self.size + self.indices
-
-
-def lower_pattern(keys: Ints, size: int) -> LowerPattern:
-    """Return the pattern with the given keys, column * N + row, in any order, and the diagonal.
-
-    Ascending runs of keys are merged, which is far quicker than sorting them.
-    """
-    ranked = np.sort(np.concatenate([keys, np.arange(size) * (size + 1)]), kind="stable")
-    unique = ranked[np.append(True, ranked[1:] != ranked[:-1])]
-    starts = np.searchsorted(unique, np.arange(size + 1) * size)
-    return LowerPattern(starts.astype(np.intp), (unique % size).astype(np.intp))
-
-
-@dataclass(frozen=True, eq=False)
 class Factorisation:
     """Factors L D L^T with pivots of order one and two."""
 
@@ -89,24 +44,17 @@ class Factorisation:
         return out
 
 
-class Symbolic(Protocol):
-    """Analysis of a pattern, shared by the factorisations of all matrices that have it."""
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """Ordering, elimination tree and supernodes of a pattern, for all matrices that have it."""
+
+    symbolic: rslab.LdltSymbolic
 
     def factor(self, values: Floats) -> Factorisation:
         """Factor the matrix with these values, in the order of the pattern's entries.
 
         Raises SingularMatrixError where the matrix is singular to working precision.
         """
-
-
-@dataclass(frozen=True, eq=False)
-class _Analysis:
-    """Ordering, elimination tree and supernodes of a pattern, for all matrices that have it."""
-
-    symbolic: rslab.LdltSymbolic
-
-    def factor(self, values: Floats) -> Factorisation:
-        """Factor the matrix with these values; see `Symbolic`."""
         limit = "auto", min(MOST, threads())
         try:
             return Factorisation(self.symbolic.factor(values, threads=limit))
@@ -114,12 +62,19 @@ class _Analysis:
             raise SingularMatrixError(str(error)) from error
 
 
-def analyse(pattern: LowerPattern) -> Symbolic:
-    """Return the analysis of a pattern."""
-    values = np.ones(pattern.indices.size)
-    shape = pattern.size, pattern.size
-    lower = scipy.sparse.csc_array((values, pattern.indices, pattern.indptr), shape=shape)
-    return _Analysis(rslab.analyze(lower, path="ldlt"))
+def analyse(keys: Ints, size: int) -> tuple[Analysis, Ints]:
+    """Return the analysis of a pattern, and the keys of its entries, ascending.
+
+    ``keys`` are column * N + row of entries of the lower triangle of N x N, in any order, some more
+    than once; the diagonal comes to them. Ascending runs are merged, which is far quicker than
+    sorting them.
+    """
+    ranked = np.sort(np.concatenate([keys, np.arange(size) * (size + 1)]), kind="stable")
+    keys = ranked[np.append(True, ranked[1:] != ranked[:-1])]
+    starts = np.searchsorted(keys, np.arange(size + 1) * size)
+    parts = np.ones(keys.size), (keys % size).astype(np.intp), starts.astype(np.intp)
+    lower = scipy.sparse.csc_array(parts, shape=(size, size))
+    return Analysis(rslab.analyze(lower, path="ldlt")), keys
 
 
 def factorise(A: scipy.sparse.sparray) -> Factorisation:
@@ -128,11 +83,10 @@ def factorise(A: scipy.sparse.sparray) -> Factorisation:
     Raises SingularMatrixError where it is singular to working precision.
     """
     lower = scipy.sparse.tril(A, format="coo")
-    keys = lower.col.astype(np.int64) * A.shape[0] + lower.row
-    pattern = lower_pattern(keys, A.shape[0])
-    places = np.searchsorted(pattern.keys, keys)
-    values = np.bincount(places, lower.data, pattern.indices.size).astype(float)
-    return analyse(pattern).factor(values)
+    own = lower.col.astype(np.int64) * A.shape[0] + lower.row
+    analysis, keys = analyse(own, A.shape[0])
+    values = np.bincount(np.searchsorted(keys, own), lower.data, keys.size).astype(float)
+    return analysis.factor(values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,17 +98,19 @@ class Pencil:
     Attributes
     ----------
     K, M : stiffness and mass matrix, N x N
-    symbolic : analysis of the union, which has ``entries`` in its lower triangle
+    analysis : that of the union, which has ``entries`` in its lower triangle
     stiffness, mass : (take, put) of K and M: their entry ``take[k]`` is entry ``put[k]`` of the
         lower triangle
+    before : what is called before each factorisation
     """
 
     K: SparseAffine
     M: SparseAffine
-    symbolic: Symbolic
+    analysis: Analysis
     entries: int
     stiffness: tuple[Ints, Ints]
     mass: tuple[Ints, Ints]
+    before: Callable[[], None]
 
     @property
     def size(self) -> int:
@@ -171,18 +127,16 @@ class Pencil:
         if sigma != 0:
             take, put = self.mass
             values[put] -= sigma * M[take]
-        return self.symbolic.factor(values)
+        self.before()
+        return self.analysis.factor(values)
 
 
-def pencil(K: SparseAffine, M: SparseAffine) -> Pencil:
+def pencil(K: SparseAffine, M: SparseAffine, before: Callable[[], None] = lambda: None) -> Pencil:
     """Return the pencil of two matrices; the analysis of its pattern is done here, once."""
-    (take_K, keys_K), (take_M, keys_M) = _lower(K), _lower(M)
-    pattern = lower_pattern(np.concatenate([keys_K, keys_M]), K.size)
-    keys = pattern.keys
-    stiffness, mass = (
-        (take, np.searchsorted(keys, own)) for take, own in ((take_K, keys_K), (take_M, keys_M))
-    )
-    return Pencil(K, M, analyse(pattern), pattern.indices.size, stiffness, mass)
+    both = _lower(K), _lower(M)
+    analysis, keys = analyse(np.concatenate([own for _, own in both]), K.size)
+    stiffness, mass = ((take, np.searchsorted(keys, own)) for take, own in both)
+    return Pencil(K, M, analysis, keys.size, stiffness, mass, before)
 
 
 def _lower(A: SparseAffine) -> tuple[Ints, Ints]:

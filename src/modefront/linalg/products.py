@@ -91,25 +91,24 @@ def _gram(X: Floats, Y: Floats, share: Sharing) -> Floats:
 
 def combine(X: Floats, C: Floats) -> Floats:
     """Return X C for X of shape (N, a) and C of shape (a, b)."""
-    return combine_all([X], C)
-
-
-def combine_all(blocks: Sequence[Floats], C: Floats) -> Floats:
-    """Return X C for C of shape (a, b), where blocks (N, a_i) are the columns of X."""
-    N, b = blocks[0].shape[0], C.shape[1]
-    parts = np.split(C, np.cumsum([X.shape[1] for X in blocks])[:-1])
+    N, b = X.shape[0], C.shape[1]
     out = np.empty((N, b))
 
     def multiply(first: int, last: int) -> None:
         for k in range(first * CHUNK, min(last * CHUNK, N), CHUNK):
             rows = slice(k, min(k + CHUNK, N))
-            _multiply(blocks[0][rows], parts[0], out[rows])
-            for X, some in zip(blocks[1:], parts[1:], strict=True):
-                more = np.empty((rows.stop - k, b))
-                _multiply(X[rows], some, more)
-                out[rows] += more
+            _multiply(X[rows], C, out[rows])
 
     _share(multiply, -(-N // CHUNK), N * C.size)
+    return out
+
+
+def combine_all(blocks: Sequence[Floats], C: Floats) -> Floats:
+    """Return X C for C of shape (a, b), where blocks (N, a_i) are the columns of X."""
+    first, *others = np.split(C, np.cumsum([X.shape[1] for X in blocks])[:-1])
+    out = combine(blocks[0], first)
+    for X, part in zip(blocks[1:], others, strict=True):
+        out += combine(X, part)
     return out
 
 

@@ -1,15 +1,8 @@
-r"""Interface of models: modes at sensors, and from loads to outputs, which predictions need.
+"""Interface of models: modes at sensors, and from loads to outputs, which predictions need.
 
-Loads and outputs are weighted sums: with the rows :math:`l` of sensors and outputs (named sums of
-degrees of freedom) and their weights,
-
-.. math::
-    f = \sum_p w_p\, l_p^T, \qquad f = -M r \ \text{for a moving base}, \qquad
-    y = \sum_p w_p\, l_p u
-
-where :math:`r` is the motion of all degrees of freedom with the base and u, for a moving base,
-the displacement relative to it. In modes, as `modefront.response.system` has it, these are
-:math:`\Gamma = \Phi^T f`, :math:`Y = l \Phi`, :math:`Y_s = l K^{-1} f` and :math:`Y_b = l r`.
+Loads and outputs are weighted sums, named sums of degrees of freedom with their weights; a moving
+base loads with -M r, r the motion of all degrees of freedom with it. In modes they are as
+`modefront.response.system` has it.
 """
 
 from __future__ import annotations

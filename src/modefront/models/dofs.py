@@ -13,6 +13,7 @@ import scipy.sparse
 
 from modefront._typing import Floats, Ints
 from modefront.errors import reason
+from modefront.fem.check import unit_vector
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import ended_column, file_size, wrong
 from modefront.outputs import write_table
@@ -125,14 +126,9 @@ def name_of(direction: int) -> str:
 
 
 def _components(direction: str | Sequence[float]) -> list[tuple[int, float]]:
-    if isinstance(direction, str):
-        name = direction.removeprefix("-")
-        return [(number_of(name), -1.0 if name != direction else 1.0)]
-    vector = np.asarray(direction, dtype=float)
-    unit = vector / np.linalg.norm(vector)
-    return [
-        (i + 1, float(x)) for i, x in enumerate(unit) if abs(x) > ACCUMULATED
-    ]  # a vector turned by a right angle leaves rounding
+    """Return numbers of directions and factors; a vector turned by a right angle has rounding."""
+    vector = unit_vector(direction, "direction")
+    return [(i + 1, float(vector[i])) for i in np.flatnonzero(abs(vector) > ACCUMULATED).tolist()]
 
 
 def is_direction(value: object) -> bool:

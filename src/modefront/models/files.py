@@ -113,13 +113,12 @@ def _check_shape(path: Path, shape: tuple[int, ...], square: str = "square") -> 
 
 def _matrix_market(path: Path, _: str) -> Any:
     with path.open("rb") as stream:
-        header = [stream.readline(2**16)]
-        if not header[0].startswith(b"%%MatrixMarket"):
+        line = stream.readline(2**16)
+        if not line.startswith(b"%%MatrixMarket"):
             raise ValueError("no line '%%MatrixMarket matrix ...'")
         ended(path)
-        while len(header) < 10**5 and (header[-1][:1] == b"%" or not header[-1].strip()):
-            header.append(stream.readline(2**16))
-            if not header[-1]:
+        while line[:1] == b"%" or not line.strip():
+            if not (line := stream.readline(2**16)):
                 raise ValueError("the end of the file in its header")
         words, before = 0, b" "
         while chunk := stream.read(2**24):

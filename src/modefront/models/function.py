@@ -1,21 +1,12 @@
 r"""Models of which stiffness and mass matrix are a Python function of the parameters.
 
 At each :math:`\theta_0` the model is replaced by the affine one that has the same matrices and the
-same first derivatives there,
-
-.. math:: K(\theta) = K(\theta_0) + \sum_i (\theta_i - \theta_{0i})\, K_i'(\theta_0),
-
-and M likewise: modes, their derivatives and responses at :math:`\theta_0` are those of the function
-itself. Derivatives that the function does not return are complex steps of it,
-
-.. math:: K_i' = \operatorname{Im} K(\theta + \mathrm{i} h e_i) / h,
-
-in which nothing cancels: h is so small that they are exact to rounding. A function that loses the
-imaginary part on its way (``abs``, an array of real numbers that is filled) returns wrong
-derivatives and says nothing. Those at the nominal values, the user's own as well, are therefore
-compared with differences.
-
-Source: Squire & Trapp 1998, doi:10.1137/S003614459631241X.
+same first derivatives there, so that modes, their derivatives and responses are those of the
+function itself. Derivatives that the function does not return are complex steps of it
+(``docs/methods/derivatives.md``), in which nothing cancels: they are exact to rounding. A function
+that loses the imaginary part on its way (``abs``, an array of real numbers that is filled) returns
+wrong derivatives and says nothing. Those at the nominal values, the user's own as well, are
+therefore compared with differences.
 """
 
 from __future__ import annotations
@@ -44,8 +35,7 @@ from modefront.models.matrices import (
     weights_of,
 )
 from modefront.models.parameters import Parameter
-from modefront.modes.eigensolvers import FullModes
-from modefront.modes.result import Modes
+from modefront.modes.result import FullModes, Modes
 from modefront.options import each_once
 from modefront.work.transfer import shared
 
@@ -95,14 +85,10 @@ class CheckedFunction:
         if not derivatives:
             return (K, ()), (M, ())
         if len(returned) == 4:
-            slopes = [
-                self._listed(each, f"{place}: {what}", K.shape[0])
-                for what, each in zip(("dK", "dM"), returned[2:], strict=True)
-            ]
-        else:
-            steps = [self._complex_step(theta, i, K.shape[0]) for i in range(theta.size)]
-            slopes = [tuple(step[0] for step in steps), tuple(step[1] for step in steps)]
-        return (K, slopes[0]), (M, slopes[1])
+            dK = self._listed(returned[2], f"{place}: dK", K.shape[0])
+            return (K, dK), (M, self._listed(returned[3], f"{place}: dM", K.shape[0]))
+        steps = [self._complex_step(theta, i, K.shape[0]) for i in range(theta.size)]
+        return (K, tuple(dK for dK, _ in steps)), (M, tuple(dM for _, dM in steps))
 
     def check_derivatives(
         self, theta: Floats, lower: Floats, upper: Floats, known: tuple[Tangent, Tangent]

@@ -12,22 +12,8 @@ import scipy.sparse
 
 from modefront._typing import Floats, Ints
 from modefront.brief import as_html, brief
-
-
-@dataclass(frozen=True, eq=False)
-class Cells:
-    """Cells of one type in one group.
-
-    Attributes
-    ----------
-    group : name
-    type : as meshio and VTK say: vertex, line, triangle, quad, hexahedron, tetra10
-    nodes : (cells, k) nodes, counted from 0
-    """
-
-    group: str
-    type: str
-    nodes: Ints
+from modefront.fem.structure import Cells as Cells
+from modefront.linalg.affine import sparse_rows
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,12 +40,8 @@ class Geometry:
 
     def weights(self, nodes: Ints, directions: Floats) -> scipy.sparse.csr_array:
         """Return weights (sensors, N) of sensors at nodes along ``directions`` (sensors, 3)."""
-        count, columns = len(nodes), 3 * nodes[:, None] + np.arange(3)
-        rows = np.repeat(np.arange(count), 3)
-        picked = scipy.sparse.csr_array(
-            (directions.ravel(), (rows, columns.ravel())), shape=(count, self.motion.shape[0])
-        )
-        return (picked @ self.motion).tocsr()
+        columns = 3 * nodes[:, None] + np.arange(3)
+        return (sparse_rows(directions, columns, self.motion.shape[0]) @ self.motion).tocsr()
 
     @property
     def axes(self) -> tuple[int, ...]:

@@ -16,7 +16,7 @@ from modefront._typing import Floats
 from modefront.brief import as_html, brief_model
 from modefront.errors import Fault, InputError, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
-from modefront.linalg.factorisation import Factorisation, Pencil, Symbolic, pencil
+from modefront.linalg.factorisation import Pencil, pencil
 from modefront.linalg.products import gram
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
 from modefront.models.geometry import Geometry
@@ -28,8 +28,8 @@ from modefront.models.parameters import (
     form_of,
     term_exponents,
 )
-from modefront.modes.eigensolvers import Eigensolver, FullModes, eigensolver
-from modefront.modes.result import Modes
+from modefront.modes import dense, sparse
+from modefront.modes.result import FullModes, Modes
 from modefront.rounding import LARGEST, SYMMETRY
 from modefront.work.costs import Costs, spend
 from modefront.work.transfer import shared
@@ -37,19 +37,20 @@ from modefront.work.transfer import shared
 DENSE = 180
 """Degrees of freedom up to which dense matrices are faster."""
 
+ARRAYS = 8
+"""Matrices N x N that a dense solution holds: K, M, their factors, the modes and workspace."""
+
+FACTOR = 40
+"""Entries of the two factors of a sparse solution and of what belongs to it, over N^(4/3)."""
+
 SensorSpec = int | Sequence[tuple[int, float]]
 """A sensor: a degree of freedom, counted from 0, or weighted degrees of freedom."""
 
 Matrix: TypeAlias = Floats | scipy.sparse.sparray
 
 
-@dataclass(frozen=True)
-class _Counted:
-    symbolic: Symbolic
-
-    def factor(self, values: Floats) -> Factorisation:
-        spend(Costs(factorisations=1))
-        return self.symbolic.factor(values)
+def _factorisation() -> None:
+    spend(Costs(factorisations=1))
 
 
 @contextmanager
@@ -102,12 +103,12 @@ class MatrixModel:
     @property
     def is_sparse(self) -> bool:
         """Whether the matrices are sparse; those of small models are dense."""
-        return isinstance(self.stiffness, SparseAffine) and isinstance(self.mass, SparseAffine)
+        return self._dense is None
 
     @property
     def footprint(self) -> float:
-        """Bytes that an eigensolution takes, estimated."""
-        return self._eigensolver.footprint
+        """Bytes that an eigensolution takes, estimated; factors of solids fill in the most."""
+        return 8.0 * (ARRAYS * self.size**2 if self._dense else FACTOR * self.size ** (4 / 3))
 
     @property
     def above_zero(self) -> tuple[str, ...]:
@@ -127,7 +128,9 @@ class MatrixModel:
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         with _eigenproblem():
-            return self._eigensolver.modes(theta, count, derivatives=derivatives)
+            if self._dense:
+                return dense.modes(*self._dense, theta, count, derivatives)
+            return sparse.modes(self.pencil, self.selection, theta, count, derivatives)
 
     def full_modes(self, theta: Floats, count: int, loads: Floats | None = None) -> FullModes:
         """Return the ``count`` lowest modes at all degrees of freedom, and static responses.
@@ -137,7 +140,9 @@ class MatrixModel:
         """
         columns = np.zeros((self.size, 0)) if loads is None else loads
         with _eigenproblem():
-            return self._eigensolver.full_modes(theta, count, columns)
+            if self._dense:
+                return dense.full_modes(*self._dense[:2], theta, count, columns)
+            return sparse.full_modes(self.pencil, theta, count, columns)
 
     def at(self, _: Floats) -> MatrixModel:
         """Return the model itself: its matrices are known at all parameters."""
@@ -145,7 +150,9 @@ class MatrixModel:
 
     def is_singular(self, theta: Floats) -> bool:
         """Return whether K(theta) is singular to working precision."""
-        return self._eigensolver.is_singular(theta)
+        if self._dense:
+            return dense.is_singular(self._dense[0].at(theta))
+        return sparse.regular_factor(self.pencil, theta) is None
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -217,20 +224,28 @@ class MatrixModel:
 
     def sparse(self) -> MatrixModel:
         """Return the same model with sparse matrices."""
-        if self.is_sparse:
+        if self._dense is None:
             return self
-        stiffness, mass = (
-            A.sparse() if isinstance(A, DenseAffine) else A for A in (self.stiffness, self.mass)
-        )
-        return replace(self, stiffness=stiffness, mass=mass)
+        K, M, _ = self._dense
+        return replace(self, stiffness=K.sparse(), mass=M.sparse())
+
+    def compact(self) -> MatrixModel:
+        """Return the same model, with dense matrices where it is so small that these are faster."""
+        K, M = self.stiffness, self.mass
+        if self.size > DENSE or isinstance(K, DenseAffine) or isinstance(M, DenseAffine):
+            return self
+        return replace(self, stiffness=K.dense(), mass=M.dense())
 
     @cached_property
-    def _eigensolver(self) -> Eigensolver:
-        return eigensolver(self)
+    def _dense(self) -> tuple[DenseAffine, DenseAffine, Floats] | None:
+        """K, M and the selection as arrays; None where the matrices are sparse."""
+        if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
+            return self.stiffness, self.mass, self.selection.toarray()
+        return None
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without the analysis of the pattern, which is made again when needed."""
-        made = ("pencil", "_eigensolver")
+        made = ("pencil", "_dense")
         return {name: value for name, value in vars(self).items() if name not in made}
 
     @cached_property
@@ -238,8 +253,7 @@ class MatrixModel:
         """The sparse pencil; its pattern is analysed at the first evaluation, and only then."""
         if isinstance(self.stiffness, DenseAffine) or isinstance(self.mass, DenseAffine):
             raise TypeError("stiffness and mass have to be both dense or both sparse")
-        whole = pencil(self.stiffness, self.mass)
-        return replace(whole, symbolic=_Counted(whole.symbolic))
+        return pencil(self.stiffness, self.mass, _factorisation)
 
 
 def of_free(model: Model, parameters: Sequence[Parameter]) -> tuple[Model, tuple[Parameter, ...]]:
@@ -305,50 +319,22 @@ def matrices(
     [4.0]
     """
     size = _common_size(parameters, {"stiffness": stiffness, "mass": mass})
-    model = affine_model(
-        parameters,
+    return MatrixModel(
+        tuple(parameters),
         tuple(sensors),
         select(sensors, size),
         affine(parameters, stiffness, size),
         affine(parameters, mass, size),
-        outputs=weights_of(outputs or {}, size, "outputs"),
-        base=weights_of(base or {}, size, "base"),
-    )
-    return replace(model, floating=floating)
-
-
-# 7 arguments: the first fields of a `MatrixModel`.
-def affine_model(
-    parameters: Sequence[str],
-    sensors: Sequence[str],
-    selection: scipy.sparse.csr_array,
-    stiffness: SparseAffine,
-    mass: SparseAffine,
-    *,
-    outputs: Mapping[str, Floats] | None = None,
-    base: Mapping[str, Floats] | None = None,
-) -> MatrixModel:
-    """Return the model of sparse affine matrices, made dense where that is faster.
-
-    See `MatrixModel` for what the arguments are.
-    """
-    small = stiffness.size <= DENSE
-    return MatrixModel(
-        tuple(parameters),
-        tuple(sensors),
-        selection,
-        stiffness.dense() if small else stiffness,
-        mass.dense() if small else mass,
-        outputs or {},
-        base or {},
-    )
+        weights_of(outputs or {}, size, "outputs"),
+        weights_of(base or {}, size, "base"),
+        floating,
+    ).compact()
 
 
 def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) -> SparseAffine:
     """Return base + sum_k c_k(theta) A_k for terms named as `modefront.models.parameters` says."""
-    exponents = term_exponents(list(terms), parameters)
-    sparse_terms = [scipy.sparse.coo_array(A) for A in terms.values()]
-    return sparse_affine(sparse_terms, Monomials(exponents), size)
+    coefficients = Monomials(term_exponents(list(terms), parameters))
+    return sparse_affine(list(map(scipy.sparse.coo_array, terms.values())), coefficients, size)
 
 
 def _common_size(parameters: Sequence[str], tables: Mapping[str, Mapping[str, Matrix]]) -> int:

@@ -13,7 +13,7 @@ from modefront.errors import wrong
 from modefront.fem.check import check_points, limits_of
 from modefront.linalg.affine import Monomials, SparseAffine
 from modefront.models.geometry import Cells, Geometry
-from modefront.models.matrices import MatrixModel, affine_model
+from modefront.models.matrices import MatrixModel
 
 
 def mesh_model(
@@ -67,9 +67,9 @@ def mesh_model(
         return replace(matrix, coefficients=Monomials(exponents))
 
     direction = built.dofs.free[:, 1]
-    model = affine_model(
-        parameters,
-        [built.sensors[i] for i in sensors],
+    return MatrixModel(
+        tuple(parameters),
+        tuple(built.sensors[i] for i in sensors),
         built.selection[sensors],
         placed(built.stiffness),
         placed(built.mass),
@@ -80,9 +80,9 @@ def mesh_model(
             for d, name in enumerate(fem.DIRECTIONS[:3])
             if (direction == d).any()
         },
-    )
-    limits = limits_of(structure, check_points(structure.nodes))
-    return replace(model, limits=limits, geometry=_geometry(structure, built))
+        limits=limits_of(structure, check_points(structure.nodes)),
+        geometry=_geometry(structure, built),
+    ).compact()
 
 
 def _geometry(structure: fem.Structure, built: fem.StructureMatrices) -> Geometry:

@@ -169,17 +169,9 @@ def form_of(term: str) -> str:
 
 
 def term_exponents(terms: Sequence[str], parameters: Sequence[str]) -> Floats:
-    """Return the exponents (terms, parameters) of terms that are all of the right form.
-
-    Raises ValueError for one that is not.
-    """
-    out = np.zeros((len(terms), len(parameters)))
-    for row, term in enumerate(terms):
-        exponents = exponents_of(term, parameters)
-        if exponents is None:
-            raise ValueError(f"expected {form_of(term)}, found {term!r}")
-        out[row] = exponents
-    return out
+    """Return the exponents (terms, parameters) of terms that are all of the right form."""
+    rows = [exponents_of(term, parameters) for term in terms]
+    return np.array(rows, dtype=float).reshape(len(terms), len(parameters))
 
 
 def above_zero(exponents: Floats) -> list[int]:

@@ -1,28 +1,17 @@
 r"""Modes and their exact derivatives for small models, with dense matrices.
 
-.. math:: (K - \lambda_r M) \varphi_r = 0, \qquad \varphi_r^T M \varphi_s = \delta_{rs}
-
-A singular M (massless degrees of freedom) or K (rigid-body modes) is allowed: what is solved is
+K or M may be singular (rigid-body modes, massless degrees of freedom): what is solved is
 :math:`M x = \mu (K + \sigma M) x` with :math:`\mu = 1 / (\lambda + \sigma)`, which also gives the
-lowest modes to the highest relative accuracy.
-
-Derivatives follow Nelson (1976, doi:10.2514/3.7211). With respect to a parameter,
-
-.. math::
-    \lambda_r' &= \varphi_r^T f_r, \qquad f_r = (K' - \lambda_r M') \varphi_r \\
-    (K - \lambda_r M) \varphi_r' &= \lambda_r' M \varphi_r - f_r
-
-All eigenvectors x are at hand, those of the null space of M too, orthonormal in
-:math:`K + \sigma M`, and they solve the singular system:
+lowest modes to the highest relative accuracy. As all x are at hand, orthonormal in
+:math:`K + \sigma M`, Nelson's derivative (``docs/methods/derivatives.md``) is a sum,
 
 .. math::
     \varphi_r' = - \sum_{j \ne r} x_j \frac{x_j^T f_r}{1 - (\lambda_r + \sigma) \mu_j}
         - \tfrac12 \varphi_r\, \varphi_r^T M' \varphi_r .
 
-Errors of the x and mu of high modes, which are close in mu, do no harm in this sum. Of modes close
-to r, the denominator is :math:`\mu_j (\lambda_j - \lambda_r)`, the only place that a small gap can
-spoil. Where it does, the modes are called coincident: the eigenvalues along one parameter then are
-those of :math:`\Phi_c^T (K' - \lambda M') \Phi_c`, and the quotient is left out.
+Errors of the x and mu of high modes, which are close in mu, do no harm in it. Of modes close to r,
+the denominator is :math:`\mu_j (\lambda_j - \lambda_r)`, the only place that a small gap can spoil;
+where it does, the modes are called coincident, and the quotient is left out.
 """
 
 from __future__ import annotations
@@ -36,10 +25,8 @@ import scipy.linalg
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, first_axis
-from modefront.modes import tridiagonal
-from modefront.modes.result import ModeDerivatives, Modes
+from modefront.modes.result import FullModes, ModeDerivatives, Modes
 from modefront.modes.second_derivatives import SecondDerivatives, Solved
-from modefront.modes.tridiagonal import COINCIDENT, FINITE, PRECISE, LowestModes, lowest_modes
 
 CLOSE = 1e-2
 """Relative gap of eigenvalues below which a quotient is formed with the gap itself."""
@@ -56,6 +43,19 @@ RIGID = 1e-4
 INDEFINITE = 1e-2
 """Negative eigenvalue over the shift that passes for rounding; below it, K is indefinite."""
 
+INDEFINITE_MASS = 1e-10
+"""Negative mu over the greatest one, beyond which M is indefinite, and not by rounding."""
+
+FINITE = 1e-13
+"""mu over the greatest one, above which a mode has a finite frequency: below is rounding of the
+zeros of a singular M."""
+
+PRECISE = 1e-8
+"""mu over the greatest one, below which digits of it are lost that can be had otherwise."""
+
+COINCIDENT = 1e-8
+"""Relative error of a quotient, as caused by rounding in its gap, above which it is left out."""
+
 _ROUNDING = 10 * np.finfo(float).eps
 """Error of a sum of products, relative, of some ten terms of like size."""
 
@@ -68,14 +68,7 @@ def modes(
     Raises ModelError where K or M is indefinite, or where there are fewer modes with a finite
     frequency than asked for.
     """
-    Kt, Mt = K.at(theta), M.at(theta)
-    few = lowest_modes(Kt, Mt, count)
-    if few is not None:
-        at_sensors = few.lam[:count], sensors @ few.Phi[:, :count]
-        if not derivatives:
-            return Modes(*at_sensors)
-        return Modes(*at_sensors, tridiagonal.derivatives(K, M, sensors, theta, few, count))
-    decomposition = decompose(Kt, Mt, count)
+    decomposition = decompose(K.at(theta), M.at(theta), count)
     lam, X = decomposition.lam, decomposition.X
     refuse_fewer(lam.size, count)
     phi = sensors @ decomposition.Phi[:, :count]
@@ -89,6 +82,34 @@ def modes(
         dlam[:count], first_axis(seen, S[:, :count]), coincident[:count], second
     )
     return Modes(lam[:count], phi, slopes)
+
+
+def full_modes(
+    K: DenseAffine, M: DenseAffine, theta: Floats, count: int, loads: Floats
+) -> FullModes:
+    """Return the ``count`` lowest modes and the static response to loads (N, loads).
+
+    Raises ModelError as `modes`.
+    """
+    Kt = K.at(theta)
+    known = decompose(Kt, M.at(theta), count)
+    refuse_fewer(known.lam.size, count)
+    lam, static = without_rounding(Kt.diagonal(), known.lam, known.Phi), None
+    if lam[0] > 0:
+        try:
+            static = scipy.linalg.cho_solve(scipy.linalg.cho_factor(Kt), loads)
+        except np.linalg.LinAlgError:
+            text = "the stiffness matrix is singular to working precision"
+            raise ModelError(text) from None
+    return FullModes(lam[:count], known.Phi[:, :count], static)
+
+
+def without_rounding(diagonal: Floats, lam: Floats, Phi: Floats) -> Floats:
+    """Return eigenvalues with zeros for those of rigid-body modes.
+
+    These are below the rounding that phi^T diag(K) phi leaves in them.
+    """
+    return np.where(lam < FINITE * (diagonal @ Phi**2), 0.0, lam)
 
 
 def refuse_fewer(known: int, count: int) -> None:
@@ -133,15 +154,7 @@ def _with_all(
     coincide.
     """
     Z = known.X @ ((seen.T @ b) / energy[:, r[owner]])
-    return Solved(known.Phi[:, r], first_axis(known.X, S[:, r]), Z)
-
-
-def lowest(K: Floats, M: Floats, count: int) -> LowestModes | Decomposition:
-    """Return all finite eigenvalues and the ``count`` lowest modes, or as many as there are.
-
-    Raises ModelError where K or M is indefinite.
-    """
-    return lowest_modes(K, M, count) or decompose(K, M, count)
+    return known.Phi[:, r], first_axis(known.X, S[:, r]), Z
 
 
 def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:
@@ -167,7 +180,7 @@ def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:
             # A shift of the size of the lowest elastic mode costs no digits of the others.
             shift = float(1 / elastic[-1] - shift)
             mu, X = _inverse_eigensolve(K + shift * M, M)
-    if mu[0] < -tridiagonal.INDEFINITE * mu[-1]:
+    if mu[0] < -INDEFINITE_MASS * mu[-1]:
         raise ModelError("the mass matrix is indefinite")
     mu, X = mu[::-1], X[:, ::-1]
     known = mu > FINITE * mu[0]

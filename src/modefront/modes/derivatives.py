@@ -1,28 +1,13 @@
 r"""Exact derivatives of modes, seen by sensors, from the modes below a gap and two factors.
 
-The equations are those of ``docs/methods/derivatives.md``: a sum over the known modes, and
-:math:`(K - \lambda_r M)^+ f_{ri}`, the pseudoinverse on the M-complement of these, for the forces
-:math:`f_{ri} = (K_i' - \lambda_r M_i') \varphi_r`. With the factor of :math:`B = K - \sigma M`,
-:math:`T = P B^{-1} M` and :math:`\tau_r = \sigma - \lambda_r`, Lanczos iteration from each
-right-hand side, :math:`B^{-1}b = \beta_1 q_1`,
-
-.. math:: T q_k = \beta_k q_{k-1} + \alpha_k q_k + \beta_{k+1} q_{k+1}
-
-gives :math:`c^T (K - \lambda_r M)^+ b = \sum_k (c^T q_k)\, y_k` with
-:math:`(I + \tau_r T_k) y = \beta_1 e_1`, for every r at once. With :math:`I + \tau_r T_k = L D L^T`
-this is :math:`\sum_k p_k u_k / d_k`, where :math:`L u = \beta_1 e_1` and
-:math:`L p = (c^T q_k)_k` are found on the way: only what c sees is formed, and the identity for c
-gives the derivatives at every degree of freedom. The condition number is that of
-:math:`1 + \tau_r / (\lambda - \sigma)` for :math:`\lambda` beyond the
-known modes: each mode takes the factor that makes it smallest. The form is symmetric, so b may be
-the forces (direct, parameters x modes columns) or the sensors (adjoint, sensors columns for all
-modes together), whichever is expected to need fewer solutions.
-
-Where modes coincide, their quotients are left out, and eigenvalues along a parameter are those of
-:math:`\Phi_c^T (K' - \lambda M') \Phi_c`, as in `modefront.modes.dense`.
-
-Source: Nelson 1976, doi:10.2514/3.7211; Lanczos for shifted systems: Golub & Meurant 2010,
-doi:10.1515/9781400833887.
+The equations are those of ``docs/methods/derivatives.md``. Lanczos iteration from each right-hand
+side, :math:`B^{-1}b = \beta_1 q_1`, of :math:`T = P B^{-1} M` makes it a tridiagonal :math:`T_k`.
+With :math:`I + \tau_r T_k = L D L^T`, the form :math:`c^T (K - \lambda_r M)^+ b` is
+:math:`\sum_k p_k u_k / d_k`, where :math:`L u = \beta_1 e_1` and :math:`L p = (c^T q_k)_k` are
+found on the way: only what c sees is formed, for all r at once. The condition number is that of
+:math:`1 + \tau_r / (\lambda - \sigma)` for :math:`\lambda` beyond the known modes: each mode takes
+the factor that makes it smallest. The form is symmetric, so b may be the forces (direct) or the
+sensors (adjoint, one solution for all modes), whichever is expected to need fewer solutions.
 """
 
 from __future__ import annotations
@@ -100,17 +85,11 @@ Sensors: TypeAlias = Floats | scipy.sparse.csr_array
 
 
 def at_sensors(
-    pencil: Pencil,
-    sensors: Sensors,
-    theta: Floats,
-    spectrum: Spectrum,
-    count: int,
-    tolerance: float = TOLERANCE,
+    pencil: Pencil, sensors: Sensors, theta: Floats, spectrum: Spectrum, count: int
 ) -> tuple[Floats, Floats, Bools]:
     """Return dlam (count, p), dphi (sensors, count, p) and which modes coincide with another one.
 
     ``sensors`` has the shape (sensors, N); the identity gives the derivatives everywhere.
-    ``tolerance`` is the residual of the part of dphi outside the known modes over that of zero.
     Raises ModelError where the iteration fails.
     """
     lam, same = spectrum.lam, _same(spectrum)
@@ -133,7 +112,7 @@ def at_sensors(
     inside[r[:count], :, r[:count]] = -0.5 * (dM @ spectrum.Phi).reshape(c, p, -1)[r, :, r][:count]
     dphi = np.tensordot(sensors @ spectrum.Phi, inside, axes=(1, 2))
     force = force[: count * p].tocsr()
-    dphi -= outside(sensors, force, spectrum, count, tolerance)
+    dphi -= outside(sensors, force, spectrum, count)
     return dlam[:count], dphi, coincident[:count]
 
 
@@ -162,25 +141,21 @@ def everywhere(
     right = np.hstack([force, sensors.T @ b])
     gap = np.where(_same(spectrum)[:, k], np.inf, spectrum.lam - spectrum.lam[k])
     out = combine(spectrum.Phi, gram(spectrum.Phi, right) / gap[:, None])
-    nearest, _steps = _nearest(spectrum, count, TOLERANCE)
+    nearest, _steps = _nearest(spectrum, count)
     shifted, identity = spectrum.factors[nearest[k]], scipy.sparse.eye_array(len(phi)).tocsr()
     tau = np.array([[shifted.sigma - spectrum.lam[k]]])
     for some in _chunks(right.T):
         columns = np.ascontiguousarray(right[:, some])
-        out[:, some] += _forms(shifted, spectrum, columns, tau, identity, TOLERANCE)[:, 0]
+        out[:, some] += _forms(shifted, spectrum, columns, tau, identity)[:, 0]
     dphi = -out[:, :p] - 0.5 * phi * gram(phi, dM_phi)
-    return Solved(phi, dphi[:, None], out[:, p:])
+    return phi, dphi[:, None], out[:, p:]
 
 
 def outside(
-    sensors: Sensors,
-    force: scipy.sparse.csr_array,
-    spectrum: Spectrum,
-    count: int,
-    tolerance: float = TOLERANCE,
+    sensors: Sensors, force: scipy.sparse.csr_array, spectrum: Spectrum, count: int
 ) -> Floats:
     """Return sensors (K - lam_r M)^+ f_ri, shape (sensors, count, p); f has rows (r, i)."""
-    nearest, steps = _nearest(spectrum, count, tolerance)
+    nearest, steps = _nearest(spectrum, count)
     p = force.shape[0] // count
     out = np.zeros((sensors.shape[0], count, p))
     groups = [np.flatnonzero(nearest == which) for which in (0, 1)]
@@ -195,18 +170,18 @@ def outside(
         if adjoint < direct:
             for some in _chunks(sensors):
                 right = _columns(sensors, some)
-                product = _forms(shifted, spectrum, right, tau[:, None], rows, tolerance)
+                product = _forms(shifted, spectrum, right, tau[:, None], rows)
                 terms = np.diagonal(product.reshape(group.size, p, *product.shape[1:]), 0, 0, 2)
                 out[some[:, None], group] = terms.transpose(1, 2, 0)
         else:
             for some in _chunks(rows):
                 right = _columns(rows, some)
-                product = _forms(shifted, spectrum, right, tau[some // p][None], sensors, tolerance)
+                product = _forms(shifted, spectrum, right, tau[some // p][None], sensors)
                 out[:, group[some // p], some % p] = product[:, 0]
     return out
 
 
-def _nearest(spectrum: Spectrum, count: int, tolerance: float) -> tuple[Ints, Floats]:
+def _nearest(spectrum: Spectrum, count: int) -> tuple[Ints, Floats]:
     """Return the better factor for each mode, and how many steps it is expected to take."""
     sigma = np.array([shifted.sigma for shifted in spectrum.factors])
     tau = sigma[:, None] - spectrum.lam[:count]
@@ -215,7 +190,7 @@ def _nearest(spectrum: Spectrum, count: int, tolerance: float) -> tuple[Ints, Fl
     root = np.sqrt(condition)
     nearest = np.argmin(condition, axis=0)
     rate = ((root - 1) / (root + 1))[nearest, np.arange(count)]
-    return nearest, 1 + np.log(tolerance) / np.log(np.clip(rate, 1e-12, 0.999))
+    return nearest, 1 + np.log(TOLERANCE) / np.log(np.clip(rate, 1e-12, 0.999))
 
 
 def _chunks(rows: Sensors) -> list[Ints]:
@@ -231,12 +206,7 @@ def _columns(rows: Sensors, some: Ints) -> Floats:
 
 
 def _forms(
-    shifted: Shifted,
-    spectrum: Spectrum,
-    right: Floats,
-    tau: Floats,
-    left: Sensors,
-    tolerance: float,
+    shifted: Shifted, spectrum: Spectrum, right: Floats, tau: Floats, left: Sensors
 ) -> Floats:
     """Return left (K - lam_r M)^+ right, shape (rows of left, shifts, columns of right).
 
@@ -273,7 +243,7 @@ def _forms(
         Q_old, W = W, _projected(spectrum, Q_old)
         dual_old, dual = dual, dual_old
         beta = _norm(W, dual)
-        if (np.abs(tau * beta * u / d) <= tolerance * first).all():
+        if (np.abs(tau * beta * u / d) <= TOLERANCE * first).all():
             return out
     raise ModelError("the derivatives do not converge: the matrices are too ill-conditioned")
 

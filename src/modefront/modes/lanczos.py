@@ -1,10 +1,8 @@
 r"""The greatest eigenvalues of :math:`T = A^{-1} M` by block Lanczos iteration.
 
-.. math:: T X = X \operatorname{diag}(\mu), \qquad X^T A X = I
-
-A is positive definite and M is symmetric, so T is self-adjoint in the inner product of A. This
-product, unlike that of M, sees the null space of M (massless degrees of freedom), so that nothing
-can grow there unseen. One step with the block Q of the basis V is
+A is positive definite and M is symmetric, so T is self-adjoint in the inner product of A, which,
+unlike that of M, sees the null space of M (massless degrees of freedom): nothing can grow there
+unseen. One step with the block Q of the basis V is
 
 .. math::
     H &= V^T M Q \\
@@ -13,15 +11,6 @@ can grow there unseen. One step with the block Q of the basis V is
 which keeps :math:`T V = V H + Q_+ R E^T`, E the last columns. The Ritz pairs of H then have the
 residual :math:`\lVert R y \rVert` with y the last rows of its eigenvectors. A full basis is
 replaced by its leading Ritz vectors (thick restart), which keeps that relation.
-
-========  =====================================================================
-symbol    meaning
-========  =====================================================================
-V, AV     basis (N, d), orthonormal in A, and A times it
-Q, AQ     the block that was found last, not yet in V
-H         V^T M V, (d, d)
-R         coefficients of Q in the last residual, (columns of Q, columns of E)
-========  =====================================================================
 
 Source: Wu & Simon 2000, doi:10.1137/S0895479898334605 (thick restart); Grimes, Lewis & Simon 1994,
 doi:10.1137/S0895479888151111 (blocks, singular M).
@@ -38,7 +27,7 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.linalg.products import combine, gram, times
-from modefront.modes.tridiagonal import INDEFINITE
+from modefront.modes.dense import INDEFINITE_MASS
 
 TOLERANCE = 1e-7
 """Residual of a Ritz pair over its mu; modes are usually refined once more with another shift."""
@@ -110,7 +99,7 @@ def greatest(
             continue
         mu, Y = np.linalg.eigh(H[:d, :d])
         mu, Y = mu[::-1], Y[:, ::-1]
-        if mu[-1] < -INDEFINITE * mu[0]:
+        if mu[-1] < -INDEFINITE_MASS * mu[0]:
             raise ModelError("the mass matrix is indefinite")
         good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(TOLERANCE * mu, LOST * mu[0])
         leading = d if good.all() else int(np.argmin(good))

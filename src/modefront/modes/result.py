@@ -1,4 +1,4 @@
-"""The modes of a model at its sensors, with derivatives."""
+"""The modes of a model: at its sensors, with derivatives, and at all degrees of freedom."""
 
 from __future__ import annotations
 
@@ -101,3 +101,19 @@ class Modes:
         """Derivatives of the frequencies by their eigenvalues, (modes,); 0 for rigid-body modes."""
         omega = np.sqrt(np.maximum(self.lam, 0.0))
         return np.divide(1, 4 * np.pi * omega, out=np.zeros(omega.shape), where=omega > 0)
+
+
+@dataclass(frozen=True)
+class FullModes:
+    """The lowest modes of a model at one theta, and its static response.
+
+    Attributes
+    ----------
+    lam : (modes,) eigenvalues omega**2 in (rad/s)**2, ascending; 0 for rigid-body modes
+    Phi : (N, modes) mass-normalised modes; the sign is arbitrary
+    static : (N, loads) displacement under each load; None with rigid-body modes
+    """
+
+    lam: Floats
+    Phi: Floats
+    static: Floats | None

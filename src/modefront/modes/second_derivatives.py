@@ -1,34 +1,15 @@
 r"""Exact second derivatives of sums of eigenvalues and mode shapes, by second-order adjoints.
 
-========  ============  =====================================================================
-symbol    shape         meaning
-========  ============  =====================================================================
-w_r       ()            weight of the eigenvalue of mode r
-b_r       (N,)          weights of its shape, those at the sensors brought to all DOFs
-g         ()            the sum :math:`\sum_r w_r \lambda_r + b_r^T \varphi_r`, weights constant
-A         (N, N)        :math:`K - \lambda_r M`
-A^+       (N, N)        its pseudoinverse on the M-complement of mode r, symmetric:
-                        :math:`A A^+ = I - M \varphi \varphi^T, \quad \varphi^T M A^+ = 0`
-F_i       (N, N)        :math:`K_i - \lambda_r M_i`, an index i being a derivative; F_ij likewise
-z_r       (N,)          the adjoint, :math:`A^+ b_r`
-s_r       ()            :math:`b_r^T \varphi_r`
-y_r       (N,)          :math:`w_r \varphi_r - z_r`
-========  ============  =====================================================================
+Of :math:`g = \sum_r w_r \lambda_r + b_r^T \varphi_r` with constant weights, let
+:math:`F_i = K_i - \lambda_r M_i` and :math:`A^+` be the pseudoinverse of :math:`K - \lambda_r M` on
+the M-complement of mode r, an index i being a derivative; :math:`z = A^+ b`,
+:math:`s = b^T \varphi` and :math:`y = w \varphi - z`, of each mode r. Differentiating
 
-The pair :math:`A \varphi = 0`, :math:`\varphi^T M \varphi = 1` (r is left out) has the derivatives
+.. math:: (K - \lambda M) \varphi = 0, \qquad \varphi^T M \varphi = 1
 
-.. math::
-    A \varphi_i &= -A_i \varphi, \qquad A_i = F_i - \lambda_i M \\
-    \varphi^T M \varphi_i &= -\tfrac12 \varphi^T M_i \varphi \\
-    A \varphi_{ij} &= -A_i \varphi_j - A_j \varphi_i - A_{ij} \varphi, \qquad
-    A_{ij} = F_{ij} - \lambda_{ij} M - \lambda_i M_j - \lambda_j M_i \\
-    \varphi^T M \varphi_{ij} &= -\tfrac12 \varphi^T M_{ij} \varphi - \varphi^T M_i \varphi_j
-        - \varphi^T M_j \varphi_i - \varphi_i^T M \varphi_j .
-
-The third one times :math:`\varphi^T` from the left is :math:`\lambda_{ij}`. Times :math:`A^+` it is
-the part of :math:`\varphi_{ij}` in the M-complement, in which :math:`\lambda_{ij}` drops out as
-:math:`z^T M \varphi = 0`; the fourth one is the part along :math:`\varphi`. What is left of
-:math:`g_{ij}` is, mode by mode, :math:`T_{ij} + T_{ji} + C_{ij}` with
+twice gives :math:`\lambda_{ij}` (times :math:`\varphi^T` from the left), the part of
+:math:`\varphi_{ij}` in the M-complement (times :math:`A^+`) and that along :math:`\varphi`. What is
+left of :math:`g_{ij}` is, mode by mode, :math:`T_{ij} + T_{ji} + C_{ij}` with
 
 .. math::
     T_{ij} &= \big(F_i y - s M_i \varphi - \tfrac12 s M \varphi_i\big)^T \varphi_j
@@ -38,7 +19,6 @@ the part of :math:`\varphi_{ij}` in the M-complement, in which :math:`\lambda_{i
 
 K and M may be singular, and modes close: what is needed is in the first derivatives but for z. The
 price is one product of each term of K and M with z, and one of N x p with N x p numbers, a mode.
-
 Source: the equations of Fox & Kapoor 1968, doi:10.2514/3.5008, differentiated once more.
 """
 
@@ -53,22 +33,9 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.linalg.affine import DenseAffine, SparseAffine, first_axis
 
-
-@dataclass(frozen=True)
-class Solved:
-    """Some modes r at all degrees of freedom, and adjoints.
-
-    Attributes
-    ----------
-    Phi : (N, modes) mass-normalised modes
-    dPhi : (N, modes, p) their derivatives
-    Z : (N, adjoints) the adjoints z
-    """
-
-    Phi: Floats
-    dPhi: Floats
-    Z: Floats
-
+Solved: TypeAlias = tuple[Floats, Floats, Floats]
+"""Some mass-normalised modes r at all degrees of freedom (N, modes), their derivatives
+(N, modes, p), and adjoints z (N, adjoints)."""
 
 Solve: TypeAlias = Callable[[Ints, Floats, Ints], Solved]
 """Returns modes r with the adjoints of weights b (sensors, adjoints), each that of the mode at
@@ -117,27 +84,27 @@ class SecondDerivatives:
         of, owner = np.nonzero(v.any(axis=1))
         b = v[of, :, owner]
         s = np.vecdot(b, self.phi[:, r[owner]].T)
-        known, mass = self.solve(r, b.T, owner), self.M.at(self.theta)
-        (N, m, p), mode = known.dPhi.shape, np.append(np.arange(r.size), owner)
-        vectors, dlam = np.hstack([known.Phi, -known.Z]), self.dlam[r[mode]]
-        MdPhi = (mass @ known.dPhi.reshape(N, -1)).reshape(N, m, p)
+        (Phi, dPhi, Z), mass = self.solve(r, b.T, owner), self.M.at(self.theta)
+        (N, m, p), mode = dPhi.shape, np.append(np.arange(r.size), owner)
+        vectors, dlam = np.hstack([Phi, -Z]), self.dlam[r[mode]]
+        MdPhi = (mass @ dPhi.reshape(N, -1)).reshape(N, m, p)
         left, change = self.K.derivatives_times(self.theta, vectors), MdPhi
         c = np.zeros((mode.size, p))
         if self.M.coefficients.varies:
             dM = self.M.derivatives_times(self.theta, vectors)
             left = left - self.lam[r[mode], None] * dM
-            c[:m] = -0.5 * np.einsum("nr,nri->ri", known.Phi, dM[:, :m])
+            c[:m] = -0.5 * np.einsum("nr,nri->ri", Phi, dM[:, :m])
             change = MdPhi + dM[:, :m]
-        c[m:] = np.einsum("nk,nki->ki", known.Z, change[:, owner])
+        c[m:] = np.einsum("nk,nki->ki", Z, change[:, owner])
         left[:, m:] -= s[:, None] * (change - 0.5 * MdPhi)[:, owner]
-        forms = left.transpose(1, 2, 0) @ known.dPhi[:, mode].transpose(1, 0, 2)
+        forms = left.transpose(1, 2, 0) @ dPhi[:, mode].transpose(1, 0, 2)
         weights = np.hstack([w, np.arange(len(w))[:, None] == of])
         T = first_axis(weights, forms) + dlam.T @ (weights[:, :, None] * c)
         out: Floats = T + T.transpose(0, 2, 1)
         if self.K.coefficients.curved or self.M.coefficients.curved:
-            y, sphi = w[:, None] * known.Phi, np.zeros((len(w), N, m))
-            y[of, :, owner] -= known.Z.T
-            sphi[of, :, owner] = (s * known.Phi[:, owner]).T
-            out += self.K.second_derivatives(self.theta, y, known.Phi)
-            out -= self.M.second_derivatives(self.theta, self.lam[r] * y + 0.5 * sphi, known.Phi)
+            y, sphi = w[:, None] * Phi, np.zeros((len(w), N, m))
+            y[of, :, owner] -= Z.T
+            sphi[of, :, owner] = (s * Phi[:, owner]).T
+            out += self.K.second_derivatives(self.theta, y, Phi)
+            out -= self.M.second_derivatives(self.theta, self.lam[r] * y + 0.5 * sphi, Phi)
         return out

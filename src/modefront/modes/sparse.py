@@ -1,7 +1,5 @@
 r"""Modes and their exact derivatives for large models, with sparse matrices.
 
-.. math:: (K - \lambda_r M) \varphi_r = 0, \qquad \varphi_r^T M \varphi_s = \delta_{rs}
-
 1. A = K + s M is made positive definite: s = 0, or, where K is singular (rigid-body modes), of the
    size of the eigenvalues asked for. Its factor drives a block Lanczos iteration.
 2. B = K - sigma M is factored for a sigma in a gap above the last mode asked for. Its number of
@@ -12,16 +10,6 @@ r"""Modes and their exact derivatives for large models, with sparse matrices.
 3. One step of subspace iteration with B (some in thin shells, where rounding leaves more of unknown
    modes) makes the modes exact to rounding, purges the null space of M from them, and its size
    shows that they have converged.
-
-The factors of A and B then give the derivatives, see `modefront.modes.derivatives`. Nothing is
-carried from one theta to the next but the analysis of the pattern.
-
-========  =====================================================================
-symbol    meaning
-========  =====================================================================
-lam, Phi  eigenvalues, ascending, and mass-normalised modes (N, modes)
-D         diagonal of K: sum(D * phi**2) * eps is the rounding in an eigenvalue
-========  =====================================================================
 
 Source: Ericsson & Ruhe 1980, doi:10.1090/S0025-5718-1980-0583502-2.
 """
@@ -43,7 +31,7 @@ from modefront.modes import dense
 from modefront.modes import derivatives as exact
 from modefront.modes.derivatives import Shifted, Spectrum
 from modefront.modes.lanczos import greatest
-from modefront.modes.result import ModeDerivatives, Modes
+from modefront.modes.result import FullModes, ModeDerivatives, Modes
 from modefront.modes.second_derivatives import SecondDerivatives
 
 BLOCK = 8
@@ -108,6 +96,19 @@ def modes(
     # Mode by mode, to bound the memory.
     second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solve, 1)
     return Modes(lam, phi, ModeDerivatives(dlam, dphi, coincident, second))
+
+
+def full_modes(pencil: Pencil, theta: Floats, count: int, loads: Floats) -> FullModes:
+    """Return the ``count`` lowest modes and the static response to loads (N, loads).
+
+    Raises ModelError as `modes`.
+    """
+    known, static = lowest(pencil, theta, count), None
+    lam = dense.without_rounding(pencil.K.at(theta).diagonal(), known.lam, known.Phi)
+    below = known.factors[0]
+    if below.sigma == 0 and lam[0] > 0:  # factors take one right-hand side at least
+        static = below.factor.solve(np.ascontiguousarray(loads)) if loads.size else loads
+    return FullModes(lam[:count], known.Phi[:, :count], static)
 
 
 def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
@@ -182,11 +183,6 @@ def _finite(
     except SingularMatrixError:
         return lam.size
     return lam.size if factor.negative is None else factor.negative
-
-
-def is_singular(pencil: Pencil, theta: Floats) -> bool:
-    """Return whether a positive semidefinite K(theta) is singular, and not just soft."""
-    return regular_factor(pencil, theta) is None
 
 
 def regular_factor(pencil: Pencil, theta: Floats) -> Factorisation | None:

@@ -8,19 +8,8 @@ With the parameters as factors of their nominal values, so that all are 1 in the
 
 which the runs r solve for the terms; the base is what is left of the nominal run. A parameter in
 which the matrices are linear takes one run, at any factor; one with the functions t and t³ two.
-
 Differences of large numbers are noise where nothing has changed: ``docs/import.md`` says what is
 dropped. Terms of few degrees of freedom keep the rank that they have above the rounding.
-
-========  ==========================================================
-symbol    meaning
-========  ==========================================================
-A         stiffness or mass matrix, upper triangle
-c         (runs, terms) coefficients minus those of the nominal run
-W         (terms, runs) pseudo-inverse of c
-D         A(theta_r) - A(1)
-E         A of a run for checking, minus that of the terms
-========  ==========================================================
 """
 
 from __future__ import annotations
@@ -397,24 +386,17 @@ def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]
     _, starts, sizes = np.unique(groups[order], return_index=True, return_counts=True)
     rows, columns, values = [], [], []
     done = np.zeros(internal.size, bool)
-    dense = A[internal][:, internal].tocsr()
+    inner = A[internal][:, internal].tocsr()
     for size in np.unique(sizes).tolist():
         members = order[starts[sizes == size][:, None] + np.arange(size)]
-        blocks = np.zeros((len(members), size, size))
-        position = np.full(internal.size, -1)
-        position[members] = np.arange(len(members))[:, None]
-        place = np.zeros(internal.size, np.intp)
-        place[members] = np.arange(size)
-        entries = dense[members.ravel()].tocoo()
-        source = members.ravel()[entries.row]
-        blocks[position[source], place[source], place[entries.col]] = entries.data
+        row, column = np.repeat(members, size, axis=1), np.tile(members, (1, size))
+        blocks = np.asarray(inner[row.ravel(), column.ravel()]).reshape(-1, size, size)
         singular = np.linalg.svd(blocks, compute_uv=False)
         good = singular[:, -1] > ACCUMULATED * singular[:, 0]
-        inverse, members = np.linalg.inv(blocks[good]), members[good]
-        done[members] = True
-        rows.append(np.repeat(members, size, axis=1).ravel())
-        columns.append(np.tile(members, (1, size)).ravel())
-        values.append(inverse.ravel())
+        done[members[good]] = True
+        rows.append(row[good].ravel())
+        columns.append(column[good].ravel())
+        values.append(np.linalg.inv(blocks[good]).ravel())
     triplets = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
     inverse = scipy.sparse.csr_array(triplets, shape=(internal.size, internal.size))
     others = np.ones(A.shape[0])

@@ -1,4 +1,4 @@
-r"""Straight Timoshenko beam in space, two nodes, twelve DOFs, and bars with axial forces only.
+"""Straight Timoshenko beam in space, two nodes, twelve DOFs, and bars with axial forces only.
 
 In a principal plane with deflection v and rotation psi of the section,
 
@@ -12,26 +12,14 @@ with rotary inertia, and the geometric stiffness of an axial force N (tension po
     M = int rho A (u^2 + v_c^2 + w_c^2) + rho (I_y + I_z) theta^2 + sum_planes rho I psi^2,
     K_G = N int v_c'^2 + w_c'^2 + (I_y + I_z) / A theta'^2.
 
-Bending and twist are about the shear centre (y_s, z_s), axial force and mass at the centroid,
-
-    v_c = v + z_s theta,   w_c = w - y_s theta.
-
-To M comes rho h^2 / 12 int A u'^2 + (I_y + I_z) theta'^2 + A sum_planes (v' - psi)^2 of what is
-linear in elements of length h, the mean of consistent and lumped mass: axial motion and twist then
-converge with h^4 in the frequency, as slender beams do. Released DOFs r of an end have no force:
-with G = [1; -K_rr^-1 K_rk] all matrices are G^T A G, the static condensation of K and the mass and
-geometric stiffness of the same shapes. Sources: J. S. Przemieniecki, "Theory of Matrix Structural
-Analysis", 1968; Z. Friedman, J. B. Kosmatka, doi:10.1016/0045-7949(93)90243-7.
-
-========  =================================================================
-symbol    meaning
-========  =================================================================
-X         end points (elements, 2, 3)
-R         local axes, rows: axis of the beam, local y, local z
-Phi       ratio of shear to bending flexibility, 0 where shear is rigid
-r         offsets of the ends from the nodes, global (2, 3)
-N         axial force
-========  =================================================================
+Bending and twist are about the shear centre (y_s, z_s), axial force and mass at the centroid, with
+v_c = v + z_s theta, w_c = w - y_s theta. To M comes rho h^2 / 12 int A u'^2 + (I_y + I_z) theta'^2
++ A sum_planes (v' - psi)^2 of what is linear in elements of length h, the mean of consistent and
+lumped mass: axial motion and twist then converge with h^4 in the frequency, as slender beams do.
+Released DOFs r of an end have no force: with G = [1; -K_rr^-1 K_rk] all matrices are G^T A G, the
+static condensation of K and the mass and geometric stiffness of the same shapes. Sources: J. S.
+Przemieniecki, "Theory of Matrix Structural Analysis", 1968; Z. Friedman, J. B. Kosmatka,
+doi:10.1016/0045-7949(93)90243-7.
 """
 
 from __future__ import annotations

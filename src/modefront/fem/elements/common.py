@@ -1,20 +1,8 @@
-r"""Tools of several elements: elasticity, condensation, rigid attachment.
+"""Tools of several elements: elasticity, condensation, rigid attachment.
 
-A point at offset r from a node that moves rigidly with it has
-
-    u_p = u + omega x r = u - [r]x omega,     omega_p = omega,
-
-which is exact for small motions; with local axes R (rows) an element's own degrees of
-freedom are d = A(R, r) (u, omega). Warped quadrilaterals, eccentric shells and beams, rigid
-end zones and eccentric masses are all this one transformation.
-
-==========  =================================================================
-symbol      meaning
-==========  =================================================================
-R           local axes, rows, (elements, 3, 3)
-r           offset of an element's point from its node, global, (..., 3)
-D           plane stress: strains (11, 22, engineering 12) to stresses
-==========  =================================================================
+A point at offset r from a node that moves rigidly with it has u_p = u + omega x r = u - [r]x omega
+and omega_p = omega, exact for small motions. Warped quadrilaterals, eccentric shells and beams,
+rigid end zones and eccentric masses are all this one transformation.
 """
 
 from __future__ import annotations
@@ -67,9 +55,7 @@ class Ply:
     def along(self, c2: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the moduli of bending and twist, and of transverse shear, along a line.
 
-        Parameters
-        ----------
-        c2 : squared cosine of the line and axis 1
+        ``c2`` is the squared cosine of the line and axis 1.
         """
         D, s2 = self.D, 1 - c2
         mixed = D[0, 1] + 2 * D[2, 2]
@@ -105,10 +91,8 @@ def cross_matrix(r: Floats) -> Floats:
 def attachment(R: Floats, r: Floats) -> Floats:
     """A (elements, 6 nodes, 6 nodes) from node DOFs (global) to element DOFs (local axes).
 
-    Parameters
-    ----------
-    R : local axes, rows, (elements, 3, 3)
-    r : offsets of the element's points from its nodes, global, (elements, nodes, 3)
+    R (elements, 3, 3) has local axes in rows, and r (elements, nodes, 3) the offsets of the
+    element's points from its nodes, global.
     """
     count, nodes = r.shape[:2]
     A = np.zeros((count, nodes, 6, nodes, 6))
@@ -141,10 +125,8 @@ def solid_stiffness(g: Floats, weight: Floats, C: Floats) -> Floats:
 
         K_(ai)(bk) = C_ijkl int g_aj g_bl dV.
 
-    Parameters
-    ----------
-    g, weight : gradients of the shape functions (elements, points, 3, nodes); w det J
-    C : `elasticity`
+    g are gradients of the shape functions (elements, points, 3, nodes), ``weight`` is w det J, and
+    C `elasticity`.
     """
     count, points, _, nodes = g.shape
     flat = np.swapaxes(g, 2, 3).reshape(count, points, 3 * nodes)
@@ -157,9 +139,7 @@ def solid_stiffness(g: Floats, weight: Floats, C: Floats) -> Floats:
 def solid_mass(N: Floats, weight: Floats) -> Floats:
     """Consistent mass (elements, 3 nodes, 3 nodes) per density of a solid.
 
-    Parameters
-    ----------
-    N, weight : shape functions (points, nodes) and w det J (elements, points)
+    N are shape functions (points, nodes), and ``weight`` is w det J (elements, points).
     """
     count, nodes = len(weight), N.shape[1]
     products = (N[:, :, None] * N[:, None, :]).reshape(len(N), -1)

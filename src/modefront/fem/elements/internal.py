@@ -1,4 +1,4 @@
-r"""Internal forces of shells and solids, and the geometric stiffness that they make.
+"""Internal forces of shells and solids, and the geometric stiffness that they make.
 
 Stresses S = D sym grad u, integrated over the thickness of shells, are taken at the centre of each
 element, from the displacements of its mid-surface in the plane of the centre. With the gradients g
@@ -7,15 +7,6 @@ of the shape functions there,
     K_G = int S_ab u_,a . u_,b,   (K_G)_(ni)(mi) = sum_points w g_na S_ab g_mb.
 
 Drilling rotations and rotary terms are left out.
-
-========  ===================================================================
-symbol    meaning
-========  ===================================================================
-R         axes of the plane of shells (elements, 2, 3), of solids (1, 3, 3)
-S         stresses (elements, dim, dim), forces per length of shells
-D         elasticity (elements or 1, dim, dim, dim, dim), times thickness
-P         displacements of the mid-surface from the DOFs (elements, nodes, 3, n)
-========  ===================================================================
 """
 
 from __future__ import annotations
@@ -89,13 +80,10 @@ class Stresses:
 
 
 def shell_stresses(X: Floats, r: Floats, m: Floats, material: Ply, t: float) -> Stresses:
-    """Return the stresses of shells.
+    """Return the stresses of shells of thickness t with nodes X (elements, nodes, 3).
 
-    Parameters
-    ----------
-    X, r : nodes, and offsets of the mid-surface from them (elements, nodes, 3)
-    m : vectors (elements, 3) in the shell along axis 1 of the material
-    material, t : of all elements; thickness
+    r are offsets of the mid-surface from them, and m vectors (elements, 3) in the shell along axis
+    1 of the material.
     """
     cell, rule = SURFACES[X.shape[1]]
     R = centre_axes(X + r)[:, :2]

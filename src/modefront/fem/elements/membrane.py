@@ -1,4 +1,4 @@
-r"""Membrane part of shells: triangles with curved sides and a drilling rotation at every node.
+"""Membrane part of shells: triangles with curved sides and a drilling rotation at every node.
 
 The triangle is that of C. A. Felippa, doi:10.1016/S0045-7825(03)00253-6, exact in pure bending in
 its plane for any aspect ratio, with two free parameters,
@@ -20,15 +20,6 @@ directors is taken as the shallow cubic with the slopes a = -d . s at its ends, 
 
 with da = -(v . s + d . (u_j - u_i)_across / |e|), the change of slope beside that of the chord (K.
 Marguerre 1938). The strains of the three sides beyond those of the chords are added to B.
-
-========  ===================================================
-symbol    meaning
-========  ===================================================
-x         corners in the plane (elements, 3, 2)
-d, v      directors in local axes, and their increments
-D         plane stress (elements, 3, 3)
-A         area
-========  ===================================================
 """
 
 from __future__ import annotations

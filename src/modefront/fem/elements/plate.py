@@ -36,16 +36,6 @@ doi:10.1002/nme.1620361107; P. S. Lee, K. J. Bathe, doi:10.1016/j.compstruc.2003
 The mass has the bows 4 N_i N_j e . (v_j - v_i) / 8 of the sides beside linear deflections. The
 error of a frequency then is that of the stiffness; with linear deflections alone it is (k h)^2 / 12
 more. Rotary inertia has linear v.
-
-========  ============================================================
-symbol    meaning
-========  ============================================================
-x         corners (elements, corners, 3)
-U, V      rows of u and v at each corner, by the DOFs
-g         gradients of N (elements, 2, 3)
-H         gradient of v and grad d . grad u
-m         axis 1 of the material, projected on the shell
-========  ============================================================
 """
 
 from __future__ import annotations
@@ -173,6 +163,7 @@ def shear_and_bending(each: Elements, t: float, material: Ply) -> tuple[Rows, Ro
     grad_u, grad_v = (
         (g @ rows.reshape(count, 3, -1)).reshape(count, 2, 3, -1) for rows in (each.U, each.V)
     )
+    # The gradient of v, and grad d . grad u.
     H = grad_v[:, :, :2] + (g @ each.d)[:, None] @ grad_u
     kappa = np.stack([H[:, 0, 0], H[:, 1, 1], H[:, 0, 1] + H[:, 1, 0]], 1)[:, None]
     if each.varied:

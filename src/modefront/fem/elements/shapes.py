@@ -1,23 +1,9 @@
-r"""Reference cells: shape functions, quadrature and the map to the body.
+"""Reference cells: shape functions, quadrature and the map to the body.
 
-On a reference cell with coordinates xi the position is x = sum_i N_i(xi) x_i, so
-
-    J = dx/dxi,   dN/dx = J^-1 dN/dxi,   integral f dV = sum_g w_g det J(xi_g) f(xi_g).
-
-The N_i span the monomials xi^p of the cell and are one at their node: N = P(xi) P(nodes)^-1.
-
-========  =====================================================================
-symbol    meaning
-========  =====================================================================
-N, dN     shape functions (points, nodes), their derivatives (points, nodes, dim)
-P         monomials (points, nodes), with the powers p (nodes, dim)
-xi, w     quadrature points (points, dim) and weights (points,)
-J         Jacobian (elements, points, dim, dim), J[..., k, d] = dx_d / dxi_k
-========  =====================================================================
-
-Squares and cubes span [-1, 1]; triangles and tetrahedra the unit simplex, wedges its product with
-[-1, 1]. Node orders are those of VTK. Source: O. C. Zienkiewicz, R. L. Taylor, "The Finite Element
-Method", vol. 1.
+The shape functions N_i span the monomials xi^p of the cell and are one at their node. Squares and
+cubes span [-1, 1]; triangles and tetrahedra the unit simplex, wedges its product with [-1, 1]. Node
+orders are those of VTK. Source: O. C. Zienkiewicz, R. L. Taylor, "The Finite Element Method",
+vol. 1.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-r"""Thin and thick shells of 3 or 4 nodes with six DOFs a node, curved by directors at the nodes.
+"""Thin and thick shells of 3 or 4 nodes with six DOFs a node, curved by directors at the nodes.
 
 Matrices are exact sums of monomials of the thickness t,
 
@@ -13,15 +13,6 @@ The director of a node is the mean, by angle, of the normals of the elements the
 more than `FOLD` from that of the element itself: across folds, elements have directors of their
 own, and the drilling rotation of one is the bending rotation of the next. Drilling rotations are
 those of the membrane: one that differs from the rotation of the body is resisted.
-
-========  ==========================================================
-symbol    meaning
-========  ==========================================================
-X         nodes (elements, 3 or 4, 3)
-d         directors (elements, 3 or 4, 3), unit vectors
-R         local axes of triangles, rows; the third is the normal
-t         thickness
-========  ==========================================================
 """
 
 from __future__ import annotations
@@ -139,30 +130,16 @@ def shell(
     offset : distance of the mid-surface from the nodes along the directors
     varied : whether the thickness is a parameter
     """
-    pieces = [
-        _matrices(X[some], d[some], narrow[some], m[some], material, thickness, offset, varied)
-        for some in (slice(first, first + AT_ONCE) for first in range(0, len(X), AT_ONCE))
-    ]
-    K, M = (
-        {power: np.concatenate([piece[power] for piece in each]) for power in each[0]}
-        for each in zip(*pieces, strict=True)
-    )
-    return ElementMatrices(K, M)
-
-
-# 8 arguments: those of `shell`.
-def _matrices(
-    X: Floats,
-    d: Floats,
-    narrow: Floats,
-    m: Floats,
-    material: Material | Orthotropic,
-    t: float,
-    offset: float,
-    varied: bool,
-) -> tuple[ByPower, ByPower]:
-    """Return stiffness and mass."""
-    r = offset * d
+    if len(X) > AT_ONCE:
+        starts = range(0, len(X), AT_ONCE)
+        pieces = [
+            shell(X[some], d[some], narrow[some], m[some], material, thickness, offset, varied)
+            for some in (slice(k, k + AT_ONCE) for k in starts)
+        ]
+        return ElementMatrices(
+            _joined([each.stiffness for each in pieces]), _joined([each.mass for each in pieces])
+        )
+    t, r = thickness, offset * d
     x = X + r
     A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
     U, omega = A[:, :, :3], A[:, :, 3:]
@@ -198,10 +175,15 @@ def _matrices(
     K_1, K_3 = t * sheared, t**3 * bent
     M_1, M_3 = material.rho * t * moved, material.rho * t**3 * turned
     if not varied:
-        return {0: t * stretched + K_1 + K_3}, {0: M_1 + M_3}
+        return ElementMatrices({0: t * stretched + K_1 + K_3}, {0: M_1 + M_3})
     n = A.shape[-1]
     (K1, K2, K3), (more, K4, K5) = _by_order(K_1, n), _by_order(K_3, n)
-    return {1: t * stretched + K1, 2: K2, 3: K3 + more, 4: K4, 5: K5}, {1: M_1, 3: M_3}
+    K = {1: t * stretched + K1, 2: K2, 3: K3 + more, 4: K4, 5: K5}
+    return ElementMatrices(K, {1: M_1, 3: M_3})
+
+
+def _joined(parts: Sequence[ByPower]) -> ByPower:
+    return {power: np.concatenate([each[power] for each in parts]) for power in parts[0]}
 
 
 def _by_order(K: Floats, n: int) -> tuple[Floats, Floats, Floats]:

@@ -1,26 +1,15 @@
-r"""Solids: bricks of 8 nodes with incompatible modes, and quadratic ones.
+"""Solids: bricks of 8 nodes with incompatible modes, and quadratic ones.
 
 **Bricks of 8 nodes.** To the trilinear displacements come the modes 1 - xi^2, 1 - eta^2,
 1 - zeta^2 in each direction, so that one brick through the thickness bends without parasitic
 shear. Their gradients are taken with the Jacobian J0 of the centre times det J0 / det J; they then
 have no mean over the element, constant stresses do no work on them, and the patch test holds on any
 mesh. Their nine amplitudes are condensed out. Sources: E. L. Wilson et al., 1973; R. L. Taylor,
-P. J. Beresford, E. L. Wilson, doi:10.1002/nme.1620100602. An element of that many nodes that
-passes the patch test is too stiff in bending where its sections lean to and fro, whatever is
-added inside: R. H. MacNeal, doi:10.1002/nme.1620240908.
+P. J. Beresford, E. L. Wilson, doi:10.1002/nme.1620100602.
 
 **Tetrahedra of 10, wedges of 15 and bricks of 20 nodes** have quadratic displacements, straight or
 curved edges, and constant and linear strains exact where edges are straight and their nodes in the
-middle. The 4-node tetrahedron is left out: it is many times too stiff in bending. Source:
-O. C. Zienkiewicz, R. L. Taylor, "The Finite Element Method", vol. 1.
-
-========  ===============================================================
-symbol    meaning
-========  ===============================================================
-X         nodes (elements, 8, 10, 15 or 20, 3): corners, then midpoints
-          of edges, in the order of VTK
-g         gradients (elements, points, 3, nodes + modes)
-========  ===============================================================
+middle. Source: O. C. Zienkiewicz, R. L. Taylor, "The Finite Element Method", vol. 1.
 """
 
 from __future__ import annotations
@@ -95,9 +84,7 @@ SOLIDS = {
 def solid(X: Floats, rho: float, C: Floats) -> ElementMatrices:
     """Matrices of solids X (elements, nodes, 3), DOFs u node by node in global axes.
 
-    Parameters
-    ----------
-    rho, C : density and `modefront.fem.elements.common.elasticity`
+    C is `modefront.fem.elements.common.elasticity`.
     """
     kind, size = SOLIDS[X.shape[1]], 3 * X.shape[1]
     xi, w = kind.stiffness

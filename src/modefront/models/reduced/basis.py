@@ -1,28 +1,17 @@
 r"""The space V in which a reduced model looks for its modes, what they lack, and their errors.
 
-``docs/reduced.md`` has the equations, whose symbols are used here.
-
-The basis is orthonormal in the norm of :math:`A = K(\theta_1) + s M(\theta_1)`, with s = 0 unless
-K is singular (rigid-body modes). A is positive definite also where M is not (massless degrees of
-freedom), and its norm is that of energy: a mode of unit energy that lacks a part of length d has
-an eigenvalue wrong by :math:`d^2`, relative. Derivatives are taken times half the range of their
-parameter over the length of their mode, and directions shorter than d are left out.
+``docs/reduced.md`` has the equations, whose symbols are used here. The basis is orthonormal in the
+norm of :math:`A = K(\theta_1) + s M(\theta_1)`, with s = 0 unless K is singular (rigid-body modes),
+positive definite also where M is not (massless degrees of freedom). It is that of energy: a mode of
+unit energy that lacks a part of length d has an eigenvalue wrong by :math:`d^2`, relative.
+Derivatives are taken times half the range of their parameter over the length of their mode.
 
 What a derivative :math:`\varphi'` of the reduced problem lacks solves the equation of what a mode
 lacks, with :math:`r = C \varphi' + (K' - \lambda M' - \lambda' M) \varphi, C = K - \lambda M`. Of
 several models each profits from the others: where the stiffness of some parts of a structure
-changes by factors, most eigenvalues of :math:`A^{-1} C` are 1 or one of these. What is kept of the
-space is the modes or derivatives themselves. A step is worth :math:`r^T A^{-1} r`, the square of
-the length that was lacking but for the condition of :math:`A^{-1} C`.
-
-For :math:`X^T M X = I` and :math:`\mathrm{diag}(\rho) - P = Y \,\mathrm{diag}(\ell)\, Y^T`, one
-step of inverse iteration makes better modes of X,
-
-.. math:: \tilde X = -B^{-1} M X S\,(I + S^{-1} P)\, Y = (X - B^{-1} R)(I + S^{-1} P)\, Y ,
-
-and what they differ from X is the error of the shapes. Of what the mode has of a mode j above the
-level, both errors are too much by :math:`(\lambda_j - \lambda_i) / (\lambda_j - \sigma)`. Source
-of the bounds: Parlett 1998, doi:10.1137/1.9781611971163, section 10.5.
+changes by factors, most eigenvalues of :math:`A^{-1} C` are 1 or one of these. A step is worth
+:math:`r^T A^{-1} r`, the square of the length that was lacking but for the condition of
+:math:`A^{-1} C`. Source of the bounds: Parlett 1998, doi:10.1137/1.9781611971163, section 10.5.
 """
 
 from __future__ import annotations
@@ -41,9 +30,8 @@ from modefront.linalg.factorisation import Factorisation, Pencil, SingularMatrix
 from modefront.linalg.products import combine, combine_all, gram, times
 from modefront.models.matrices import MatrixModel
 from modefront.modes import dense
-from modefront.modes.dense import Decomposition, lowest
+from modefront.modes.dense import Decomposition, decompose
 from modefront.modes.derivatives import Shifted
-from modefront.modes.tridiagonal import LowestModes
 from modefront.work.costs import Costs, spend
 from modefront.work.transfer import shared
 
@@ -81,9 +69,9 @@ class Basis:
         """Return V C for C of shape (n, m)."""
         return combine_all(self.blocks, C)
 
-    def lowest(self, theta: Floats, count: int) -> LowestModes | Decomposition:
-        """Return all Ritz values and the ``count`` lowest modes; see `modefront.modes.dense`."""
-        return lowest(self.K.at(theta), self.M.at(theta), count)
+    def lowest(self, theta: Floats, count: int) -> Decomposition:
+        """Return all Ritz values and modes, of which the ``count`` lowest are precise."""
+        return decompose(self.K.at(theta), self.M.at(theta), count)
 
 
 def empty(pencil: Pencil, factor: Factorisation, theta: Floats, sigma: float) -> Basis:
@@ -373,25 +361,26 @@ class Certifier:
         certificates = []
         for theta, modes in requests:
             known = self._bounds(theta, max(lowest, int(modes.max()) + 1))
-            error, shape = np.full(modes.size, np.inf), np.ones(modes.size)
-            if known is None:
-                certificates.append(Certificate(error, shape))
-            else:
-                eigenvalue, shape = known.eigenvalue[modes], known.shape[modes]
-                certificates.append(Certificate(eigenvalue, shape, known.lam, known.phi))
+            error, shape = known.eigenvalue[modes], known.shape[modes]
+            certificates.append(replace(known, eigenvalue=error, shape=shape))
         spend(Costs(certificates=len(requests), certificate_time=time.perf_counter() - started))
         return certificates
 
-    def _bounds(self, theta: Floats, count: int) -> Certificate | None:
-        """Return the errors of the ``count`` lowest modes or more; None where nothing is known."""
+    def _bounds(self, theta: Floats, count: int) -> Certificate:
+        """Return the errors of the ``count`` lowest modes or more.
+
+        One step of inverse iteration makes better modes of X: (X - B^-1 R) (I + S^-1 P) Y, with
+        the eigenvectors Y of diag(rho) - P; what they differ from X is the error of the shapes.
+        """
         basis, pencil = self.basis, self.full.pencil
+        unknown = Certificate(np.full(count, np.inf), np.ones(count))
         try:
             ritz = basis.lowest(theta, count + LATER)
         except ModelError:
-            return None
+            return unknown
         above = level(pencil, theta, ritz.lam, count, basis.sigma)
         if above is None:
-            return None
+            return unknown
         m = int(np.searchsorted(ritz.lam, above.sigma))
         rho, X = ritz.lam[:m], basis.combine(ritz.Phi[:, :m])
         K, M = pencil.K.at(theta), pencil.M.at(theta)
@@ -401,7 +390,7 @@ class Certifier:
         E, unit = gram(R, Z), np.sqrt(np.outer(room, room))
         values, U = np.linalg.eigh((E + E.T) / 2 / unit)
         if values[-1] >= 1:  # E < S does not hold
-            return None
+            return unknown
         values = np.maximum(values, 0.0)  # but for rounding
         P = (U * (values / (1 - values))) @ U.T * unit
         noise = np.finfo(float).eps * (K.diagonal() @ X**2)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import scipy.sparse.linalg
@@ -31,8 +31,7 @@ from modefront.models.reduced.basis import (
     with_modes,
 )
 from modefront.modes import dense
-from modefront.modes.eigensolvers import FullModes
-from modefront.modes.result import Modes
+from modefront.modes.result import FullModes, Modes
 from modefront.modes.sparse import lowest
 from modefront.work.costs import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
@@ -86,14 +85,8 @@ class SnapshotRequest:
         return self.theta.tobytes(), self.modes, self.enough
 
 
-@dataclass(frozen=True)
-class _Projected:
-    """The matrices in the basis of some snapshots, and the basis as the sensors see it."""
-
-    snapshots: tuple[SnapshotRequest, ...]
-    K: DenseAffine
-    M: DenseAffine
-    sensed: Floats
+_Projected: TypeAlias = tuple[tuple[SnapshotRequest, ...], DenseAffine, DenseAffine, Floats]
+"""Some snapshots, K and M in their basis, and the basis as the sensors see it."""
 
 
 # 12 fields: eight describe the basis, four are its state.
@@ -155,7 +148,7 @@ class ReducedModel:
     @property
     def footprint(self) -> float:
         """Bytes that the projected matrices take; nothing else is needed for modes."""
-        return 8.0 * 8 * self._projected().K.size ** 2 if self._is_at_hand else 0.0
+        return 8.0 * 8 * self._projected()[1].size ** 2 if self._is_at_hand else 0.0
 
     parameters = passed_on("full", "parameters")
     sensors = passed_on("full", "sensors")
@@ -210,9 +203,9 @@ class ReducedModel:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         if count > self.count:
             return self.full.modes(theta, count, derivatives=derivatives)
-        small = self._projected()
+        _, K, M, sensed = self._projected()
         started = time.perf_counter()
-        modes = dense.modes(small.K, small.M, small.sensed, theta, count, derivatives)
+        modes = dense.modes(K, M, sensed, theta, count, derivatives)
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return modes
 
@@ -267,7 +260,7 @@ class ReducedModel:
     @property
     def _is_at_hand(self) -> bool:
         """Whether nothing has to be solved in full for the snapshots in use."""
-        if self._small is not None and self._small.snapshots is self.snapshots:
+        if self._small is not None and self._small[0] is self.snapshots:
             return True
         return len(self._taken) == len(self.snapshots) > 0 and self._begins
 
@@ -277,10 +270,10 @@ class ReducedModel:
         return self.version[: len(self._taken)] == tuple(what.key for what, *_ in self._taken)
 
     def _projected(self) -> _Projected:
-        if self._small is None or self._small.snapshots is not self.snapshots:
+        if self._small is None or self._small[0] is not self.snapshots:
             basis = self.basis
             sensed = np.hstack([self.full.selection @ block for block in basis.blocks])
-            self._small = _Projected(self.snapshots, basis.K, basis.M, sensed)
+            self._small = self.snapshots, basis.K, basis.M, sensed
         return self._small
 
     def _compute(self) -> None:
