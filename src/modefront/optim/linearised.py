@@ -210,6 +210,16 @@ class Linearised:
         above = surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)
         return float(gain + penalty * squares + above), penalty
 
+    def promised(self, s: Floats) -> Floats:
+        """Return the objectives (n,) that the derivatives promise at the end of a step.
+
+        Of sums of squares, the greater of the quadratic model and the squares of linear residuals.
+        """
+        x, change = self.evaluation, s * self.span
+        J = x.J + x.dJ @ change + 0.5 * (x.H @ change @ change)
+        squares = [np.sum((each.r + each.dr @ change) ** 2) for each in x.residuals]
+        return np.asarray(np.maximum(J, squares or 0.0))
+
     def end(self, problem: Problem, s: Floats) -> Floats:
         """Return the parameters at the end of a step."""
         theta = self.evaluation.theta + s * self.span

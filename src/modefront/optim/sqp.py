@@ -19,7 +19,10 @@ doi:10.1145/355958.355965).
 
 Steps solve a quadratic programme within a box, the trust region; they are judged by the augmented
 Lagrangian (`modefront.optim.linearised`) which, unlike an exact penalty, does not reject good steps
-near the solution. One attempt is made to leave a stationary point with clearly negative curvature.
+near the solution. In a curved valley a long step ends on its side, from where another one leads to
+the floor, far ahead: where a step is poor, but the derivatives at its end promise that, the two are
+judged as one (the watchdog; Nocedal & Wright 2006, section 15.6). One attempt is made to leave a
+stationary point with clearly negative curvature.
 Where the objectives jump, a solution ends, and another one is sought from the other side.
 
 =========  =========  ==================================================================
@@ -189,6 +192,7 @@ def _total(programme: Scalarisation, J: Floats) -> float:
     return programme.value(J) + (float(y.max()) if y.size else 0.0)
 
 
+# More than 60 lines: one step, with all that it changes.
 def _within(
     problem: Problem, programme: Scalarisation, start: Solution, options: Options
 ) -> tuple[Solution, Evaluation | None]:
@@ -246,6 +250,9 @@ def _within(
         trusted ^= bool(abs(miss - rest) < abs(miss))
         if not evaluation.exact:
             S = learned_from(S, evaluation, new, local.span)
+        if actual < POOR * predicted and region.is_smooth:
+            new, more = _second_step(problem, merit, evaluation, new, region.radius)
+            actual, count = merit.at(evaluation) - merit.at(new), count + more
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
             evaluation, rejected = new, None
@@ -254,6 +261,23 @@ def _within(
         else:
             region.refused(far, abs(miss) if predicted > noise else 0.0)
             rejected = new
+
+
+def _second_step(
+    problem: Problem, merit: Merit, here: Evaluation, new: Evaluation, radius: float
+) -> tuple[Evaluation, int]:
+    """Return the better of the end of a poor step and of a step from there, and evaluations.
+
+    The latter is made if the derivatives at the end promise a better model than both.
+    """
+    if not new.exact:
+        return new, 0
+    local = linearised(problem, merit.programme, new)
+    _, step, _ = local.step(new.H, radius, None)
+    promised = merit.at(replace(new, J=local.promised(step.s)))
+    if not promised < min(merit.at(here), merit.at(new)):
+        return new, 0
+    return min(new, problem.evaluate(local.end(problem, step.s), second=True), key=merit.at), 1
 
 
 @dataclass
@@ -321,6 +345,11 @@ class _Region:
     radius: float
     error: float = np.inf
     fall: float = 4.0
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether errors of predictions have fallen faster than the steps so far."""
+        return self.fall == 4.0
 
     def taken(self, step: float, ratio: float) -> None:
         """Adapt it to a step that is taken, with its actual over predicted reduction."""

@@ -83,9 +83,6 @@ def predicted_gain(state: State, k: int, model: Solution) -> float:
         return 0.0
     local = linearised(state.problem, place.subproblem.programme, evaluation)
     _, step, _ = local.step(evaluation.H, REACH, None)
-    change = step.s * local.span
-    J = evaluation.J + evaluation.dJ @ change + 0.5 * (evaluation.H @ change @ change)
-    squares = [np.sum((each.r + each.dr @ change) ** 2) for each in evaluation.residuals]
-    J = np.maximum(J, squares or 0.0)
+    J = local.promised(step.s)
     promise, own = place.subproblem.order.value(np.array([J, evaluation.J]))
     return place.subproblem.gain(J if promise < own else evaluation.J, place.incumbent)
