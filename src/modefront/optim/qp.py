@@ -51,9 +51,6 @@ FLAT = 1e-10
 """Curvature, singular value, slope or multiplier, over the greatest one, below which it counts as
 none: well above rounding, 1e-16 times the condition of matrices of some thousands."""
 
-FAR = 1e-4
-"""Inverse of the greatest step aimed at, in widths of the box: bounds what a flat B leads to."""
-
 NORMAL = 0.8
 """Share of the box that the normal step may use, so that something is left to descend (Nocedal &
 Wright, equation 18.46)."""
@@ -133,11 +130,10 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
     lo, hi = qp.lo, qp.hi
     s = _normal_step(qp.A, qp.b, lo, hi)
     free = (s > lo) & (s < hi)
-    width = float((hi - lo).max())
     active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
     many = s.size >= MANY
     for _ in range(PASSES * (s.size + len(qp.C))):
-        d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
+        d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free)
         bound = np.where(d > 0, hi, lo)
         share = np.divide(bound - s, d, out=np.full(s.size, np.inf), where=d != 0)
         stop = int(share.argmin())
@@ -222,7 +218,7 @@ def _returned(
     return None
 
 
-def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools, width: float) -> Floats:
+def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools) -> Floats:
     """Return the step of the free variables to their minimum that leaves E s as it is."""
     d, inside = np.zeros(free.size), free.nonzero()[0]
     if inside.size < free.size:
@@ -233,8 +229,7 @@ def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools, width: float) 
         curvature = np.abs(curvature)
         T = V if Z is None else Z @ V
         slope = T.T @ gradient
-        steepest = float(np.abs(slope).max()) / width
-        floor = max(FLAT * curvature.max(), FAR * steepest, _LEAST)
+        floor = max(FLAT * curvature.max(), _LEAST)
         d[inside] = -T @ (slope / np.maximum(curvature, floor))
     return d
 

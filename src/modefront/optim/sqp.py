@@ -65,10 +65,6 @@ SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again, and
 slope, over that, up to which a bound does not hold a variable on the way."""
 
-REST = 6
-"""Steps one after another that promise no more than rounding, and are no shorter than the shortest
-one before, after which the objectives tell no more."""
-
 
 @record
 class Status(Enum):
@@ -210,7 +206,8 @@ def _within(
     region, penalty = _Region(options.radius), PENALTY
     multipliers: Multipliers | None = None
     rejected: Evaluation | None = None
-    progress = _Progress(options)
+    proposal = np.inf  # length of the last step that the trust region did not hold back
+    calm: tuple[float, Solution] | None = None  # where, and how long, steps promised only rounding
     while True:
         count += 1
         note_iteration(count + 1)
@@ -222,22 +219,26 @@ def _within(
         qp, step, multipliers = local.step(H, region.radius, multipliers)
         s, w = step.s, multipliers.weights(programme, evaluation.J)
         violation, far = length(local.c), length(s)
-        held = not progress.proposed(far, region.radius)
+        held = far >= region.radius
+        proposal = proposal if held else far
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
             still, far = not s.any(), length(s)
-        status = progress.outcome(violation, still, far, region.radius)
+        status = _outcome(options, violation, still, far, region.radius, proposal)
         here = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
         if status or count >= options.iterations:
             return here, rejected if status is Status.JUMP else None
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         noise = local.noise(multipliers)
-        calm = progress.resting(here, far, predicted <= noise)
-        if calm and calm.violation <= options.constraint:
-            return replace(calm, status=Status.CONVERGED, evaluations=count), None
+        rests = predicted <= noise
+        if calm and rests and far >= calm[0]:  # the objectives tell no more
+            if calm[1].violation <= options.constraint:
+                return replace(calm[1], status=Status.CONVERGED, evaluations=count), None
+        else:
+            calm = (far, here) if rests else None
         new = problem.evaluate(local.end(problem, s), second=True)
         if not new.feasible:
             region.refused(far, 0.0)
@@ -280,58 +281,22 @@ def _second_step(
     return min(new, problem.evaluate(local.end(problem, step.s), second=True), key=merit.at), 1
 
 
-@dataclass
-class _Progress:
-    """Progress of the steps, by which the solution ends.
+def _outcome(
+    options: Options, violation: float, still: bool, step: float, radius: float, proposal: float
+) -> Status | None:
+    """Return how the solution ends at a point; None where it goes on.
 
-    Attributes
-    ----------
-    options : tolerances
-    proposal : length of the last step that the trust region did not hold back
-    shortest : length of the shortest of the last steps, if all of these promise only rounding
-    calm : the point from which it led
-    idle : how many of these steps, one after another, were not shorter than all before
+    ``still`` says whether no step is worth making, ``step`` is the length of the next one, and
+    ``proposal`` that of the last one that the trust region did not hold back.
     """
-
-    options: Options
-    proposal: float = np.inf
-    shortest: float = np.inf
-    idle: int = 0
-    calm: Solution | None = None
-
-    def proposed(self, step: float, radius: float) -> bool:
-        """Return whether the trust region does not hold a step back; its length is remembered."""
-        if step < radius:
-            self.proposal = step
-        return step < radius
-
-    def outcome(self, violation: float, still: bool, step: float, radius: float) -> Status | None:
-        """Return how the solution ends at a point; None where it goes on.
-
-        ``still`` says whether no step is worth making, ``step`` is the length of the next one.
-        """
-        if still and violation <= self.options.constraint:
-            return Status.CONVERGED
-        if step > np.finfo(float).eps and radius > self.options.step:
-            return None
-        met = violation <= 10 * self.options.constraint
-        # Steps that were not held back were below the tolerance: rounding of J stops it here.
-        near = self.proposal <= self.options.step and met
-        return Status.CONVERGED if near else Status.JUMP if met else Status.STALLED
-
-    def resting(self, here: Solution, step: float, negligible: bool) -> Solution | None:
-        """Return the point from which the step was the shortest, where rounding decides on steps.
-
-        ``here`` is the point at hand, and ``negligible`` says that the next step promises no more
-        than rounding. None where steps have not come to rest.
-        """
-        if not negligible:
-            self.shortest, self.idle = np.inf, 0
-            return None
-        self.idle = 0 if step < self.shortest else self.idle + 1
-        if step < self.shortest:
-            self.shortest, self.calm = step, here
-        return self.calm if self.idle >= REST else None
+    if still and violation <= options.constraint:
+        return Status.CONVERGED
+    if step > np.finfo(float).eps and radius > options.step:
+        return None
+    met = violation <= 10 * options.constraint
+    # Steps that were not held back were below the tolerance: rounding of J stops it here.
+    near = proposal <= options.step and met
+    return Status.CONVERGED if near else Status.JUMP if met else Status.STALLED
 
 
 @dataclass
