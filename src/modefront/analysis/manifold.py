@@ -40,6 +40,7 @@ import scipy.linalg
 from modefront._typing import Bools, Floats
 from modefront.analysis.tangents import ARRIVED, Context, TangentPoint, context_of
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem, SpentError, Wrapped
+from modefront.optim.qp import HALVINGS
 from modefront.optim.scalarisation import Scalarisation
 from modefront.optim.sqp import GOOD
 from modefront.work.codec import record
@@ -56,13 +57,6 @@ evaluation or more for a model like the last one."""
 SAME_MINIMUM = 100 * ARRIVED
 """Distance in u below which two isolated minima are the same: those that are nearly flat miss the
 tolerance of a step by as much."""
-
-HALVINGS = 4
-"""Halvings of a step that finds no point, at most."""
-
-COVERED = 2
-"""Dimensions up to which a manifold is covered: with a distance of 0.1, three take a thousand
-models."""
 
 FAR = 0.25
 """H: longest step of a walk over the ranges of the parameters."""
@@ -236,10 +230,10 @@ def _follow(context: Context, first: TangentPoint, h: float, limit: int) -> Mani
     try:
         if d == 1:
             extent = _cover(context, points, h, limit)
-        elif d == COVERED:
+        elif d == 2:
             covering = max(limit // 2, 1)
             extent = _cover(context, points, max(h, covering ** (-1 / 2)), covering)
-        if d > COVERED or (d == COVERED and extent is Extent.CUT):
+        if d > 2 or (d == 2 and extent is Extent.CUT):
             extent = _span(context, points, limit)
     except SpentError:
         extent = Extent.SPENT

@@ -24,9 +24,6 @@ from modefront.optim.problem import AT_BOUND, Evaluation, Problem
 from modefront.optim.scalarisation import LogSum, weighted
 from modefront.optim.sqp import TIGHT, Options, Solution, Status, solve
 
-WITHIN = 0.1
-"""Tolerance of a model of the iteration of weights, over the length of the step before it."""
-
 UNCHANGED = 1e-12
 """Eigenvalue over the greatest one below which a direction changes no residual."""
 
@@ -90,24 +87,19 @@ def iterate_weights(
 ) -> Solution | None:
     """Return the fixed point of w = a / J, from a start; None where an objective vanishes.
 
-    The status says whether successive models agree to the tolerance of the parameters. Each is
-    solved for to a share of the step before it: the next weights move it by more than that.
+    The status says whether successive models agree to the tolerance of the parameters.
     """
     options = Options()
-    tolerance = WITHIN * options.radius
-    span = problem.upper - problem.lower
-    evaluations = 0
-    status = Status.EXHAUSTED
+    evaluations, status = 0, Status.EXHAUSTED
     for _ in range(limit):
         if not regular(start.J, sizes):
             return None
         w = a / start.J
-        solution = solve(problem, weighted(w / w.sum()), start, replace(options, step=tolerance))
+        solution = solve(problem, weighted(w / w.sum()), start, options)
         evaluations += solution.evaluations
-        moved = float(np.abs((solution.theta - start.theta) / span).max())
+        moved = (solution.theta - start.theta) / (problem.upper - problem.lower)
         start = replace(solution, weights=w)
-        if moved <= options.step and tolerance == options.step:
+        if np.abs(moved).max() <= options.step:
             status = solution.status
             break
-        tolerance = max(options.step, WITHIN * (moved or tolerance))
     return replace(start, status=status, evaluations=evaluations)

@@ -59,9 +59,6 @@ MANY, HALVINGS = 48, 8
 """Variables from which on many are held and let go at once; halvings at most of a step until its
 projection falls, and times that variables move back to the equalities after others were held."""
 
-_LEAST = float(np.finfo(float).tiny ** 0.5)
-"""Curvature at least: a slope over it does not overflow."""
-
 PASSES = 4
 """Changes of the working set, over the number of variables and functions, after which the method
 ends: from two on, something was let go that is met again."""
@@ -229,7 +226,7 @@ def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools) -> Floats:
         curvature = np.abs(curvature)
         T = V if Z is None else Z @ V
         slope = T.T @ gradient
-        floor = max(FLAT * curvature.max(), _LEAST)
+        floor = max(FLAT * curvature.max(), np.finfo(float).tiny ** 0.5)  # no overflow
         d[inside] = -T @ (slope / np.maximum(curvature, floor))
     return d
 
