@@ -1,30 +1,18 @@
 r"""Equivalent models: manifolds of minima, followed and sampled to their ends.
 
-Where data do not determine all parameters, the minimisers of a scalarisation f(J) form a manifold
-(Katafygiotis & Lam 2002, doi:10.1002/eqe.122). Its tangents and the corrections that lead back to
-it are those of `modefront.analysis.tangents`. How far it is followed depends on its dimension d.
+The manifold (`docs/identifiability.md`) is followed by its dimension d.
 
 * Curves and surfaces (d = 1, 2) are covered. New points grow from points by steps of length h until
   every step from every point arrives next to a known one (a packing, as in Henderson 2002,
   International Journal of Bifurcation and Chaos 12, 451-476). A step that would leave the bounds
   ends on them, and one that starts at a bound and would cross it goes along it. A surface has half
-  of the models that are wanted, and h is no less than these allow; if they do not cover it, it is
-  treated like what follows, from all of its points.
-* Of more dimensions, it is found how far each parameter can go: :math:`\max \pm u_j` on the
-  manifold, from the best point that is known, by steps that are best on the tangents T (p, d),
+  of the models that are wanted; if they do not cover it, it is treated like what follows.
+* Of more dimensions, it is found how far each parameter can go, from the best point that is known,
+  by steps that are best on the tangents: linear programmes, each step corrected.
 
-  .. math:: \max_y \pm (T y)_j \quad\text{subject to}\quad 0 \le u + T y \le 1, \quad
-      \|T y\|_\infty \le H ,
-
-  linear programmes, each step corrected. A parameter goes as far as these reach at least.
-
-Another minimum lies on a manifold that is known if a walk along that one, towards it, arrives
-there. Then it is not followed again, nor where it is the minimum of another programme that is as
-good on all of the manifold. Not found are other pieces of the set of minima, and what branches off
-with another dimension. Sheets nearer to one another than h are not told apart. The evaluations of
-all manifolds of a programme are bounded.
-
-Variables are :math:`u = (\theta - lower) / (upper - lower)`, in which h and H are measured.
+Another minimum is not followed where a walk along a manifold that is known arrives there. Not found
+are other pieces of the set of minima, and what branches off with another dimension. Lengths are
+those of :math:`u = (\theta - lower) / (upper - lower)`.
 """
 
 from __future__ import annotations

@@ -1,20 +1,14 @@
 r"""Points on a manifold of minima: their tangents, and corrections back to it.
 
-The tangent space of the minimisers of f(J) is the null space of the second derivatives
+The tangent space of the minimisers of f(J) is the null space of their second derivatives B within
+the variables that no bound holds; what changes residuals a little is weakly determined and no
+tangent. A step along the tangents is corrected across them, by Newton's method on a basis Q of
+their complement,
 
-.. math:: B = \sum_i w_i \, \partial^2 J_i + \partial J^T f'' \partial J, \qquad
-    w = \partial f / \partial J
+.. math:: s = -Q\, (Q^T B Q)^{-1} Q^T g, \qquad g = \partial f / \partial J\, \partial J ;
 
-within the variables that no bound holds; what changes residuals a little is weakly determined and
-no tangent. A step along the tangents T (p, d) is corrected back to the manifold across them, by
-Newton's method on a basis Q of their complement,
-
-.. math:: s = -Q\, (Q^T B Q)^{-1} Q^T g, \qquad g = w^T \partial J ,
-
-until s vanishes; where residuals vanish, with Gauss-Newton's G, which is B on the manifold and
-leads farther. Every evaluation gives B, so that a point needs no other one for its tangents. Of a
-model without exact second derivatives B is that of Gauss-Newton: the tangents are the directions in
-which no residual changes. Variables are :math:`u = (\theta - lower) / (upper - lower)`.
+where residuals vanish, with Gauss-Newton's G, which is B on the manifold and leads farther. Of a
+model without exact second derivatives B is G.
 """
 
 from __future__ import annotations

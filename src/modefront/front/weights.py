@@ -1,14 +1,8 @@
-r"""Weighted residuals with optimal weights (`docs/methods/weighted.md`).
+"""Weighted residuals with optimal weights, equation (8) (`docs/methods/weighted.md`).
 
-Optimal weights minimise :math:`I(\theta) = \sum_i a_i \ln J_i(\theta)`, equation (8), where
-:math:`a_i` counts the measured properties of a group; the model then minimises
-:math:`\sum_i w_i J_i` with :math:`w_i = a_i / J_i`. A minimum is accepted if it is regular itself,
-whatever is known of other models: no objective vanishes at it, and the second derivatives
-
-.. math:: \nabla^2 I = \sum_i \frac{a_i}{J_i} H_i - \sum_i \frac{a_i}{J_i^2} \partial J_i
-    \partial J_i^T
-
-are positive in all directions in which residuals change and no bound holds it.
+A minimum is accepted if it is regular itself, whatever is known of other models: no objective
+vanishes at it, and the second derivatives are positive in all directions in which residuals change
+and no bound holds it.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 r"""A programme at a point: its linearisation, the step from there, and by what it is judged.
 
-With the symbols of `modefront.optim.sqp`, what is minimised is near the point
+What is minimised is near the point, with s a step of :math:`u = (\theta - lower) / (upper - lower)`
 
 .. math:: f + g^T s + \tfrac12 s^T B s + \max_i\,(y + \partial y\, s)_i
     \quad\text{subject to}\quad c + \partial c\, s = 0 .
@@ -12,11 +12,8 @@ Steps are judged by the augmented Lagrangian, with the penalty :math:`\nu`,
 
 with :math:`\Delta` the simplex :math:`x \ge 0`, :math:`\sum x_i = 1`. The last term is that of
 Rockafellar (1974, doi:10.1137/0312021) for :math:`\min \tau` subject to :math:`y_i \le \tau`, with
-:math:`\tau` at its best; its x is the projection of :math:`\kappa + \nu y` onto the simplex. It
-lies between :math:`\max y - 1 / \nu` and :math:`\max y`, and is :math:`\max y` where the active
-:math:`y_i` are equal. Where they differ by little, it is :math:`\kappa^T y` and :math:`\nu / 2` of
-the squares of their differences from their mean: as smooth as the other terms, so that a step on
-which y bends is not rejected for that.
+:math:`\tau` at its best: it is :math:`\max y` where the active :math:`y_i` are equal, and as smooth
+as the other terms where they are not, so that a step on which y bends is not rejected for that.
 """
 
 from __future__ import annotations

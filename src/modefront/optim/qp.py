@@ -5,37 +5,16 @@ r"""The quadratic programme of one step.
 
 with :math:`lo \le 0 \le hi`, by a primal active-set method (Nocedal & Wright, *Numerical
 Optimization*, 2006, section 16.5). The equalities are met first, as nearly as the box allows, and
-then kept. The maximum is the linear function of any one of the functions that attain it, as long
-as these stay equal: with one of them, a, as the base, the others of the active set are equalities
-
-.. math:: (C_i - C_a)\, s = c_a - c_i .
-
-Variables are held at the box, and functions join the active set, one by one as steps meet them;
-they are let go as their multipliers have the wrong sign. Where B has negative curvature in the
-null space of the working set, its absolute value is used: variables that are held and changes of
-the maximum have no say in it. Without functions (m = 0), the maximum is left out.
+then kept. The maximum is the linear function of one of the functions that attain it, the base, and
+the others of the active set are equalities :math:`(C_i - C_a)\, s = c_a - c_i`; E are all of these
+slopes. Variables are held at the box, and functions join the active set, one by one as steps meet
+them; they are let go as their multipliers mu (of equalities) and kappa (of functions, of sum 1)
+have the wrong sign. Where B has negative curvature in the null space of the working set, its
+absolute value is used.
 
 Of many variables, hundreds may end at the box, and each change of the working set takes a
-decomposition. They are therefore held and let go many at once, as long as what is minimised falls:
-a step ends at its projection onto the box, and where it stays inside, all that have a wrong
-multiplier are let go (Moré & Toraldo 1991, doi:10.1137/0801008). Functions join and leave one by
-one.
-
-========  =========  ================================================================
-symbol    shape      meaning
-========  =========  ================================================================
-s         (p,)       step
-B, g      (p, p)     second derivatives, symmetric, and slope (p,)
-A, b      (k, p)     equalities, and their right-hand sides (k,)
-C, c      (m, p)     slopes of the functions, and their values (m,) at s = 0
-E         (., p)     A and the equalities of the active functions
-Z         (p, .)     basis of the null space of E among the free variables
-mu        (k,)       multipliers of the equalities
-kappa     (m,)       multipliers of the functions: not negative, of sum 1
-========  =========  ================================================================
-
-At a solution, :math:`g + B s + A^T \mu + C^T \kappa` vanishes for the free variables and points out
-of the box for those that are held.
+decomposition: they are held and let go many at once, as long as what is minimised falls (Moré &
+Toraldo 1991, doi:10.1137/0801008).
 """
 
 from __future__ import annotations

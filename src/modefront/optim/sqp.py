@@ -1,42 +1,23 @@
 r"""Sequential quadratic programming with exact first and second derivatives.
 
 Solves :math:`\min f(J(\theta)) + \max_i\,(C J(\theta) - d)_i` subject to :math:`A J(\theta) = b`
-and bounds, for any member of `modefront.optim.scalarisation`: it is the only loop of steps in a
-trust region, and its steps are all from `modefront.optim.qp`. With multipliers :math:`\mu` of
-the constraints and :math:`\kappa` of the functions of which the maximum counts, and the weights
+and bounds, for any member of `modefront.optim.scalarisation`. With multipliers :math:`\mu` of the
+constraints and :math:`\kappa` of the functions of which the maximum counts, the weights w of the
+objectives and the Hessian of the Lagrangian are
 
-.. math:: w = \partial f / \partial J + A^T \mu + C^T \kappa
+.. math:: w = \partial f / \partial J + A^T \mu + C^T \kappa, \qquad
+    B = \sum_i w_i H_i + \partial J^T f'' \partial J .
 
-of the objectives, the Hessian of the Lagrangian is
+:math:`H_i` is taken with or without the part S besides Gauss-Newton's, whichever predicted the last
+step better; what a problem does not know of S is learned (`modefront.optim.second`).
 
-.. math:: B = \sum_i w_i H_i + \partial J^T f'' \partial J
-
-with the second derivatives :math:`H_i` of the objectives. Where a problem does not know these,
-:math:`H_i` is the part that it knows (Gauss-Newton's), and the rest :math:`S_i` is learned from
-differences of gradients (`modefront.optim.second`). Where residuals vanish, S is a burden: B is
-taken with it or without it, whichever predicted the last step better (Dennis, Gay & Welsch 1981,
-doi:10.1145/355958.355965).
-
-Steps solve a quadratic programme within a box, the trust region; they are judged by the augmented
-Lagrangian (`modefront.optim.linearised`) which, unlike an exact penalty, does not reject good steps
-near the solution. In a curved valley a long step ends on its side, from where another one leads to
-the floor, far ahead: where a step is poor, but the derivatives at its end promise that, the two are
-judged as one (the watchdog; Nocedal & Wright 2006, section 15.6). One attempt is made to leave a
-stationary point with clearly negative curvature.
-Where the objectives jump, a solution ends, and another one is sought from the other side.
-
-=========  =========  ==================================================================
-symbol     shape      meaning
-=========  =========  ==================================================================
-u          (p,)       variables, :math:`(\theta - lower) / (upper - lower)`
-s          (p,)       step in u
-g          (p,)       slope of f
-c, dc      (k, p)     violations (k,) of the constraints and their slopes
-y, dy      (m, p)     functions (m,) of which the maximum counts, and their slopes
-mu, kappa  (k,) (m,)  their multipliers
-w          (n,)       weights of the objectives
-S          (n, p, p)  learned part of their second derivatives, with respect to theta
-=========  =========  ==================================================================
+Steps solve a quadratic programme within a box, the trust region (`modefront.optim.qp`), and are
+judged by the augmented Lagrangian (`modefront.optim.linearised`, which has the other symbols). In a
+curved valley a long step ends on its side, from where another one leads to the floor, far ahead:
+where a step is poor, but the derivatives at its end promise that, the two are judged as one (the
+watchdog; Nocedal & Wright 2006, section 15.6). One attempt is made to leave a stationary point with
+clearly negative curvature. Where the objectives jump, a solution ends, and another one is sought
+from the other side.
 """
 
 from __future__ import annotations

@@ -1,10 +1,7 @@
 """Evolution: models between those that are known, by differential evolution over all subproblems.
 
 Each child is the incumbent of a subproblem, moved by the difference of two other known models
-(Storn & Price 1997, doi:10.1023/A:1008202821328) in some of its parameters, and mutated in a few
-(Deb & Agrawal 1995). A generation is evaluated without derivatives; whatever is better than an
-incumbent takes its place, and is polished from there. So evolution finds the basins that no start
-falls into, and Newton's method their bottoms.
+(Storn & Price 1997, doi:10.1023/A:1008202821328) and mutated (Deb & Agrawal 1995).
 """
 
 from __future__ import annotations
