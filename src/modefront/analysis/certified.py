@@ -20,6 +20,7 @@ from modefront.errors import ModelError, UnfinishedError
 from modefront.front.front import Edge, Front, best_minima
 from modefront.front.gaps import Gap
 from modefront.front.point import Point
+from modefront.front.search import Search
 from modefront.models.reduced.basis import Certificate, Certifier
 from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
 from modefront.optim.scalarisation import LogSum
@@ -29,8 +30,9 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task, Within
 
-POOR = 1e-3
-"""Relative error of an eigenvalue at a reported model above which the search is not trusted."""
+POOR = Search().tolerance
+"""Relative error of an eigenvalue at a reported model above which the search is not trusted: it is
+more than the gains that count."""
 
 ROUNDS = 8
 """Rounds, after which the tolerance is given up."""

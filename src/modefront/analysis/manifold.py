@@ -39,8 +39,8 @@ NEAR = 0.7
 corrected steps do not end where they were to, and above 1/2, or points lie twice as dense."""
 
 SHORT = 1 - NEAR
-"""Step over h, below which it is not worth making to a bound, but at the ends of a curve: an
-evaluation or more for a model like the last one."""
+"""Share below which a step leads nowhere: of h or of what it is to gain, and the cosine of a turn
+(73 degrees)."""
 
 SAME_MINIMUM = 100 * ARRIVED
 """Distance in u below which two isolated minima are the same: those that are nearly flat miss the
@@ -58,10 +58,6 @@ WALK = int(4 / FAR)
 
 SPEND = 10
 """Evaluations for the manifolds of a programme, over the number of models of one of them."""
-
-AHEAD = 0.5
-"""Least cosine between tangents at the two ends of a step, and between a step and where it is to
-lead: 60 degrees."""
 
 
 @record
@@ -202,7 +198,7 @@ def _reaches(context: Context, point: TangentPoint, evaluation: Evaluation, h: f
             return True
         step = point.T @ (point.T.T @ offset)
         size = float(np.linalg.norm(step))
-        if size < AHEAD * distance:
+        if size < SHORT * distance:
             return False
         u = np.clip(point.u + step * min(1.0, FAR / size), 0, 1)
         landed = context.landed(point, u, context.held)
@@ -284,9 +280,8 @@ def _room(u: Floats, t: Floats) -> Floats:
 
 def _continues(point: TangentPoint, new: TangentPoint, length: float) -> bool:
     """Return whether a new point carries on from another: not back, and in a like direction."""
-    if np.linalg.norm(new.u - point.u) < SHORT * length:
-        return False
-    return bool(np.linalg.svd(point.T.T @ new.T, compute_uv=False)[-1] >= AHEAD)
+    forward = np.linalg.norm(new.u - point.u) >= SHORT * length
+    return bool(forward and np.linalg.svd(point.T.T @ new.T, compute_uv=False)[-1] >= SHORT)
 
 
 def _known(u: Floats, points: Sequence[TangentPoint], radius: float) -> bool:

@@ -31,9 +31,6 @@ PENALTY = 10.0
 """Penalty at least; it hardly changes the evaluations that a solution takes."""
 
 
-STEEP = 1e6
-"""Greatest multiplier of a constraint, with objective and constraints in their own units."""
-
 NOISE = 1e-11
 """Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
 
@@ -153,28 +150,23 @@ class Linearised:
             w = multipliers.weights(self.programme, self.evaluation.J)
             qp = with_curvature(weighted(w, H) * span + curved)
             step = solve_qp(qp)
-            multipliers = self._bounded(qp, step)
+            multipliers = self._multipliers(qp, step)
         return qp, step, multipliers
 
     def _first(self, qp: QuadraticProgramme) -> Multipliers:
         """Return multipliers of the slopes at the point, and the same one of all functions."""
         still = QuadraticStep(np.zeros_like(self.g), [])
-        mu = self._bounded(qp, still).mu
+        mu = self._multipliers(qp, still).mu
         return Multipliers(mu, np.full(self.y.size, 1 / max(self.y.size, 1)))
 
-    def _bounded(self, qp: QuadraticProgramme, step: QuadraticStep) -> Multipliers:
-        """Return the multipliers at the end of a step.
-
-        Where the constraints hardly depend on the variables that are free, they say nothing.
-        """
+    def _multipliers(self, qp: QuadraticProgramme, step: QuadraticStep) -> Multipliers:
+        """Return the multipliers at the end of a step, those of functions within the simplex."""
         if self.free:
             return Multipliers(np.zeros(0), np.zeros(0))
-        A = self.programme.constraints.matrix
-        most = STEEP * length(self.df) / float(np.abs(A).max(initial=np.finfo(float).tiny))
         free = (qp.lo - step.s < 0) & (qp.hi - step.s > 0)
         mu, kappa = qp.multipliers(step.s, step.active, free)
         kappa = np.maximum(kappa, 0.0)
-        return Multipliers(np.clip(mu, -most, most), kappa / kappa.sum() if step.active else kappa)
+        return Multipliers(mu, kappa / kappa.sum() if step.active else kappa)
 
     def slope(self, multipliers: Multipliers) -> Floats:
         """Return the slope of the Lagrangian, shape (p,)."""
