@@ -134,7 +134,8 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
         if len(kept) < len(active):
             active = kept
             continue
-        gain = _gain(slope, free, s <= lo, s >= hi)
+        low, high = s <= lo, s >= hi
+        gain = np.where(free | (low & high), 0.0, np.where(low, -slope, slope))  # on leaving a side
         wrong = gain > FLAT * scale
         if not wrong.any():
             break
@@ -231,14 +232,6 @@ def _met(qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int]) -> tup
     below = np.maximum(value[active[0]] - value, 0.0)
     np.divide(below, rate, out=share, where=rate > rounding)
     return int(np.argmin(share)), float(share.min())
-
-
-def _gain(left: Floats, free: Bools, low: Bools, high: Bools) -> Floats:
-    """Return how steeply what is minimised falls as each held variable leaves the box's side.
-
-    ``left`` (p,) is what the multipliers leave of the slope.
-    """
-    return np.where(free | (low & high), 0.0, np.where(low, -left, left))
 
 
 def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:

@@ -58,13 +58,10 @@ class Evolution:
             crossed = self.rng.uniform(size=base.size) < self.rng.uniform()
             theta = np.where(crossed, base + self.rng.uniform(0.2, 1.0) * (one - two), base)
             mutated = self.rng.uniform(size=base.size) < 1 / base.size
-            theta = np.where(mutated, theta + self._mutation(base.size) * span, theta)
+            u = self.rng.uniform(size=base.size)
+            below = (2 * u) ** (1 / (INDEX + 1)) - 1
+            above = 1 - (2 * (1 - u)) ** (1 / (INDEX + 1))
+            polynomial = np.where(u < 0.5, below, above)
+            theta = np.where(mutated, theta + polynomial * span, theta)
             out.append(np.clip(theta, lower, upper))
         return np.array(out)
-
-    def _mutation(self, p: int) -> Floats:
-        """Return polynomial mutations over the ranges, (p,)."""
-        u = self.rng.uniform(size=p)
-        below = (2 * u) ** (1 / (INDEX + 1)) - 1
-        above = 1 - (2 * (1 - u)) ** (1 / (INDEX + 1))
-        return np.where(u < 0.5, below, above)
