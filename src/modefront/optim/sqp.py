@@ -232,8 +232,9 @@ def _within(
         trusted ^= bool(abs(miss - rest) < abs(miss))
         if not evaluation.exact:
             S = learned_from(S, evaluation, new, local.span)
-        if actual < POOR * predicted and region.is_smooth:
-            new, more = _second_step(problem, merit, evaluation, new, region.radius)
+        if actual < POOR * predicted:
+            H = new.H if trusted else new.gauss_newton
+            new, more = _second_step(problem, merit, evaluation, new, H, region.radius)
             actual, count = merit.at(evaluation) - merit.at(new), count + more
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
@@ -246,16 +247,17 @@ def _within(
 
 
 def _second_step(
-    problem: Problem, merit: Merit, here: Evaluation, new: Evaluation, radius: float
+    problem: Problem, merit: Merit, here: Evaluation, new: Evaluation, H: Floats, radius: float
 ) -> tuple[Evaluation, int]:
     """Return the better of the end of a poor step and of a step from there, and evaluations.
 
-    The latter is made if the derivatives at the end promise a better model than both.
+    The latter, with second derivatives ``H`` (n, p, p), is made if the derivatives at the end
+    promise a better model than both.
     """
     if not new.exact:
         return new, 0
     local = linearised(problem, merit.programme, new)
-    _, step, _ = local.step(new.H, radius, None)
+    _, step, _ = local.step(H, radius, None)
     promised = merit.at(replace(new, J=local.promised(step.s)))
     if not promised < min(merit.at(here), merit.at(new)):
         return new, 0
@@ -291,11 +293,6 @@ class _Region:
     radius: float
     error: float = np.inf
     fall: float = 4.0
-
-    @property
-    def is_smooth(self) -> bool:
-        """Whether errors of predictions have fallen faster than the steps so far."""
-        return self.fall == 4.0
 
     def taken(self, step: float, ratio: float) -> None:
         """Adapt it to a step that is taken, with its actual over predicted reduction."""
