@@ -1,15 +1,10 @@
-r"""The work of a study on a reduced model, until every reported model holds in the full one.
+"""The work of a study on a reduced model, until every reported model holds in the full one.
 
 A round does all of the work in the basis at hand. Then snapshots are taken of those models of which
-the basis lacks most, as long as they lack more than a tenth of the tolerance (half of it after
-later rounds), and the next round starts from what is known. Minima that may be the best ones are
-among them. Where nothing is lacking, every model that is reported gets its certificate, and where
-one is above the tolerance, a snapshot is taken there. Minima that cannot be the best ones, whatever
-their errors are, are exempt from the tolerance. A poor basis may mislead the search, which is
-repeated after a single snapshot then.
-
-The tasks of every round have a turn of their own, and its snapshots are among them, so that an
-interrupted run goes on with the same digits.
+the basis lacks most, among them minima that may be the best ones, and the next round starts from
+what is known. Where nothing is lacking, every model that is reported gets its certificate; where
+one is above the tolerance, a snapshot is taken there. A poor basis may mislead the search, which is
+repeated after a single snapshot then. Snapshots are tasks: an interrupted run has the same digits.
 """
 
 from __future__ import annotations
@@ -25,6 +20,7 @@ from modefront.errors import ModelError, UnfinishedError
 from modefront.front.front import Edge, Front, best_minima
 from modefront.front.gaps import Gap
 from modefront.front.point import Point
+from modefront.front.search import Search
 from modefront.models.reduced.basis import Certificate, Certifier
 from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
 from modefront.optim.scalarisation import LogSum
@@ -34,8 +30,9 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task, Within
 
-POOR = 1e-3
-"""Relative error of an eigenvalue at a reported model above which the search is not trusted."""
+POOR = Search().tolerance
+"""Relative error of an eigenvalue at a reported model above which the search is not trusted: it is
+more than the gains that count."""
 
 ROUNDS = 8
 """Rounds, after which the tolerance is given up."""
@@ -43,10 +40,9 @@ ROUNDS = 8
 AHEAD = 5
 """Snapshots between two rounds at most, each of one or more models."""
 
-AIM, LATER = 0.1, 0.5
+AIM = 0.1
 """Error, over the tolerance, below which models need no snapshot after the first round: derivatives
-of modes, and with them the parameters, are less exact than eigenvalues. And after later ones, where
-a few models have moved, and a snapshot costs another round."""
+of modes, and with them the parameters, are less exact than eigenvalues."""
 
 CLOSE = 1e-2
 """Relative excess of a minimum over the best one, up to which errors of the basis may have
@@ -103,7 +99,7 @@ def certified_front(
         here = Within(work, turn=("round", number))
         front = search(work=here, known=known)
         candidates = _candidates(problem, front)
-        enough = (LATER if known else AIM) * model.tolerance
+        enough = model.tolerance if known else AIM * model.tolerance
         is_last = number == ROUNDS or columns >= model.capacity
         taken = [] if is_last else _improve(model, candidates, enough, here)
         if not taken:

@@ -1,10 +1,7 @@
-r"""Flat parts of a front: where one objective hardly changes while others do.
+"""Flat parts of a front: where one objective hardly changes while others do.
 
-A part of the front is flat whose points with :math:`J_i \le (1 + \epsilon) \min J_i` spread over
-much of the range of another objective. The identifiable part begins where the best of the others at
-that level lies (`modefront.front.subproblems.near_best`), and is covered by points of its own. Of
-three and more objectives that is one point of the border of a patch: points of the new simplex that
-come to lie in the patch are left out.
+`docs/identifiability.md` says where the identifiable part ends. Of three and more objectives,
+points of the new simplex that come to lie in the flat patch are left out.
 """
 
 from __future__ import annotations

@@ -1,30 +1,18 @@
 r"""Equivalent models: manifolds of minima, followed and sampled to their ends.
 
-Where data do not determine all parameters, the minimisers of a scalarisation f(J) form a manifold
-(Katafygiotis & Lam 2002, doi:10.1002/eqe.122). Its tangents and the corrections that lead back to
-it are those of `modefront.analysis.tangents`. How far it is followed depends on its dimension d.
+The manifold (`docs/identifiability.md`) is followed by its dimension d.
 
 * Curves and surfaces (d = 1, 2) are covered. New points grow from points by steps of length h until
   every step from every point arrives next to a known one (a packing, as in Henderson 2002,
   International Journal of Bifurcation and Chaos 12, 451-476). A step that would leave the bounds
   ends on them, and one that starts at a bound and would cross it goes along it. A surface has half
-  of the models that are wanted, and h is no less than these allow; if they do not cover it, it is
-  treated like what follows, from all of its points.
-* Of more dimensions, it is found how far each parameter can go: :math:`\max \pm u_j` on the
-  manifold, from the best point that is known, by steps that are best on the tangents T (p, d),
+  of the models that are wanted; if they do not cover it, it is treated like what follows.
+* Of more dimensions, it is found how far each parameter can go, from the best point that is known,
+  by steps that are best on the tangents: linear programmes, each step corrected.
 
-  .. math:: \max_y \pm (T y)_j \quad\text{subject to}\quad 0 \le u + T y \le 1, \quad
-      \|T y\|_\infty \le H ,
-
-  linear programmes, each step corrected. A parameter goes as far as these reach at least.
-
-Another minimum lies on a manifold that is known if a walk along that one, towards it, arrives
-there. Then it is not followed again, nor where it is the minimum of another programme that is as
-good on all of the manifold. Not found are other pieces of the set of minima, and what branches off
-with another dimension. Sheets nearer to one another than h are not told apart. The evaluations of
-all manifolds of a programme are bounded.
-
-Variables are :math:`u = (\theta - lower) / (upper - lower)`, in which h and H are measured.
+Another minimum is not followed where a walk along a manifold that is known arrives there. Not found
+are other pieces of the set of minima, and what branches off with another dimension. Lengths are
+those of :math:`u = (\theta - lower) / (upper - lower)`.
 """
 
 from __future__ import annotations
@@ -40,6 +28,7 @@ import scipy.linalg
 from modefront._typing import Bools, Floats
 from modefront.analysis.tangents import ARRIVED, Context, TangentPoint, context_of
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem, SpentError, Wrapped
+from modefront.optim.qp import HALVINGS
 from modefront.optim.scalarisation import Scalarisation
 from modefront.optim.sqp import GOOD
 from modefront.work.codec import record
@@ -50,19 +39,12 @@ NEAR = 0.7
 corrected steps do not end where they were to, and above 1/2, or points lie twice as dense."""
 
 SHORT = 1 - NEAR
-"""Step over h, below which it is not worth making to a bound, but at the ends of a curve: an
-evaluation or more for a model like the last one."""
+"""Share below which a step leads nowhere: of h or of what it is to gain, and the cosine of a turn
+(73 degrees)."""
 
 SAME_MINIMUM = 100 * ARRIVED
 """Distance in u below which two isolated minima are the same: those that are nearly flat miss the
 tolerance of a step by as much."""
-
-HALVINGS = 4
-"""Halvings of a step that finds no point, at most."""
-
-COVERED = 2
-"""Dimensions up to which a manifold is covered: with a distance of 0.1, three take a thousand
-models."""
 
 FAR = 0.25
 """H: longest step of a walk over the ranges of the parameters."""
@@ -76,10 +58,6 @@ WALK = int(4 / FAR)
 
 SPEND = 10
 """Evaluations for the manifolds of a programme, over the number of models of one of them."""
-
-AHEAD = 0.5
-"""Least cosine between tangents at the two ends of a step, and between a step and where it is to
-lead: 60 degrees."""
 
 
 @record
@@ -220,7 +198,7 @@ def _reaches(context: Context, point: TangentPoint, evaluation: Evaluation, h: f
             return True
         step = point.T @ (point.T.T @ offset)
         size = float(np.linalg.norm(step))
-        if size < AHEAD * distance:
+        if size < SHORT * distance:
             return False
         u = np.clip(point.u + step * min(1.0, FAR / size), 0, 1)
         landed = context.landed(point, u, context.held)
@@ -236,10 +214,10 @@ def _follow(context: Context, first: TangentPoint, h: float, limit: int) -> Mani
     try:
         if d == 1:
             extent = _cover(context, points, h, limit)
-        elif d == COVERED:
+        elif d == 2:
             covering = max(limit // 2, 1)
             extent = _cover(context, points, max(h, covering ** (-1 / 2)), covering)
-        if d > COVERED or (d == COVERED and extent is Extent.CUT):
+        if d > 2 or (d == 2 and extent is Extent.CUT):
             extent = _span(context, points, limit)
     except SpentError:
         extent = Extent.SPENT
@@ -302,9 +280,8 @@ def _room(u: Floats, t: Floats) -> Floats:
 
 def _continues(point: TangentPoint, new: TangentPoint, length: float) -> bool:
     """Return whether a new point carries on from another: not back, and in a like direction."""
-    if np.linalg.norm(new.u - point.u) < SHORT * length:
-        return False
-    return bool(np.linalg.svd(point.T.T @ new.T, compute_uv=False)[-1] >= AHEAD)
+    forward = np.linalg.norm(new.u - point.u) >= SHORT * length
+    return bool(forward and np.linalg.svd(point.T.T @ new.T, compute_uv=False)[-1] >= SHORT)
 
 
 def _known(u: Floats, points: Sequence[TangentPoint], radius: float) -> bool:

@@ -1,20 +1,14 @@
 r"""Points on a manifold of minima: their tangents, and corrections back to it.
 
-The tangent space of the minimisers of f(J) is the null space of the second derivatives
+The tangent space of the minimisers of f(J) is the null space of their second derivatives B within
+the variables that no bound holds; what changes residuals a little is weakly determined and no
+tangent. A step along the tangents is corrected across them, by Newton's method on a basis Q of
+their complement,
 
-.. math:: B = \sum_i w_i \, \partial^2 J_i + \partial J^T f'' \partial J, \qquad
-    w = \partial f / \partial J
+.. math:: s = -Q\, (Q^T B Q)^{-1} Q^T g, \qquad g = \partial f / \partial J\, \partial J ;
 
-within the variables that no bound holds; what changes residuals a little is weakly determined and
-no tangent. A step along the tangents T (p, d) is corrected back to the manifold across them, by
-Newton's method on a basis Q of their complement,
-
-.. math:: s = -Q\, (Q^T B Q)^{-1} Q^T g, \qquad g = w^T \partial J ,
-
-until s vanishes; where residuals vanish, with Gauss-Newton's G, which is B on the manifold and
-leads farther. Every evaluation gives B, so that a point needs no other one for its tangents. Of a
-model without exact second derivatives B is that of Gauss-Newton: the tangents are the directions in
-which no residual changes. Variables are :math:`u = (\theta - lower) / (upper - lower)`.
+where residuals vanish, with Gauss-Newton's G, which is B on the manifold and leads farther. Of a
+model without exact second derivatives B is G.
 """
 
 from __future__ import annotations
@@ -42,9 +36,6 @@ space of B; up to `UNCHANGED` none changes there. Slopes of residuals are its ro
 
 ARRIVED = Options().step
 """Correction in u below which a point lies on the manifold."""
-
-CORRECTIONS = 12
-"""Corrections after which a step is given up; quadratic ones take two to four."""
 
 
 @dataclass(frozen=True)
@@ -113,9 +104,11 @@ class Context:
         """Return the point of the manifold next to u, to which a step from ``start`` led, or None.
 
         Each variable that is held at a bound takes a dimension away from what is left to move on;
-        one that leaves its bounds on the way is held there.
+        one that leaves its bounds on the way is held there. Corrections that do not become shorter
+        lead nowhere.
         """
-        for _ in range(CORRECTIONS):
+        before = np.inf
+        while True:
             evaluation = self.problem.evaluate(self.problem.lower + u * self.span, second=True)
             if not evaluation.feasible or (held & ~self.held).sum() > self.dimension:
                 return None
@@ -127,14 +120,16 @@ class Context:
                 return None
             g = self.programme.gradient(evaluation.J) @ evaluation.dJ * self.span
             s = -Q @ scipy.linalg.cho_solve(factor, Q.T @ g)
-            if np.abs(s).max(initial=0.0) <= ARRIVED:
+            size = float(np.abs(s).max(initial=0.0))
+            if size <= ARRIVED:
                 point = TangentPoint(evaluation, u, self.tangents(evaluation))
                 on = self.equivalent(evaluation) and point.T.shape[1] == self.dimension
                 return point if on else None
-            u = u + s
+            if size >= before:
+                return None
+            before, u = size, u + s
             held = held | (u < 0) | (u > 1)
             u = np.clip(u, 0, 1)
-        return None
 
     def landed(self, start: TangentPoint, u: Floats, held: Bools) -> TangentPoint | None:
         """Return the point next to u, likewise, on the bounds that u is at if there is one.

@@ -1,9 +1,7 @@
 """Evolutionary methods, from pymoo (the extra ``evolutionary``), to be compared with.
 
-They use no derivatives and stop when their evaluations are spent: none of their points counts as
-converged. With a seed, pymoo asks for the same models in the same order as long as it is told the
-same objectives. So a generation's evaluations are a task, and a run that is continued is played
-again with those that are kept, without solving anything, up to where it stopped.
+A generation's evaluations are a task: a run that is continued is played again, with the same seed,
+with those that are kept.
 """
 
 from __future__ import annotations

@@ -1,10 +1,4 @@
-r"""Where the branches of a disconnected front of two objectives end.
-
-A point of the lattice whose normal passes through a gap lies at the end of one branch, and has
-*slack*: less of an objective than the normal asks for. If its least objective is the second, the
-branch before the gap ends there; if the first, the branch behind the gap starts there. The other
-branch is solved, from the point next to the gap, for its least of the objective with slack at the
-same level of the other. Where it has a point with slack at the gap, too, that is where it ends.
+"""Where the branches of a disconnected front of two objectives end (`docs/methods/nbi.md`).
 
 Equations have no slack. Between points that are none of them dominated, but have dominated ones
 between them, the branch behind starts at its own least first objective, if that lies to the right

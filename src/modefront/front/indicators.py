@@ -1,15 +1,7 @@
-r"""Coverage of a front by a set of points: hypervolume, IGD+ and largest gap.
+"""Coverage of a front by a set of points, in units of the range of each objective.
 
-In units of the range of each objective, :math:`y = (J - J^*) / scale`, with the points :math:`Y`
-and a reference set :math:`R`:
-
-.. math::
-    HV &= \mathrm{vol} \bigcup_{y \in Y} [y, (1.1, \ldots, 1.1)] \\
-    IGD^+ &= \frac1{|R|} \sum_{\rho \in R} \min_{y \in Y} \| \max(y - \rho, 0) \|
-
-(Zitzler & Thiele 1998, doi:10.1007/BFb0056872; Ishibuchi et al. 2015,
-doi:10.1007/978-3-319-15892-1_8). The largest gap is the longest branch of the shortest tree that
-joins all points.
+Hypervolume (Zitzler & Thiele 1998, doi:10.1007/BFb0056872), IGD+ (Ishibuchi et al. 2015,
+doi:10.1007/978-3-319-15892-1_8), and the longest branch of the shortest tree that joins all points.
 """
 
 from __future__ import annotations

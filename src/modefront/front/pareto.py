@@ -282,7 +282,8 @@ class _Run:
         most = 2 * len(self._lattice())
         while self.n > 2:
             here = self._lattice()
-            at_points = [point.place for x, point in here if _is_on_normal(x.incumbent, point)]
+            ends = [(x.incumbent, point) for x, point in here if x.incumbent.converged]
+            at_points = [point.place for x, point in ends if point.spread(x.J) < LOOSE]
             beyond = {place for point in at_points for place in neighbours(point)}
             added = sorted(beyond - {point.place for _, point in here})[: most - len(here)]
             if not added:
@@ -427,11 +428,6 @@ class _Run:
         ]
         minima = self.state.distinct(x for x in self.work.run(tasks) if x and x.converged)
         return accepted(self.problem, minima, self.a, sizes)
-
-
-def _is_on_normal(solution: Solution, point: LatticePoint) -> bool:
-    """Return whether the solution of a point lies on its normal."""
-    return solution.converged and point.spread(solution.J) < LOOSE
 
 
 def _are_alike(one: Payoff, other: Payoff) -> bool:

@@ -197,17 +197,13 @@ class Counted:
 
     def run(self, tasks: Sequence[Task[Any]]) -> list[Any]:
         """Return the results of tasks, None where the evaluations of one were spent."""
-        outcomes = self.inner.run([limited(task, self.share(len(tasks))) for task in tasks])
+        left = None if self.budget is None else max(self.budget - self.state.evaluations, 0)
+        share = None if left is None else left // max(len(tasks), 1)
+        outcomes = self.inner.run([limited(task, share) for task in tasks])
         for outcome in outcomes:
             self.state.note(outcome)
             self.spent |= outcome.spent
         return [outcome.result for outcome in outcomes]
-
-    def share(self, tasks: int) -> int | None:
-        """Return the evaluations that each of so many tasks may make."""
-        if self.budget is None:
-            return None
-        return max(self.budget - self.state.evaluations, 0) // max(tasks, 1)
 
     def expect(self, stages: Mapping[str, int]) -> None:
         """Pass on the extent of the work."""

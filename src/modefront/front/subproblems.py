@@ -1,15 +1,7 @@
-r"""Subproblems: an order on the objectives J, a programme that a local solver minimises.
+"""Subproblems: an order on the objectives J, a programme that a local solver minimises.
 
 Each orders all models by J alone, so that whatever model one of them meets competes for the place
-of the best in all others (`docs/methods/nbi.md`).
-
-- **Edge** of objective i: least :math:`J_i`, and of such models the least
-  :math:`\sum_{j \ne i} J_j / c_j` (`modefront.optim.lexicographic`).
-- **Weights** w: least :math:`w^T J`.
-- **Point** :math:`\beta` of the lattice: least :math:`\max_i c_i + \rho \sum_i c_i`, with the
-  excess of J over :math:`\Phi \beta` along the normal, :math:`c_i = (y_i - (\Phi \beta)_i) / r_i`,
-  where y are the objectives over the utopia point in units of their ranges, :math:`\Phi` (n, n) the
-  corners of the simplex and r = :math:`\Phi e` the normal towards greater objectives.
+of the best in all others. `docs/methods/nbi.md` has the edges and the points of the lattice.
 """
 
 from __future__ import annotations

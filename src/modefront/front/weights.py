@@ -1,14 +1,8 @@
-r"""Weighted residuals with optimal weights (`docs/methods/weighted.md`).
+"""Weighted residuals with optimal weights, equation (8) (`docs/methods/weighted.md`).
 
-Optimal weights minimise :math:`I(\theta) = \sum_i a_i \ln J_i(\theta)`, equation (8), where
-:math:`a_i` counts the measured properties of a group; the model then minimises
-:math:`\sum_i w_i J_i` with :math:`w_i = a_i / J_i`. A minimum is accepted if it is regular itself,
-whatever is known of other models: no objective vanishes at it, and the second derivatives
-
-.. math:: \nabla^2 I = \sum_i \frac{a_i}{J_i} H_i - \sum_i \frac{a_i}{J_i^2} \partial J_i
-    \partial J_i^T
-
-are positive in all directions in which residuals change and no bound holds it.
+A minimum is accepted if it is regular itself, whatever is known of other models: no objective
+vanishes at it, and the second derivatives are positive in all directions in which residuals change
+and no bound holds it.
 """
 
 from __future__ import annotations
@@ -23,9 +17,6 @@ from modefront.optim.lexicographic import EXACT
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem
 from modefront.optim.scalarisation import LogSum, weighted
 from modefront.optim.sqp import TIGHT, Options, Solution, Status, solve
-
-WITHIN = 0.1
-"""Tolerance of a model of the iteration of weights, over the length of the step before it."""
 
 UNCHANGED = 1e-12
 """Eigenvalue over the greatest one below which a direction changes no residual."""
@@ -90,24 +81,19 @@ def iterate_weights(
 ) -> Solution | None:
     """Return the fixed point of w = a / J, from a start; None where an objective vanishes.
 
-    The status says whether successive models agree to the tolerance of the parameters. Each is
-    solved for to a share of the step before it: the next weights move it by more than that.
+    The status says whether successive models agree to the tolerance of the parameters.
     """
     options = Options()
-    tolerance = WITHIN * options.radius
-    span = problem.upper - problem.lower
-    evaluations = 0
-    status = Status.EXHAUSTED
+    evaluations, status = 0, Status.EXHAUSTED
     for _ in range(limit):
         if not regular(start.J, sizes):
             return None
         w = a / start.J
-        solution = solve(problem, weighted(w / w.sum()), start, replace(options, step=tolerance))
+        solution = solve(problem, weighted(w / w.sum()), start, options)
         evaluations += solution.evaluations
-        moved = float(np.abs((solution.theta - start.theta) / span).max())
+        moved = (solution.theta - start.theta) / (problem.upper - problem.lower)
         start = replace(solution, weights=w)
-        if moved <= options.step and tolerance == options.step:
+        if np.abs(moved).max() <= options.step:
             status = solution.status
             break
-        tolerance = max(options.step, WITHIN * (moved or tolerance))
     return replace(start, status=status, evaluations=evaluations)

@@ -1,13 +1,7 @@
-r"""The lexicographic minimum below a start: least in one objective, then least in the others.
+"""The lexicographic minimum below a start: least in one objective, then least in the others.
 
-It is the limit, for :math:`\varepsilon \to 0`, of the minimisers of
-
-.. math:: J_i / c_i + \varepsilon \sum_{j \ne i} J_j / c_j
-
-with typical sizes c (n,) of the objectives (Ehrgott, *Multicriteria Optimization*, 2005, section
-5.1). They form a smooth path, on which each is found from the one before by a few steps of Newton's
-method, as the second derivatives are exact however narrow the valley is. The limit is extrapolated
-from the last two: their distance from it is proportional to :math:`\varepsilon`.
+It is the limit of a path of minimisers (`docs/methods/nbi.md`), extrapolated from the last two:
+their distance from it is proportional to epsilon.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 r"""A programme at a point: its linearisation, the step from there, and by what it is judged.
 
-With the symbols of `modefront.optim.sqp`, what is minimised is near the point
+What is minimised is near the point, with s a step of :math:`u = (\theta - lower) / (upper - lower)`
 
 .. math:: f + g^T s + \tfrac12 s^T B s + \max_i\,(y + \partial y\, s)_i
     \quad\text{subject to}\quad c + \partial c\, s = 0 .
@@ -12,11 +12,8 @@ Steps are judged by the augmented Lagrangian, with the penalty :math:`\nu`,
 
 with :math:`\Delta` the simplex :math:`x \ge 0`, :math:`\sum x_i = 1`. The last term is that of
 Rockafellar (1974, doi:10.1137/0312021) for :math:`\min \tau` subject to :math:`y_i \le \tau`, with
-:math:`\tau` at its best; its x is the projection of :math:`\kappa + \nu y` onto the simplex. It
-lies between :math:`\max y - 1 / \nu` and :math:`\max y`, and is :math:`\max y` where the active
-:math:`y_i` are equal. Where they differ by little, it is :math:`\kappa^T y` and :math:`\nu / 2` of
-the squares of their differences from their mean: as smooth as the other terms, so that a step on
-which y bends is not rejected for that.
+:math:`\tau` at its best: it is :math:`\max y` where the active :math:`y_i` are equal, and as smooth
+as the other terms where they are not, so that a step on which y bends is not rejected for that.
 """
 
 from __future__ import annotations
@@ -33,9 +30,6 @@ from modefront.optim.scalarisation import Scalarisation
 PENALTY = 10.0
 """Penalty at least; it hardly changes the evaluations that a solution takes."""
 
-
-STEEP = 1e6
-"""Greatest multiplier of a constraint, with objective and constraints in their own units."""
 
 NOISE = 1e-11
 """Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
@@ -156,28 +150,23 @@ class Linearised:
             w = multipliers.weights(self.programme, self.evaluation.J)
             qp = with_curvature(weighted(w, H) * span + curved)
             step = solve_qp(qp)
-            multipliers = self._bounded(qp, step)
+            multipliers = self._multipliers(qp, step)
         return qp, step, multipliers
 
     def _first(self, qp: QuadraticProgramme) -> Multipliers:
         """Return multipliers of the slopes at the point, and the same one of all functions."""
         still = QuadraticStep(np.zeros_like(self.g), [])
-        mu = self._bounded(qp, still).mu
+        mu = self._multipliers(qp, still).mu
         return Multipliers(mu, np.full(self.y.size, 1 / max(self.y.size, 1)))
 
-    def _bounded(self, qp: QuadraticProgramme, step: QuadraticStep) -> Multipliers:
-        """Return the multipliers at the end of a step.
-
-        Where the constraints hardly depend on the variables that are free, they say nothing.
-        """
+    def _multipliers(self, qp: QuadraticProgramme, step: QuadraticStep) -> Multipliers:
+        """Return the multipliers at the end of a step, those of functions within the simplex."""
         if self.free:
             return Multipliers(np.zeros(0), np.zeros(0))
-        A = self.programme.constraints.matrix
-        most = STEEP * length(self.df) / float(np.abs(A).max(initial=np.finfo(float).tiny))
         free = (qp.lo - step.s < 0) & (qp.hi - step.s > 0)
         mu, kappa = qp.multipliers(step.s, step.active, free)
         kappa = np.maximum(kappa, 0.0)
-        return Multipliers(np.clip(mu, -most, most), kappa / kappa.sum() if step.active else kappa)
+        return Multipliers(mu, kappa / kappa.sum() if step.active else kappa)
 
     def slope(self, multipliers: Multipliers) -> Floats:
         """Return the slope of the Lagrangian, shape (p,)."""
@@ -209,6 +198,16 @@ class Linearised:
             penalty = max(PENALTY, 0.1 * penalty, float(-2 * gain / drop))
         above = surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)
         return float(gain + penalty * squares + above), penalty
+
+    def promised(self, s: Floats) -> Floats:
+        """Return the objectives (n,) that the derivatives promise at the end of a step.
+
+        Of sums of squares, the greater of the quadratic model and the squares of linear residuals.
+        """
+        x, change = self.evaluation, s * self.span
+        J = x.J + x.dJ @ change + 0.5 * (x.H @ change @ change)
+        squares = [np.sum((each.r + each.dr @ change) ** 2) for each in x.residuals]
+        return np.asarray(np.maximum(J, squares or 0.0))
 
     def end(self, problem: Problem, s: Floats) -> Floats:
         """Return the parameters at the end of a step."""

@@ -5,37 +5,16 @@ r"""The quadratic programme of one step.
 
 with :math:`lo \le 0 \le hi`, by a primal active-set method (Nocedal & Wright, *Numerical
 Optimization*, 2006, section 16.5). The equalities are met first, as nearly as the box allows, and
-then kept. The maximum is the linear function of any one of the functions that attain it, as long
-as these stay equal: with one of them, a, as the base, the others of the active set are equalities
-
-.. math:: (C_i - C_a)\, s = c_a - c_i .
-
-Variables are held at the box, and functions join the active set, one by one as steps meet them;
-they are let go as their multipliers have the wrong sign. Where B has negative curvature in the
-null space of the working set, its absolute value is used: variables that are held and changes of
-the maximum have no say in it. Without functions (m = 0), the maximum is left out.
+then kept. The maximum is the linear function of one of the functions that attain it, the base, and
+the others of the active set are equalities :math:`(C_i - C_a)\, s = c_a - c_i`; E are all of these
+slopes. Variables are held at the box, and functions join the active set, one by one as steps meet
+them; they are let go as their multipliers mu (of equalities) and kappa (of functions, of sum 1)
+have the wrong sign. Where B has negative curvature in the null space of the working set, its
+absolute value is used.
 
 Of many variables, hundreds may end at the box, and each change of the working set takes a
-decomposition. They are therefore held and let go many at once, as long as what is minimised falls:
-a step ends at its projection onto the box, and where it stays inside, all that have a wrong
-multiplier are let go (Moré & Toraldo 1991, doi:10.1137/0801008). Functions join and leave one by
-one.
-
-========  =========  ================================================================
-symbol    shape      meaning
-========  =========  ================================================================
-s         (p,)       step
-B, g      (p, p)     second derivatives, symmetric, and slope (p,)
-A, b      (k, p)     equalities, and their right-hand sides (k,)
-C, c      (m, p)     slopes of the functions, and their values (m,) at s = 0
-E         (., p)     A and the equalities of the active functions
-Z         (p, .)     basis of the null space of E among the free variables
-mu        (k,)       multipliers of the equalities
-kappa     (m,)       multipliers of the functions: not negative, of sum 1
-========  =========  ================================================================
-
-At a solution, :math:`g + B s + A^T \mu + C^T \kappa` vanishes for the free variables and points out
-of the box for those that are held.
+decomposition: they are held and let go many at once, as long as what is minimised falls (Moré &
+Toraldo 1991, doi:10.1137/0801008).
 """
 
 from __future__ import annotations
@@ -51,9 +30,6 @@ FLAT = 1e-10
 """Curvature, singular value, slope or multiplier, over the greatest one, below which it counts as
 none: well above rounding, 1e-16 times the condition of matrices of some thousands."""
 
-FAR = 1e-4
-"""Inverse of the greatest step aimed at, in widths of the box: bounds what a flat B leads to."""
-
 NORMAL = 0.8
 """Share of the box that the normal step may use, so that something is left to descend (Nocedal &
 Wright, equation 18.46)."""
@@ -61,9 +37,6 @@ Wright, equation 18.46)."""
 MANY, HALVINGS = 48, 8
 """Variables from which on many are held and let go at once; halvings at most of a step until its
 projection falls, and times that variables move back to the equalities after others were held."""
-
-_LEAST = float(np.finfo(float).tiny ** 0.5)
-"""Curvature at least: a slope over it does not overflow."""
 
 PASSES = 4
 """Changes of the working set, over the number of variables and functions, after which the method
@@ -133,11 +106,10 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
     lo, hi = qp.lo, qp.hi
     s = _normal_step(qp.A, qp.b, lo, hi)
     free = (s > lo) & (s < hi)
-    width = float((hi - lo).max())
     active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
     many = s.size >= MANY
     for _ in range(PASSES * (s.size + len(qp.C))):
-        d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
+        d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free)
         bound = np.where(d > 0, hi, lo)
         share = np.divide(bound - s, d, out=np.full(s.size, np.inf), where=d != 0)
         stop = int(share.argmin())
@@ -162,7 +134,8 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
         if len(kept) < len(active):
             active = kept
             continue
-        gain = _gain(slope, free, s <= lo, s >= hi)
+        low, high = s <= lo, s >= hi
+        gain = np.where(free | (low & high), 0.0, np.where(low, -slope, slope))  # on leaving a side
         wrong = gain > FLAT * scale
         if not wrong.any():
             break
@@ -222,7 +195,7 @@ def _returned(
     return None
 
 
-def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools, width: float) -> Floats:
+def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools) -> Floats:
     """Return the step of the free variables to their minimum that leaves E s as it is."""
     d, inside = np.zeros(free.size), free.nonzero()[0]
     if inside.size < free.size:
@@ -233,8 +206,7 @@ def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools, width: float) 
         curvature = np.abs(curvature)
         T = V if Z is None else Z @ V
         slope = T.T @ gradient
-        steepest = float(np.abs(slope).max()) / width
-        floor = max(FLAT * curvature.max(), FAR * steepest, _LEAST)
+        floor = max(FLAT * curvature.max(), np.finfo(float).tiny ** 0.5)  # no overflow
         d[inside] = -T @ (slope / np.maximum(curvature, floor))
     return d
 
@@ -260,14 +232,6 @@ def _met(qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int]) -> tup
     below = np.maximum(value[active[0]] - value, 0.0)
     np.divide(below, rate, out=share, where=rate > rounding)
     return int(np.argmin(share)), float(share.min())
-
-
-def _gain(left: Floats, free: Bools, low: Bools, high: Bools) -> Floats:
-    """Return how steeply what is minimised falls as each held variable leaves the box's side.
-
-    ``left`` (p,) is what the multipliers leave of the slope.
-    """
-    return np.where(free | (low & high), 0.0, np.where(low, -left, left))
 
 
 def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:

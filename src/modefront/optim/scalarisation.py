@@ -1,20 +1,9 @@
-r"""Ways to turn a vector of objectives into one programme.
+r"""Ways to turn a vector of objectives into one programme, which one solver serves.
 
 .. math:: \min_\theta f(J(\theta)) + \max_i\,(C J(\theta) - d)_i
     \quad\text{subject to}\quad A J(\theta) = b
 
-Every method of the package is one of these members, and one solver (`modefront.optim.sqp`)
-serves them all. Most have no maximum (m = 0), and most no constraints (k = 0).
-
-========  =========  ===========================================
-symbol    shape      meaning
-========  =========  ===========================================
-f         ()         smooth part of what is minimised
-df        (n,)       its derivatives with respect to J
-ddf       (n, n)     its second derivatives
-A, b      (k, n)     linear constraints on the objectives
-C, d      (m, n)     linear functions of which the maximum is minimised
-========  =========  ===========================================
+Most have no maximum (m = 0), and most no constraints (k = 0).
 """
 
 from __future__ import annotations

@@ -1,27 +1,14 @@
 r"""Second derivatives of objectives of which a problem does not give them.
 
-The models of this package do. Of a model that is a function of the user, they are differences of
-exact first derivatives, around a model or, next to a bound, as far within as the step is long
-(`with_second_order`); a search learns them from those along its steps (`learned_from`).
+Those of a model that is a function of the user are differences of exact first derivatives
+(`with_second_order`), or are learned along the steps of a search (`learned_from`). Of
+:math:`\partial^2 J = H + S`, with H known (Gauss-Newton's), a step s tells that
 
-Each objective has :math:`\partial^2 J = H + S`, with H known (Gauss-Newton's) and S the rest. A
-step s from one evaluation to another tells of S that
+.. math:: S s = y, \qquad y = \partial J(\theta + s) - \partial J(\theta) - H(\theta + s)\, s .
 
-.. math:: S s = y, \qquad y = \partial J(\theta + s) - \partial J(\theta) - H(\theta + s)\, s,
-
-and the least symmetric change (Powell's; Dennis & Schnabel, *Numerical Methods for Unconstrained
-Optimization*, 1983, section 9.2), with s and S over the ranges of the parameters,
-
-.. math:: S \leftarrow S + v u^T + u v^T - (v^T s)\, u u^T, \qquad v = y - S s,
-    \quad u = \frac{s}{s^T s}
-
-makes it so. Unlike the correction of rank one, v v^T / v^T s, it is never greater than what the
-step tells, so that what earlier steps have told is kept: with many parameters, of which steps show
-one direction each, the correction of rank one takes two to three times as many.
-
-S vanishes with the residuals: before it is corrected it is sized by :math:`s^T y / s^T S s` where
-that is below 1 (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965). An objective of which H
-knows nothing, such as one residual, is none of squares, and its S is not sized.
+The least symmetric change makes it so (Powell's; Dennis & Schnabel, *Numerical Methods for
+Unconstrained Optimization*, 1983, section 9.2). Before, S is sized, as it vanishes with the
+residuals (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965), unless H knows nothing.
 """
 
 from __future__ import annotations

@@ -1,39 +1,23 @@
 r"""Sequential quadratic programming with exact first and second derivatives.
 
 Solves :math:`\min f(J(\theta)) + \max_i\,(C J(\theta) - d)_i` subject to :math:`A J(\theta) = b`
-and bounds, for any member of `modefront.optim.scalarisation`: it is the only loop of steps in a
-trust region, and its steps are all from `modefront.optim.qp`. With multipliers :math:`\mu` of
-the constraints and :math:`\kappa` of the functions of which the maximum counts, and the weights
+and bounds, for any member of `modefront.optim.scalarisation`. With multipliers :math:`\mu` of the
+constraints and :math:`\kappa` of the functions of which the maximum counts, the weights w of the
+objectives and the Hessian of the Lagrangian are
 
-.. math:: w = \partial f / \partial J + A^T \mu + C^T \kappa
+.. math:: w = \partial f / \partial J + A^T \mu + C^T \kappa, \qquad
+    B = \sum_i w_i H_i + \partial J^T f'' \partial J .
 
-of the objectives, the Hessian of the Lagrangian is
+:math:`H_i` is taken with or without the part S besides Gauss-Newton's, whichever predicted the last
+step better; what a problem does not know of S is learned (`modefront.optim.second`).
 
-.. math:: B = \sum_i w_i H_i + \partial J^T f'' \partial J
-
-with the second derivatives :math:`H_i` of the objectives. Where a problem does not know these,
-:math:`H_i` is the part that it knows (Gauss-Newton's), and the rest :math:`S_i` is learned from
-differences of gradients (`modefront.optim.second`). Where residuals vanish, S is a burden: B is
-taken with it or without it, whichever predicted the last step better (Dennis, Gay & Welsch 1981,
-doi:10.1145/355958.355965).
-
-Steps solve a quadratic programme within a box, the trust region; they are judged by the augmented
-Lagrangian (`modefront.optim.linearised`) which, unlike an exact penalty, does not reject good steps
-near the solution. One attempt is made to leave a stationary point with clearly negative curvature.
-Where the objectives jump, a solution ends, and another one is sought from the other side.
-
-=========  =========  ==================================================================
-symbol     shape      meaning
-=========  =========  ==================================================================
-u          (p,)       variables, :math:`(\theta - lower) / (upper - lower)`
-s          (p,)       step in u
-g          (p,)       slope of f
-c, dc      (k, p)     violations (k,) of the constraints and their slopes
-y, dy      (m, p)     functions (m,) of which the maximum counts, and their slopes
-mu, kappa  (k,) (m,)  their multipliers
-w          (n,)       weights of the objectives
-S          (n, p, p)  learned part of their second derivatives, with respect to theta
-=========  =========  ==================================================================
+Steps solve a quadratic programme within a box, the trust region (`modefront.optim.qp`), and are
+judged by the augmented Lagrangian (`modefront.optim.linearised`, which has the other symbols). In a
+curved valley a long step ends on its side, from where another one leads to the floor, far ahead:
+where a step is poor, but the derivatives at its end promise that, the two are judged as one (the
+watchdog; Nocedal & Wright 2006, section 15.6). One attempt is made to leave a stationary point with
+clearly negative curvature. Where the objectives jump, a solution ends, and another one is sought
+from the other side.
 """
 
 from __future__ import annotations
@@ -61,10 +45,6 @@ reduction is taken, as a derivative costs as much."""
 SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again, and
 slope, over that, up to which a bound does not hold a variable on the way."""
-
-REST = 6
-"""Steps one after another that promise no more than rounding, and are no shorter than the shortest
-one before, after which the objectives tell no more."""
 
 
 @record
@@ -189,6 +169,7 @@ def _total(programme: Scalarisation, J: Floats) -> float:
     return programme.value(J) + (float(y.max()) if y.size else 0.0)
 
 
+# More than 60 lines: one step, with all that it changes.
 def _within(
     problem: Problem, programme: Scalarisation, start: Solution, options: Options
 ) -> tuple[Solution, Evaluation | None]:
@@ -206,7 +187,8 @@ def _within(
     region, penalty = _Region(options.radius), PENALTY
     multipliers: Multipliers | None = None
     rejected: Evaluation | None = None
-    progress = _Progress(options)
+    proposal = np.inf  # length of the last step that the trust region did not hold back
+    calm: tuple[float, Solution] | None = None  # where, and how long, steps promised only rounding
     while True:
         count += 1
         note_iteration(count + 1)
@@ -218,22 +200,26 @@ def _within(
         qp, step, multipliers = local.step(H, region.radius, multipliers)
         s, w = step.s, multipliers.weights(programme, evaluation.J)
         violation, far = length(local.c), length(s)
-        held = not progress.proposed(far, region.radius)
+        held = far >= region.radius
+        proposal = proposal if held else far
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
             still, far = not s.any(), length(s)
-        status = progress.outcome(violation, still, far, region.radius)
+        status = _outcome(options, violation, still, far, region.radius, proposal)
         here = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
         if status or count >= options.iterations:
             return here, rejected if status is Status.JUMP else None
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         noise = local.noise(multipliers)
-        calm = progress.resting(here, far, predicted <= noise)
-        if calm and calm.violation <= options.constraint:
-            return replace(calm, status=Status.CONVERGED, evaluations=count), None
+        rests = predicted <= noise
+        if calm and rests and far >= calm[0]:  # the objectives tell no more
+            if calm[1].violation <= options.constraint:
+                return replace(calm[1], status=Status.CONVERGED, evaluations=count), None
+        else:
+            calm = (far, here) if rests else None
         new = problem.evaluate(local.end(problem, s), second=True)
         if not new.feasible:
             region.refused(far, 0.0)
@@ -246,6 +232,10 @@ def _within(
         trusted ^= bool(abs(miss - rest) < abs(miss))
         if not evaluation.exact:
             S = learned_from(S, evaluation, new, local.span)
+        if actual < POOR * predicted:
+            H = new.H if trusted else new.gauss_newton
+            new, more = _second_step(problem, merit, evaluation, new, H, region.radius)
+            actual, count = merit.at(evaluation) - merit.at(new), count + more
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
             evaluation, rejected = new, None
@@ -256,58 +246,40 @@ def _within(
             rejected = new
 
 
-@dataclass
-class _Progress:
-    """Progress of the steps, by which the solution ends.
+def _second_step(
+    problem: Problem, merit: Merit, here: Evaluation, new: Evaluation, H: Floats, radius: float
+) -> tuple[Evaluation, int]:
+    """Return the better of the end of a poor step and of a step from there, and evaluations.
 
-    Attributes
-    ----------
-    options : tolerances
-    proposal : length of the last step that the trust region did not hold back
-    shortest : length of the shortest of the last steps, if all of these promise only rounding
-    calm : the point from which it led
-    idle : how many of these steps, one after another, were not shorter than all before
+    The latter, with second derivatives ``H`` (n, p, p), is made if the derivatives at the end
+    promise a better model than both.
     """
+    if not new.exact:
+        return new, 0
+    local = linearised(problem, merit.programme, new)
+    _, step, _ = local.step(H, radius, None)
+    promised = merit.at(replace(new, J=local.promised(step.s)))
+    if not promised < min(merit.at(here), merit.at(new)):
+        return new, 0
+    return min(new, problem.evaluate(local.end(problem, step.s), second=True), key=merit.at), 1
 
-    options: Options
-    proposal: float = np.inf
-    shortest: float = np.inf
-    idle: int = 0
-    calm: Solution | None = None
 
-    def proposed(self, step: float, radius: float) -> bool:
-        """Return whether the trust region does not hold a step back; its length is remembered."""
-        if step < radius:
-            self.proposal = step
-        return step < radius
+def _outcome(
+    options: Options, violation: float, still: bool, step: float, radius: float, proposal: float
+) -> Status | None:
+    """Return how the solution ends at a point; None where it goes on.
 
-    def outcome(self, violation: float, still: bool, step: float, radius: float) -> Status | None:
-        """Return how the solution ends at a point; None where it goes on.
-
-        ``still`` says whether no step is worth making, ``step`` is the length of the next one.
-        """
-        if still and violation <= self.options.constraint:
-            return Status.CONVERGED
-        if step > np.finfo(float).eps and radius > self.options.step:
-            return None
-        met = violation <= 10 * self.options.constraint
-        # Steps that were not held back were below the tolerance: rounding of J stops it here.
-        near = self.proposal <= self.options.step and met
-        return Status.CONVERGED if near else Status.JUMP if met else Status.STALLED
-
-    def resting(self, here: Solution, step: float, negligible: bool) -> Solution | None:
-        """Return the point from which the step was the shortest, where rounding decides on steps.
-
-        ``here`` is the point at hand, and ``negligible`` says that the next step promises no more
-        than rounding. None where steps have not come to rest.
-        """
-        if not negligible:
-            self.shortest, self.idle = np.inf, 0
-            return None
-        self.idle = 0 if step < self.shortest else self.idle + 1
-        if step < self.shortest:
-            self.shortest, self.calm = step, here
-        return self.calm if self.idle >= REST else None
+    ``still`` says whether no step is worth making, ``step`` is the length of the next one, and
+    ``proposal`` that of the last one that the trust region did not hold back.
+    """
+    if still and violation <= options.constraint:
+        return Status.CONVERGED
+    if step > np.finfo(float).eps and radius > options.step:
+        return None
+    met = violation <= 10 * options.constraint
+    # Steps that were not held back were below the tolerance: rounding of J stops it here.
+    near = proposal <= options.step and met
+    return Status.CONVERGED if near else Status.JUMP if met else Status.STALLED
 
 
 @dataclass

@@ -1,10 +1,7 @@
 """Evolution: models between those that are known, by differential evolution over all subproblems.
 
 Each child is the incumbent of a subproblem, moved by the difference of two other known models
-(Storn & Price 1997, doi:10.1023/A:1008202821328) in some of its parameters, and mutated in a few
-(Deb & Agrawal 1995). A generation is evaluated without derivatives; whatever is better than an
-incumbent takes its place, and is polished from there. So evolution finds the basins that no start
-falls into, and Newton's method their bottoms.
+(Storn & Price 1997, doi:10.1023/A:1008202821328) and mutated (Deb & Agrawal 1995).
 """
 
 from __future__ import annotations
@@ -61,13 +58,10 @@ class Evolution:
             crossed = self.rng.uniform(size=base.size) < self.rng.uniform()
             theta = np.where(crossed, base + self.rng.uniform(0.2, 1.0) * (one - two), base)
             mutated = self.rng.uniform(size=base.size) < 1 / base.size
-            theta = np.where(mutated, theta + self._mutation(base.size) * span, theta)
+            u = self.rng.uniform(size=base.size)
+            below = (2 * u) ** (1 / (INDEX + 1)) - 1
+            above = 1 - (2 * (1 - u)) ** (1 / (INDEX + 1))
+            polynomial = np.where(u < 0.5, below, above)
+            theta = np.where(mutated, theta + polynomial * span, theta)
             out.append(np.clip(theta, lower, upper))
         return np.array(out)
-
-    def _mutation(self, p: int) -> Floats:
-        """Return polynomial mutations over the ranges, (p,)."""
-        u = self.rng.uniform(size=p)
-        below = (2 * u) ** (1 / (INDEX + 1)) - 1
-        above = 1 - (2 * (1 - u)) ** (1 / (INDEX + 1))
-        return np.where(u < 0.5, below, above)

@@ -1,13 +1,7 @@
-r"""Rivals: known models from which another subproblem may be better solved.
+"""Rivals: known models whose own derivatives promise another subproblem a gain.
 
-What a model may lead to is told by its own derivatives. A step of the local solver, which minimises
-the quadratic model of the subproblem's programme within a trust region, leads to
-
-.. math:: J + \partial J\, s + \tfrac12 s^T H s ,
-
-and residuals change to :math:`r + \partial r\, s`. The greater of both is what the model promises.
-Where that is better than the incumbent, the model is a rival, and a few steps are taken from it:
-the model that they lead to is compared in its turn.
+The promise is that of the first step of the local solver. Where it is better than the incumbent, a
+few steps are taken from the model, and the one that they lead to is compared in its turn.
 """
 
 from __future__ import annotations
@@ -21,10 +15,7 @@ from modefront.front.archive import Outcome
 from modefront.front.proposers.base import Offer, Rate, approach_from
 from modefront.front.state import DISTINCT, State
 from modefront.optim.linearised import linearised
-from modefront.optim.sqp import Solution
-
-REACH = 0.3
-"""Trust region of a prediction, over the ranges of the parameters."""
+from modefront.optim.sqp import Options, Solution
 
 
 @dataclass
@@ -82,10 +73,7 @@ def predicted_gain(state: State, k: int, model: Solution) -> float:
     if np.abs((model.theta - place.incumbent.theta) / state.span).max() <= DISTINCT:
         return 0.0
     local = linearised(state.problem, place.subproblem.programme, evaluation)
-    _, step, _ = local.step(evaluation.H, REACH, None)
-    change = step.s * local.span
-    J = evaluation.J + evaluation.dJ @ change + 0.5 * (evaluation.H @ change @ change)
-    squares = [np.sum((each.r + each.dr @ change) ** 2) for each in evaluation.residuals]
-    J = np.maximum(J, squares or 0.0)
+    _, step, _ = local.step(evaluation.H, Options().radius, None)
+    J = local.promised(step.s)
     promise, own = place.subproblem.order.value(np.array([J, evaluation.J]))
     return place.subproblem.gain(J if promise < own else evaluation.J, place.incumbent)

@@ -6,12 +6,8 @@ minima would be reached is expected to be (Boender & Rinnooy Kan 1987, doi:10.10
 .. math:: \frac{w (w + 1)}{N (N - 1)} .
 
 That bounds the chance that the next start gains, and so does the rate at which starts have gained.
-As long as hardly any start has led to the best model, it may be one of many that are met once: then
-starts go on, however small the chance of a single one is, until that part is small or the best
-model is met again. Starts that end at the limit of iterations have met no minimum: all of them
-together count as one, since nothing tells their valleys apart.
-
-Points of the lattice have none: they start from what others have found.
+As long as hardly any start has led to the best model, starts go on until that part is small. Points
+of the lattice have none: they start from what others have found.
 """
 
 from __future__ import annotations
