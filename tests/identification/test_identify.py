@@ -2,11 +2,21 @@
 
 import numpy as np
 import pytest
-from simulation import THREE_STORY, THREE_STORY_DAMPING, accelerance, blows, three_story_shapes
+from simulation import (
+    THREE_STORY,
+    THREE_STORY_DAMPING,
+    accelerance,
+    blows,
+    circular,
+    three_story_shapes,
+)
 
 from modefront._typing import Floats
-from modefront.data.responses import frequency_responses
+from modefront.data.modal_test import ModalTest
+from modefront.data.responses import Channel, assemble, frequency_responses
 from modefront.identification.methods.hammer import identify
+from modefront.identification.modal_test import IdentifiedTest
+from modefront.identification.sets import combine
 
 F = np.arange(0.1, 30.05, 0.1)
 
@@ -87,6 +97,29 @@ def test_a_dead_channel_and_gaps_are_left_out() -> None:
     assert len(result.modes) == 3
     assert np.isnan(result.modes[0].shape_std[1])
     assert np.isfinite(result.modes[0].shape_std[[0, 2]]).all()
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("size", [0.0, 0.002])
+def test_a_channel_of_zeros_or_noise_is_left_empty_and_named(size: float) -> None:
+    phi = three_story_shapes()
+    H = accelerance(F, THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2])
+    rng = np.random.default_rng(2)
+    measured = blows(H, 0.01, rng)
+    measured[:, :, 0] = size * circular(rng, measured[:, :, 0].shape)
+    names = ("2", "3"), ("1", "2", "3")
+    channels = [
+        Channel("t", f"{b}", names[0][j], names[1][i], F, measured[b, j, i])
+        for b, j, i in np.ndindex(measured.shape[:3])
+    ]
+    data_set = assemble(channels, "accelerance", "1", turned=False)
+    result = identify(data_set.data, (1, 30))
+    test = ModalTest("t", None, None, (data_set,))
+    done = IdentifiedTest(test, (result,), combine(["1"], [result]))
+    assert np.isnan(done.data.shape[0, :, 0]).all()
+    assert np.isfinite(done.data.shape[0, :, 1:]).all()
+    expected = "1: nothing but noise at any mode" if size else "only zeros; the channel is left out"
+    assert any(expected in text for text in done.warnings)
 
 
 def test_a_mode_that_drifts_from_blow_to_blow_stays_one_mode() -> None:

@@ -85,7 +85,7 @@ class IdentifiedTest:
                 if f or zeta
             ]
         )
-        read = [text for part in self.test.sets for text in part.assembled.warnings]
+        read = [text for part in self.test.sets for text in part.warnings]
         read += [
             f"set {setup.name!r}: {name} does not move and is left out"
             for setup in self.test.setups
@@ -194,9 +194,7 @@ def identify(
         if read.setups:
             identified = [ambient.identify(read.setups, band, read.modes, seeds)]
         else:
-            identified = [
-                hammer.identify(part.assembled.data, band, read.modes, seeds) for part in read.sets
-            ]
+            identified = [hammer.identify(part.data, band, read.modes, seeds) for part in read.sets]
     names = _names(read)
     if (keep or drop) and any(each.modes for each in identified):
         identified = _chosen(path, identified, combine(names, identified).index, keep, drop)
@@ -256,14 +254,14 @@ def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -
             reach = f"{low:g} to {high:g} Hz of {setup.duration:g} s at {setup.rate:g} per s"
             raise InputError(Fault(str(path), "band", expected, reach))
     for data_set in test.sets:
-        f = data_set.assembled.data.frequency
+        f = data_set.data.frequency
         low, high = band or (0.0, np.inf)
         count = int(np.count_nonzero((f >= low) & (f <= high) & (f > 0)))
         if count < hammer.LEAST_LINES:
             expected = f"at least {hammer.LEAST_LINES} lines of set {data_set.name!r} within it"
             reach = f"{count}: the files reach from {f[0]:g} to {f[-1]:g} Hz"
             raise InputError(Fault(str(path), "band", expected, reach))
-        inside = data_set.assembled.data.within(low, high)
+        inside = data_set.data.within(low, high)
         if not np.any(np.abs(np.nan_to_num(inside.H)) > 0):
             expected = "functions that are not zero"
             raise InputError(Fault(str(path), "band", expected, f"zeros in set {data_set.name!r}"))
@@ -285,6 +283,22 @@ def _warnings(identification: Identification) -> list[str]:
             "neighbouring lines are correlated: standard deviations are "
             f"{residuals.widening**0.5:.1f} times those of independent lines; windows, zero "
             "padding or drifting modes"
+        )
+    measured = {data.responses[i] for i in np.flatnonzero(data.measured.any(axis=(0, 2)))}
+    names = [
+        name
+        for name, *stds in zip(
+            identification.responses,
+            *(mode.shape_std for mode in identification.modes),
+            strict=True,
+        )
+        if name in measured and np.isnan(stds).any()
+    ]
+    if names:
+        more = f" and {len(names) - NAMED} more" * (len(names) > NAMED)
+        out.append(
+            f"{', '.join(names[:NAMED])}{more}: nothing but noise at any mode; left empty. Is a "
+            "sensor dead, or at a point that does not move?"
         )
     share = np.nan_to_num(residuals.share)
     poor = [(float(share[j, i]), j, i) for j, i in np.argwhere(share > POOR_FIT).tolist()]
