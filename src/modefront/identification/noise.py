@@ -2,7 +2,7 @@
 
 Where nothing is known, the first raw values are fourth differences over neighbouring lines, which
 no smooth function passes, made robust by running medians. The model is that of
-docs/methods/identification.md.
+docs/methods/deviations.md.
 """
 
 from __future__ import annotations

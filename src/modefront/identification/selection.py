@@ -1,29 +1,9 @@
 r"""Which modes are in the data: a pole is one where noise alone would hardly make it.
 
-Without a mode the cost J of the fit is greater by :math:`\Delta J`. Where there is no mode, what a
-pole somewhere in the band explains of noise is the greatest singular value of a residue,
-:math:`\Delta J = \sigma_1^2`, of a matrix of references times responses of unit complex normal
-numbers. The expected number of poles with more than x in a band of N lines, to the leading term,
-is in docs/methods/identification.md:
-the tail of the greatest eigenvalue of a complex Wishart matrix times the area of the poles
-that N lines tell apart, :math:`\int\mathrm{d}\omega\,\mathrm{d}\sigma/4\sigma^2` with damping from
-half a line on, as the correlation of two poles is :math:`4\sigma_1\sigma_2/|\lambda_1 +
-\lambda_2^*|^2`. A mode is accepted where that number is below `FALSE`.
-
-Poles come from the stabilisation diagram, and then from the residuals: wherever a pole would
-explain more of the whitened residuals than noise does in every other test, one is added, until
-nothing stands out. Backwards, :math:`\Delta J` of a mode is the Wald statistic of its shape.
-Windows and zero padding correlate lines, and errors of the force responses: how much noise a pole
-explains is measured on poles of the same damping in its neighbourhood, by an upper quantile.
-
-Two modes are a *pair* where the data cannot tell their poles apart. Residues of two close poles are
-:math:`C(sI - M)^{-1}B` with a matrix M, 2 by 2, whose eigenvalues are the poles. With one pole,
-:math:`M = \lambda I`, the cost is greater by half a :math:`\chi^2` of six degrees of freedom, and
-any basis of the plane of both shapes gives the same functions.
-
-Sources: Johnstone, On the distribution of the largest eigenvalue in principal components analysis,
-Ann. Stat. 29 (2001) 295-327, doi:10.1214/aos/1009210544 (the matrix); Adler & Taylor, *Random
-Fields and Geometry*, 2007, doi:10.1007/978-0-387-48116-6, chapter 15 (maxima over a family).
+Evidence, noise and pairs are those of docs/methods/identification.md. Poles come from the
+stabilisation diagram, and then from the residuals: wherever a pole would explain more of them than
+noise does in every other test, one is added, until nothing stands out. Backwards,
+:math:`\Delta J` of a mode is the Wald statistic of its shape.
 """
 
 from __future__ import annotations

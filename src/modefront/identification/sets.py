@@ -3,7 +3,7 @@
 Modes of different sets are the same where frequencies lie within half a bandwidth, 0.5 % or
 `WIDTH` standard deviations, and shapes agree at common sensors. Shapes are compared in the sign and
 scale of the first set that has the mode; those of a pair are not, as each set has some basis of
-their plane. Equations: docs/methods/identification.md.
+their plane. Equations: docs/methods/deviations.md.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Real mode shapes from complex ones, and the share of the imaginary part.
 
-Rotations, differentials and planes of pairs are derived in docs/methods/identification.md.
+Rotations, differentials and planes of pairs are derived in docs/methods/deviations.md.
 """
 
 from __future__ import annotations

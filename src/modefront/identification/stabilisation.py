@@ -99,9 +99,9 @@ def diagram_of(
     rate = 2 * np.pi * lscf.ARC / (omega[-1] - omega[0])
     most = min(max(MOST_POLES // len(data.H), 6), len(omega) // 4)
     orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
-    z = lscf.generalised_frequency(omega, omega[0], rate)
+    z: Complexes = np.exp(1j * rate * (omega - omega[0]))
     sums = lscf.moments(data.H, weight / weight.max(), z, max(orders))
-    windowed = lscf.poles(sums, orders, omega[0], rate)
+    windowed = [lscf.poles(sums, p, omega[0], rate) for p in orders]
     estimates = [lscf.without_decay(poles, data.decay) for poles in windowed]
     kept = []
     for p in estimates:

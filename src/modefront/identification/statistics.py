@@ -1,6 +1,6 @@
 r"""Standard deviations of frequencies, damping ratios and shapes.
 
-Errors of the data reach the parameters by the equations of docs/methods/identification.md, with the
+Errors of the data reach the parameters by the equations of docs/methods/deviations.md, with the
 projected Gauss–Newton matrix A of `modefront.identification.modal_model` and
 :math:`Z = G^{-1}\Phi^T D`. Two things break the independence of errors, and are measured on the
 residuals: noise of the force channel, which all responses of a reference share, and correlation of
