@@ -317,7 +317,7 @@ def seeded(task: Problem, fit: Fit, omega: Floats) -> tuple[Complexes, Complexes
         if (np.abs(np.abs(out) - each) < -out.real).any():
             continue
         within = np.abs(found.lam.imag - each) <= -found.lam.real
-        near = np.where(within, found.gain, -1.0).argmax()
+        near = np.where(within, found.gain * found.noise, -1.0).argmax()
         out = np.append(out, complex(found.lam[near].real, each))
         L = np.vstack([L, found.L[near]])
     return out, L
