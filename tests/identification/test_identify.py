@@ -15,7 +15,9 @@ from modefront._typing import Floats
 from modefront.data.modal_test import ModalTest
 from modefront.data.responses import Channel, assemble, frequency_responses
 from modefront.identification.methods.hammer import identify
+from modefront.identification.modal_model import problem, synthesise
 from modefront.identification.modal_test import IdentifiedTest
+from modefront.identification.selection import refit, scan
 from modefront.identification.sets import combine
 
 F = np.arange(0.1, 30.05, 0.1)
@@ -139,6 +141,23 @@ def test_noise_alone_has_no_modes() -> None:
     H = rng.standard_normal((1, 3, 300)) + 1j * rng.standard_normal((1, 3, 300))
     result = identify(frequency_responses(np.arange(1, 301.0), H))
     assert result.modes == ()
+
+
+def test_what_poles_explain_of_residuals_is_that_of_sums_over_lines() -> None:
+    phi = three_story_shapes()
+    f = np.delete(F, slice(40, 60))
+    H = accelerance(f, THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2])
+    data = frequency_responses(f, blows(H, 0.05, np.random.default_rng(0)))
+    assert data.variance is not None
+    task, _, _ = problem(data, data.variance, 1)
+    fit = refit(task, np.zeros(0, complex), np.zeros((0, 2), complex))
+    found, r = scan(task, fit), task.H - synthesise(task, fit.model)
+    for k in range(0, len(found.lam), 37):
+        e = task.s**2 / (task.s - found.lam[k])
+        products = np.sum(task.weight * r * e.conj(), axis=2)
+        z = products / np.sqrt(np.sum(task.weight * np.abs(e) ** 2, axis=2))
+        explained = 2 * np.linalg.norm(z, 2) ** 2
+        assert found.gain[k] * found.noise[k] == pytest.approx(explained, rel=1e-6)
 
 
 def test_too_few_lines_are_an_error() -> None:
