@@ -88,7 +88,11 @@ def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
     test, output = tmp_path / "test-m0.toml", tmp_path / "o.csv"
     _invoke(test, "-o", output, "--keep", "1,2", "--drop", "1", "--seed", "18.5")
     found = read_csv(output)
-    assert found.frequency.shape == (3, 1)
+    assert found.frequency.shape[0] == 3
+    first, *at_the_seed = found.mean_frequency
+    assert first == pytest.approx(13.09, rel=0.01)  # mode 2 of the table without a seed
+    assert at_the_seed == pytest.approx([18.5] * len(at_the_seed), rel=0.03)
+    assert at_the_seed
     report = json.loads((tmp_path / "o-identification.json").read_text())
     assert "left out by hand" in [x["reason"] for x in report["sets"][0]["rejected"]]
     with pytest.raises(InputError, match="numbers of modes, from 1 to 3"):

@@ -109,7 +109,7 @@ def test_doubtful_files_have_warnings(tmp_path: Path, content: str, message: str
     path = tmp_path / "a.uff"
     path.write_text(content)
     (data_set,) = read_test(path).sets
-    assert message in "\n".join(data_set.assembled.warnings)
+    assert message in "\n".join(data_set.warnings)
 
 
 @pytest.mark.parametrize("roving", ["sensor", "hammer"])
@@ -129,7 +129,7 @@ def test_a_sensor_in_g_is_named_by_reciprocity(tmp_path: Path, roving: str) -> N
     path.write_text(f"[test]\n[[set]]\nfiles = {files}\n[sensors]\n{names}")
     test = read_test(path)
     assert test.name == "test"
-    (warning,) = test.sets[0].assembled.warnings
+    (warning,) = test.sets[0].warnings
     assert "the channel c is 0.102 times as great as reciprocity with a, b says" in warning
     assert "between g and m/s²" in warning
 
@@ -139,8 +139,8 @@ def test_good_files_have_none(tmp_path: Path, letter: str) -> None:
     path = tmp_path / "a.uff"
     path.write_text(_all(accelerances(), letter))
     (data_set,) = read_test(path).sets
-    assert data_set.assembled.warnings == ()
-    assert data_set.assembled.data.H == pytest.approx(accelerances(), rel=1e-4, abs=1e-6)
+    assert data_set.warnings == ()
+    assert data_set.data.H == pytest.approx(accelerances(), rel=1e-4, abs=1e-6)
 
 
 def test_a_fault_far_down_a_long_file_is_found_by_its_line(tmp_path: Path) -> None:
@@ -157,7 +157,7 @@ def test_a_pair_that_was_hit_once_is_weighted_too(tmp_path: Path) -> None:
     path = tmp_path / "a.uff"
     path.write_text(_all(H) + uff58(1.01 * H[0, 0], 1, 1))
     (data_set,) = read_test(path).sets
-    data = data_set.assembled.data
+    data = data_set.data
     assert data.variance is not None
     assert weighting(data) == "residuals"
 

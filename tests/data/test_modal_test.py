@@ -163,7 +163,7 @@ def test_references_and_blows_are_told_apart(tmp_path: Path) -> None:
         _csv(tmp_path / f"{k}.csv", f, _functions(k))
     path = _test_file(tmp_path, ["0.csv", "1.csv", "2.csv"], ["a", "a", "b"])
     (data_set,) = read_test(path).sets
-    data = data_set.assembled.data
+    data = data_set.data
     assert data.H.shape == (2, 2, 30)
     assert (data.references, data.responses, data.quantity) == (("a", "b"), ("a", "b"), "mobility")
     assert data.H[0, 0] == pytest.approx((_functions(0)["a"] + _functions(1)["a"]) / 2)
@@ -179,7 +179,7 @@ def test_functions_of_spreadsheets_are_read(tmp_path: Path) -> None:
     text = path.read_text().replace(",", ";").replace(".", ",")
     path.write_text("sep=;\n" + text)
     (data_set,) = read_test(path).sets
-    assert data_set.assembled.data.H[0] == pytest.approx(np.array(list(H.values())))
+    assert data_set.data.H[0] == pytest.approx(np.array(list(H.values())))
     path.write_text(text.replace(text.splitlines()[3], "3;x;1;1;1"))
     with pytest.raises(InputError, match=r"line 4, column 'a_re'.*found 'x'"):
         read_test(path)
@@ -200,10 +200,10 @@ def test_odd_channels_are_pointed_out(tmp_path: Path) -> None:
     _csv(tmp_path / "0.csv", f, {"a": H["a"], "b": H["b"], "c": 0 * H["a"]})
     _csv(tmp_path / "1.csv", f, {"a": -H["b"], "b": H["a"], "c": 1000 * H["a"]})
     (data_set,) = read_test(_test_file(tmp_path, ["0.csv", "1.csv"], ["a", "b"])).sets
-    message = "\n".join(data_set.assembled.warnings)
+    message = "\n".join(data_set.warnings)
     for text in ("looks like rad/s", "only zeros", "check its unit", "opposite signs"):
         assert text in message
-    assert np.isnan(data_set.assembled.data.H[0, 2]).all()
+    assert np.isnan(data_set.data.H[0, 2]).all()
 
 
 @pytest.mark.parametrize("bad", ["nan", "x", "", "1e999"])
@@ -241,7 +241,7 @@ def test_functions_as_magnitude_and_phase(tmp_path: Path, form: str) -> None:
     table = np.transpose([f, *(x for n in H for x in (np.abs(H[n]), angles[n]))])
     np.savetxt(tmp_path / "a.csv", table, "%.12g", ",", header=header, comments="")
     (data_set,) = read_test(tmp_path / "a.csv").sets
-    assert data_set.assembled.data.H[0] == pytest.approx(np.array(list(H.values())))
+    assert data_set.data.H[0] == pytest.approx(np.array(list(H.values())))
 
 
 @pytest.mark.parametrize(
@@ -273,8 +273,8 @@ def test_columns_are_named_freely(tmp_path: Path) -> None:
     text = test.read_text()
     test.write_text(f"{text}columns = {names}\n")
     (found,) = read_test(test).sets
-    assert found.assembled.data.responses == ("a", "b")
-    np.testing.assert_array_equal(found.assembled.data.H, right.assembled.data.H)
+    assert found.data.responses == ("a", "b")
+    np.testing.assert_array_equal(found.data.H, right.data.H)
     test.write_text(f"{text}columns = {names[:-1]}, other = 'c' }}\n")
     with pytest.raises(InputError, match=r"columns: expected a column of the CSV files .*'other'"):
         read_test(test)
@@ -287,12 +287,12 @@ def test_functions_that_say_nothing_are_left_out(tmp_path: Path, value: str) -> 
     rows = [f"{row},{value},{value}" for row in rows]
     path.write_text("\n".join([f"{header},c_re,c_im", *rows]) + "\n")
     (data_set,) = read_test(path).sets
-    data = data_set.assembled.data
+    data = data_set.data
     assert data.responses == ("a", "b", "c")
     assert np.isnan(data.H[0, 2]).all()
     assert data.H[0, :2] == pytest.approx(np.array(list(_functions(0).values())))
     what = "one number at all lines" if value == "2.5" else "empty or only zeros"
-    assert f"'c_im': {what}; the channel is left out" in "\n".join(data_set.assembled.warnings)
+    assert f"'c_im': {what}; the channel is left out" in "\n".join(data_set.warnings)
     if not value:
         text = path.read_text()
         path.write_text(text.replace(rows[3], rows[3] + "7"))
@@ -313,9 +313,7 @@ def test_records_that_never_move_are_left_out(tmp_path: Path, value: str) -> Non
         rows = [f"{a:.9g},{b:.9g},{value},{c:.9g}" for a, b, c in zip(t, force, move, strict=True)]
         (tmp_path / f"{k}.csv").write_text("\n".join(["time,force,still,top", *rows]) + "\n")
     (data_set,) = read_test(_test_file(tmp_path, ["0.csv", "1.csv"], ["a", "a"])).sets
-    data = data_set.assembled.data
+    data = data_set.data
     assert np.isnan(data.H[0, data.responses.index("still")]).all()
     assert np.isfinite(data.H[0, data.responses.index("top")]).all()
-    assert "'still': empty or only zeros; the channel is left out" in "\n".join(
-        data_set.assembled.warnings
-    )
+    assert "'still': empty or only zeros; the channel is left out" in "\n".join(data_set.warnings)

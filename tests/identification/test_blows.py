@@ -55,8 +55,8 @@ def test_records_in_csv_give_the_modes_without_the_damping_of_the_window(
     tmp_path: Path, windows: str
 ) -> None:
     (data_set,) = read_test(_test_file(tmp_path, *_blows(tmp_path), windows)).sets
-    data = data_set.assembled.data
-    assert data_set.assembled.warnings == ()
+    data = data_set.data
+    assert data_set.warnings == ()
     assert (data.references, data.responses) == (FLOORS[1:], FLOORS)
     assert data.decay == pytest.approx(1 / 1.5 if windows else 0.4)
     modes = identify(data, (1, 30)).modes
@@ -97,7 +97,7 @@ def test_records_in_universal_files_are_grouped_into_blows(tmp_path: Path) -> No
             )
     pyuff.UFF(str(path)).write_sets(sets, "add")
     (data_set,) = read_test(path).sets
-    data = data_set.assembled.data
+    data = data_set.data
     assert (data.references, data.responses) == (("3Z",), ("1Z", "2Z", "3Z"))
     assert data.quantity == "accelerance"
     assert data.variance is not None
@@ -113,8 +113,8 @@ def test_a_dead_response_is_left_out(tmp_path: Path) -> None:
         y[1] = 0 * y[1]
         _csv(tmp_path / file, time, force, np.array(y))
     (data_set,) = read_test(_test_file(tmp_path, files, references, "")).sets
-    assert all("only zeros" in text for text in data_set.assembled.warnings)
-    data = data_set.assembled.data
+    assert all("only zeros" in text for text in data_set.warnings)
+    data = data_set.data
     modes = identify(data, (1, 30)).modes
     assert [mode.frequency for mode in modes] == pytest.approx(THREE_STORY, rel=2e-3)
     dead = [name == "floor2" for name in data.responses]
@@ -128,7 +128,7 @@ def test_blows_that_are_left_out_are_named(tmp_path: Path) -> None:
     force[300:303] = 1.0
     _csv(tmp_path / files[1], time, force, y)
     (data_set,) = read_test(_test_file(tmp_path, files, references, "")).sets
-    (text,) = data_set.assembled.warnings
+    (text,) = data_set.warnings
     assert files[1] in text
     assert "left out: a second hit 2.18 s after the first" in text
 
@@ -140,7 +140,7 @@ def test_responses_that_are_cut_off_are_said(tmp_path: Path) -> None:
         (tmp_path / file).write_text("\n".join(lines[:201]) + "\n")
     test = _test_file(tmp_path, files, references, '[impact]\nexponential = "none"')
     (data_set,) = read_test(test).sets
-    assert "at the end of the record: expect errors of leakage" in data_set.assembled.warnings[0]
+    assert "at the end of the record: expect errors of leakage" in data_set.warnings[0]
 
 
 @pytest.mark.parametrize(
@@ -215,7 +215,7 @@ def test_damping_of_windowed_functions_is_that_of_the_structure(tmp_path: Path) 
     test = _test_file(tmp_path, files, references, "")
     test.write_text(test.read_text() + f"window = {{ exponential = {tau} }}\n")
     (data_set,) = read_test(test).sets
-    modes = identify(data_set.assembled.data, (2, 30)).modes
+    modes = identify(data_set.data, (2, 30)).modes
     assert [mode.frequency for mode in modes] == pytest.approx(THREE_STORY, rel=1e-3)
     assert [mode.damping for mode in modes] == pytest.approx(THREE_STORY_DAMPING, rel=0.1)
     test.write_text(test.read_text().replace(str(tau), "-1"))

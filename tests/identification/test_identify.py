@@ -2,11 +2,23 @@
 
 import numpy as np
 import pytest
-from simulation import THREE_STORY, THREE_STORY_DAMPING, accelerance, blows, three_story_shapes
+from simulation import (
+    THREE_STORY,
+    THREE_STORY_DAMPING,
+    accelerance,
+    blows,
+    circular,
+    three_story_shapes,
+)
 
 from modefront._typing import Floats
-from modefront.data.responses import frequency_responses
+from modefront.data.modal_test import ModalTest
+from modefront.data.responses import Channel, assemble, frequency_responses
 from modefront.identification.methods.hammer import identify
+from modefront.identification.modal_model import problem, synthesise
+from modefront.identification.modal_test import IdentifiedTest
+from modefront.identification.selection import refit, scan
+from modefront.identification.sets import combine
 
 F = np.arange(0.1, 30.05, 0.1)
 
@@ -89,6 +101,29 @@ def test_a_dead_channel_and_gaps_are_left_out() -> None:
     assert np.isfinite(result.modes[0].shape_std[[0, 2]]).all()
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("size", [0.0, 0.002])
+def test_a_channel_of_zeros_or_noise_is_left_empty_and_named(size: float) -> None:
+    phi = three_story_shapes()
+    H = accelerance(F, THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2])
+    rng = np.random.default_rng(2)
+    measured = blows(H, 0.01, rng)
+    measured[:, :, 0] = size * circular(rng, measured[:, :, 0].shape)
+    names = ("2", "3"), ("1", "2", "3")
+    channels = [
+        Channel("t", f"{b}", names[0][j], names[1][i], F, measured[b, j, i])
+        for b, j, i in np.ndindex(measured.shape[:3])
+    ]
+    data_set = assemble(channels, "accelerance", "1", turned=False)
+    result = identify(data_set.data, (1, 30))
+    test = ModalTest("t", None, None, (data_set,))
+    done = IdentifiedTest(test, (result,), combine(["1"], [result]))
+    assert np.isnan(done.data.shape[0, :, 0]).all()
+    assert np.isfinite(done.data.shape[0, :, 1:]).all()
+    expected = "1: nothing but noise at any mode" if size else "only zeros; the channel is left out"
+    assert any(expected in text for text in done.warnings)
+
+
 def test_a_mode_that_drifts_from_blow_to_blow_stays_one_mode() -> None:
     phi = three_story_shapes()
     drift = 1 + 0.002 * np.linspace(-1, 1, 5)
@@ -106,6 +141,23 @@ def test_noise_alone_has_no_modes() -> None:
     H = rng.standard_normal((1, 3, 300)) + 1j * rng.standard_normal((1, 3, 300))
     result = identify(frequency_responses(np.arange(1, 301.0), H))
     assert result.modes == ()
+
+
+def test_what_poles_explain_of_residuals_is_that_of_sums_over_lines() -> None:
+    phi = three_story_shapes()
+    f = np.delete(F, slice(40, 60))
+    H = accelerance(f, THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2])
+    data = frequency_responses(f, blows(H, 0.05, np.random.default_rng(0)))
+    assert data.variance is not None
+    task, _, _ = problem(data, data.variance, 1)
+    fit = refit(task, np.zeros(0, complex), np.zeros((0, 2), complex))
+    found, r = scan(task, fit), task.H - synthesise(task, fit.model)
+    for k in range(0, len(found.lam), 37):
+        e = task.s**2 / (task.s - found.lam[k])
+        products = np.sum(task.weight * r * e.conj(), axis=2)
+        z = products / np.sqrt(np.sum(task.weight * np.abs(e) ** 2, axis=2))
+        explained = 2 * np.linalg.norm(z, 2) ** 2
+        assert found.gain[k] * found.noise[k] == pytest.approx(explained, rel=1e-6)
 
 
 def test_too_few_lines_are_an_error() -> None:

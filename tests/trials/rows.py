@@ -215,7 +215,7 @@ def write_58(folder: Path) -> None:
 def read_functions(name: str) -> Callable[[Path], object]:
     def read(folder: Path) -> object:
         (one,) = read_test(folder / name).sets
-        data = one.assembled.data
+        data = one.data
         names = data.references, data.responses
         return plain((data.frequency, data.H, names, data.quantity, data.variance))
 

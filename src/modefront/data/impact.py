@@ -1,23 +1,9 @@
-r"""Frequency response functions from the records of impacts.
+"""Frequency response functions from the records of impacts.
 
-Every blow is a record of force x and responses y. With spectra X and Y after the windows, and sums
-over blows :math:`S_{xx} = \sum |X|^2`, :math:`S_{yx} = \sum Y X^*`, :math:`S_{yy} = \sum |Y|^2`,
-
-.. math:: H_1 = \frac{S_{yx}}{S_{xx}},\qquad H_2 = \frac{S_{yy}}{S_{xy}},\qquad
-          H_v = \frac{S_{yx}}{|S_{yx}|}\sqrt{\frac{S_{yy}}{S_{xx}}},\qquad
-          \gamma^2 = \frac{|S_{yx}|^2}{S_{xx} S_{yy}} .
-
-H1 is free of bias by noise of the responses, H2 of noise of the force, and Hv, their geometric
-mean, lies between (Rocklin, Crowley & Vold, A comparison of H1, H2, and Hv frequency response
-functions, IMAC III (1985)). The force window keeps the impact and sets the rest to zero. The
-exponential window :math:`e^{-t/\tau}` lets responses die out within the record; as it multiplies
-force and responses alike, the functions are exactly those at :math:`s = \mathrm{i}\omega + 1/\tau`,
-which the identification takes into account (Fladung & Brown, Multiple reference impact testing,
-IMAC XI (1993)).
-
-A record that stays at its greatest value, and gets there by more than the resolution of its
-numbers, is overloaded. A second hit is a push beyond `SECOND` of the peak after the first impact
-has ended.
+Every blow is a record of force and responses; the estimators and the windows are those of
+docs/methods/deviations.md. A record that stays at its greatest value, and gets there by more
+than the resolution of its numbers, is overloaded. A second hit is a push beyond `SECOND` of the
+peak after the first impact has ended.
 """
 
 from __future__ import annotations

@@ -19,8 +19,8 @@ from modefront.data.csv import read_test_csv
 from modefront.data.impact import ESTIMATORS, Averaged, Contents, Windows, averaged_blows
 from modefront.data.records import ORDERS as RECORDED
 from modefront.data.records import Records, SetFiles, read_records
-from modefront.data.responses import ORDERS, Assembled, Channel, assemble, joined
-from modefront.data.uff import read_uff
+from modefront.data.responses import ORDERS, Channel, DataSet, assemble, joined
+from modefront.data.uff import is_universal, read_uff
 from modefront.errors import Fault, InputError, refuse, suggestion
 from modefront.inputs import wrong
 from modefront.json_schema import NOT_NEGATIVE, array
@@ -46,14 +46,6 @@ class ByHand:
     keep: tuple[int, ...] = ()
     drop: tuple[int, ...] = ()
     seeds: tuple[float, ...] = ()
-
-
-@dataclass(frozen=True)
-class DataSet:
-    """One data set of a test: its name, its functions, and warnings about them."""
-
-    name: str
-    assembled: Assembled
 
 
 @dataclass(frozen=True)
@@ -102,24 +94,11 @@ def read_test(path: Path) -> ModalTest:
         expected = "a universal file (.uff), a CSV file (.csv) or a test file (.toml)"
         found = "no such file" if not path.exists() else "none of these"
         raise wrong(path, expected, found)
-    assembled = _assembled(contents, path.stem, settings)
+    data_set = _assembled(contents, path.stem, settings)
     if path.suffix.lower() == ".csv":
         note = f"{path}: the file does not say its quantity: taken for accelerance"
-        assembled = Assembled(assembled.data, (note, *assembled.warnings))
-    return ModalTest(path.stem, None, None, (DataSet(path.stem, assembled),))
-
-
-def is_universal(path: Path) -> bool:
-    """Return whether a file is taken for a universal file, by its ending or its first line."""
-    if path.suffix.lower() in (".uff", ".unv", ".uf", ".bunv", ".ufb"):
-        return True
-    try:
-        if not path.is_file():
-            return False
-        with path.open("rb") as stream:
-            return stream.read(64).lstrip(b"\r\n").startswith(b"    -1")
-    except OSError:
-        return False
+        data_set = replace(data_set, warnings=(note, *data_set.warnings))
+    return ModalTest(path.stem, None, None, (data_set,))
 
 
 def _from_toml(path: Path) -> ModalTest:
@@ -139,7 +118,7 @@ def _from_toml(path: Path) -> ModalTest:
         sensors = [sensor for each in setups for sensor in each.sensors]
     else:
         data_sets = [_data_set(root, each, settings) for each in sets]
-        sensors = [sensor for each in data_sets for sensor in each.assembled.data.responses]
+        sensors = [sensor for each in data_sets for sensor in each.data.responses]
     for place in places:
         if place not in sensors:
             root.fault(f"[geometry] {place}", "a sensor of the files", suggestion(place, sensors))
@@ -169,7 +148,7 @@ def _data_set(root: Table, known: SetFiles, settings: _Settings) -> DataSet:
         root.fault(f"[[set]] {known.name!r} columns", expected, repr(unused))
     refuse(root.faults)
     its_own = replace(settings, decay=known.decay)
-    return DataSet(known.name, _assembled(contents, known.name, its_own, root))
+    return _assembled(contents, known.name, its_own, root)
 
 
 def _test_table(root: Table) -> tuple[str, bool, _Settings]:
@@ -315,7 +294,7 @@ def _contents(root: Table, path: Path, reference: str, columns: Mapping[str, str
 
 def _assembled(
     contents: Sequence[Contents], name: str, settings: _Settings, root: Table | None = None
-) -> Assembled:
+) -> DataSet:
     """Return one data set with the names of the test file, at the side that has the sensors."""
     averaged = _functions(contents, name, settings, root)
     channels = averaged.channels
@@ -338,13 +317,13 @@ def _assembled(
     else:
         turned = len(references) > len(responses) == 1
     named_channels = [_named(channel, named) for channel in channels]
-    assembled = assemble(named_channels, settings.quantity, name, turned)
+    out = assemble(named_channels, settings.quantity, name, turned)
     noise = {_name(label, named)[0]: each for label, each in averaged.force_noise.items()}
     known = None
     if not turned:  # else each point of the hammer, now a response, has noise of its own
-        known = joined([noise.get(label) for label in assembled.data.references])
-    data = replace(assembled.data, decay=averaged.decay, force_noise=known)
-    return Assembled(data, (*averaged.warnings, *assembled.warnings))
+        known = joined([noise.get(label) for label in out.data.references])
+    data = replace(out.data, decay=averaged.decay, force_noise=known)
+    return DataSet(name, data, (*averaged.warnings, *out.warnings))
 
 
 def _functions(

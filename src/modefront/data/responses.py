@@ -223,14 +223,15 @@ _Groups: TypeAlias = dict[tuple[int, int], list[Channel]]
 
 
 @dataclass(frozen=True)
-class Assembled:
-    """The functions of one data set, with warnings."""
+class DataSet:
+    """A data set of a test: its name, its functions, and warnings about them."""
 
+    name: str
     data: FrequencyResponses
     warnings: tuple[str, ...]
 
 
-def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool) -> Assembled:
+def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool) -> DataSet:
     """Return one data set from its channels.
 
     ``quantity`` is what the test file says, or empty; ``turned`` makes the points of the hammer
@@ -258,12 +259,6 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
                 variance[j, i] = channel.variance
     dead = (np.nan_to_num(H) == np.nan_to_num(H[..., :1])).all(axis=(0, 3))
     H[:, dead] = np.nan
-    mean = np.nanmean(H, axis=0) if len(H) > 1 else H[0]
-    warnings = [
-        *_units(name, frequency, mean, groups, dead),
-        *_reciprocity(name, mean, references, responses, turned),
-        *_driving_points(H, frequency, quantity, groups),
-    ]
     data = frequency_responses(
         frequency,
         H if blows > 1 else H[0],
@@ -273,7 +268,12 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
         coherence=coherence if blows == 1 and np.isfinite(coherence).any() else None,
         variance=variance if blows == 1 and np.isfinite(variance).any() else None,
     )
-    return Assembled(data, tuple(warnings))
+    warnings = [
+        *_units(name, frequency, data.H, groups, dead),
+        *_reciprocity(name, data.H, references, responses, turned),
+        *_driving_points(H, frequency, quantity, groups),
+    ]
+    return DataSet(name, data, tuple(warnings))
 
 
 def _quantity(channels: Sequence[Channel], declared: str) -> str:

@@ -374,7 +374,7 @@ def dataset_55(
     return "\n".join(lines) + "\n"
 
 
-SUFFIXES = (".uff", ".unv", ".uf")
+SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")
 """Ends of names of universal files."""
 
 CARTESIAN, CYLINDRICAL = 0, 1
@@ -474,9 +474,16 @@ class NodalModes:
         return int(positions[0]), direction
 
 
-def is_universal(name: str) -> bool:
-    """Return whether a file is a universal file by its name."""
-    return name.lower().endswith(SUFFIXES)
+def is_universal(file: Path | str) -> bool:
+    """Return whether a file is taken for a universal file, by its ending or its first line."""
+    path = Path(file)
+    if path.suffix.lower() in SUFFIXES:
+        return True
+    with suppress(OSError, ValueError):
+        if path.is_file():
+            with path.open("rb") as stream:
+                return stream.read(64).lstrip(b"\r\n").startswith(b"    -1")
+    return False
 
 
 def read_uff55(path: Path) -> NodalModes:

@@ -1,19 +1,6 @@
-r"""Indicator functions, whose peaks and dips over frequency are modes.
+"""Indicator functions, whose peaks and dips over frequency are modes.
 
-*Complex mode indicator functions* are the squared singular values of the functions at every line,
-:math:`\sigma_k^2(H(\omega))` over references and responses: as many curves as references, of which
-the second one peaks where a mode is repeated (Shih, Tsuei, Allemang & Brown, Complex mode
-indication function and its applications to spatial domain parameter estimation, Mech. Syst. Signal
-Process. 2 (1988) 367-377, doi:10.1016/0888-3270(88)90060-X).
-
-*Multivariate mode indicator functions* are the eigenvalues of
-
-.. math:: A F = \mu\,(A + B) F,\qquad A = R^T R,\quad B = I^T I,
-
-R and I the real and the imaginary part of the functions, for mobilities exchanged: the least
-:math:`\mu` dips from 1 towards 0 where some forces F make the structure vibrate in quadrature, as
-at a mode (Williams, Crowley & Vold, The multivariate mode indicator function in modal analysis,
-IMAC III (1985) 66-70).
+They are the complex and the multivariate ones of docs/methods/deviations.md.
 """
 
 from __future__ import annotations

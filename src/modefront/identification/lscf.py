@@ -28,7 +28,6 @@ Process. 19 (2005) 989-1014, doi:10.1016/j.ymssp.2004.08.003 (the constraint).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,12 +80,6 @@ class Moments:
     second: Complexes
 
 
-def generalised_frequency(omega: Floats, shift: float, rate: float) -> Complexes:
-    """Return z at circular frequencies, z = exp(i rate (omega - shift))."""
-    out: Complexes = np.exp(1j * rate * (omega - shift))
-    return out
-
-
 def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments:
     """Return the sums of which R, S and T are made, for lags from -highest to highest.
 
@@ -118,11 +111,6 @@ def _both(positive: Complexes, conjugate: Complexes) -> Complexes:
     """Return sums for lags of both signs from those of lags of positive sign."""
     out: Complexes = np.concatenate([conjugate[..., :0:-1].conj(), positive], axis=-1)
     return out
-
-
-def poles(sums: Moments, orders: Iterable[int], shift: float, rate: float) -> list[Poles]:
-    """Return the stable poles of each order from the shared sums."""
-    return [_poles(sums, p, shift, rate) for p in orders]
 
 
 def without_decay(poles: Poles, decay: float) -> Poles:
@@ -161,7 +149,8 @@ def _reduced(sums: Moments, p: int) -> Complexes:
     return M - half.conj().T @ half
 
 
-def _poles(sums: Moments, p: int, shift: float, rate: float) -> Poles:
+def poles(sums: Moments, p: int, shift: float, rate: float) -> Poles:
+    """Return the stable poles of one order, of z = exp(i rate (omega - shift))."""
     n_in = sums.first.shape[1]
     M = _reduced(sums, p)
     M = (M + M.conj().T) / 2

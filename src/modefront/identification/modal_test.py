@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 from threadpoolctl import threadpool_limits
 
 from modefront._typing import Complexes
@@ -85,7 +86,7 @@ class IdentifiedTest:
                 if f or zeta
             ]
         )
-        read = [text for part in self.test.sets for text in part.assembled.warnings]
+        read = [text for part in self.test.sets for text in part.warnings]
         read += [
             f"set {setup.name!r}: {name} does not move and is left out"
             for setup in self.test.setups
@@ -191,31 +192,32 @@ def identify(
             expected = f"frequencies within the band, {low:g} to {high:g} Hz"
             raise InputError(Fault(str(path), "--seed", expected, f"{f:g}"))
     with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
-        if read.setups:
-            identified = [ambient.identify(read.setups, band, read.modes, seeds)]
-        else:
-            identified = [
-                hammer.identify(part.assembled.data, band, read.modes, seeds) for part in read.sets
-            ]
+        identified = _identified(read, band, seeds)
+        table = _identified(read, band) if seeds and (keep or drop) else identified
     names = _names(read)
-    if (keep or drop) and any(each.modes for each in identified):
-        identified = _chosen(path, identified, combine(names, identified).index, keep, drop)
+    if (keep or drop) and any(each.modes for each in table):
+        unwanted = _unwanted(path, combine(names, table).index, keep, drop)
+        identified = list(map(_without, identified, table, unwanted))
     found = any(each.modes for each in identified)
     return IdentifiedTest(read, tuple(identified), combine(names, identified) if found else None)
+
+
+def _identified(
+    test: ModalTest, band: tuple[float, float] | None, seeds: Sequence[float] = ()
+) -> list[Identification]:
+    if test.setups:
+        return [ambient.identify(test.setups, band, test.modes, seeds)]
+    return [hammer.identify(part.data, band, test.modes, seeds) for part in test.sets]
 
 
 def _names(test: ModalTest) -> list[str]:
     return [test.name] if test.setups else [part.name for part in test.sets]
 
 
-def _chosen(
-    path: Path,
-    identified: Sequence[Identification],
-    index: Sequence[Sequence[int]],
-    keep: Sequence[int],
-    drop: Sequence[int],
-) -> list[Identification]:
-    """Return the identifications with the modes that were chosen; the others stay in the fits."""
+def _unwanted(
+    path: Path, index: Sequence[Sequence[int]], keep: Sequence[int], drop: Sequence[int]
+) -> list[set[int]]:
+    """Return which modes of each set are left out; ``index`` holds those of the table."""
     count = len(index[0])
     for option, numbers in (("--keep", keep), ("--drop", drop)):
         for number in numbers:
@@ -223,17 +225,23 @@ def _chosen(
                 expected = f"numbers of modes, from 1 to {count}"
                 raise InputError(Fault(str(path), option, expected, str(number)))
     chosen = set(keep or range(1, count + 1)) - set(drop)
-    out = []
-    for each, of_set in zip(identified, index, strict=True):
-        kept = {of_set[number - 1] for number in chosen}
-        modes = tuple(mode for k, mode in enumerate(each.modes) if k in kept)
-        gone = [
-            Rejected(float(mode.frequency), float(mode.damping), "left out by hand")
-            for k, mode in enumerate(each.modes)
-            if k not in kept
-        ]
-        out.append(replace(each, modes=modes, rejected=(*each.rejected, *gone)))
-    return out
+    return [{k for r, k in enumerate(of_set, 1) if r not in chosen} for of_set in index]
+
+
+def _without(each: Identification, table: Identification, unwanted: set[int]) -> Identification:
+    """Return an identification without some modes of the table; they stay in its fit.
+
+    It may have modes at seeds beside those of the table.
+    """
+    f, of_table = (np.array([mode.frequency for mode in x.modes]) for x in (each, table))
+    rows, columns = linear_sum_assignment(np.abs(np.subtract.outer(of_table, f)))
+    gone = {int(column) for row, column in zip(rows, columns, strict=True) if row in unwanted}
+    rejected = [
+        Rejected(float(each.modes[k].frequency), float(each.modes[k].damping), "left out by hand")
+        for k in sorted(gone)
+    ]
+    modes = tuple(mode for k, mode in enumerate(each.modes) if k not in gone)
+    return replace(each, modes=modes, rejected=(*each.rejected, *rejected))
 
 
 def writable(path: Path | str) -> Path:
@@ -256,14 +264,14 @@ def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -
             reach = f"{low:g} to {high:g} Hz of {setup.duration:g} s at {setup.rate:g} per s"
             raise InputError(Fault(str(path), "band", expected, reach))
     for data_set in test.sets:
-        f = data_set.assembled.data.frequency
+        f = data_set.data.frequency
         low, high = band or (0.0, np.inf)
         count = int(np.count_nonzero((f >= low) & (f <= high) & (f > 0)))
         if count < hammer.LEAST_LINES:
             expected = f"at least {hammer.LEAST_LINES} lines of set {data_set.name!r} within it"
             reach = f"{count}: the files reach from {f[0]:g} to {f[-1]:g} Hz"
             raise InputError(Fault(str(path), "band", expected, reach))
-        inside = data_set.assembled.data.within(low, high)
+        inside = data_set.data.within(low, high)
         if not np.any(np.abs(np.nan_to_num(inside.H)) > 0):
             expected = "functions that are not zero"
             raise InputError(Fault(str(path), "band", expected, f"zeros in set {data_set.name!r}"))
@@ -285,6 +293,22 @@ def _warnings(identification: Identification) -> list[str]:
             "neighbouring lines are correlated: standard deviations are "
             f"{residuals.widening**0.5:.1f} times those of independent lines; windows, zero "
             "padding or drifting modes"
+        )
+    measured = {data.responses[i] for i in np.flatnonzero(data.measured.any(axis=(0, 2)))}
+    names = [
+        name
+        for name, *stds in zip(
+            identification.responses,
+            *(mode.shape_std for mode in identification.modes),
+            strict=True,
+        )
+        if name in measured and np.isnan(stds).any()
+    ]
+    if names:
+        more = f" and {len(names) - NAMED} more" * (len(names) > NAMED)
+        out.append(
+            f"{', '.join(names[:NAMED])}{more}: nothing but noise at any mode; left empty. Is a "
+            "sensor dead, or at a point that does not move?"
         )
     share = np.nan_to_num(residuals.share)
     poor = [(float(share[j, i]), j, i) for j, i in np.argwhere(share > POOR_FIT).tolist()]

@@ -1,23 +1,8 @@
-r"""The variance of frequency response functions, smooth over frequency.
-
-The variance of each function is modelled by what makes it: the noise of the response channel over
-the spectrum of the force, smooth over frequency, and errors in proportion to the function itself
-(noise of the force channel, scatter of the blows),
-
-.. math:: v(\omega) = \sum_b c_b\, h_b(\omega) + b\,|H(\omega)|^2,\qquad c_b, b \ge 0,
-
-with hat functions :math:`h_b` as a basis. Raw values q of the variance at the lines – the scatter
-of the blows, what coherence says, or squared residuals of a fit – are gamma distributed about v,
-so c and b maximise :math:`-\sum_k (\ln v_k + q_k / v_k)`. The multiplicative iteration
-
-.. math:: c \leftarrow c \cdot \frac{\sum_k q_k v_k^{-2} D_k}{\sum_k v_k^{-1} D_k}
-
-keeps them positive and increases the likelihood in practice at every step (Févotte, Bertin &
-Durrieu, Neural Comput. 21 (2009) 793-830, doi:10.1162/neco.2008.04-08-771: the divergence of
-Itakura and Saito with a fixed dictionary).
+"""The variance of frequency response functions, smooth over frequency.
 
 Where nothing is known, the first raw values are fourth differences over neighbouring lines, which
-no smooth function passes, made robust by running medians.
+no smooth function passes, made robust by running medians. The model is that of
+docs/methods/deviations.md.
 """
 
 from __future__ import annotations

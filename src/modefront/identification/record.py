@@ -42,7 +42,8 @@ class ModeEstimate:
     frequency, damping : Hz, ratio
     frequency_std, damping_std : their standard deviations
     shape : the complex shape and the real one
-    shape_std : (responses,) standard deviations of the real shape of unit norm
+    shape_std : (responses,) standard deviations of the real shape of unit norm; NaN where the
+        response was not measured, or shows nothing but noise of any mode
     participation : (references,) factors that go with the complex shape as given, before rotation
     evidence : what speaks for it
     """

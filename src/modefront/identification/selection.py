@@ -1,44 +1,30 @@
 r"""Which modes are in the data: a pole is one where noise alone would hardly make it.
 
-Without a mode the cost J of the fit is greater by :math:`\Delta J`. Where there is no mode, what a
-pole somewhere in the band explains of noise is the greatest singular value of a residue,
-:math:`\Delta J = \sigma_1^2`, of a matrix of references times responses of unit complex normal
-numbers. The expected number of poles with more than x in a band of N lines, to the leading term,
-is in docs/methods/identification.md:
-the tail of the greatest eigenvalue of a complex Wishart matrix times the area of the poles
-that N lines tell apart, :math:`\int\mathrm{d}\omega\,\mathrm{d}\sigma/4\sigma^2` with damping from
-half a line on, as the correlation of two poles is :math:`4\sigma_1\sigma_2/|\lambda_1 +
-\lambda_2^*|^2`. A mode is accepted where that number is below `FALSE`.
-
-Poles come from the stabilisation diagram, and then from the residuals: wherever a pole would
-explain more of the whitened residuals than noise does in every other test, one is added, until
-nothing stands out. Backwards, :math:`\Delta J` of a mode is the Wald statistic of its shape.
-
-Two modes are a *pair* where the data cannot tell their poles apart. Residues of two close poles are
-:math:`C(sI - M)^{-1}B` with a matrix M, 2 by 2, whose eigenvalues are the poles. With one pole,
-:math:`M = \lambda I`, the cost is greater by half a :math:`\chi^2` of six degrees of freedom, and
-any basis of the plane of both shapes gives the same functions.
-
-Sources: Johnstone, On the distribution of the largest eigenvalue in principal components analysis,
-Ann. Stat. 29 (2001) 295-327, doi:10.1214/aos/1009210544 (the matrix); Adler & Taylor, *Random
-Fields and Geometry*, 2007, doi:10.1007/978-0-387-48116-6, chapter 15 (maxima over a family).
+Evidence, noise and pairs are those of docs/methods/identification.md. Poles come from the
+stabilisation diagram, and then from the residuals: wherever a pole would explain more of them than
+noise does in every other test, one is added, until nothing stands out. Backwards,
+:math:`\Delta J` of a mode is the Wald statistic of its shape.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
 
 import numpy as np
+import scipy.fft
 import scipy.linalg as la
+from scipy.ndimage import percentile_filter
 from scipy.special import gammaln
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
 from modefront.identification.modal_model import (
-    CHUNK,
     COARSE,
     RESIDUALS,
+    TINY,
     Fit,
     Problem,
     evaluate,
@@ -46,6 +32,7 @@ from modefront.identification.modal_model import (
     maximise,
     synthesise,
 )
+from modefront.identification.noise import square
 from modefront.identification.shapes import auto_mac, plane_basis
 from modefront.identification.stabilisation import Cluster
 
@@ -66,6 +53,24 @@ MOST_ROUNDS = 20
 
 HEAVIEST = 0.1
 """Greatest damping ratio of the poles that are looked for in residuals."""
+
+NEIGHBOURHOOD = 32
+"""Half bandwidths on either side of a pole in which poles of the same damping tell the noise."""
+
+UPPER = 0.8
+"""Share of these poles that explain less than the level that tells the noise."""
+
+DRAWS, SEED = 1000, 1
+"""Matrices of noise that tell what poles explain of it, and the seed of their random numbers."""
+
+MOST_PLACES = 1 << 18
+"""Places of the grid of lines, at most."""
+
+PORTION = 32
+"""Responses whose products with poles are computed at once."""
+
+ROUNDING = 1e-12
+"""Share of the greatest energy of a pole's function in the lines below which there is none."""
 
 OVERDAMPED = 0.9
 """Damping ratio from which on a pole and its conjugate are nearly one and the same real pole."""
@@ -108,22 +113,19 @@ def freedom(task: Problem, fit: Fit) -> int:
     return max(task.count - n_out * fit.inverse.shape[1] - len(fit.gradient), 1)
 
 
-def noise_level(task: Problem, fit: Fit) -> float:
-    """Return chi^2, the cost over the degrees of freedom; at least 1, the variance of the data.
-
-    Where the noise of neighbouring lines is correlated, as much less is known.
-    """
-    return max(2 * fit.cost / freedom(task, fit), 1.0) * task.correlation
-
-
 def needed(task: Problem, expected: float = FALSE) -> float:
     """Return 2 Delta J of which noise of unit variance makes so many poles in the band."""
-    measured: Bools = np.any(task.weights, axis=2)
-    n_in, n_out = (int(np.count_nonzero(measured.any(axis=axis))) for axis in (1, 0))
+    n_in, n_out = _live(task)
     k = n_in + n_out
     ways = gammaln(k - 1) - gammaln(n_in) - gammaln(n_out)
     poles = np.log(len(task.s) * (k - 1) / (2 * np.pi)) + ways
     return float(chi2.isf(min(expected * np.exp(-poles), 0.5), 2 * k))
+
+
+def _live(task: Problem) -> tuple[int, int]:
+    """Return how many references and responses were measured."""
+    measured: Bools = np.any(task.weights, axis=2)
+    return int(measured.any(axis=1).sum()), int(measured.any(axis=0).sum())
 
 
 def choose_level(task: Problem, fit: Fit) -> Problem:
@@ -133,11 +135,12 @@ def choose_level(task: Problem, fit: Fit) -> Problem:
     """
     best, least = task, np.inf
     measured = int(np.count_nonzero(task.weights.any(axis=2)))
-    model = fit.model
+    model, found = fit.model, scan(task, fit)
+    noise = float(np.median(found.noise[found.lam.real == found.lam.real.min()]))
     for powers in RESIDUALS:
         trial = replace(task, powers=powers)
         cost = evaluate(trial, model.lam, model.L, model.held).cost
-        value = 2 * cost / noise_level(task, fit) + measured * len(powers) * np.log(task.count)
+        value = 2 * cost / noise + measured * len(powers) * np.log(task.count)
         if value < least:
             best, least = trial, value
     return best
@@ -166,7 +169,7 @@ def gains(task: Problem, fit: Fit) -> Floats:
         A = S[1:, 1:] + fit.information[np.ix_(others, others)]
         follows = S[0, 1:] @ la.lstsq(A, S[1:, 0])[0] if len(A) else 0.0
         out[r] = S[0, 0] - follows
-    return 2 * out / noise_level(task, fit)
+    return 2 * out / scan(task, fit).noise_of(fit.model.lam)
 
 
 def start(task: Problem, clusters: Sequence[Cluster], omega: float) -> Fit:
@@ -220,32 +223,40 @@ def backward(task: Problem, fit: Fit, least: float, count: int | None = None) ->
 
 
 def grow(task: Problem, fit: Fit, count: int | None = None) -> Fit:
-    """Return the fit with the modes that stand out of its residuals, until none does."""
+    """Return the fit with the modes that stand out of its residuals, until none does.
+
+    A pole that is not needed after all is not tried again.
+    """
     blocked: Complexes = np.zeros(0, complex)
     for _ in range(MOST_ROUNDS):
-        lam, L = standing_out(task, fit, blocked, count)
+        found = scan(task, fit)
+        lam, L = standing_out(task, fit, found, blocked, count)
         if not len(lam):
             break
         model = fit.model
         trial = refit(task, np.append(model.lam, lam), np.vstack([model.L, L]))
         trial = backward(task, trial, needed(task), count)
-        gained = 2 * (fit.cost - trial.cost) / noise_level(task, trial)
-        if len(trial.model) <= len(model) and gained < needed(task):
-            blocked = np.append(blocked, lam)
-        else:
+        gained = 2 * (fit.cost - trial.cost) / np.median(found.noise_of(lam))
+        stays = [_near(pole, trial.model.lam) > _near(pole, model.lam) for pole in lam]
+        if len(trial.model) > len(model) or gained > needed(task):
             fit = trial
+        blocked = np.append(blocked, lam[~np.array(stays)])
     return fit
 
 
+def _near(pole: complex, others: Complexes) -> int:
+    """Return how many poles are hardly told apart from one."""
+    return int(np.count_nonzero(alike(pole, others) > ALONE))
+
+
 def standing_out(
-    task: Problem, fit: Fit, blocked: Complexes, count: int | None = None
+    task: Problem, fit: Fit, found: Scan, blocked: Complexes, count: int | None = None
 ) -> tuple[Complexes, Complexes]:
     """Return poles that explain more of the residuals than noise would, and their factors.
 
     Where the ``count`` of modes is given, they are as many as lack.
     """
-    lam, gain, L = explained(task, task.H - synthesise(task, fit.model))
-    gain = gain / noise_level(task, fit)
+    lam, gain, L = found.lam, found.gain, found.L
     least = needed(task, EVEN) if count is None else 0.0
     most = len(lam) if count is None else count - len(fit.model)
     chosen: list[int] = []
@@ -267,20 +278,20 @@ def paired(task: Problem, fit: Fit, among: Bools) -> Fit:
     lam, pairs = fit.model.lam, fit.model.pairs
     apart = np.abs(lam[:, None] - lam) / np.maximum.outer(-lam.real, -lam.real)
     close = np.argwhere(np.triu(apart < 1, 1)) if len(task.H) > 1 else np.zeros((0, 2), int)
-    C = np.linalg.pinv(fit.information, hermitian=True) * noise_level(task, fit) / 2
+    C, noise = np.linalg.pinv(fit.information, hermitian=True) / 2, scan(task, fit).noise_of(lam)
     for r, s in close[apart[tuple(close.T)].argsort()].tolist():
         if {r, s} & {k for pair in pairs for k in pair} or not among[[r, s]].any():
             continue
         difference = np.array([(lam[r] - lam[s]).real, (lam[r] - lam[s]).imag])
         both = np.zeros((2, len(C)))
         both[[0, 1], [2 * r, 2 * r + 1]], both[[0, 1], [2 * s, 2 * s + 1]] = 1.0, -1.0
-        if difference @ np.linalg.solve(both @ C @ both.T, difference) > CLEARLY:
+        if difference @ np.linalg.solve(both @ C @ both.T, difference) > CLEARLY * noise[r]:
             continue
         model = fit.model
         start = model.lam.copy()
         start[[r, s]] = (lam[r] + lam[s]) / 2
         trial = maximise(task, start, model.L, pairs=(*pairs, (r, s)))
-        lost = 2 * (trial.cost - fit.cost) / noise_level(task, fit)
+        lost = 2 * (trial.cost - fit.cost) / noise[r]
         if lost < chi2.isf(APART, PAIR_FREEDOM):
             L = trial.model.L.copy()
             for pair in map(list, trial.model.pairs):
@@ -300,14 +311,15 @@ def seeded(task: Problem, fit: Fit, omega: Floats) -> tuple[Complexes, Complexes
     Also returns their participation factors; the damping is that which explains most of the
     residuals.
     """
-    lam, gain, factors = explained(task, task.H - synthesise(task, fit.model))
+    found = scan(task, fit)
     out, L = fit.model.lam, fit.model.L
     for each in omega:
         if (np.abs(np.abs(out) - each) < -out.real).any():
             continue
-        near = np.where(np.abs(lam.imag - each) <= -lam.real, gain, -1.0).argmax()
-        out = np.append(out, complex(lam[near].real, each))
-        L = np.vstack([L, factors[near]])
+        within = np.abs(found.lam.imag - each) <= -found.lam.real
+        near = np.where(within, found.gain * found.noise, -1.0).argmax()
+        out = np.append(out, complex(found.lam[near].real, each))
+        L = np.vstack([L, found.L[near]])
     return out, L
 
 
@@ -317,31 +329,82 @@ def alike(pole: complex, others: Complexes) -> Floats:
     return out
 
 
-def explained(task: Problem, r: Complexes) -> tuple[Complexes, Floats, Complexes]:
-    """Return poles all over the band, 2 Delta J of each in residuals r, and its factors.
+@dataclass(frozen=True)
+class Scan:
+    """Poles all over the band, and what each explains of the residuals of a fit.
 
-    Half bandwidths go up by factors of two from the distance of lines, as do the steps.
+    Attributes
+    ----------
+    lam : (poles,) half bandwidths go up by factors of two from the distance of lines, as do steps
+    gain : (poles,) 2 Delta J of each in units of its noise
+    L : (poles, references) its participation factors
+    noise : (poles,) variance of the noise, as poles of the same damping find it in the
+        neighbourhood; at least that of the residuals, and 1, the variance of the data
     """
-    f, step = task.s.imag, float(np.median(np.diff(task.s.imag)))
-    doublings = max(int(np.log2(max(HEAVIEST * f[-1] / step, 1))), 0) + 1
-    parts = [-(step * 2**m) + 1j * f[:: 2**m] for m in range(doublings)]
-    lam = np.concatenate([part[-part.real < HEAVIEST * part.imag] for part in parts])
-    n_in, n_out, lines = r.shape
-    weighted = np.where(task.weight > 0, task.weight * r, 0).reshape(-1, lines)
-    w = task.weight.reshape(-1, lines)
-    gain, L = np.zeros(len(lam)), np.ones((len(lam), n_in), complex)
-    size = max(CHUNK // lines, 1)
-    for first in range(0, len(lam), size):
-        part = slice(first, first + size)
-        e = task.s[:, None] ** task.order / (task.s[:, None] - lam[part])
-        G = (w @ (e.real**2 + e.imag**2)).reshape(n_in, -1, e.shape[1])
-        b = (weighted @ e.conj()).reshape(n_in, n_out, -1)
-        z = (b / np.sqrt(np.where(G > 0, G, np.inf))).transpose(2, 0, 1)
-        value, vector = np.linalg.eigh(z @ z.conj().swapaxes(1, 2))
-        gain[part] = 2 * value[:, -1]
-        scale = np.sqrt(np.maximum(G.mean(axis=1).T, np.finfo(float).tiny))
-        L[part] = vector[:, :, -1] / scale
-    return lam, gain, L
+
+    lam: Complexes
+    gain: Floats
+    L: Complexes
+    noise: Floats
+
+    def noise_of(self, lam: Complexes) -> Floats:
+        """Return the variance of the noise at other poles, (others,)."""
+        return np.array([self.noise[alike(pole, self.lam).argmax()] for pole in lam])
+
+
+@cache
+def _expected(rows: int, columns: int) -> float:
+    """Return the quantile of the greatest squared singular value of noise of unit variance."""
+    rng = np.random.default_rng(SEED)
+    z = (rng.standard_normal((2, DRAWS, rows, columns)) * [[[[1]]], [[[1j]]]]).sum(axis=0)
+    greatest = np.linalg.eigvalsh(z @ z.conj().swapaxes(1, 2))[:, -1] / 2
+    return float(np.quantile(greatest, UPPER))
+
+
+def scan(task: Problem, fit: Fit) -> Scan:
+    """Return what poles all over the band explain of the residuals of a fit.
+
+    On an even grid of lines, the products of the residuals with a pole are a convolution.
+    """
+    r, front, f = task.H - synthesise(task, fit.model), task.s**task.order, task.s.imag
+    step = max(float(np.diff(f).min()), float(np.ptp(f)) / MOST_PLACES)
+    place = np.rint((f - f[0]) / step).astype(int)
+    count = int(place[-1]) + 1
+    size = scipy.fft.next_fast_len(2 * count)
+    offset = step * scipy.fft.fftfreq(size, 1 / size)
+
+    def on_grid(values: Any) -> Any:
+        out = np.zeros((*values.shape[:-1], size), values.dtype)
+        np.add.at(out.T, place, values.T)
+        return scipy.fft.fft(out)
+
+    weight, n_in = task.weights, len(r)
+    parts = [slice(first, first + PORTION) for first in range(0, r.shape[1], PORTION)]
+    products = [on_grid(weight[:, part] * r[:, part] * front.conj()) for part in parts]
+    own = parts if task.weight.shape == r.shape else [slice(None)] * len(parts)
+    energies = [on_grid(task.weight[:, part] * square(front)) for part in own]
+    out: list[list[Any]] = []
+    for m in range(max(int(np.log2(max(HEAVIEST * f[-1] / step, 1))), 0) + 1):
+        half, grid = step * 2**m, slice(0, count, 2**m)
+        kernel = 1 / (half + task.s[0].real + 1j * offset)
+        of_pole, of_energy = scipy.fft.fft(kernel), scipy.fft.fft(square(kernel))
+        lam = -half + 1j * (f[0] + step * np.arange(count)[grid])
+        S, total = np.zeros((len(lam), n_in, n_in), complex), np.zeros((n_in, len(lam)))
+        for product, energy in zip(products, energies, strict=True):
+            G = np.maximum(scipy.fft.ifft(energy * of_energy).real[..., grid], 0.0)
+            root = np.sqrt(np.where(ROUNDING * G.max(initial=0.0) < G, G, np.inf))
+            z = (scipy.fft.ifft(product * of_pole)[..., grid] / root).transpose(2, 0, 1)
+            S += z @ z.conj().swapaxes(1, 2)
+            total += G.mean(axis=1)
+        value, vector = np.linalg.eigh(S)
+        factors = vector[:, :, -1] / np.sqrt(np.maximum(total.T, TINY))
+        noise = percentile_filter(value[:, -1], 100 * UPPER, 2 * NEIGHBOURHOOD + 1, mode="nearest")
+        kept = half < HEAVIEST * lam.imag
+        out.append([x[kept] for x in (lam, 2 * value[:, -1], factors, noise)])
+    lam, gain, L, noise = (np.concatenate(each) for each in zip(*out, strict=True))
+    least = max(2 * fit.cost / freedom(task, fit), 1.0) * task.correlation
+    noise = np.maximum(noise / _expected(*_live(task)), least)
+    return Scan(lam, gain / noise, L, noise)
 
 
 def doubles(poles: Complexes, shapes: Complexes, strength: Floats) -> Bools:

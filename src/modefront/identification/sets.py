@@ -1,35 +1,9 @@
-r"""Modes of several data sets side by side, and the standard deviation between sets.
+"""Modes of several data sets side by side, and the standard deviation between sets.
 
 Modes of different sets are the same where frequencies lie within half a bandwidth, 0.5 % or
-`WIDTH` standard deviations, and shapes agree at common sensors. Estimates
-:math:`x_k` of one quantity in the sets, with standard deviations :math:`\sigma_k`, differ more
-than they should where
-
-.. math:: Q = \sum_k \frac{(x_k - \bar x)^2}{\sigma_k^2} > \chi^2_{K-1,\,0.95},\qquad
-          \bar x = \frac{\sum_k x_k/\sigma_k^2}{\sum_k 1/\sigma_k^2} .
-
-Then the sets have a variance of their own besides (DerSimonian & Laird, Control. Clin. Trials 7
-(1986) 177-188, doi:10.1016/0197-2456(86)90046-2),
-
-.. math:: \tau^2 = \frac{Q - (K-1)}{\sum_k \sigma_k^{-2} - \sum_k \sigma_k^{-4} /
-          \sum_k \sigma_k^{-2}},
-
-and every standard deviation becomes :math:`\sqrt{\sigma_k^2 + \tau^2}`. Shapes are compared in
-the sign and scale of the first set that has the mode; those of a pair are not, as each set has some
-basis of their plane.
-
-*Setups* have one shape together, by the sensors that they share. Setup k has the sensors
-:math:`i_k`, and the shape :math:`u_k` of unit norm with the covariance :math:`C_k`, which has no
-part along :math:`u_k`: the scale is not measured. The shape :math:`\varphi` at all sensors is that
-of the least
-
-.. math:: \sum_k r_k^T (C_k + u_k u_k^T)^{-1} r_k,\qquad
-          r_k = (I - u_k u_k^T)\,\frac{\varphi_{i_k}}{u_k^T\varphi_{i_k}} ,
-
-and its covariance is the inverse of the second derivatives. To second order it is the likelihood of
-all setups at once, with frequencies, damping and forces of their own (Au & Zhang, Fast Bayesian
-ambient modal identification incorporating multiple setups, J. Eng. Mech. 138 (2012) 800-815,
-doi:10.1061/(ASCE)EM.1943-7889.0000385).
+`WIDTH` standard deviations, and shapes agree at common sensors. Shapes are compared in the sign and
+scale of the first set that has the mode; those of a pair are not, as each set has some basis of
+their plane. Equations: docs/methods/deviations.md.
 """
 
 from __future__ import annotations
@@ -104,8 +78,9 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
             mode = identifications[k].modes[number]
             f[k, r], f_std[k, r] = mode.frequency, mode.frequency_std
             z[k, r], z_std[k, r] = mode.damping, mode.damping_std
-            phi[k, r] = _at(mode.shape.shape, identifications[k], sensors)
             phi_std[k, r] = _at(mode.shape_std, identifications[k], sensors)
+            known = np.isfinite(mode.shape_std)
+            phi[k, r] = _at(np.where(known, mode.shape.shape, np.nan), identifications[k], sensors)
     paired = _pairs(identifications, index)
     spread = np.zeros((R, 2))
     for r in range(R):

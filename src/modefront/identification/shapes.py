@@ -1,26 +1,6 @@
-r"""Real mode shapes from complex ones, and the share of the imaginary part.
+"""Real mode shapes from complex ones, and the share of the imaginary part.
 
-A complex shape :math:`\varphi` is known up to a complex factor. Of all rotations
-:math:`\psi = e^{-\mathrm{i}\theta}\varphi`, the one with the least imaginary part has
-
-.. math:: \theta = \tfrac12 \arg \sum_i \varphi_i^2,\qquad
-          \frac{\|\operatorname{Im}\psi\|^2}{\|\psi\|^2} = \frac{1 - \sqrt{\mathrm{MPC}}}{2},
-          \qquad \mathrm{MPC} = \frac{|\sum_i \varphi_i^2|^2}{(\sum_i |\varphi_i|^2)^2},
-
-since :math:`\|\operatorname{Re}\psi\|^2 - \|\operatorname{Im}\psi\|^2 =
-\operatorname{Re}\sum_i\psi_i^2` is greatest where that sum is real and positive. MPC is the modal
-phase collinearity (Pappa, Elliott & Schenk, Consistent-mode indicator for the eigensystem
-realization algorithm, J. Guid. Control Dyn. 16 (1993) 852-858, doi:10.2514/3.21092): 1 for a
-shape that is real up to a factor. The shape for updating is
-:math:`u = \operatorname{Re}\psi / \|\operatorname{Re}\psi\|`. With :math:`x + \mathrm{i}y = \psi`
-and :math:`a + \mathrm{i}b = e^{-\mathrm{i}\theta}\mathrm{d}\varphi`,
-
-.. math:: \mathrm{d}\theta = \frac{x^T b + y^T a}{\sum\psi_i^2},\qquad
-          \mathrm{d}u = (I - u u^T)\,(a + y\,\mathrm{d}\theta) / \|x\| .
-
-Two modes with the same pole have any two shapes of one plane: both are turned by the same angle,
-that of the sum over both, and are an orthonormal basis U of the plane of the real parts.
-What is determined of them is their change out of the plane, with :math:`I - U U^T` instead.
+Rotations, differentials and planes of pairs are derived in docs/methods/deviations.md.
 """
 
 from __future__ import annotations

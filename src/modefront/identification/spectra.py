@@ -1,20 +1,7 @@
-r"""Spectra of ambient records: transforms for the likelihood, half spectra for poles to start from.
+"""Spectra of ambient records: transforms for the likelihood, half spectra for poles to start from.
 
-The transforms are scaled so that their mean square is the two-sided spectral density,
-
-.. math:: F(\omega_k) = \frac{1}{\sqrt{N f_s}}\sum_{t=0}^{N-1} y_t\,e^{-\mathrm{i}\omega_k t/f_s} .
-
-For positive lags, correlations of the responses to white noise are free decays,
-
-.. math:: R_{ij}(\tau) = \sum_r \varphi_{ir} g_{jr} e^{\lambda_r \tau} + \text{conjugate},\qquad
-          H_{ji}(\omega) = \sum_{\tau > 0} R_{ij}(\tau)\,e^{-\beta\tau}
-          e^{-\mathrm{i}\omega\tau},
-
-so that their half spectra H have the form of frequency response functions, with the reference
-vector g in place of participation factors (Cauberghe, *Applied frequency-domain system
-identification in the field of experimental and operational modal analysis*, 2004). White noise of
-sensors is at lag 0 alone, which is left out. The exponential window adds :math:`\beta` to all decay
-rates, and is taken off again. References are the principal components of the records.
+docs/methods/identification.md defines both. References of half spectra are the principal components
+of the records.
 """
 
 from __future__ import annotations

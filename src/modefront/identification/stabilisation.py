@@ -1,24 +1,4 @@
-r"""The stabilisation diagram, and its interpretation by clustering.
-
-Poles of the structure come back at every order with nearly the same value and shape; poles of
-noise do not. Poles of neighbouring orders and all poles together are compared by
-
-.. math:: d(1, 2) = \frac{|\lambda_1 - \lambda_2|}{\max(|\lambda_1|, |\lambda_2|)}
-          + 1 - \mathrm{MAC}(\psi_1, \psi_2),
-
-with shapes :math:`\psi` by linear least squares at the given poles.
-
-In three stages (Reynders, Houbrechts & De Roeck 2012): (1) every pole is set against the nearest
-one of the order below, and the logarithms of these distances fall into two groups, *stable* and
-*unstable*, by 2-means; (2) stable poles are joined by average linkage up to a distance of the mean
-plus two standard deviations of the stable group, within `CUT`; (3) the support of a cluster is the
-share of the orders, from its first one, that contribute a pole. Where Reynders et al. divide the
-clusters by their size, here they are candidates for the maximum-likelihood model, which has a
-sharper criterion: a likelihood ratio (`modefront.identification.selection`).
-
-Source: Reynders, Houbrechts & De Roeck, Mech. Syst. Signal Process. 29 (2012) 228-250,
-doi:10.1016/j.ymssp.2012.01.007.
-"""
+"""The stabilisation diagram, and clusters of its stable poles by docs/methods/identification.md."""
 
 from __future__ import annotations
 
@@ -119,9 +99,9 @@ def diagram_of(
     rate = 2 * np.pi * lscf.ARC / (omega[-1] - omega[0])
     most = min(max(MOST_POLES // len(data.H), 6), len(omega) // 4)
     orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
-    z = lscf.generalised_frequency(omega, omega[0], rate)
+    z: Complexes = np.exp(1j * rate * (omega - omega[0]))
     sums = lscf.moments(data.H, weight / weight.max(), z, max(orders))
-    windowed = lscf.poles(sums, orders, omega[0], rate)
+    windowed = [lscf.poles(sums, p, omega[0], rate) for p in orders]
     estimates = [lscf.without_decay(poles, data.decay) for poles in windowed]
     kept = []
     for p in estimates:

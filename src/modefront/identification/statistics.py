@@ -1,43 +1,10 @@
 r"""Standard deviations of frequencies, damping ratios and shapes.
 
-At the maximum of the likelihood, errors of the data reach the parameters linearly. With the
+Errors of the data reach the parameters by the equations of docs/methods/deviations.md, with the
 projected Gauss–Newton matrix A of `modefront.identification.modal_model` and
-:math:`Z = G^{-1}\Phi^T D`,
-
-.. math:: \delta\alpha = A^{-1} D_\perp^T \delta y,\qquad
-          \delta c_i = G_i^{-1}\Phi_i^T \delta y_i - Z_i\,\delta\alpha,
-
-and the real and imaginary parts of a weighted residual have variance 1/2 each, so that
-:math:`C_\alpha = \tfrac12 A^{-1}`, :math:`C_{c_i c_k} = \tfrac12\delta_{ik} G_i^{-1} + Z_i C_\alpha
-Z_k^T`.
-
-Two things that are common in tests break the independence, and are measured on the residuals:
-
-*Noise of the force channel* is the same for all responses of one reference,
-:math:`\delta H_{ji} = -H_{ji}\,\varepsilon_j`: it does not average out over responses. Its
-variance :math:`b_j` is taken out of that of the single functions. Records of impacts tell it, and
-its correlation over frequency (`modefront.data.responses.ForceNoise`). Otherwise it is estimated
-from products of *different* responses, which noise of the responses does not enter,
-
-.. math:: b_j = \frac{\sum_k (|S_{jk}|^2 - \sum_i w^2|H|^2|r|^2)}
-          {\sum_k \bigl((\sum_i w|H|^2)^2 - \sum_i w^2|H|^4\bigr)},\qquad
-          S_{jk} = \sum_i w H^* r,
-
-and what it adds to the covariance follows from the two equations above.
-
-*Neighbouring lines* are correlated where windows or zero padding widened them. With the
-correlations :math:`\rho_d` of lines at a distance d – those of the exponential window, or those of
-the weighted residuals as far as they are significant – the products :math:`\Phi^T\delta y` have the
-covariance :math:`\tfrac12\sum_{kl}\operatorname{Re}(\Phi_k^* \rho_{k-l} \Phi_l)`. In time,
-:math:`\rho` is the energy of the noise: an exponential window leaves most of it at the beginning of
-the record, where all that is known of heavily damped modes is.
-
-Where the residuals are greater than the variance that was given, the model does not explain all
-of the data: covariances are multiplied by :math:`\chi^2` over the degrees of freedom, if that is
-above one.
-
-Source: Pintelon, Guillaume & Schoukens, Mech. Syst. Signal Process. 21 (2007) 2359-2373,
-doi:10.1016/j.ymssp.2006.11.007.
+:math:`Z = G^{-1}\Phi^T D`. Two things break the independence of errors, and are measured on the
+residuals: noise of the force channel, which all responses of a reference share, and correlation of
+neighbouring lines, by windows and zero padding.
 """
 
 from __future__ import annotations
@@ -47,8 +14,9 @@ from dataclasses import replace
 
 import numpy as np
 import scipy.fft
+from scipy.stats import chi2
 
-from modefront._typing import Complexes, Floats
+from modefront._typing import Bools, Complexes, Floats
 from modefront.identification.modal_model import (
     CHUNK,
     Fit,
@@ -69,6 +37,9 @@ from modefront.identification.shapes import TINY, RealShape, real_plane, real_sh
 SIGNIFICANT = 3.0
 """Standard errors beyond which a correlation of the residuals is one."""
 
+SILENT = 1e-3
+"""Probability that a response that holds nothing but noise is taken for one that does."""
+
 MOST_LAGS = 60
 """Lines over which correlations of the residuals are measured."""
 
@@ -85,10 +56,10 @@ def residuals(task: Problem, fit: Fit) -> Residuals:
     r = np.where(task.weight > 0, task.H - H, 0)
     size = np.where(task.weight > 0, np.abs(task.H) ** 2, 0).sum(axis=2)
     share = np.sqrt((np.abs(r) ** 2).sum(axis=2) / np.where(size > 0, size, np.nan))
-    chi2 = 2 * fit.cost / freedom(task, fit)
+    misfit = 2 * fit.cost / freedom(task, fit)
     noise = task.force_noise
     force = _force(task, H, r) if noise is None else np.mean(noise.deviation**2, axis=1)
-    return Residuals(chi2, _correlation(task, r), force, share)
+    return Residuals(misfit, _correlation(task, r), force, share)
 
 
 def _correlation(task: Problem, r: Complexes) -> Complexes:
@@ -167,7 +138,7 @@ def mode_estimates(
             variance[r] += (shape.differential(phi[:, r]) ** 2).sum(axis=1)
     scale = max(residuals.chi2, 1.0)
     C, variance = C * scale, variance * scale
-    variance[:, ~task.weight.any(axis=(0, 2))] = np.nan
+    variance[:, ~task.weight.any(axis=(0, 2)) | _silent(model.phi, linear, scale)] = np.nan
     return [
         _estimate(
             complex(model.lam[r]),
@@ -177,6 +148,18 @@ def mode_estimates(
         )
         for r, rest in enumerate(zip(shapes, np.sqrt(variance), model.L, strict=True))
     ]
+
+
+def _silent(phi: Complexes, linear: Floats, scale: float) -> Bools:
+    """Return which responses show nothing that noise would not make of all shapes, (responses,).
+
+    ``linear`` are the roots of the covariance of their components, up to the ``scale``.
+    """
+    c = np.stack([phi.real, phi.imag], axis=1).reshape(-1, phi.shape[1]).T[..., None]
+    covariance = scale * linear @ linear.swapaxes(1, 2)
+    size = c.swapaxes(1, 2) @ np.linalg.pinv(covariance, hermitian=True) @ c
+    out: Bools = size[:, 0, 0] < chi2.isf(SILENT, c.shape[1])
+    return out
 
 
 def _shape_variance(shape: RealShape, direct: Complexes, answer: Floats, alpha: Floats) -> Floats:
