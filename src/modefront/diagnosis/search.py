@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from modefront.diagnosis.evidence import Point, Quick, State, point, quick
 from modefront.diagnosis.mistakes import MISTAKES
 from modefront.diagnosis.mistakes.record import Mistake, Setting, Variant
 from modefront.diagnosis.pairs import bad_pairs
-from modefront.findings.catalogue import CATALOGUE
 from modefront.findings.record import Finding
 
 CLEAR = float(np.log(100.0))
@@ -52,6 +50,12 @@ class Step:
         """Negative logarithm of the probability that a study has it."""
         return self.variant.price - float(np.log(self.mistake.probability))
 
+    @property
+    def finding(self) -> Finding:
+        """Its record."""
+        subject = ", ".join(self.variant.subject)
+        return Finding(self.mistake.kind, subject, self.variant.numbers)
+
 
 @dataclass(frozen=True, eq=False)
 class Explanation:
@@ -73,41 +77,6 @@ class Explanation:
     def claims(self) -> frozenset[tuple[str, ...]]:
         """What is claimed."""
         return frozenset(step.claim for step in self.steps)
-
-
-@dataclass(frozen=True)
-class Found:
-    """A mistake that is named.
-
-    Attributes
-    ----------
-    kind : of `modefront.diagnosis.mistakes.MISTAKES`
-    subject : what it blames
-    numbers : names and numbers of its sentence
-    gain : logarithm of the odds against the best explanation without it
-    others : mistakes one of which may be there instead
-    evidence : how a MAC value changes
-    """
-
-    kind: str
-    subject: tuple[str, ...]
-    numbers: Mapping[str, Any]
-    gain: float
-    others: tuple[Found, ...] = ()
-    evidence: str = ""
-
-    def __str__(self) -> str:
-        """Return what is wrong and what mends it."""
-        wrong, remedy = self.halves
-        either = "".join(f", or {other.halves[0]}" for other in self.others)
-        unsure = " (the data cannot tell)" if either else ""
-        return f"{wrong}{either}{unsure}{self.evidence}; {remedy}"
-
-    @property
-    def halves(self) -> tuple[str, str]:
-        """What is wrong, and what mends it."""
-        wrong, _, remedy = CATALOGUE[self.kind][1].partition("; ")
-        return wrong.format(**self.numbers), remedy.format(**self.numbers)
 
 
 @dataclass(eq=False)
@@ -277,7 +246,7 @@ class Search:
         mode = self.comparison.data.modes[r]
         return f" (without, MAC {mode} is {after[r]:.2f} after a fit, and not {before[r]:.2f})"
 
-    def named(self, best: Explanation) -> dict[Step, Found]:
+    def named(self, best: Explanation) -> dict[Step, Finding]:
         """Return the mistakes of the best explanation without which no other one comes near it."""
         out = {}
         for step in best.steps:
@@ -299,9 +268,13 @@ class Search:
             if len(swaps) >= EITHER or not all(each.claims & alike for each in near):
                 continue
             gain = min((each.cost for each in rivals if not each.claims & alike), default=np.inf)
-            others = tuple(_found(other, 0.0) for other in swaps)
             without = self.known.get(rest, self.known[frozenset()])
-            out[step] = _found(step, gain - best.cost, others, self._evidence(without, best))
+            out[step] = replace(
+                step.finding,
+                others=tuple(other.finding for other in swaps),
+                evidence=self._evidence(without, best),
+                gain=float(gain - best.cost),
+            )
         return out
 
 
@@ -314,14 +287,7 @@ def _exceeds(other: Explanation, best: Explanation) -> bool:
     return more and other.point.cost > best.point.cost - 1
 
 
-def _found(step: Step, gain: float, others: tuple[Found, ...] = (), evidence: str = "") -> Found:
-    """Return the record of a mistake."""
-    variant = step.variant
-    kind, subject = step.mistake.kind, variant.subject
-    return Found(kind, subject, variant.numbers, float(gain), others, evidence)
-
-
-def diagnose(comparison: Comparison) -> list[Found | Finding]:
+def diagnose(comparison: Comparison) -> list[Finding]:
     """Return the mistakes of a model or its data; of many data sets, some are looked at.
 
     Pairs are looked at without these mistakes.
