@@ -30,7 +30,6 @@ from modefront import fem
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.diagnosis.comparison import compare
-from modefront.diagnosis.mistakes import MISTAKES as KINDS
 from modefront.diagnosis.search import diagnose
 from modefront.findings.record import Finding
 from modefront.models.chain import chain
@@ -438,8 +437,7 @@ def main() -> None:
 def diagnosed(case: Case) -> list[tuple[list[Claim], str]]:
     """Return what is claimed of a study, with its words."""
     found = diagnose(compare(case.problem))
-    searched = {mistake.kind for mistake in KINDS}
-    return [(claims(each), str(each)) for each in found if each.kind in searched]
+    return [(claims(each), str(each)) for each in found if not np.isnan(each.gain)]
 
 
 if __name__ == "__main__":

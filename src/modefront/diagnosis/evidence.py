@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse
@@ -27,7 +28,6 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.diagnosis.measured import (
     RIGID,
     Measured,
-    assigned,
     log_frequencies,
     mac_values,
     pair_costs,
@@ -39,6 +39,7 @@ from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
 from modefront.modes.result import Modes
+from modefront.pairing.match import assigned
 from modefront.rounding import ACCUMULATED
 
 OF_PARAMETERS, OF_MODEL = 8.0, 4.0
@@ -130,6 +131,23 @@ class Point:
         return np.asarray(np.diag(values))
 
 
+class Whole(NamedTuple):
+    """Frequencies (modes,) in Hz and shapes at all degrees of freedom (N, modes) at parameters.
+
+    Of a model without matrices, shapes at the sensors.
+    """
+
+    theta: Floats
+    frequency: Floats
+    Phi: Floats
+
+
+def point_of(state: State, whole: Whole) -> Point:
+    """Return the state beside a model."""
+    phi = whole.Phi if state.selection is None else state.selection @ whole.Phi
+    return point(state, whole.theta, whole.frequency, phi)
+
+
 def point(state: State, theta: Floats, frequency: Floats, phi: Floats) -> Point:
     """Return the state beside a model's frequencies (model modes,) and shapes at the sensors."""
     data = state.data
@@ -186,20 +204,17 @@ class Quick:
         except ModelError:
             return None
 
-    def everywhere(self, theta: Floats) -> tuple[Floats, Floats] | None:
-        """Return frequencies (modes,) and shapes at all degrees of freedom (N, modes).
-
-        Of a model without matrices, shapes at the sensors; None where there are none.
-        """
+    def everywhere(self, theta: Floats) -> Whole | None:
+        """Return the modes at all degrees of freedom; None where there are none."""
         try:
             if not isinstance(self.model, MatrixModel):
                 modes = self.model.modes(theta, self.count, derivatives=False)
-                return modes.frequency, modes.phi
-            whole = self.model.full_modes(theta, self.count)
+                return Whole(theta, modes.frequency, modes.phi)
+            full = self.model.full_modes(theta, self.count)
         except ModelError:
             return None
-        f = np.sqrt(np.maximum(whole.lam, 0.0)) / (2 * np.pi)
-        return f, whole.Phi if self.basis is None else self.basis @ whole.Phi
+        f = np.sqrt(np.maximum(full.lam, 0.0)) / (2 * np.pi)
+        return Whole(theta, f, full.Phi if self.basis is None else self.basis @ full.Phi)
 
     def fit(self, state: State, theta: Floats) -> Point | None:
         """Return the point at the end of a fit from ``theta``; None where there are no modes."""

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Bools, Floats
 from modefront.data.modal import ModalData
 from modefront.diagnosis.student import loss, scaled
 from modefront.rounding import TINY
@@ -182,16 +182,6 @@ def pair_costs(mac: Floats, logs: Floats, of_model: Floats) -> Floats:
     distance = np.abs(of_model - logs[:, None])
     distance = np.where(np.isnan(distance), 0.0, np.minimum(distance, FARTHEST))
     return np.where(np.isnan(mac), 0.0, 1 - mac) + KAPPA * distance
-
-
-def assigned(cost: Floats) -> Ints:
-    """Return the model mode of each measured mode, each taken once at most."""
-    index = np.argmin(cost, axis=1)
-    if np.unique(index).size < index.size <= cost.shape[1]:
-        from scipy.optimize import linear_sum_assignment
-
-        index = np.asarray(linear_sum_assignment(cost)[1])
-    return index
 
 
 def log_frequencies(frequency: Floats) -> Floats:

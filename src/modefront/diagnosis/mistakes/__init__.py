@@ -1,12 +1,12 @@
-"""The mistakes that are looked for, a record each; a new one is one more record in this list."""
+"""The mistakes that are looked for; a new one is one more function in this list."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from modefront.diagnosis.mistakes.parameters import excluding_bound, wrong_nominal_value
 from modefront.diagnosis.mistakes.places import counted_from_one, wrong_direction, wrong_place
-from modefront.diagnosis.mistakes.record import Mistake
+from modefront.diagnosis.mistakes.record import Mistake, Setting
 from modefront.diagnosis.mistakes.sensors import exchanged_sensors, reversed_sensor
 from modefront.diagnosis.mistakes.sets import (
     foreign_mode,
@@ -17,21 +17,9 @@ from modefront.diagnosis.mistakes.sets import (
 )
 from modefront.diagnosis.mistakes.units import damping_in_percent, frequency_factor, other_quantity
 
-MISTAKES: Sequence[Mistake] = (
-    frequency_factor,
-    other_quantity,
-    set_factor,
-    other_numbers,
-    reversed_sensor,
-    exchanged_sensors,
-    counted_from_one,
-    wrong_direction,
-    wrong_place,
-    wrong_nominal_value,
-    excluding_bound,
-    odd_frequency,
-    odd_shape,
-    damping_in_percent,
-    foreign_mode,
+MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
+    *(frequency_factor, other_quantity, set_factor, other_numbers, reversed_sensor),
+    *(exchanged_sensors, counted_from_one, wrong_direction, wrong_place, wrong_nominal_value),
+    *(excluding_bound, odd_frequency, odd_shape, damping_in_percent, foreign_mode),
 )
 """All of them; where two explain the data equally well, the first one is tried first."""

@@ -3,21 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.diagnosis.measured import RIGID, log_frequencies
-from modefront.diagnosis.mistakes.record import (
-    OFTEN,
-    RARE,
-    Setting,
-    Variant,
-    changed,
-    mistake,
-    one_of,
-)
+from modefront.diagnosis.mistakes.record import OFTEN, RARE, Mistake, Setting, changed, one_of
 
 RAD, G = 2 * np.pi, float(np.sqrt(9.81))
 
@@ -58,31 +51,27 @@ REACH = 0.25
 """Logarithm of a factor beside a known one that parameters make up for, as in a poor model."""
 
 
-@mistake("frequency-factor", OFTEN)
-def frequency_factor(setting: Setting) -> Iterator[Variant]:
+def frequency_factor(setting: Setting) -> Iterator[Mistake]:
     """Yield known factors on all frequencies, and others that pairs show."""
-    price = one_of(len(UNITS))
-    for factor, looks, mend in UNITS:
-        yield _factor(factor, looks, mend, price)
-    known = np.log([factor for factor, _, _ in UNITS])
+    price, known = one_of(1, len(UNITS)), np.log([factor for factor, _, _ in UNITS])
+    found = [(price, *unit) for unit in UNITS]
     for factor in sorted(_ratios(setting)):
-        if np.abs(known - np.log(factor)).min() < REACH:
-            continue
-        looks = f"stiffness over mass is off by {factor**2:.3g}"
-        mend = "check units, sections and masses, or the nominal values of the parameters"
-        yield _factor(factor, looks, mend, 3 * price)
-
-
-def _factor(factor: float, looks: str, mend: str, price: float) -> Variant:
-    numbers = {"factor": factor, "looks": looks, "mend": mend}
-    return Variant(("frequencies",), changed("frequency", lambda f: f / factor), numbers, price)
+        if np.abs(known - np.log(factor)).min() >= REACH:
+            looks = f"stiffness over mass is off by {factor**2:.3g}"
+            mend = "check units, sections and masses, or the nominal values of the parameters"
+            found.append((3 * price, factor, looks, mend))
+    for price, factor, looks, mend in found:
+        numbers = {"factor": factor, "looks": looks, "mend": mend}
+        change = changed("frequency", partial(np.multiply, 1 / factor))
+        total = price + one_of(OFTEN, 1)
+        yield Mistake("frequency-factor", ("frequencies",), change, total, numbers)
 
 
 def _ratios(setting: Setting) -> set[float]:
     """Return factors between measured and model frequencies: of pairs, and of modes in order."""
     logs, out = setting.state.data.logs, set()
     known = np.flatnonzero(np.isfinite(logs))
-    for point, f in zip(setting.points, setting.frequencies, strict=True):
+    for point, (_, f, _) in zip(setting.points, setting.wholes, strict=True):
         elastic = np.log(f[f > RIGID * f.max()])
         if known.size and elastic.size:
             ascending = np.sort(logs[known])
@@ -92,25 +81,28 @@ def _ratios(setting: Setting) -> set[float]:
     return {float(np.exp(round(float(value), 4))) for value in out}
 
 
-@mistake("other-quantity", RARE)
-def other_quantity(setting: Setting) -> Iterator[Variant]:
+QUANTITIES: Sequence[tuple[str, Callable[[Floats], Floats]]] = (
+    ("periods in s", lambda f: 1 / f),
+    ("eigenvalues in (rad/s)²", lambda f: np.sqrt(f) / RAD),
+)
+"""Quantities that are no frequencies, with what makes frequencies of them."""
+
+
+def other_quantity(setting: Setting) -> Iterator[Mistake]:
     """Yield quantities that are no frequencies."""
     known = np.flatnonzero(np.isfinite(setting.state.data.logs))
-    quantities: Sequence[tuple[str, Callable[[Floats], Floats]]] = (
-        ("periods in s", lambda f: 1 / f),
-        ("eigenvalues in (rad/s)²", lambda f: np.sqrt(f) / RAD),
-    )
-    for quantity, new in quantities if known.size else ():
-        given = np.exp(setting.state.data.logs[known[:1]])
-        numbers: dict[str, Any] = {"quantity": quantity, "mode": setting.modes[known[0]]}
-        numbers |= {"given": float(given[0]), "better": float(new(given)[0])}
-        yield Variant(("frequencies",), changed("frequency", new), numbers)
+    for quantity, new in QUANTITIES if known.size else ():
+        given = np.exp(setting.state.data.logs[known[0]])
+        numbers: dict[str, Any] = {"quantity": quantity, "mode": setting.names.modes[known[0]]}
+        numbers |= {"given": float(given), "better": float(new(given))}
+        change = changed("frequency", new)
+        yield Mistake("other-quantity", ("frequencies",), change, one_of(RARE, 1), numbers)
 
 
-@mistake("damping", OFTEN)
-def damping_in_percent(setting: Setting) -> Iterator[Variant]:
+def damping_in_percent(setting: Setting) -> Iterator[Mistake]:
     """Yield damping over 100."""
     known = setting.state.data.damping[np.isfinite(setting.state.data.damping)]
     if known.size:
         numbers = {"least": float(known.min()), "greatest": float(known.max())}
-        yield Variant(("damping",), changed("damping", lambda zeta: zeta / 100), numbers)
+        change = changed("damping", lambda zeta: zeta / 100)
+        yield Mistake("damping", ("damping",), change, one_of(OFTEN, 1), numbers)
