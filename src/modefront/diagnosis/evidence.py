@@ -2,7 +2,7 @@ r"""The cost of an explanation: how improbable data and parameters are under it.
 
 Data sets differ from what they have in common by noise (`modefront.diagnosis.measured`), and that
 differs from the model by what no parameter describes: frequencies by their logarithms, shapes of
-mean square 1, both after `modefront.diagnosis.student`. The parameters are expected near their
+mean square 1, both after `modefront.diagnosis.measured`. The parameters are expected near their
 nominal values, by their logarithms where their bounds are positive. They are fitted by Gauss-Newton
 steps with weights :math:`(\nu + 1) / (\nu + r_k^2 / \sigma^2)`, the pairs taken anew at every step.
 
@@ -26,13 +26,15 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.diagnosis.measured import (
+    NOTHING,
     RIGID,
     Measured,
     log_frequencies,
+    loss,
     mac_values,
     pair_costs,
+    scaled,
 )
-from modefront.diagnosis.student import NOTHING, loss, scaled
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, SparseAffine
 from modefront.models.base import Model

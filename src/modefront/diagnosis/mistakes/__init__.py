@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from modefront.diagnosis.mistakes.parameters import excluding_bound, wrong_nominal_value
-from modefront.diagnosis.mistakes.places import counted_from_one, wrong_direction, wrong_place
 from modefront.diagnosis.mistakes.record import Mistake, Setting
-from modefront.diagnosis.mistakes.sensors import exchanged_sensors, reversed_sensor
+from modefront.diagnosis.mistakes.sensors import (
+    counted_from_one,
+    exchanged_sensors,
+    reversed_sensor,
+    wrong_direction,
+    wrong_place,
+)
 from modefront.diagnosis.mistakes.sets import (
     foreign_mode,
     odd_frequency,
@@ -15,7 +19,13 @@ from modefront.diagnosis.mistakes.sets import (
     other_numbers,
     set_factor,
 )
-from modefront.diagnosis.mistakes.units import damping_in_percent, frequency_factor, other_quantity
+from modefront.diagnosis.mistakes.values import (
+    damping_in_percent,
+    excluding_bound,
+    frequency_factor,
+    other_quantity,
+    wrong_nominal_value,
+)
 
 MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
     *(frequency_factor, other_quantity, set_factor, other_numbers, reversed_sensor),

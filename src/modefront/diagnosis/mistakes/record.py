@@ -12,7 +12,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.diagnosis.evidence import OF_MODEL, Point, State, Whole
-from modefront.diagnosis.student import loss
+from modefront.diagnosis.measured import loss
 from modefront.findings.record import Finding
 
 RARE, USUAL, OFTEN = 0.005, 0.02, 0.05

@@ -10,7 +10,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.diagnosis.evidence import State
-from modefront.diagnosis.measured import mac_values, median
+from modefront.diagnosis.measured import NOTHING, mac_values, median
 from modefront.diagnosis.mistakes.record import (
     MANY,
     OFTEN,
@@ -20,7 +20,6 @@ from modefront.diagnosis.mistakes.record import (
     changed,
     one_of,
 )
-from modefront.diagnosis.student import NOTHING
 from modefront.findings.knowledge import enumeration
 from modefront.pairing.match import assigned
 

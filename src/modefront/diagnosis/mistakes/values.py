@@ -1,16 +1,26 @@
-"""Units: a factor on all frequencies, another quantity in their place, damping in percent."""
+"""Units and values: of frequencies, of damping, of parameters and their bounds."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.diagnosis.evidence import State
 from modefront.diagnosis.measured import RIGID, log_frequencies
-from modefront.diagnosis.mistakes.record import OFTEN, RARE, Mistake, Setting, changed, one_of
+from modefront.diagnosis.mistakes.record import (
+    OFTEN,
+    RARE,
+    USUAL,
+    Mistake,
+    Setting,
+    changed,
+    one_of,
+)
 
 RAD, G = 2 * np.pi, float(np.sqrt(9.81))
 
@@ -49,6 +59,13 @@ UNITS: Sequence[tuple[float, str, str]] = (
 
 REACH = 0.25
 """Logarithm of a factor beside a known one that parameters make up for, as in a poor model."""
+
+
+POWERS = (1, -1, 2, -2, 3, -3, 6, -6, 9, -9)
+"""Powers of ten by which a value is off."""
+
+WIDER = 4.0
+"""Factor by which a bound is moved away."""
 
 
 def frequency_factor(setting: Setting) -> Iterator[Mistake]:
@@ -106,3 +123,39 @@ def damping_in_percent(setting: Setting) -> Iterator[Mistake]:
         numbers = {"least": float(known.min()), "greatest": float(known.max())}
         change = changed("damping", lambda zeta: zeta / 100)
         yield Mistake("damping", ("damping",), change, one_of(OFTEN, 1), numbers)
+
+
+def wrong_nominal_value(setting: Setting) -> Iterator[Mistake]:
+    """Yield powers of ten on each positive parameter and its bounds."""
+    state = setting.state
+    price = one_of(USUAL, len(POWERS) * len(setting.parameters))
+    for j, power in [(j, x) for j in np.flatnonzero(state.is_positive).tolist() for x in POWERS]:
+        factor = np.ones(state.start.size)
+        factor[j] = 10.0**power
+        name, given = setting.parameters[j], float(state.start[j])
+        numbers = {"name": name, "given": given, "better": given * 10.0**power}
+        yield Mistake("nominal-value", (name,), partial(_scaled, factor=factor), price, numbers)
+
+
+def _scaled(state: State, factor: Floats) -> State:
+    start, lower, upper = (x * factor for x in (state.start, state.lower, state.upper))
+    return replace(state, start=start, lower=lower, upper=upper)
+
+
+def excluding_bound(setting: Setting) -> Iterator[Mistake]:
+    """Yield bounds at which the fit ends, moved away."""
+    state, theta = setting.state, setting.points[-1].theta
+    room, price = state.upper - state.lower, one_of(RARE, 2 * theta.size)
+    for side, bounds, away in (("lower", state.lower, -1.0), ("upper", state.upper, 1.0)):
+        wider = np.where(state.is_positive, bounds * WIDER**away, bounds + away * WIDER * room)
+        for j in np.flatnonzero(np.abs(theta - bounds) <= 1e-6 * room).tolist():
+            name = setting.parameters[j]
+            numbers = {"name": name, "side": side, "bound": float(bounds[j])}
+            change = partial(_moved, side=side, j=j, bound=wider[j])
+            yield Mistake("bound", (name, side), change, price, numbers)
+
+
+def _moved(state: State, side: str, j: int, bound: float) -> State:
+    values = getattr(state, side).copy()
+    values[j] = bound
+    return replace(state, **{side: values})
