@@ -246,25 +246,25 @@ class Quick:
         unit = np.where(state.is_positive, theta, state.unit)
         f = modes.frequency[at.index]
         known = ~state.foreign & np.isfinite(data.logs) & (f > RIGID * modes.frequency.max())
-        parts = [
+        used = data.known & ~state.foreign[:, None] & (data.known.sum(axis=1) > 1)[:, None]
+        chi, beta = np.where(used, at.chi, 0.0), at.beta[:, None]
+        dchi = np.where(used.T[..., None], modes.dphi[:, at.index] * unit, 0.0).transpose(1, 0, 2)
+        b = (chi**2).sum(axis=1)[:, None]
+        dbeta = np.einsum("rs,rsj->rj", data.mean - 2 * beta * chi, dchi)
+        dbeta = np.divide(dbeta, b, out=np.zeros(dbeta.shape), where=b > 0)
+        dr = chi[..., None] * dbeta[:, None] + beta[..., None] * dchi
+        sigma = at.sigma * data.motion
+        parts = (
             (np.log(f[known]) - data.logs[known]) / at.sigma_f,
             state.x(theta) / OFF,
-        ]
-        slopes = [
+            ((beta * chi - data.mean) / sigma)[used],
+        )
+        slopes = (
             modes.dfrequency[at.index[known]] / f[known, None] * unit / at.sigma_f,
             np.eye(theta.size) / OFF,
-        ]
-        nus = [OF_MODEL, OF_PARAMETERS]
-        used = data.known & ~state.foreign[:, None] & (data.known.sum(axis=1) > 1)[:, None]
-        for k in np.flatnonzero(used.any(axis=1)).tolist():
-            seen = used[k]
-            chi, dchi = at.chi[k, seen], modes.dphi[seen, at.index[k]] * unit
-            c, beta, b = data.mean[k, seen], at.beta[k], float(chi @ chi)
-            dbeta = (c @ dchi - 2 * beta * (chi @ dchi)) / b if b > 0 else np.zeros(theta.size)
-            sigma = at.sigma * data.motion[seen]
-            parts.append((beta * chi - c) / sigma)
-            slopes.append((np.outer(chi, dbeta) + beta * dchi) / sigma[:, None])
-            nus.append(OF_MODEL)
+            (dr / sigma[:, None])[used],
+        )
+        nus = OF_MODEL, OF_PARAMETERS, OF_MODEL
         weights = [(nu + 1) / (nu + r**2) for r, nu in zip(parts, nus, strict=True)]
         r, J, w = np.concatenate(parts), np.concatenate(slopes), np.concatenate(weights)
         return at, J.T @ (w * r), J.T @ (w[:, None] * J)
