@@ -17,6 +17,7 @@ x         (parameters,) logarithms of the parameters, or parameters over their u
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -197,34 +198,30 @@ class Quick:
         """Return the modes at sensors; None where there are none."""
         model = self.model
         if isinstance(model, MatrixModel) and selection is not None:
-            rows = selection
-            if self.basis is not None:
-                rows = scipy.sparse.csr_array(selection @ self.basis)
-            model = replace(model, selection=rows)
-        try:
+            rows = selection if self.basis is None else selection @ self.basis
+            model = replace(model, selection=scipy.sparse.csr_array(rows))
+        with suppress(ModelError):
             return model.modes(theta, self.count)
-        except ModelError:
-            return None
+        return None
 
     def everywhere(self, theta: Floats) -> Whole | None:
         """Return the modes at all degrees of freedom; None where there are none."""
-        try:
+        with suppress(ModelError):
             if not isinstance(self.model, MatrixModel):
                 modes = self.model.modes(theta, self.count, derivatives=False)
                 return Whole(theta, modes.frequency, modes.phi)
             full = self.model.full_modes(theta, self.count)
-        except ModelError:
-            return None
-        f = np.sqrt(np.maximum(full.lam, 0.0)) / (2 * np.pi)
-        return Whole(theta, f, full.Phi if self.basis is None else self.basis @ full.Phi)
+            f = np.sqrt(np.maximum(full.lam, 0.0)) / (2 * np.pi)
+            return Whole(theta, f, full.Phi if self.basis is None else self.basis @ full.Phi)
+        return None
 
-    def fit(self, state: State, theta: Floats) -> Point | None:
+    def fit(self, state: State, theta: Floats, steps: int = STEPS) -> Point | None:
         """Return the point at the end of a fit from ``theta``; None where there are no modes."""
         ahead = self._linear(state, theta)
         if ahead is None:
             return None
         here, damping = ahead, 1e-3
-        for _ in range(STEPS):
+        for _ in range(steps):
             best, g, H = here
             step = np.linalg.solve(H + damping * np.diag(np.diag(H) + ACCUMULATED), -g)
             step = np.clip(step, -LONGEST, LONGEST)
@@ -287,11 +284,8 @@ def quick(
     factors = np.exp(rng.uniform(-OFF, OFF, (SAMPLES, theta.size)) * 2)
     shapes = [matrices.full_modes(theta, count).Phi]
     for factor in factors:
-        try:
-            other = matrices.full_modes(np.clip(theta * factor, *bounds), count)
-        except ModelError:
-            continue
-        shapes.append(other.Phi)
+        with suppress(ModelError):
+            shapes.append(matrices.full_modes(np.clip(theta * factor, *bounds), count).Phi)
     V, size, _ = np.linalg.svd(np.hstack(shapes), full_matrices=False)
     V = V[:, size > 1e-7 * size[0]]
     K, M = (_projected(A, V) for A in (matrices.stiffness, matrices.mass))

@@ -12,15 +12,18 @@ from modefront._typing import Floats
 from modefront.diagnosis.comparison import Comparison, bad_pairs, compare, of_few_sets
 from modefront.diagnosis.evidence import Point, Quick, State, Whole, point_of, quick
 from modefront.diagnosis.mistakes import MISTAKES
-from modefront.diagnosis.mistakes.record import Mistake, Setting
+from modefront.diagnosis.mistakes.record import TRIED, Mistake, Setting
 from modefront.findings.record import Finding
 
-CLEAR = float(np.log(20.0))
-"""Difference of costs from which on one explanation is clearly better: odds of 20 to 1."""
+CLEAR = float(np.log(100.0))
+"""Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
 BEAM, FITTED, VARIANTS, MOST = 6, 10, 2, 8
 """Explanations that are extended at a time, claims by which each is, mistakes of a claim that are
 fitted, and most mistakes."""
+
+FOLLOWED = 2
+"""Steps of a fit after which mistakes that move the parameters are compared with others."""
 
 EITHER = 3
 """Explanations that the data cannot tell apart and that are named nevertheless, at most."""
@@ -131,7 +134,7 @@ class Search:
                     promising.append((cost, len(promising), one))
         count: Counter[tuple[str, ...]] = Counter()
         out = []
-        for _, _, one in sorted(promising):
+        for _, _, one in sorted(self._followed(promising, old.state, wholes)):
             count[one.claim] += 1
             if count[one.claim] <= VARIANTS and len(count) <= FITTED:
                 out.append(self.fitted((*old.mistakes, one), [old.point.theta]))
@@ -139,9 +142,28 @@ class Search:
 
     def _screened(self, new: State, old: State, wholes: Sequence[Whole]) -> float:
         """Return the least cost of a state at the parameters that are at hand."""
-        if not np.array_equal(new.start, old.start):
+        if new.start is not old.start:
             return min(self._cost(new, new.theta(old.x(whole.theta))) for whole in wholes)
         return min(point_of(new, whole).cost for whole in wholes)
+
+    def _followed(
+        self, screened: list[tuple[float, int, Mistake]], old: State, wholes: Sequence[Whole]
+    ) -> list[tuple[float, int, Mistake]]:
+        """Return mistakes with their costs, after some steps where they move the parameters.
+
+        The others have made up for a wrong one, so what it costs where they are says little.
+        """
+        out, followed = [], 0
+        for cost, place, one in sorted(screened):
+            new = one.change(old)
+            if new.start is not old.start and followed < TRIED:
+                followed += 1
+                thetas = [new.theta(old.x(whole.theta)) for whole in wholes]
+                best = min(thetas, key=lambda theta: self._cost(new, theta))
+                at = self.model.fit(new, best, FOLLOWED)
+                cost = cost if at is None else at.cost + one.price
+            out.append((cost, place, one))
+        return out
 
     def best(self) -> Explanation | None:
         """Return the best explanation, by extending the best ones, and by leaving mistakes out."""
