@@ -30,7 +30,8 @@ from modefront import fem
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.diagnosis.comparison import compare
-from modefront.diagnosis.search import Found, diagnose
+from modefront.diagnosis.search import diagnose
+from modefront.findings.record import Finding
 from modefront.models.chain import chain
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
@@ -356,11 +357,11 @@ def spoilt_case(seed: int, count: int) -> Case:
     return case
 
 
-def claims(found: Found) -> list[Claim]:
+def claims(found: Finding) -> list[Claim]:
     """Return what a finding claims, and what it says may be instead."""
     out = []
     for each in (found, *found.others):
-        names = each.subject
+        names = tuple(each.subject.split(", "))
         if each.kind in ("reversed-sensor", "exchanged-sensors"):
             names = tuple(sorted(names[:-1]))
         if each.kind == "wrong-direction" and len(names) > 1:
@@ -436,7 +437,7 @@ def main() -> None:
 def diagnosed(case: Case) -> list[tuple[list[Claim], str]]:
     """Return what is claimed of a study, with its words."""
     found = diagnose(compare(case.problem))
-    return [(claims(each), str(each)) for each in found if isinstance(each, Found)]
+    return [(claims(each), str(each)) for each in found if not np.isnan(each.gain)]
 
 
 if __name__ == "__main__":

@@ -67,8 +67,8 @@ def write_bytes(path: Path, content: bytes, *, lasting: bool = False) -> None:
 
 
 def write_text(path: Path, text: str, *, lasting: bool = False) -> None:
-    """Write a text in UTF-8, as `output` does."""
-    write_bytes(path, text.encode(), lasting=lasting)
+    """Write a text in UTF-8, as `output` does; bytes that were no UTF-8 are as they were."""
+    write_bytes(path, text.encode("utf-8", "surrogateescape"), lasting=lasting)
 
 
 def write_table(path: Path, rows: Iterable[Sequence[object]]) -> None:

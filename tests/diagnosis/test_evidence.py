@@ -13,8 +13,7 @@ import scipy.stats
 from modefront._typing import Floats
 from modefront.data.modal import modal_data
 from modefront.diagnosis.evidence import State, point, quick
-from modefront.diagnosis.measured import Measured, measured, median
-from modefront.diagnosis.student import SPREAD, scaled
+from modefront.diagnosis.measured import SPREAD, Measured, measured, median, scaled
 from modefront.models.chain import chain
 
 

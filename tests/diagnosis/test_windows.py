@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from modefront.data.modal import modal_data
-from modefront.diagnosis.comparison import compare
-from modefront.diagnosis.pairs import bad_pairs
+from modefront.diagnosis.comparison import bad_pairs, compare
 from modefront.models.chain import chain
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem

@@ -12,7 +12,13 @@ import numpy as np
 import pytest
 
 import modefront as mf
-from modefront.programs.changes import write_deck
+from modefront.programs.changes import (
+    CHANGES,
+    changes,
+    read_changes,
+    write_changes,
+    write_deck,
+)
 from modefront.study.deck import Target, job_text, lines_of, printed_frequencies
 from modefront.study.examples import write_example
 from modefront.study.importing import model_of
@@ -144,3 +150,22 @@ def test_a_study_beside_its_deck_has_it_back_whole_and_no_other_one(tmp_path: Pa
     left_out = write_deck(tmp_path / "study", theta, tmp_path)
     assert re.match(r"nominal\.inp: line \d+ of .* is not as it was imported: ", left_out)
     assert not (tmp_path / "nominal.inp").exists()
+
+
+@pytest.mark.parametrize("comment", ["** Träger, 3 µm".encode("latin-1"), "** Träger".encode()])
+def test_a_deck_comes_back_with_the_bytes_that_no_parameter_changes(
+    comment: bytes, tmp_path: Path
+) -> None:
+    """Comments in Latin-1 and UTF-8, ends of lines of Windows, a changed line with both."""
+    parts = [b"** made by hand", comment, b"*ELASTIC", b"2.0E11, 0.3, " + comment]
+    nominal, run = tmp_path / "beam.inp", tmp_path / "E.inp"
+    nominal.write_bytes(b"\r\n".join(parts))
+    run.write_bytes(nominal.read_bytes().replace(b"2.0E11", b"4.0E11"))
+    known = changes("E", nominal, run, 2.0)
+    write_changes(tmp_path / CHANGES, known)
+    assert read_changes(tmp_path / CHANGES) == known
+    (tmp_path / "out").mkdir()
+    for factor, number in ((1.0, b"2.e+11"), (1.5, b"3.e+11")):
+        assert not write_deck(tmp_path, {"E": factor}, tmp_path / "out")
+        expected = nominal.read_bytes().replace(b"2.0E11", number)
+        assert (tmp_path / "out" / "beam.inp").read_bytes() == expected

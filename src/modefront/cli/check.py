@@ -11,7 +11,7 @@ from modefront.diagnosis.sensitivity import Sensitivities
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import found
 from modefront.results.remarks import MOST, digest
-from modefront.study.check import Findings, spoils
+from modefront.study.check import Findings
 from modefront.study.definition import Study
 
 ROWS = 12
@@ -40,17 +40,14 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
     ]
     screen.table("groups", ["group", "a", "J nominal", "error nominal"], rows)
     screen.blank()
-    verdict = "agree with" if findings.sound else "DIFFER FROM"
-    doubt = " at a model with these warnings" * (not findings.sound and bool(findings.mistakes))
-    error = findings.derivative_error
-    screen.say(found("derivatives", verdict=verdict, doubt=doubt, error=error))
+    screen.say(findings.derivatives)
     sentences = [f"warning: {text}" for text in findings.warnings]
-    if spoils(findings.mistakes):
+    if findings.spoilt:
         sentences.append(str(found("first-this")))
     else:
-        names = findings.sensitivities.superfluous
+        names, known = findings.sensitivities.superfluous, findings.determined
         fixed = [found("superfluous", enumeration(names), many=len(names) > 1)] if names else []
-        sentences += [*map(str, fixed), *findings.determined[-1:], *findings.determined[:-1]]
+        sentences += map(str, (*fixed, *known[-1:], *known[:-1]))
     for line in digest(sentences, f"modefront check --all {study.file}", None if every else MOST):
         screen.say(line)
     if not findings.warnings:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -9,9 +11,10 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import MEASURED, ModalData
-from modefront.diagnosis.measured import Measured, measured
+from modefront.diagnosis.measured import Measured, log_frequencies, mac_values, measured
 from modefront.errors import ModelError
-from modefront.models.base import Model, full_of, matrices_at
+from modefront.findings.record import Finding, found
+from modefront.models.base import full_of, matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.pairing.match import Pairs, match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
@@ -21,6 +24,13 @@ MORE = 12
 
 COMPARED = 60
 """Data sets in which mistakes are sought, at most: each is compared with every other one."""
+
+
+FAR, NEAR = np.log(2.0), np.log(1.5)
+"""Logarithms of ratios of frequencies: pairs are far apart, and a window of a study is usual."""
+
+POOR, GOOD = 0.5, 0.8
+"""MAC below which a pair is poor, and from which on a mode is found."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,24 +70,16 @@ def compare(problem: UpdatingProblem) -> Comparison:
 
     Raises ModelError where the model has no modes at its nominal parameters.
     """
-    count = modes_needed(problem.pairing, problem.data, problem.model.size)
+    least = modes_needed(problem.pairing, problem.data, problem.model.size)
     full = full_of(problem.model)
     matrices = matrices_at(full, problem.start)
-    frequency, phi = _modes(matrices or full, problem.start, count)
-    low = slice(0, count)
-    pairs = match(problem.pairing, problem.data, frequency[low], phi[:, low])
-    return Comparison(problem, frequency, phi, count, pairs, matrices)
-
-
-def with_data(comparison: Comparison, data: ModalData) -> Comparison:
-    """Return the comparison of the same model with other data, paired anew."""
-    problem, low = comparison.problem, slice(0, comparison.candidates)
-    frequency, phi = comparison.frequency[low], comparison.phi[:, low]
-    return replace(
-        comparison,
-        problem=replace(problem, data=data),
-        pairs=match(problem.pairing, data, frequency, phi),
-    )
+    modes = None
+    with suppress(ModelError):  # there may not be so many
+        count = min(full.size, least + MORE)
+        modes = (matrices or full).modes(problem.start, count, derivatives=False)
+    modes = modes or (matrices or full).modes(problem.start, least, derivatives=False)
+    pairs = match(problem.pairing, problem.data, modes.frequency[:least], modes.phi[:, :least])
+    return Comparison(problem, modes.frequency, modes.phi, least, pairs, matrices)
 
 
 def of_few_sets(comparison: Comparison) -> Comparison:
@@ -89,23 +91,48 @@ def of_few_sets(comparison: Comparison) -> Comparison:
     if len(data.sets) <= COMPARED:
         return comparison
     even = np.linspace(0, len(data.sets) - 1, COMPARED).astype(np.intp)
-    first = [
-        seen.argmax(axis=0)
-        for seen in (np.isfinite(data.frequency), np.isfinite(data.shape).any(axis=2))
-    ]
-    chosen = np.unique(np.concatenate([even, *first]))
+    known = np.isfinite(data.frequency), np.isfinite(data.shape).any(axis=2)
+    chosen = np.unique(np.concatenate([even, *(seen.argmax(axis=0) for seen in known)]))
     few = {name: getattr(data, name)[chosen] for name in MEASURED}
     sets = tuple(data.sets[k] for k in chosen.tolist())
-    return with_data(comparison, replace(data, sets=sets, **few))
+    return compare(replace(comparison.problem, data=replace(data, sets=sets, **few)))
 
 
-def _modes(model: Model, theta: Floats, least: int) -> tuple[Floats, Floats]:
-    """Return frequencies and shapes of as many modes as there are, ``least`` at least."""
-    for count in dict.fromkeys((min(model.size, least + MORE), least)):
-        try:
-            solution = model.modes(theta, count, derivatives=False)
-            return solution.frequency, solution.phi
-        except ModelError:
-            if count == least:
-                raise
-    raise ModelError("no modes")
+def bad_pairs(comparison: Comparison) -> Iterator[Finding]:
+    """Yield the measured modes that the nominal model pairs badly, or does not have."""
+    view, f, low = comparison.view, comparison.frequency, comparison.candidates
+    logs, modes = log_frequencies(f), comparison.data.modes
+    mac = mac_values(view.mean, view.known, comparison.phi)
+    for r, (mode, log) in enumerate(zip(modes, view.logs, strict=True)):
+        q, later = int(comparison.pairs.index[r]), int(np.argmax(mac[r]))
+        measured = float(np.exp(log))
+        if log > logs.max() + NEAR:
+            whole = f.size == comparison.problem.model.size
+            end = f"{f.size} modes" if whole else f"{f.size} lowest modes"
+            yield found(
+                "outside-model", str(mode), measured=measured, modes=end, highest=float(f.max())
+            )
+        elif later >= low and mac[r, later] > GOOD and mac[r, :low].max() < POOR:
+            yield found(
+                "beyond-candidates",
+                str(mode),
+                later=later + 1,
+                f=float(f[later]),
+                mac=float(mac[r, later]),
+                best=float(mac[r, :low].max()),
+                spare=later + 1 - len(modes),
+            )
+        elif abs(log - logs[q]) > FAR:
+            value, apart = comparison.pairs.mac[r], np.abs(log - logs[:low])
+            fits = (apart < NEAR) & ~(mac[r, :low] < POOR)
+            near = int(np.argmin(np.where(fits, apart, np.inf)))
+            yield found(
+                "distant-pair" if fits.any() else "far-from-model",
+                str(mode),
+                measured=measured,
+                model=q + 1,
+                f=float(f[q]),
+                alike="" if np.isnan(value) else f" (MAC {value:.2f})",
+                near=near + 1,
+                there=float(f[near]),
+            )

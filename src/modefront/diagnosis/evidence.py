@@ -2,7 +2,7 @@ r"""The cost of an explanation: how improbable data and parameters are under it.
 
 Data sets differ from what they have in common by noise (`modefront.diagnosis.measured`), and that
 differs from the model by what no parameter describes: frequencies by their logarithms, shapes of
-mean square 1, both after `modefront.diagnosis.student`. The parameters are expected near their
+mean square 1, both after `modefront.diagnosis.measured`. The parameters are expected near their
 nominal values, by their logarithms where their bounds are positive. They are fitted by Gauss-Newton
 steps with weights :math:`(\nu + 1) / (\nu + r_k^2 / \sigma^2)`, the pairs taken anew at every step.
 
@@ -17,28 +17,32 @@ x         (parameters,) logarithms of the parameters, or parameters over their u
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.diagnosis.measured import (
+    NOTHING,
     RIGID,
     Measured,
-    assigned,
     log_frequencies,
+    loss,
     mac_values,
     pair_costs,
+    scaled,
 )
-from modefront.diagnosis.student import NOTHING, loss, scaled
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, SparseAffine
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
 from modefront.modes.result import Modes
+from modefront.pairing.match import assigned
 from modefront.rounding import ACCUMULATED
 
 OF_PARAMETERS, OF_MODEL = 8.0, 4.0
@@ -130,6 +134,23 @@ class Point:
         return np.asarray(np.diag(values))
 
 
+class Whole(NamedTuple):
+    """Frequencies (modes,) in Hz and shapes at all degrees of freedom (N, modes) at parameters.
+
+    Of a model without matrices, shapes at the sensors.
+    """
+
+    theta: Floats
+    frequency: Floats
+    Phi: Floats
+
+
+def point_of(state: State, whole: Whole) -> Point:
+    """Return the state beside a model."""
+    phi = whole.Phi if state.selection is None else state.selection @ whole.Phi
+    return point(state, whole.theta, whole.frequency, phi)
+
+
 def point(state: State, theta: Floats, frequency: Floats, phi: Floats) -> Point:
     """Return the state beside a model's frequencies (model modes,) and shapes at the sensors."""
     data = state.data
@@ -177,37 +198,30 @@ class Quick:
         """Return the modes at sensors; None where there are none."""
         model = self.model
         if isinstance(model, MatrixModel) and selection is not None:
-            rows = selection
-            if self.basis is not None:
-                rows = scipy.sparse.csr_array(selection @ self.basis)
-            model = replace(model, selection=rows)
-        try:
+            rows = selection if self.basis is None else selection @ self.basis
+            model = replace(model, selection=scipy.sparse.csr_array(rows))
+        with suppress(ModelError):
             return model.modes(theta, self.count)
-        except ModelError:
-            return None
+        return None
 
-    def everywhere(self, theta: Floats) -> tuple[Floats, Floats] | None:
-        """Return frequencies (modes,) and shapes at all degrees of freedom (N, modes).
-
-        Of a model without matrices, shapes at the sensors; None where there are none.
-        """
-        try:
+    def everywhere(self, theta: Floats) -> Whole | None:
+        """Return the modes at all degrees of freedom; None where there are none."""
+        with suppress(ModelError):
             if not isinstance(self.model, MatrixModel):
                 modes = self.model.modes(theta, self.count, derivatives=False)
-                return modes.frequency, modes.phi
-            whole = self.model.full_modes(theta, self.count)
-        except ModelError:
-            return None
-        f = np.sqrt(np.maximum(whole.lam, 0.0)) / (2 * np.pi)
-        return f, whole.Phi if self.basis is None else self.basis @ whole.Phi
+                return Whole(theta, modes.frequency, modes.phi)
+            full = self.model.full_modes(theta, self.count)
+            f = np.sqrt(np.maximum(full.lam, 0.0)) / (2 * np.pi)
+            return Whole(theta, f, full.Phi if self.basis is None else self.basis @ full.Phi)
+        return None
 
-    def fit(self, state: State, theta: Floats) -> Point | None:
+    def fit(self, state: State, theta: Floats, steps: int = STEPS) -> Point | None:
         """Return the point at the end of a fit from ``theta``; None where there are no modes."""
         ahead = self._linear(state, theta)
         if ahead is None:
             return None
         here, damping = ahead, 1e-3
-        for _ in range(STEPS):
+        for _ in range(steps):
             best, g, H = here
             step = np.linalg.solve(H + damping * np.diag(np.diag(H) + ACCUMULATED), -g)
             step = np.clip(step, -LONGEST, LONGEST)
@@ -229,25 +243,25 @@ class Quick:
         unit = np.where(state.is_positive, theta, state.unit)
         f = modes.frequency[at.index]
         known = ~state.foreign & np.isfinite(data.logs) & (f > RIGID * modes.frequency.max())
-        parts = [
+        used = data.known & ~state.foreign[:, None] & (data.known.sum(axis=1) > 1)[:, None]
+        chi, beta = np.where(used, at.chi, 0.0), at.beta[:, None]
+        dchi = np.where(used.T[..., None], modes.dphi[:, at.index] * unit, 0.0).transpose(1, 0, 2)
+        b = (chi**2).sum(axis=1)[:, None]
+        dbeta = np.einsum("rs,rsj->rj", data.mean - 2 * beta * chi, dchi)
+        dbeta = np.divide(dbeta, b, out=np.zeros(dbeta.shape), where=b > 0)
+        dr = chi[..., None] * dbeta[:, None] + beta[..., None] * dchi
+        sigma = at.sigma * data.motion
+        parts = (
             (np.log(f[known]) - data.logs[known]) / at.sigma_f,
             state.x(theta) / OFF,
-        ]
-        slopes = [
+            ((beta * chi - data.mean) / sigma)[used],
+        )
+        slopes = (
             modes.dfrequency[at.index[known]] / f[known, None] * unit / at.sigma_f,
             np.eye(theta.size) / OFF,
-        ]
-        nus = [OF_MODEL, OF_PARAMETERS]
-        used = data.known & ~state.foreign[:, None] & (data.known.sum(axis=1) > 1)[:, None]
-        for k in np.flatnonzero(used.any(axis=1)).tolist():
-            seen = used[k]
-            chi, dchi = at.chi[k, seen], modes.dphi[seen, at.index[k]] * unit
-            c, beta, b = data.mean[k, seen], at.beta[k], float(chi @ chi)
-            dbeta = (c @ dchi - 2 * beta * (chi @ dchi)) / b if b > 0 else np.zeros(theta.size)
-            sigma = at.sigma * data.motion[seen]
-            parts.append((beta * chi - c) / sigma)
-            slopes.append((np.outer(chi, dbeta) + beta * dchi) / sigma[:, None])
-            nus.append(OF_MODEL)
+            (dr / sigma[:, None])[used],
+        )
+        nus = OF_MODEL, OF_PARAMETERS, OF_MODEL
         weights = [(nu + 1) / (nu + r**2) for r, nu in zip(parts, nus, strict=True)]
         r, J, w = np.concatenate(parts), np.concatenate(slopes), np.concatenate(weights)
         return at, J.T @ (w * r), J.T @ (w[:, None] * J)
@@ -270,11 +284,8 @@ def quick(
     factors = np.exp(rng.uniform(-OFF, OFF, (SAMPLES, theta.size)) * 2)
     shapes = [matrices.full_modes(theta, count).Phi]
     for factor in factors:
-        try:
-            other = matrices.full_modes(np.clip(theta * factor, *bounds), count)
-        except ModelError:
-            continue
-        shapes.append(other.Phi)
+        with suppress(ModelError):
+            shapes.append(matrices.full_modes(np.clip(theta * factor, *bounds), count).Phi)
     V, size, _ = np.linalg.svd(np.hstack(shapes), full_matrices=False)
     V = V[:, size > 1e-7 * size[0]]
     K, M = (_projected(A, V) for A in (matrices.stiffness, matrices.mass))

@@ -6,6 +6,16 @@ Mode r of the data and mode q of a model are as far apart as
 
 Shapes alone cannot tell a mode with a reversed sensor from another mode, nor frequencies alone
 which of two close modes is which.
+
+Residuals :math:`r_k` of a kind have Student's distribution with a scale :math:`\sigma` that is
+expected near :math:`\sigma_0`. The negative logarithm of their probability, less a constant, is
+
+.. math:: C = \min_\sigma \sum_k w_k \Big[\ln \sigma
+   + \tfrac{\nu + 1}{2} \ln\Big(1 + \frac{r_k^2}{\nu \sigma^2}\Big)\Big]
+   + \frac{1}{2 s^2} \ln^2 \frac{\sigma}{\sigma_0}.
+
+So where all are large, a single large one is nothing special (Lange, Little & Taylor, J. Am. Stat.
+Assoc. 84, 1989, doi:10.1080/01621459.1989.10478852).
 """
 
 from __future__ import annotations
@@ -15,10 +25,9 @@ from functools import cached_property
 
 import numpy as np
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Bools, Floats
 from modefront.data.modal import ModalData
-from modefront.diagnosis.student import loss, scaled
-from modefront.rounding import TINY
+from modefront.rounding import ACCUMULATED, TINY
 
 RIGID = 1e-6
 """Frequency over the greatest one below which a mode is one of a rigid body: rounding leaves the
@@ -38,6 +47,34 @@ DAMPING = float(np.log(0.01))
 
 ROUNDS = 8
 """Rounds of the iteration for the shape that data sets have in common."""
+
+
+SCALES, SPREAD = np.linspace(-4.0, 4.0, 33), 0.5
+"""Logarithms of the scales that are tried, over the one that is expected, and their spread."""
+
+NOTHING = 0.5
+"""Cost of a value of which nothing is known: of one from a normal distribution of size 1."""
+
+
+def loss(r: Floats, nu: float) -> Floats:
+    """Return the cost of residuals over their scale."""
+    return np.asarray((nu + 1) / 2 * np.log1p(r**2 / nu))
+
+
+def scaled(
+    r: Floats, expected: float, nu: float, weight: Floats | float = 1.0
+) -> tuple[float, float]:
+    """Return C of residuals r, each with a weight, and the scale sigma with which it is least."""
+    if not r.size:
+        return 0.0, expected
+    scales, weight = expected * np.exp(SCALES), np.broadcast_to(weight, r.shape)
+    costs = loss(r / scales[:, None], nu) @ weight + weight.sum() * np.log(scales)
+    costs = costs + (SCALES / SPREAD) ** 2 / 2
+    k = min(max(int(np.argmin(costs)), 1), SCALES.size - 2)
+    a, b, c = costs[k - 1 : k + 2]
+    shift = float(np.clip((a - c) / (2 * (a - 2 * b + c) + ACCUMULATED), -0.5, 0.5))
+    least = float(b - (a - c) * shift / 4)
+    return least, float(scales[k] * np.exp(shift * (SCALES[1] - SCALES[0])))
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,16 +219,6 @@ def pair_costs(mac: Floats, logs: Floats, of_model: Floats) -> Floats:
     distance = np.abs(of_model - logs[:, None])
     distance = np.where(np.isnan(distance), 0.0, np.minimum(distance, FARTHEST))
     return np.where(np.isnan(mac), 0.0, 1 - mac) + KAPPA * distance
-
-
-def assigned(cost: Floats) -> Ints:
-    """Return the model mode of each measured mode, each taken once at most."""
-    index = np.argmin(cost, axis=1)
-    if np.unique(index).size < index.size <= cost.shape[1]:
-        from scipy.optimize import linear_sum_assignment
-
-        index = np.asarray(linear_sum_assignment(cost)[1])
-    return index
 
 
 def log_frequencies(frequency: Floats) -> Floats:

@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.diagnosis.comparison import Comparison, compare, of_few_sets
-from modefront.diagnosis.evidence import Point, Quick, State, point, quick
+from modefront.diagnosis.comparison import Comparison, bad_pairs, compare, of_few_sets
+from modefront.diagnosis.evidence import Point, Quick, State, Whole, point_of, quick
 from modefront.diagnosis.mistakes import MISTAKES
-from modefront.diagnosis.mistakes.record import Mistake, Setting, Variant
-from modefront.diagnosis.pairs import bad_pairs
-from modefront.findings.catalogue import CATALOGUE
+from modefront.diagnosis.mistakes.record import TRIED, Mistake, Setting
 from modefront.findings.record import Finding
 
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
 BEAM, FITTED, VARIANTS, MOST = 6, 10, 2, 8
-"""Explanations that are extended at a time, claims by which each is, variants of a claim that are
+"""Explanations that are extended at a time, claims by which each is, mistakes of a claim that are
 fitted, and most mistakes."""
+
+FOLLOWED = 2
+"""Steps of a fit after which mistakes that move the parameters are compared with others."""
 
 EITHER = 3
 """Explanations that the data cannot tell apart and that are named nevertheless, at most."""
@@ -34,23 +34,7 @@ SEEN = 0.02
 MORE = 4
 """Model modes with which measured ones may be paired, beyond the candidates of the study."""
 
-
-@dataclass(frozen=True, eq=False)
-class Step:
-    """A variant of a mistake that is assumed."""
-
-    mistake: Mistake
-    variant: Variant
-
-    @property
-    def claim(self) -> tuple[str, ...]:
-        """What is claimed: the kind of mistake and whom it blames."""
-        return (self.mistake.kind, *self.variant.subject)
-
-    @property
-    def price(self) -> float:
-        """Negative logarithm of the probability that a study has it."""
-        return self.variant.price - float(np.log(self.mistake.probability))
+Claims = frozenset[tuple[str, ...]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,55 +43,20 @@ class Explanation:
 
     Attributes
     ----------
-    steps : the mistakes
+    mistakes : that are assumed
     state, point : data and model without them, and the end of a fit
     cost : C with the prices
     """
 
-    steps: tuple[Step, ...]
+    mistakes: tuple[Mistake, ...]
     state: State
     point: Point
     cost: float
 
     @property
-    def claims(self) -> frozenset[tuple[str, ...]]:
+    def claims(self) -> Claims:
         """What is claimed."""
-        return frozenset(step.claim for step in self.steps)
-
-
-@dataclass(frozen=True)
-class Found:
-    """A mistake that is named.
-
-    Attributes
-    ----------
-    kind : of `modefront.diagnosis.mistakes.MISTAKES`
-    subject : what it blames
-    numbers : names and numbers of its sentence
-    gain : logarithm of the odds against the best explanation without it
-    others : mistakes one of which may be there instead
-    evidence : how a MAC value changes
-    """
-
-    kind: str
-    subject: tuple[str, ...]
-    numbers: Mapping[str, Any]
-    gain: float
-    others: tuple[Found, ...] = ()
-    evidence: str = ""
-
-    def __str__(self) -> str:
-        """Return what is wrong and what mends it."""
-        wrong, remedy = self.halves
-        either = "".join(f", or {other.halves[0]}" for other in self.others)
-        unsure = " (the data cannot tell)" if either else ""
-        return f"{wrong}{either}{unsure}{self.evidence}; {remedy}"
-
-    @property
-    def halves(self) -> tuple[str, str]:
-        """What is wrong, and what mends it."""
-        wrong, _, remedy = CATALOGUE[self.kind][1].partition("; ")
-        return wrong.format(**self.numbers), remedy.format(**self.numbers)
+        return frozenset(each.claim for each in self.mistakes)
 
 
 @dataclass(eq=False)
@@ -118,126 +67,103 @@ class Search:
     ----------
     comparison : the nominal model beside the measured modes
     model : the model, quickly solved
+    plain : data and model as they are
     known : explanations that were fitted, the best of those with the same claims
+    extended : claims of those to which mistakes were added
     """
 
     comparison: Comparison
     model: Quick
-    known: dict[frozenset[tuple[str, ...]], Explanation] = field(default_factory=dict)
-    extended: set[frozenset[tuple[str, ...]]] = field(default_factory=set)
+    plain: State
+    known: dict[Claims, Explanation] = field(default_factory=dict)
+    extended: set[Claims] = field(default_factory=set)
 
     @classmethod
     def of(cls, comparison: Comparison) -> Search:
         """Return the search that begins with a comparison."""
-        problem = comparison.problem
+        problem, matrices = comparison.problem, comparison.matrices
         count = min(problem.model.size, comparison.candidates + MORE, comparison.frequency.size)
         bounds = problem.lower, problem.upper
-        model = quick(problem.model, comparison.matrices, count, problem.start, bounds)
-        return cls(comparison, model)
-
-    @property
-    def plain(self) -> State:
-        """Data and model as they are."""
-        problem, data = self.comparison.problem, self.comparison.view
-        matrices = self.comparison.matrices
-        return State(
-            data,
-            np.zeros(data.logs.size, dtype=bool),
+        plain = State(
+            comparison.view,
+            np.zeros(len(problem.data.modes), dtype=bool),
             None if matrices is None else matrices.selection,
             None if matrices is None else matrices.geometry,
-            *(problem.start, problem.lower, problem.upper),
+            problem.start,
+            *bounds,
         )
+        return cls(comparison, quick(problem.model, matrices, count, problem.start, bounds), plain)
 
-    def state(self, steps: Sequence[Step]) -> State:
-        """Return data and model without some mistakes."""
+    def fitted(self, mistakes: Sequence[Mistake], starts: Sequence[Floats]) -> Explanation | None:
+        """Return the explanation by some mistakes, after a fit from the best of some parameters."""
         state = self.plain
-        for step in steps:
-            state = step.variant.change(state)
-        return state
-
-    def fitted(self, steps: Sequence[Step], starts: Sequence[Floats]) -> Explanation | None:
-        """Return the explanation by some mistakes, the best of fits from several parameters."""
-        state = self.state(steps)
+        for each in mistakes:
+            state = each.change(state)
         starts = [np.clip(theta, state.lower, state.upper) for theta in (state.start, *starts)]
-        points = [self._at(state, theta) for theta in starts]
-        begin = [(at.cost, k) for k, at in enumerate(points) if at is not None]
-        if not begin:
-            return None
-        at = self.model.fit(state, starts[min(begin)[1]])
+        costs = [self._cost(state, theta) for theta in starts]
+        at = self.model.fit(state, starts[int(np.argmin(costs))]) if min(costs) < np.inf else None
         if at is None:
             return None
-        cost = at.cost + sum(step.price for step in steps)
-        new = Explanation(tuple(steps), state, at, cost)
-        old = self.known.get(new.claims)
-        if old is None or new.cost < old.cost:
-            self.known[new.claims] = new
+        cost = at.cost + sum(each.price for each in mistakes)
+        new = Explanation(tuple(mistakes), state, at, cost)
+        self.known[new.claims] = min(
+            self.known.get(new.claims, new), new, key=lambda each: each.cost
+        )
         return self.known[new.claims]
 
-    def _at(self, state: State, theta: Floats) -> Point | None:
+    def _cost(self, state: State, theta: Floats) -> float:
+        """Return the cost of a state at parameters; infinite where the model has no modes."""
         whole = self.model.everywhere(theta)
-        if whole is None:
-            return None
-        f, Phi = whole
-        return point(state, theta, f, Phi if state.selection is None else state.selection @ Phi)
+        return np.inf if whole is None else point_of(state, whole).cost
 
     def extend(self, old: Explanation) -> list[Explanation]:
         """Return the most promising explanations with a mistake more, after a fit of each."""
         if old.claims in self.extended:
-            return [
-                e for c, e in self.known.items() if len(c) == len(old.claims) + 1 and c > old.claims
-            ]
+            return []
         self.extended.add(old.claims)
-        state, thetas = old.state, [old.state.start, old.point.theta]
-        if old.steps:
-            del thetas[0]
-        wholes = [(theta, self.model.everywhere(theta)) for theta in thetas]
-        models = [(theta, *whole) for theta, whole in wholes if whole is not None]
-        promising: list[tuple[float, int, Step]] = []
-        for step in self._steps(old, models):
-            if step.claim not in old.claims:
-                cost = self._screened(step.variant.change(state), state, models) + step.price
-                promising.append((cost, len(promising), step))
+        thetas = [old.point.theta] if old.mistakes else [old.state.start, old.point.theta]
+        wholes = [x for theta in thetas if (x := self.model.everywhere(theta)) is not None]
+        points = [point_of(old.state, whole) for whole in wholes]
+        names, parameters = self.comparison.data, self.comparison.problem.model.parameters
+        setting = Setting(old.state, wholes, points, names, parameters)
+        promising: list[tuple[float, int, Mistake]] = []
+        for find in MISTAKES:
+            for one in find(setting):
+                if one.claim not in old.claims:
+                    cost = self._screened(one.change(old.state), old.state, wholes) + one.price
+                    promising.append((cost, len(promising), one))
         count: Counter[tuple[str, ...]] = Counter()
         out = []
-        for _, _, step in sorted(promising):
-            count[step.claim] += 1
-            if count[step.claim] <= VARIANTS and len(count) <= FITTED:
-                out.append(self.fitted((*old.steps, step), [old.point.theta]))
-        return sorted((each for each in out if each is not None), key=lambda each: each.cost)
+        for _, _, one in sorted(self._followed(promising, old.state, wholes)):
+            count[one.claim] += 1
+            if count[one.claim] <= VARIANTS and len(count) <= FITTED:
+                out.append(self.fitted((*old.mistakes, one), [old.point.theta]))
+        return [each for each in out if each is not None]
 
-    def _screened(
-        self, new: State, old: State, models: Sequence[tuple[Floats, Floats, Floats]]
-    ) -> float:
+    def _screened(self, new: State, old: State, wholes: Sequence[Whole]) -> float:
         """Return the least cost of a state at the parameters that are at hand."""
-        costs = [np.inf]
-        for theta, f, Phi in models:
-            if not np.array_equal(new.start, old.start):
-                at = self._at(new, new.theta(old.x(theta)))
-            else:
-                phi = Phi if new.selection is None else new.selection @ Phi
-                at = point(new, theta, f, phi)
-            costs.append(np.inf if at is None else at.cost)
-        return float(min(costs))
+        if new.start is not old.start:
+            return min(self._cost(new, new.theta(old.x(whole.theta))) for whole in wholes)
+        return min(point_of(new, whole).cost for whole in wholes)
 
-    def _steps(
-        self, old: Explanation, models: Sequence[tuple[Floats, Floats, Floats]]
-    ) -> Iterator[Step]:
-        """Yield what may be assumed besides an explanation."""
-        data = self.comparison.data
-        select = old.state.selection
-        setting = Setting(
-            old.state,
-            [
-                point(old.state, t, f, Phi if select is None else select @ Phi)
-                for t, f, Phi in models
-            ],
-            [f for _, f, _ in models],
-            [Phi for _, _, Phi in models],
-            *(data.sets, data.modes, data.sensors, self.comparison.problem.model.parameters),
-        )
-        for mistake in MISTAKES:
-            for variant in mistake.variants(setting):
-                yield Step(mistake, variant)
+    def _followed(
+        self, screened: list[tuple[float, int, Mistake]], old: State, wholes: Sequence[Whole]
+    ) -> list[tuple[float, int, Mistake]]:
+        """Return mistakes with their costs, after some steps where they move the parameters.
+
+        The others have made up for a wrong one, so what it costs where they are says little.
+        """
+        out, followed = [], 0
+        for cost, place, one in sorted(screened):
+            new = one.change(old)
+            if new.start is not old.start and followed < TRIED:
+                followed += 1
+                thetas = [new.theta(old.x(whole.theta)) for whole in wholes]
+                best = min(thetas, key=lambda theta: self._cost(new, theta))
+                at = self.model.fit(new, best, FOLLOWED)
+                cost = cost if at is None else at.cost + one.price
+            out.append((cost, place, one))
+        return out
 
     def best(self) -> Explanation | None:
         """Return the best explanation, by extending the best ones, and by leaving mistakes out."""
@@ -255,73 +181,67 @@ class Search:
         while True:
             best = min(self.known.values(), key=lambda each: each.cost)
             theta = [best.point.theta]
-            for step in best.steps:
-                rest = self.fitted([each for each in best.steps if each is not step], theta)
+            for one in best.mistakes:
+                rest = self.fitted([each for each in best.mistakes if each is not one], theta)
                 if rest is not None:
                     self.extend(rest)
             # A rival may only have been fitted from where its way is barred.
             for each in list(self.known.values()):
-                at = self._at(each.state, np.clip(theta[0], each.state.lower, each.state.upper))
-                if at is not None and at.cost < each.point.cost:
-                    self.fitted(each.steps, theta)
+                inside = np.clip(theta[0], each.state.lower, each.state.upper)
+                if self._cost(each.state, inside) < each.point.cost:
+                    self.fitted(each.mistakes, theta)
             if min(each.cost for each in self.known.values()) >= best.cost:
                 return best
 
-    def _evidence(self, without: Explanation, best: Explanation) -> str:
-        """Return how the MAC value changes that gains most by a mistake, where one does."""
-        before, after = (each.point.mac(each.state.data) for each in (without, best))
-        gain = np.nan_to_num(after - before)
-        r = int(np.argmax(gain))
-        if gain[r] < SEEN:
-            return ""
-        mode = self.comparison.data.modes[r]
-        return f" (without, MAC {mode} is {after[r]:.2f} after a fit, and not {before[r]:.2f})"
+    def named(self, best: Explanation) -> dict[Mistake, Finding]:
+        """Return the mistakes of the best explanation without which no other one comes near it.
 
-    def named(self, best: Explanation) -> dict[Step, Found]:
-        """Return the mistakes of the best explanation without which no other one comes near it."""
+        Another one is no rival that has more mistakes and fits no better: all sensors but one
+        reversed are the same as that one, as a mode shape has no sign.
+        """
         out = {}
-        for step in best.steps:
+        for one in best.mistakes:
             rivals = [
                 each
                 for each in self.known.values()
-                if step.claim not in each.claims and not _exceeds(each, best)
+                if one.claim not in each.claims
+                and (
+                    len(each.mistakes) <= len(best.mistakes)
+                    or each.point.cost <= best.point.cost - 1
+                )
             ]
             near = [each for each in rivals if each.cost - best.cost < CLEAR]
-            rest = best.claims - {step.claim}
+            rest = best.claims - {one.claim}
             swaps = [
                 other
                 for each in near
                 if each.claims > rest and len(each.claims) == len(best.claims)
-                for other in each.steps
+                for other in each.mistakes
                 if other.claim not in rest
             ]
             alike = {other.claim for other in swaps}
             if len(swaps) >= EITHER or not all(each.claims & alike for each in near):
                 continue
             gain = min((each.cost for each in rivals if not each.claims & alike), default=np.inf)
-            others = tuple(_found(other, 0.0) for other in swaps)
-            without = self.known.get(rest, self.known[frozenset()])
-            out[step] = _found(step, gain - best.cost, others, self._evidence(without, best))
+            out[one] = replace(
+                one.finding,
+                others=tuple(other.finding for other in swaps),
+                evidence=self._evidence(self.known.get(rest, self.known[frozenset()]), best),
+                gain=float(gain - best.cost),
+            )
         return out
 
-
-def _exceeds(other: Explanation, best: Explanation) -> bool:
-    """Return whether another explanation has more mistakes than the best one and fits no better.
-
-    All sensors but one reversed are the same as that one: a mode shape has no sign.
-    """
-    more = len(other.steps) > len(best.steps)
-    return more and other.point.cost > best.point.cost - 1
-
-
-def _found(step: Step, gain: float, others: tuple[Found, ...] = (), evidence: str = "") -> Found:
-    """Return the record of a mistake."""
-    variant = step.variant
-    kind, subject = step.mistake.kind, variant.subject
-    return Found(kind, subject, variant.numbers, float(gain), others, evidence)
+    def _evidence(self, without: Explanation, best: Explanation) -> str:
+        """Return how the MAC value changes that gains most by a mistake, where one does."""
+        before, after = (each.point.mac(each.state.data) for each in (without, best))
+        r = int(np.argmax(np.nan_to_num(after - before)))
+        if np.isnan(after[r] - before[r]) or after[r] - before[r] < SEEN:
+            return ""
+        mode = self.comparison.data.modes[r]
+        return f" (without, MAC {mode} is {after[r]:.2f} after a fit, and not {before[r]:.2f})"
 
 
-def diagnose(comparison: Comparison) -> list[Found | Finding]:
+def diagnose(comparison: Comparison) -> list[Finding]:
     """Return the mistakes of a model or its data; of many data sets, some are looked at.
 
     Pairs are looked at without these mistakes.
@@ -331,14 +251,14 @@ def diagnose(comparison: Comparison) -> list[Found | Finding]:
     best = search.best()
     if best is None:
         return []
-    named = search.named(best)
-    found = list(named.values())
-    state = search.state(list(named))
-    foreign = {str(mode) for mode in np.array(comparison.data.modes)[state.foreign]}
-    if found:
+    named, state = search.named(best), search.plain
+    for one in named:
+        state = one.change(state)
+    if named:
         problem, model = comparison.problem, comparison.matrices
         data = replace(comparison.data, frequency=state.data.frequency, shape=state.data.shape)
         if model is not None and state.selection is not None:
             problem = replace(problem, model=replace(model, selection=state.selection))
         comparison = compare(replace(problem, data=data, start=state.start))
-    return [*found, *(each for each in bad_pairs(comparison) if each.subject not in foreign)]
+    foreign = {str(mode) for mode in np.array(comparison.data.modes)[state.foreign]}
+    return [*named.values(), *(x for x in bad_pairs(comparison) if x.subject not in foreign)]

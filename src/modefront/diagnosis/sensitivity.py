@@ -46,28 +46,18 @@ def sensitivities(problem: UpdatingProblem) -> Sensitivities:
     Raises ModelError where the model has no modes there.
     """
     modes, pairs = problem.modes(problem.start)
-    index = pairs.index
-    positive = problem.lower > 0
-    unit = np.where(positive, problem.start, (problem.upper - problem.lower))
-    f = modes.frequency[index]
-    slope = modes.dfrequency[index].T * unit[:, None]
-    frequency = np.divide(slope, f, out=np.zeros(slope.shape), where=f > 0)
-    phi, dphi = modes.phi[:, index], modes.dphi[:, index] * unit
-    square = (phi**2).sum(axis=0)
-    along = np.divide(
-        np.einsum("sr,srj->rj", phi, dphi),
-        square[:, None],
-        out=np.zeros(dphi.shape[1:]),
-        where=square[:, None] > 0,
-    )
-    change = ((dphi - phi[:, :, None] * along) ** 2).sum(axis=0)
-    share = np.divide(
-        change, square[:, None], out=np.zeros(change.shape), where=square[:, None] > 0
-    )
-    shape = np.sqrt(np.asarray(share.sum(axis=0)))
-    names = problem.model.parameters
+    unit = np.where(problem.lower > 0, problem.start, problem.upper - problem.lower)
+    slopes = modes.dfrequency[pairs.index].T * unit[:, None]
+    phi, dphi = modes.phi[:, pairs.index], modes.dphi[:, pairs.index] * unit
+    with np.errstate(divide="ignore", invalid="ignore"):
+        frequency = slopes / modes.frequency[pairs.index]
+        phi = phi / np.linalg.norm(phi, axis=0)
+        dphi = dphi / np.linalg.norm(modes.phi[:, pairs.index], axis=0)[:, None]
+    frequency, phi, dphi = (np.where(np.isfinite(x), x, 0.0) for x in (frequency, phi, dphi))
+    across = dphi - phi[:, :, None] * np.einsum("sr,srj->rj", phi, dphi)
+    names, data = problem.model.parameters, problem.data
     fixed = tuple(names[j] for j in superfluous(problem))
-    return Sensitivities(names, problem.data.modes, frequency, shape, fixed)
+    return Sensitivities(names, data.modes, frequency, np.linalg.norm(across, axis=(0, 1)), fixed)
 
 
 def superfluous(problem: UpdatingProblem) -> list[int]:

@@ -75,6 +75,22 @@ unused-group | mesh group '{subject}' of {cells} {type} cells has no elements an
 compared-pair | modes {subject} of the data are a pair of one frequency: their shapes are any two
     of a plane, and group '{group}' compares them one by one; write subspace = [{modes}], and the
     other modes in shape = […]
+no-model-near | the derivatives differ from finite differences for {subject}: a small change leads
+    to no model: {why}; check its value and units
+close-modes | the derivatives differ from finite differences of group '{group}' for {subject},
+    mostly by measured mode {mode} (relative {error:.1e}): model mode {model} and its neighbour are
+    {apart:.2g} % apart, and close modes turn into each other within a small change of the parameter
+unlike-effects | the derivatives differ from finite differences of group '{group}' for {subject},
+    mostly by measured mode {mode} (relative {error:.1e}): parameters differ by {ratio:.0e} in
+    their effect; check units of the matrices, and whether a stiffness vanishes
+little-effect | the derivatives differ from finite differences of group '{group}' for {subject},
+    mostly by measured mode {mode} (relative {error:.1e}): the parameter has so little effect that a
+    step beyond its own size is needed to see any; check its value, its units, and whether a
+    stiffness vanishes
+not-smooth | the derivatives differ from finite differences of group '{group}' for {subject}, mostly
+    by measured mode {mode} (relative {error:.1e}): the model does not change smoothly there, or
+    digits are lost in it; check its units, and whether a stiffness or mass vanishes; derivatives of
+    a Python model have to be those of its matrices
 # FAILURE
 changed | {subject}
 not-converged | not converged: {subject}
@@ -101,6 +117,15 @@ changed-pairs | measured mode{|s} {subject} {is|are} paired with different model
     front{counts}
 at-bounds | parameters at a bound: {subject}
 many-at-bounds | {parameters} parameters are at a bound in some models: {subject} and others
+coincident | mode {subject} of the nominal model coincides with another one: its derivatives are not
+    defined
+nominal-at-bound | the nominal value of {subject} is one of its bounds, {bound:g}
+no-model-at-bounds | at the {subject} bounds of all parameters: {why}
+elements | {subject}
+many-sets | {subject} data sets are many: mistakes are sought in {searched} of them, chosen evenly
+many-parameters | {subject} parameters are many: a run takes some {size:.2g} GB and long, as every
+    step solves for all of them; let one parameter scale several parts, or keep those at their
+    nominal values that the data do not determine
 # OPEN
 budget | the search ended at its budget, and better models are likely for {subject}: raise [search]
     evaluations
@@ -111,6 +136,9 @@ doubtful-edge | the edge of {subject} may not be the best: {starts} random start
 unknown-end | the front has a gap: where branch {subject} {end} is not known
 no-effect | {where}{subject} {has|have} no effect: no residual changes with {it|any of them}; keep
     {it|them} at the nominal value{|s}, or measure what {it changes|they change}
+undetermined | the data {degree} {subject}: fix or tie one, or measure more
+undetermined-many | the data {degree} {several} of {every} combinations of parameters: take fewer
+    parameters, or measure more
 all-data | {where}{subject} determine {rank} of {combinations} of parameters{free}
 separate | {models} separate models fit {subject} equally well
 manifold | {manifolds} of models fit{s|} {subject} equally well{where} {reach} ({count})

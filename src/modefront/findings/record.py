@@ -27,12 +27,18 @@ class Finding:
     subject : what it is about: parameters, groups, modes or models
     numbers : further values of its sentence, by name
     many : whether the sentence is on several subjects
+    others : what may be wrong instead, where the data cannot tell
+    evidence : what else shows it, in brackets
+    gain : logarithm of the odds against the best explanation without it; NaN where none was sought
     """
 
     kind: str
     subject: str
     numbers: Mapping[str, Any]
     many: bool = False
+    others: tuple[Finding, ...] = ()
+    evidence: str = ""
+    gain: float = float("nan")
 
     @property
     def severity(self) -> Severity:
@@ -41,8 +47,19 @@ class Finding:
 
     def __str__(self) -> str:
         """Return the sentence: with a small letter first, and without a full stop."""
+        (wrong, remedy), evidence = self._halves, self.evidence
+        if self.others:
+            said = "".join(f", or {other._halves[0]}" for other in self.others)
+            evidence = f"{said} (the data cannot tell){evidence}"
+        return f"{wrong}{evidence}; {remedy}" if remedy else f"{wrong}{evidence}"
+
+    @property
+    def _halves(self) -> tuple[str, str]:
+        """What is before the first semicolon of the sentence, and what is behind it."""
         text = NUMBER.sub(lambda words: words[1 + self.many], CATALOGUE[self.kind][1])
-        return text.format(subject=self.subject, **self.numbers)
+        wrong, _, remedy = text.partition("; ")
+        values = {"subject": self.subject, **self.numbers}
+        return wrong.format(**values), remedy.format(**values)
 
     def as_plain(self) -> dict[str, Any]:
         """Return the finding as JSON has it."""

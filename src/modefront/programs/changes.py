@@ -94,7 +94,7 @@ def _different_lines(nominal: Path, run: Path) -> tuple[str, list[tuple[int, str
     before, after = _deck(nominal), _deck(run)
     if before is None or after is None:
         return "", []
-    lines = [path.read_text("utf-8", "replace").splitlines() for path in (before, after)]
+    lines = [text_of(path).splitlines() for path in (before, after)]
     if len(lines[0]) != len(lines[1]):
         return before.name, []
     numbered = enumerate(zip(*lines, strict=True), start=1)
@@ -104,7 +104,15 @@ def _different_lines(nominal: Path, run: Path) -> tuple[str, list[tuple[int, str
 def deck_text(job: Path) -> str:
     """Return the deck of a job; empty where there is none."""
     deck = _deck(job)
-    return deck.read_text("utf-8", "replace") if deck else ""
+    return text_of(deck) if deck else ""
+
+
+def text_of(deck: Path) -> str:
+    """Return the text of a deck, with its own ends of lines.
+
+    Bytes that are no UTF-8, such as those of comments in Latin-1, stay as they are when written.
+    """
+    return deck.read_bytes().decode("utf-8", "surrogateescape")
 
 
 def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
@@ -118,9 +126,9 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
     kept = next((path for path in decks if path.is_file()), None)
     if kept is None or {each.parameter for each in changes} - set(theta):
         return ""
-    lines = dict(enumerate(kept.read_text("utf-8", "replace").splitlines(), start=1))
+    lines = dict(enumerate(text_of(kept).splitlines(keepends=True), start=1))
     for each in changes:
-        if lines.get(each.line) != each.text:
+        if lines.get(each.line, "").splitlines() != [each.text]:
             return f"{each.file}: line {each.line} of {kept} is not as it was imported: {each.text}"
     factors: dict[int, dict[tuple[int, int], float]] = {}
     for each in changes:
@@ -129,7 +137,7 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
             line[span] = line.get(span, 1.0) * theta[each.parameter]
     for k, of_line in factors.items():
         lines[k] = _multiplied(lines[k], of_line)
-    write_text(folder / changes[0].file, "\n".join(lines.values()) + "\n")
+    write_text(folder / changes[0].file, "".join(lines.values()))
     return ""
 
 
@@ -156,7 +164,7 @@ def _changed(old: str, new: str) -> list[tuple[tuple[int, int], float, float]] |
 
 def write_changes(path: Path, changes: Sequence[Change]) -> None:
     """Write changes as JSON."""
-    text = json.dumps([asdict(each) for each in changes], indent=1, ensure_ascii=False)
+    text = json.dumps([asdict(each) for each in changes], indent=1)
     write_text(path, text + "\n")
 
 

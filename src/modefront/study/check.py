@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -23,18 +24,19 @@ from threadpoolctl import threadpool_limits
 from modefront._typing import Floats
 from modefront.brief import as_html
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
-from modefront.diagnosis.search import Found, diagnose
+from modefront.diagnosis.search import diagnose
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
 from modefront.errors import Fault, ModelError, refuse
 from modefront.findings.knowledge import (
     SHOWN,
     alike,
+    enumeration,
     in_words,
     measured_noun,
     no_effect,
     summary,
 )
-from modefront.findings.record import Finding
+from modefront.findings.record import Finding, found
 from modefront.identifiability.combinations import (
     NONE,
     WEAK,
@@ -44,7 +46,7 @@ from modefront.identifiability.combinations import (
     unchanged_groups,
     without_effect,
 )
-from modefront.identifiability.scale import Scale, scale_at
+from modefront.identifiability.scale import scale_at
 from modefront.inputs import available_memory
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel
@@ -83,49 +85,56 @@ HARMLESS = {
 }
 """Mistakes that leave the residuals as they are, or that need not be mistakes."""
 
-Mistake = Found | Finding
-"""What looks wrong: a record with a kind and a subject, and a sentence as its text."""
-
 
 @dataclass(frozen=True)
 class Findings:
-    """The outcome of a check.
+    """The outcome of a check, as records that have a sentence as their text.
 
     Attributes
     ----------
-    derivative_error : greatest difference of exact derivatives of the residuals of a group from
-        central differences near the nominal parameters, over the greatest of their derivatives;
-        NaN where the model is not defined around them
-    derivative_cause : which parameter and mode they differ for, and why; empty where they agree
+    derivatives : greatest difference of exact derivatives of the residuals of a group from central
+        differences near the nominal parameters, over the greatest of their derivatives; NaN where
+        the model is not defined around them
+    cause : which parameter and mode they differ for, and why; None where they agree
     determined : which combinations of parameters each group and all of them determine
-    warnings : what a user should know before relying on the results; `mistakes` in words first
-    mistakes : what looks wrong in the model or the data, with its numbers
+    mistakes : what looks wrong in the model or the data
+    cautions : what else a user should know before relying on the results
     beside : the nominal model beside the measured modes
     sensitivities : of the modes to the parameters
     """
 
-    derivative_error: float
-    derivative_cause: str
-    determined: tuple[str, ...]
-    warnings: tuple[str, ...]
-    mistakes: tuple[Mistake, ...]
+    derivatives: Finding
+    cause: Finding | None
+    determined: tuple[Finding, ...]
+    mistakes: tuple[Finding, ...]
+    cautions: tuple[Finding, ...]
     beside: Comparison
     sensitivities: Sensitivities
 
     def __repr__(self) -> str:
         """Return the first warnings, one a line."""
-        agree = "agree with" if self.sound else "DIFFER FROM"
-        count = len(self.warnings)
+        warnings = self.warnings
+        agree, count = "agree with" if self.sound else "DIFFER FROM", len(warnings)
         more = [f"and {count - SHOWN} more: see warnings"] * (count > SHOWN)
         first = f"Findings: derivatives {agree} finite differences; {count or 'no'} warnings"
-        return "\n".join([first, *self.warnings[:SHOWN], *more])
+        return "\n".join([first, *warnings[:SHOWN], *more])
 
     _repr_html_ = as_html
 
     @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on mistakes and cautions, in this order."""
+        return tuple(map(str, (*self.mistakes, *self.cautions)))
+
+    @property
     def sound(self) -> bool:
         """Whether the derivatives agree with finite differences."""
-        return self.derivative_error <= AGREEMENT
+        return self.cause is None
+
+    @property
+    def spoilt(self) -> bool:
+        """Whether mistakes change the residuals, and with them what the data determine."""
+        return _spoil(self.mistakes)
 
 
 def check(study: Study) -> Findings:
@@ -148,63 +157,52 @@ def check(study: Study) -> Findings:
 def _checked(study: Study) -> Findings:
     problem = study.problem
     refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
-    nominal = problem.evaluate(problem.start)
-    scale = scale_at(problem, problem.start)
-    beside = compare(problem)
+    nominal, beside = problem.evaluate(problem.start), compare(problem)
     mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
-    warnings = [
-        *map(str, mistakes),
-        *_undetermined(problem, nominal, scale, parameters_only=spoils(mistakes)),
-        *_of_model(problem, nominal),
-    ]
     agreement = compared(problem)
-    cause = "" if agreement.error <= AGREEMENT else cause_of(problem, agreement)
+    agrees = agreement.error <= AGREEMENT
+    known, left_open = determined(problem, nominal)
+    if _spoil(mistakes):
+        left_open = [each for each in left_open if each.kind == "no-effect"]
     return Findings(
-        agreement.error,
-        cause,
-        determined(problem),
-        tuple(warnings),
+        found(
+            "derivatives",
+            verdict="agree with" if agrees else "DIFFER FROM",
+            doubt=" at a model with these warnings" * bool(mistakes and not agrees),
+            error=agreement.error,
+        ),
+        None if agrees else cause_of(problem, agreement),
+        tuple(known),
         mistakes,
+        (*left_open, *_of_model(problem, nominal)),
         beside,
         sensitivities(problem),
     )
 
 
-def spoils(mistakes: Sequence[Mistake]) -> bool:
-    """Return whether mistakes change the residuals, and with them what the data determine."""
+def _spoil(mistakes: Sequence[Finding]) -> bool:
     return any(each.kind not in HARMLESS for each in mistakes)
 
 
-def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[str]:
+def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[Finding]:
     """Warn of modes that coincide, of bounds, of elements, and of so much that a run takes long."""
-    for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True):
-        if coincident:
-            yield (
-                f"mode {r} of the nominal model coincides with another one: its derivatives are "
-                "not defined"
-            )
+    for r in np.flatnonzero(nominal.quantities["coincident"]).tolist():
+        yield found("coincident", str(problem.data.modes[r]))
+    names, full = problem.model.parameters, full_of(problem.model)
     ends = {"lower": problem.lower, "upper": problem.upper}
-    for name, value, *bounds in zip(
-        problem.model.parameters, problem.start, *ends.values(), strict=True
-    ):
-        if value in bounds:
-            yield f"the nominal value of {name} is one of its bounds, {value:g}"
-    full = full_of(problem.model)  # a basis may not hold what makes a matrix indefinite
-    for name, theta in ends.items():
+    for j in np.flatnonzero((problem.start == ends["lower"]) | (problem.start == ends["upper"])):
+        yield found("nominal-at-bound", names[j], bound=float(problem.start[j]))
+    for name, theta in ends.items():  # a basis may not hold what makes a matrix indefinite
         try:
             replace(problem, model=full).modes(theta, derivatives=False)
         except ModelError as error:
-            yield f"at the {name} bounds of all parameters: {error}"
-    yield from full.limits if isinstance(full, MatrixModel) else ()
-    p, sets = len(problem.model.parameters), len(problem.data.sets)
-    if sets > COMPARED:
-        yield f"{sets} data sets are many: mistakes are sought in {COMPARED} of them, chosen evenly"
-    if p > MANY:
-        yield (
-            f"{p} parameters are many: a run takes some {memory_of(problem) / 1e9:.2g} GB and "
-            "long, as every step solves for all of them; let one parameter scale several parts, "
-            "or keep those at their nominal values that the data do not determine"
-        )
+            yield found("no-model-at-bounds", name, why=str(error))
+    for text in full.limits if isinstance(full, MatrixModel) else ():
+        yield found("elements", text)
+    if len(problem.data.sets) > COMPARED:
+        yield found("many-sets", str(len(problem.data.sets)), searched=COMPARED)
+    if len(names) > MANY:
+        yield found("many-parameters", str(len(names)), size=memory_of(problem) / 1e9)
 
 
 def memory_of(problem: UpdatingProblem) -> float:
@@ -246,56 +244,44 @@ def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequ
     refuse(faults)
 
 
-def determined(problem: UpdatingProblem) -> tuple[str, ...]:
-    """Return the sentences on the combinations that each group, and all, determine."""
-    names, groups = problem.model.parameters, problem.groups
-    nominal, scale = problem.evaluate(problem.start), scale_at(problem, problem.start)
-    idle = without_effect(problem, nominal, scale)
-    out = []
-    for i, group in enumerate(groups):
-        of_group = combinations(problem, problem.start, i, scale=scale)
-        out.append(str(summary(group.name, measured_noun([group]), of_group, names, scale, idle)))
-    if len(groups) > 1:
-        weights = optimal_weights(problem.properties, nominal.J)
-        of_all = combinations(problem, problem.start, weights=weights, scale=scale)
-        noun = measured_noun(groups)
-        out.append(str(summary("all data together", noun, of_all, names, scale, idle)))
-    return tuple(out)
+def determined(
+    problem: UpdatingProblem, nominal: Evaluation
+) -> tuple[list[Finding], list[Finding]]:
+    """Return which combinations each group, and all, determine near the nominal parameters.
 
-
-def _undetermined(
-    problem: UpdatingProblem, nominal: Evaluation, scale: Scale, *, parameters_only: bool
-) -> list[str]:
-    """Warn of parameters without effect, of what all data leave open, and of parameters alike.
-
-    Mistakes change what the residuals determine: then ``parameters_only`` without effect are named.
+    Beside these are the parameters without effect, what all data leave open, and those alike.
     """
-    names = problem.model.parameters
+    names, groups = problem.model.parameters, problem.groups
+    scale = scale_at(problem, problem.start)
     idle = without_effect(problem, nominal, scale)
-    out = [str(finding) for finding in no_effect(idle, names)]
-    if parameters_only:
-        return out
     weights = optimal_weights(problem.properties, nominal.J)
+    known = []
+    for i, group in enumerate(groups):
+        of_group = combinations(problem, nominal, i, scale=scale)
+        known.append(summary(group.name, measured_noun([group]), of_group, names, scale, idle))
+    of_all = combinations(problem, nominal, weights=weights, scale=scale)
+    if len(groups) > 1:
+        noun = measured_noun(groups)
+        known.append(summary("all data together", noun, of_all, names, scale, idle))
+    left_open = no_effect(idle, names)
     weak = [
         each
-        for each in combinations(problem, problem.start, weights=weights, scale=scale)
-        if each.share < WEAK and np.linalg.norm(each.direction[list(idle)]) <= np.sqrt(0.5)
+        for each in of_all
+        if each.share < WEAK and np.linalg.norm(each.direction[idle]) <= np.sqrt(0.5)
     ]
     for degree, chosen in (
         ("do not determine", [each for each in weak if each.share <= NONE]),
         ("hardly determine", [each for each in weak if each.share > NONE]),
     ):
         if len(chosen) > SHOWN:
-            out.append(
-                f"the data {degree} {len(chosen)} of {len(names) - len(idle)} combinations of "
-                "parameters: take fewer parameters, or measure more"
+            several, every = len(chosen), len(names) - len(idle)
+            left_open.append(
+                found("undetermined-many", degree=degree, several=several, every=every)
             )
-            continue
-        out += [
-            f"the data {degree} {in_words(each, names)}: fix or tie one, or measure more"
-            for each in chosen
-        ]
-    return [*out, *map(str, alike(gram(nominal, weights, scale), names, idle))]
+        else:
+            texts = (in_words(each, names) for each in chosen)
+            left_open += [found("undetermined", text, degree=degree) for text in texts]
+    return known, [*left_open, *alike(gram(nominal, weights, scale), names, idle)]
 
 
 @dataclass(frozen=True)
@@ -382,57 +368,36 @@ def _slopes(
     return [np.full(1, np.nan) for _ in problem.groups]
 
 
-def cause_of(problem: UpdatingProblem, agreement: Agreement) -> str:
+def cause_of(problem: UpdatingProblem, agreement: Agreement) -> Finding:
     """Return which parameter and mode derivatives are wrong for, and the likely cause."""
     names = [problem.model.parameters[j] for j in np.flatnonzero(agreement.step)]
-    of = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
-    theta, step = agreement.theta, agreement.step
+    of, theta, step = enumeration(names, SHOWN), agreement.theta, agreement.step
     for point in (theta, theta + step, theta - step):
         try:
             problem.modes(point, derivatives=False)
         except ModelError as error:
-            return f"for {of}: a small change leads to no model: {error}; check its value and units"
-    group = problem.objectives[agreement.objective]
-    mode, why = _mode_and_cause(problem, theta, step)
-    return (
-        f"of group '{group}' for {of}, mostly by measured mode {mode} "
-        f"(relative {agreement.error:.1e}): {why}"
-    )
-
-
-def _mode_and_cause(problem: UpdatingProblem, theta: Floats, step: Floats) -> tuple[int, str]:
-    """Return the measured mode that changes least smoothly, and what that is likely due to."""
+            return found("no-model-near", of, why=str(error))
     points = [problem.evaluate(theta + k * step, derivatives=False) for k in (-1, -0.5, 0, 0.5, 1)]
-    values = {name: np.array([x.quantities[name] for x in points]) for name in ("frequency", "mac")}
     bend = np.zeros(len(problem.data.modes))
-    for of in values.values():
+    for name in ("frequency", "mac"):
+        values = np.array([x.quantities[name] for x in points])
         # Fourth differences: what is left of a smooth curve is close to nothing.
-        fourth = of[0] - 4 * of[1] + 6 * of[2] - 4 * of[3] + of[4]
-        bend = np.maximum(bend, np.abs(np.nan_to_num(fourth / np.abs(of[2]).clip(TINY))))
+        fourth = np.array([1, -4, 6, -4, 1]) @ values
+        bend = np.maximum(bend, np.abs(np.nan_to_num(fourth / np.abs(values[2]).clip(TINY))))
     r = int(np.argmax(bend))
-    mode = problem.data.modes[r]
+    where: dict[str, Any] = {
+        "group": problem.objectives[agreement.objective],
+        "mode": problem.data.modes[r],
+        "error": agreement.error,
+    }
     frequency = np.sort(problem.modes(theta, derivatives=False)[0].frequency)
     k = int(points[2].quantities["paired_mode"][r]) - 1
     near = [abs(frequency[i] / frequency[k] - 1) for i in (k - 1, k + 1) if 0 <= i < len(frequency)]
     if frequency[k] > 0 and near and min(near) < 1e-3:
-        return mode, (
-            f"model mode {k + 1} and its neighbour are {100 * min(near):.2g} % apart, and close "
-            "modes turn into each other within a small change of the parameter"
-        )
+        return found("close-modes", of, model=k + 1, apart=float(100 * min(near)), **where)
     effects = np.sqrt(np.einsum("ijj->j", problem.evaluate(theta).H) / 2) * np.abs(theta)
     known = effects[effects > 0]
     if known.size and known.max() > 1e12 * known.min():
-        return mode, (
-            f"parameters differ by {known.max() / known.min():.0e} in their effect: check units "
-            "of the matrices, and whether a stiffness vanishes"
-        )
-    if (np.abs(step) > np.abs(theta) + TINY).any():
-        return mode, (
-            "the parameter has so little effect that a step beyond its own size is needed to see "
-            "any: check its value, its units, and whether a stiffness vanishes"
-        )
-    return mode, (
-        "the model does not change smoothly there, or digits are lost in it: check its units, and "
-        "whether a stiffness or mass vanishes; derivatives of a Python model have to be those of "
-        "its matrices"
-    )
+        return found("unlike-effects", of, ratio=float(known.max() / known.min()), **where)
+    little = (np.abs(step) > np.abs(theta) + TINY).any()
+    return found("little-effect" if little else "not-smooth", of, **where)

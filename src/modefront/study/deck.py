@@ -34,6 +34,7 @@ from modefront._typing import Floats
 from modefront.errors import Fault, InputError, reason, refuse, suggestion, writing
 from modefront.inputs import fortran
 from modefront.outputs import write_text
+from modefront.programs.changes import text_of
 from modefront.programs.inp import DEEPEST, keyword_of
 from modefront.study.importing import Imported, import_model
 from modefront.text import one_line
@@ -197,7 +198,7 @@ def _targets(path: Path, lines: Sequence[Line], parameters: Mapping[str, str]) -
 def lines_of(path: Path, depth: int = 0) -> Iterator[Line]:
     """Yield the lines of a deck and of what it includes; raises InputError where there is none."""
     try:
-        texts = path.read_text("utf-8", "replace").splitlines()
+        texts = text_of(path).splitlines()
     except OSError as error:
         raise InputError(Fault(str(path), "file", "a deck of CalculiX", reason(error))) from None
     line = Line("")
@@ -248,7 +249,7 @@ def _run(program: str, job: Path, text: str, result: str) -> None:
     write_text(job.with_name(f"{job.name}.inp"), text)
     try:
         done = subprocess.run(
-            [program, job.name], cwd=job.parent, check=False, capture_output=True, text=True
+            [program, job.name], cwd=job.parent, capture_output=True, text=True, errors="replace"
         )
     except OSError as error:
         raise InputError(Fault(program, "--run", "a program that runs", reason(error))) from None

@@ -1,14 +1,17 @@
 """Estimate of the time that a study takes, as a range, with advice on how to shorten it.
 
 A few searches are timed, and each prediction once, with few samples: all times are those of the
-processor, whatever else it does. Each stage of a run takes from and to so many searches. Where a
-search takes too long to be timed, its evaluations are 10, and one more for each parameter.
-``benchmarks/honest_time.py`` measures how often the time of a run is within the range.
+processor, whatever else it does. Random starts of an edge end by the rule of the search
+(`modefront.front.proposers.starts`), after as many as confirm one minimum, or those of a box that
+has as many as starts cover together. All else takes searches from known models, which take from
+`NEAR` of one from anywhere. ``benchmarks/honest_time.py`` measures how often the time of a run is
+within the range.
 """
 
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,33 +19,36 @@ from threadpoolctl import threadpool_limits
 
 from modefront._typing import Floats
 from modefront.errors import InputError, ModelError
+from modefront.front.proposers.base import USUAL
 from modefront.front.simplex import default_points, size
+from modefront.front.subproblems import Least
+from modefront.identifiability.combinations import LEAST
 from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.options import estimate as reduced_cost
-from modefront.optim.scalarisation import weighted
-from modefront.optim.sqp import Options, begin, solve
+from modefront.optim.sqp import Solution, begin
 from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
 from modefront.uncertainty.most_probable import STARTS as MAXIMA
-from modefront.uncertainty.sampling import DRAWS
+from modefront.uncertainty.most_probable import log_values, maximum
+from modefront.uncertainty.sampling import DRAWS, drawn
 from modefront.work.costs import uncounted
 from modefront.work.progress import Plan, Span
 from modefront.work.task import seed_sequence
 
-EDGE = 10.0, 60.0
-"""Searches for the best model of a group or of given weights, from and to."""
+NEAR = 0.4, 2.0
+"""Time of a search from a known model over that of one from anywhere, from and to."""
 
-DRAW = 0.4, 2.0
-"""Time of a draw of the posterior over that of a search, from and to."""
+MINIMA = 1, USUAL
+"""Minima of a group or of given weights, from and to: as many as starts cover the box together."""
 
 SHORT = 30.0
 """Seconds up to which no advice on a shorter run is given."""
 
-TIMED, STEPS, WITHIN = 8, 3, 0.4
-"""Searches that are timed, after a few steps that tell whether there is time for them; seconds
-within which another one is begun."""
+TIMED, FEW, WITHIN = 8, 3, 0.4
+"""Searches and draws of the posterior that are timed, where an evaluation tells that there is time
+for them; seconds within which another search is begun."""
 
 SAMPLES = 100
 """Samples with which a prediction is timed, and three times as many."""
@@ -71,7 +77,7 @@ class Estimate:
         """The estimate in a sentence."""
         counts = (sum(ends) for ends in zip(*self.plan.searches.values(), strict=True))
         few, many = (max(int(float(f"{count:.0e}")), 1) for count in counts)
-        longest = max(self.plan.other.values(), key=lambda span: span[1], default=(0.0, 0.0))
+        longest = self.plan.other.get("predict", (0.0, 0.0))
         times = [" to ".join(map(duration, span)) for span in (self.range, longest)]
         share = f", {times[1]} for predictions" if longest[1] > self.range[1] / 10 else ""
         return (
@@ -87,10 +93,10 @@ def estimate(study: Study) -> Estimate | None:
         timed = _search(study)
         if timed is None:
             return None
-        search, evaluations = timed
+        search, evaluations, known = timed
         parts = _parts(study, evaluations)
         advice = [(span[1] * search, text) for span, text in parts.values()]
-        other: dict[str, Span] = {}
+        other: dict[str, Span] = {"sample-posterior": _of_draws(study, search / evaluations, known)}
         if is_reduced(problem.model):  # snapshots of the basis, and their certificates
             began = time.process_time()
             full_of(problem.model).modes(problem.start, len(problem.data.modes))
@@ -109,8 +115,7 @@ def estimate(study: Study) -> Estimate | None:
             other["predict"] = least + spent / 2, most + 2 * spent
             text = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
             advice.append((2 * spent, text))
-    # What is known is kept and compared, and results are made: 1.4 times the searches.
-    plan = Plan(1.4 * search, {stage: span for stage, (span, _) in parts.items()}, other)
+    plan = Plan(search, {stage: span for stage, (span, _) in parts.items()}, other)
     most = plan.seconds[1]
     if most <= SHORT:
         return Estimate(plan)
@@ -136,74 +141,88 @@ def duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
 
 
-def _search(study: Study) -> tuple[float, float] | None:
+def _search(study: Study) -> tuple[float, float, list[Floats]] | None:
     """Return the seconds and the evaluations of a search; None where there is no nominal model.
 
-    It is one for the best model of a group, from a model within the bounds.
+    It is one for the edge of a group, from a model within the bounds. What was found comes with
+    them.
     """
     problem = replace(study.problem, model=full_of(study.problem.model))
-    rng = np.random.default_rng(seed_sequence(study.seed, "estimate"))
+    n, p = len(problem.objectives), problem.start.size
     for _ in range(2):  # the first time also makes what others share
-        each, count = _timed(problem, 0, problem.start, Options(iterations=STEPS))
-        if not count:
-            return None
-    average = 10.0 + problem.start.size
-    seconds = average * each / count
+        began = time.process_time()
+        nominal = problem.evaluate(problem.start, second=True)
+        each = time.process_time() - began
+    if not nominal.feasible:
+        return None
+    sizes = np.maximum(nominal.J, LEAST**2 * problem.properties)
+    rng = np.random.default_rng(seed_sequence(study.seed, "estimate"))
+    seconds, average = (USUAL + p) * each, float(USUAL + p)
     found: list[tuple[float, int]] = []
-    if seconds < WITHIN:
-        for k in range(TIMED):
-            if sum(x[0] for x in found) < WITHIN:
-                found.append(_timed(problem, k, rng.uniform(problem.lower, problem.upper)))
-        found = [x for x in found if x[1]]
+    ends: list[Solution] = []
+    for k in range(TIMED if seconds < WITHIN else 0):
+        if sum(spent for spent, _ in found) < WITHIN:
+            edge, theta = Least(k % n, sizes, ""), rng.uniform(problem.lower, problem.upper)
+            began = time.process_time()
+            start = begin(problem.evaluate(theta, second=True))
+            if start.feasible:
+                known = min((x.J for x in ends), key=lambda J: float(J[k % n]), default=None)
+                ends.append(edge.solve(problem, start, known))
+                found.append((time.process_time() - began, 1 + ends[-1].evaluations))
     if found:
         seconds, average = (float(np.mean(x)) for x in zip(*found, strict=True))
     if is_reduced(study.problem.model) and isinstance(problem.model, MatrixModel):
         seconds *= reduced_cost(problem.model, len(problem.data.modes)).share
-    return seconds, average
+    return seconds, average, [problem.start, *(end.theta for end in ends)]
 
 
-def _timed(
-    problem: UpdatingProblem, group: int, theta: Floats, options: Options | None = None
-) -> tuple[float, int]:
-    """Return the seconds and the evaluations of a search from theta (p,); no evaluation: none."""
-    began, i = time.process_time(), group % len(problem.objectives)
-    try:
-        start = problem.evaluate(theta, second=True)
-        unit = np.eye(len(problem.objectives))[i] / (start.J[i] or 1.0)
-        found = solve(problem, weighted(unit), begin(start), options)
-    except ModelError:
-        return 0.0, 0
-    return time.process_time() - began, (1 + found.evaluations) * start.feasible
+def _of_draws(study: Study, each: float, known: list[Floats]) -> Span:
+    """Return the seconds of the draws of the posterior, where an evaluation takes ``each``.
+
+    A few are timed, about the most probable model below those that are known.
+    """
+    problem = study.problem
+    noise = study.noise.of(problem, study.uncertainty.of(problem.data))
+    if noise is None:
+        return 0.0, 0.0
+    seconds = 2 * (USUAL + problem.start.size) * each  # two searches
+    if FEW * seconds < WITHIN:
+        with suppress(ModelError):
+            best = known[int(np.argmin(log_values(noise, np.array(known))))]
+            theta, began = maximum(noise, best).theta, time.process_time()
+            drawn(noise, theta, FEW, rng=np.random.default_rng(0))
+            seconds = (time.process_time() - began) / FEW
+    count = max(DRAWS, study.uncertainty.draws)
+    return count * seconds / 2, 2 * count * seconds
 
 
 def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
     """Return the searches, of so many evaluations, of each stage, and what would shorten it."""
     n, pareto, points = len(study.problem.groups), study.pareto, _points(study)
     edges, budget = n + len(study.weighted) + 1, study.search.evaluations / evaluations
-    samples = study.uncertainty.bootstrap
-    out = {
-        "edges": (
-            (min(EDGE[0] * edges, budget), min(EDGE[1] * edges, budget)),
-            f"fewer evaluations of the search ([search] evaluations, now "
-            f"{study.search.evaluations})",
-        )
-    }
+    # The starts after which w(w + 1) / N(N - 1) is the doubt.
+    few, many = ((1 + np.sqrt(1 + 4 * w * (w + 1) / study.search.doubt)) / 2 for w in MINIMA)
+    text = f"fewer evaluations of the search ([search] evaluations, now {study.search.evaluations})"
+    out = {"edges": ((float(min(few * edges, budget)), float(min(many * edges, budget))), text)}
     if pareto.method in ("nbi", "weights"):
         text = f"fewer points of the front ([pareto] points), now {points}"
-        out["front"] = (points / 5, 2.0 * points), text
+        out["front"] = _near(points), text
     else:
         text = f"fewer evaluations ([pareto] evaluations, now {pareto.evaluations})"
         out["front"] = (pareto.evaluations / evaluations, pareto.evaluations / evaluations), text
-    out["optimal-weights"] = (0.0, 3.0 * edges), ""
+    out["optimal-weights"] = _near(edges), ""
     if study.noise.weight:
         out["most-probable"] = (1.0, float(MAXIMA)), ""
-        out["sample-posterior"] = (DRAW[0] * DRAWS, DRAW[1] * DRAWS), ""
     equivalent = 8 * study.identifiability.models * n / evaluations
     out["manifold"] = (0.0, equivalent), "fewer equivalent models ([identifiability] models)"
-    if samples:
+    if samples := study.uncertainty.bootstrap:
         text = f"fewer bootstrap samples ([uncertainty] bootstrap, now {samples})"
-        out["bootstrap"] = (samples * points / 5, float(samples * points)), text
+        out["bootstrap"] = _near(samples * points), text
     return out
+
+
+def _near(count: float) -> Span:
+    return count * NEAR[0], count * NEAR[1]
 
 
 def _points(study: Study) -> int:

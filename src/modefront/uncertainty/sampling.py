@@ -116,7 +116,7 @@ def draw_models(noise: NoiseModel, theta: Floats, count: int, seed: int, work: E
     tasks = [
         Task(
             ("sample-posterior", k + 1),
-            _drawn,
+            drawn,
             (noise, theta, BATCH),
             seed_sequence(seed, "sample-posterior", k + 1),
         )
@@ -132,8 +132,8 @@ def draw_models(noise: NoiseModel, theta: Floats, count: int, seed: int, work: E
     )
 
 
-def _drawn(noise: NoiseModel, theta: Floats, count: int, *, rng: np.random.Generator) -> Draws:
-    """Return draws."""
+def drawn(noise: NoiseModel, theta: Floats, count: int, *, rng: np.random.Generator) -> Draws:
+    """Return some models drawn from the posterior, with its maximum at theta (p,)."""
     problem = noise.problem
     best = problem.evaluate(theta)
     of, w = variances(noise, best), np.ones(2)

@@ -1,37 +1,27 @@
-"""The mistakes that are looked for, a record each; a new one is one more record in this list."""
+"""The mistakes that are looked for; a new one is one more function in this list."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 
-from modefront.diagnosis.mistakes.parameters import excluding_bound, wrong_nominal_value
-from modefront.diagnosis.mistakes.places import counted_from_one, wrong_direction, wrong_place
-from modefront.diagnosis.mistakes.record import Mistake
-from modefront.diagnosis.mistakes.sensors import exchanged_sensors, reversed_sensor
-from modefront.diagnosis.mistakes.sets import (
-    foreign_mode,
-    odd_frequency,
-    odd_shape,
-    other_numbers,
-    set_factor,
-)
-from modefront.diagnosis.mistakes.units import damping_in_percent, frequency_factor, other_quantity
+from modefront.diagnosis.mistakes import sensors, sets, values
+from modefront.diagnosis.mistakes.record import Mistake, Setting
 
-MISTAKES: Sequence[Mistake] = (
-    frequency_factor,
-    other_quantity,
-    set_factor,
-    other_numbers,
-    reversed_sensor,
-    exchanged_sensors,
-    counted_from_one,
-    wrong_direction,
-    wrong_place,
-    wrong_nominal_value,
-    excluding_bound,
-    odd_frequency,
-    odd_shape,
-    damping_in_percent,
-    foreign_mode,
+MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
+    values.frequency_factor,
+    values.other_quantity,
+    sets.set_factor,
+    sets.other_numbers,
+    sensors.reversed_sensor,
+    sensors.exchanged_sensors,
+    sensors.counted_from_one,
+    sensors.wrong_direction,
+    sensors.wrong_place,
+    values.wrong_nominal_value,
+    values.excluding_bound,
+    sets.odd_frequency,
+    sets.odd_shape,
+    values.damping_in_percent,
+    sets.foreign_mode,
 )
 """All of them; where two explain the data equally well, the first one is tried first."""

@@ -1,28 +1,40 @@
-"""Sensors of the data that are reversed or exchanged: in all data sets, in one, in all but one."""
+"""Sensors that are reversed, exchanged, at another place or along another direction."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
+import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.diagnosis.evidence import OF_MODEL
+from modefront.diagnosis.evidence import State
 from modefront.diagnosis.mistakes.record import (
     MANY,
     OFTEN,
     TRIED,
     USUAL,
     Change,
+    Mistake,
     Setting,
-    Variant,
     changed,
-    mistake,
+    mismatch,
     one_of,
     promising,
 )
-from modefront.diagnosis.student import loss
+from modefront.diagnosis.notes import ALONG, axis_name
 from modefront.findings.knowledge import enumeration
+from modefront.models.geometry import Geometry
+from modefront.rounding import ACCUMULATED
+
+NEAREST = 4
+"""Places of each sensor that are tried: those that promise most."""
+
+OFTEN_SHARED = 2.0
+"""Logarithm of how much likelier a sensor is at a wrong place where it shares it with another."""
 
 
 def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
@@ -34,10 +46,8 @@ def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
     some = [[k] for k in every] if len(sets) > 1 else []
     some += [[j for j in every if j != k] for k in every] if len(sets) == 3 else []
     named = [(part, enumeration([sets[k] for k in part], MANY)) for part in some]
-    return [
-        (every, "all data"),
-        *((part, f"set{'s' * (len(part) > 1)} {names}") for part, names in named),
-    ]
+    of_sets = [(part, f"set{'s' * (len(part) > 1)} {names}") for part, names in named]
+    return [(every, "all data"), *of_sets]
 
 
 def permuted(sets: list[int], sensors: list[int], order: list[int], sign: float) -> Change:
@@ -51,61 +61,217 @@ def permuted(sets: list[int], sensors: list[int], order: list[int], sign: float)
     return changed("shape", new)
 
 
-@mistake("reversed-sensor", OFTEN)
-def reversed_sensor(setting: Setting) -> Iterator[Variant]:
+def reversed_sensor(setting: Setting) -> Iterator[Mistake]:
     """Yield every sensor; of many, those after whose reversal residuals are the least."""
-    where, found = parts(setting.sets), []
-    price = one_of(len(where) * len(setting.measured))
+    where, found = parts(setting.names.sets), []
+    price = one_of(OFTEN, len(where) * len(setting.measured))
     for sets, name in where:
-        gain = np.full(len(setting.measured), -np.inf)
-        for psi, target, scale in _residuals(setting, sets):
-            before, after = (_cost((x - target[:, None]) / scale) for x in (psi, -psi))
-            gain = np.maximum(gain, before - after)
+        costs = _costs(setting, sets), _costs(setting, sets, -1.0)
+        gain = np.max([np.diag(a - b) for a, b in zip(*costs, strict=True)], axis=0)
         for value, s in zip(gain.tolist(), setting.measured, strict=True):
-            sensor = setting.sensors[s]
+            sensor, change = setting.names.sensors[s], permuted(sets, [s], [s], -1.0)
             numbers = {"sensor": sensor, "where": name}
-            change = permuted(sets, [s], [s], -1.0)
-            found.append((value, Variant((sensor, name), change, numbers, price)))
+            one = Mistake("reversed-sensor", (sensor, name), change, price, numbers)
+            found.append((value, one))
     yield from promising(found)
 
 
-@mistake("exchanged-sensors", USUAL)
-def exchanged_sensors(setting: Setting) -> Iterator[Variant]:
+def exchanged_sensors(setting: Setting) -> Iterator[Mistake]:
     """Yield pairs of sensors; of many, those after whose exchange residuals are the least."""
-    where, found, count = parts(setting.sets), [], len(setting.measured)
-    price = one_of(len(where) * count * (count - 1) / 2)
-    for sets, name in where:
-        gain = np.full((count, count), -np.inf)
-        for psi, target, scale in _residuals(setting, sets):
-            cost = np.array([_cost((psi - x[:, None, None]) / scale) for x in target.T]).T
-            own = np.diag(cost)
-            gain = np.maximum(gain, own[:, None] + own - cost - cost.T)
-        pairs = np.argwhere(np.triu(np.ones(gain.shape), 1) > 0)
+    where, found, count = parts(setting.names.sets), [], len(setting.measured)
+    price = one_of(USUAL, len(where) * count * (count - 1) / 2)
+    pairs = np.argwhere(np.triu(np.ones((count, count)), 1) > 0)
+    for sets, name in where if len(pairs) else ():
+        costs = [(np.diag(cost), cost) for cost in _costs(setting, sets)]
+        gain = np.max([own[:, None] + own - x - x.T for own, x in costs], axis=0)
         best = np.argsort(-gain[tuple(pairs.T)], kind="stable")[:TRIED]
         for i, j in pairs[best].tolist():
             s, t = setting.measured[i], setting.measured[j]
-            names = setting.sensors[s], setting.sensors[t]
+            names = setting.names.sensors[s], setting.names.sensors[t]
             numbers = {"sensors": enumeration(names), "where": name}
             change = permuted(sets, [s, t], [t, s], 1.0)
-            found.append((float(gain[i, j]), Variant((*names, name), change, numbers, price)))
+            one = Mistake("exchanged-sensors", (*names, name), change, price, numbers)
+            found.append((float(gain[i, j]), one))
     yield from promising(found)
 
 
-def _residuals(setting: Setting, sets: list[int]) -> Iterator[tuple[Floats, Floats, Floats]]:
-    """Yield shapes (modes, sets, sensors), what they should be (modes, sensors), and the scale.
+def _costs(setting: Setting, sets: list[int], sign: float = 1.0) -> list[Floats]:
+    """Return the cost of each sensor with a sign, beside what each should be, at each point.
 
-    That is the model's where all data sets have the mistake, else what the sets have in common.
+    That is what the model has where all data sets have the mistake, else what the sets have in
+    common.
     """
-    data, sensors = setting.state.data, setting.measured
+    data, some = setting.state.data, setting.measured
     a = data.factors(data.mean)[sets]
     psi = np.where(data.seen[sets], data.psi[sets] / np.where(a == 0, 1.0, a), np.nan)
-    for point in setting.points:
-        of_model = len(sets) == len(data.psi)
-        target = point.beta[:, None] * point.chi if of_model else data.mean
-        scale = point.sigma * data.motion[sensors]
-        yield psi[:, :, sensors].transpose(1, 0, 2), target[:, sensors], scale
+    of_model = len(sets) == len(data.psi)
+    return [
+        mismatch(
+            sign * psi[:, :, some],
+            (point.beta[:, None] * point.chi if of_model else data.mean)[:, some],
+            point.sigma * data.motion[some],
+        )
+        for point in setting.points
+    ]
 
 
-def _cost(r: Floats) -> Floats:
-    """Return the cost of residuals (modes, sets, sensors), mean over the sets, (sensors,)."""
-    return np.asarray(loss(np.nan_to_num(r), OF_MODEL).mean(axis=1).sum(axis=0))
+def at_rows(state: State, sensors: Sequence[int], rows: scipy.sparse.csr_array) -> State:
+    """Return the state in which sensors have other weights (sensors, N)."""
+    assert state.selection is not None
+    ones = np.ones(len(sensors)), (sensors, np.arange(len(sensors)))
+    place = scipy.sparse.csr_array(ones, shape=(state.selection.shape[0], len(sensors)))
+    difference = place @ (rows - state.selection[list(sensors)])
+    return replace(state, selection=(state.selection + difference).tocsr())
+
+
+def relocated(state: State, sensors: Sequence[int], **changed: Any) -> State:
+    """Return the state with other ``sensor_nodes`` or ``sensor_directions`` of some sensors."""
+    assert state.geometry is not None
+    parts = {name: getattr(state.geometry, name).copy() for name in changed}
+    for name, values in parts.items():
+        values[sensors] = changed[name]
+    geometry = replace(state.geometry, **parts)
+    places = geometry.sensor_nodes[sensors], geometry.sensor_directions[sensors]
+    return replace(at_rows(state, sensors, geometry.weights(*places)), geometry=geometry)
+
+
+def in_space(setting: Setting) -> Geometry | None:
+    """Return the geometry of a model whose nodes move along several axes."""
+    geometry = setting.state.geometry
+    return geometry if geometry is not None and len(geometry.axes) > 1 else None
+
+
+def _gain(setting: Setting, s: int, rows: scipy.sparse.csr_array) -> Floats:
+    """Return by how much the cost falls with sensor s at other rows (places, N), (places,)."""
+    data, out = setting.state.data, []
+    used = data.known[:, s] & ~setting.state.foreign
+    x = data.mean[None, used, s, None]
+    for point, whole in zip(setting.points, setting.wholes, strict=True):
+        beta = point.beta[used, None]
+        there = beta * (rows @ whole.Phi[:, point.index[used]]).T
+        targets = np.column_stack([beta * point.chi[used, s, None], there])
+        costs = mismatch(x, targets, point.sigma * data.motion[[s]])[0]
+        out.append(costs[0] - costs[1:])
+    return np.asarray(np.max(out, axis=0))
+
+
+def wrong_place(setting: Setting) -> Iterator[Mistake]:
+    """Yield sensors at other nodes, directions kept; in a chain, at other degrees of freedom."""
+    selection, geometry = setting.state.selection, in_space(setting)
+    if selection is None:
+        return
+    found: list[tuple[float, int, int, int]] = []
+    count = 0
+    for s in setting.measured:
+        rows, place = _rows(setting, s)
+        moves = abs(rows).sum(axis=1) > 0
+        if moves.any() and selection[[s]].nnz:
+            count = max(count, int(moves.sum()))
+            gains = np.where(moves, _gain(setting, s, rows), -np.inf)
+            best = [k for k in np.argsort(-gains)[:NEAREST].tolist() if moves[k] and k != place]
+            found += [(float(gains[k]), s, place, k) for k in best]
+    products = (selection @ selection.T).toarray()
+    squares = np.diag(products)
+    is_same = np.abs(squares[:, None] + squares - 2 * products) <= ACCUMULATED * squares
+    price, names = one_of(USUAL, count * len(setting.measured)), setting.names.sensors
+    for _, s, place, k in sorted(found, key=lambda each: -each[0])[:TRIED]:
+        others = [names[t] for t in np.flatnonzero(is_same[s]).tolist() if t != s]
+        numbers = {
+            "sensor": names[s],
+            "given": _place(geometry, place),
+            "place": _place(geometry, k),
+            "too": f", where the model has {enumeration(others, MANY)} too" if others else "",
+        }
+        change = partial(relocated, sensors=[s], sensor_nodes=k)
+        if geometry is None:
+            change = partial(at_rows, sensors=[s], rows=_rows(setting, s)[0][[k]])
+        less = OFTEN_SHARED if others else 0.0
+        yield Mistake("wrong-place", (names[s],), change, price - less, numbers)
+
+
+def _rows(setting: Setting, s: int) -> tuple[scipy.sparse.csr_array, int]:
+    """Return the weights (places, N) that sensor s has at each place, and the place of its own."""
+    geometry, selection = in_space(setting), setting.state.selection
+    if geometry is not None:
+        along = np.tile(geometry.sensor_directions[s], (len(geometry.nodes), 1))
+        return geometry.weights(np.arange(len(along)), along), int(geometry.sensor_nodes[s])
+    assert selection is not None
+    own = selection[[s]]
+    place = int(own.indices[0]) if own.nnz else 0
+    return (own.sum() * scipy.sparse.eye_array(own.shape[1])).tocsr(), place
+
+
+def _place(geometry: Geometry | None, k: int) -> str:
+    if geometry is None:
+        return f"degree of freedom {k}"
+    return f"({', '.join(f'{x:.4g}' for x in geometry.nodes[k])})"
+
+
+def wrong_direction(setting: Setting) -> Iterator[Mistake]:
+    """Yield other directions: of single sensors, of all along an axis, of two axes exchanged."""
+    geometry = in_space(setting)
+    if geometry is None or setting.state.selection is None:
+        return
+    given, axes = geometry.sensor_directions, geometry.axes
+    along = np.where(np.abs(given).max(axis=1) > ALONG, np.abs(given).argmax(axis=1), -1)
+    members = {a: np.flatnonzero(along == a).tolist() for a in axes}
+    single, several = one_of(OFTEN, 2 * len(axes) * len(setting.measured)), one_of(OFTEN, 12)
+    found = []
+    for a, b in [(a, b) for a in axes for b in axes if a != b and members[a]]:
+        for new in (np.eye(3)[b], -np.eye(3)[b]):
+            turned = new * given[members[a], a, None]
+            if len(members[a]) > 1:
+                yield _turned(setting, members[a], turned, several)
+            for s, direction in zip(members[a], turned, strict=True):
+                rows = geometry.weights(geometry.sensor_nodes[[s]], direction[None])
+                one = _turned(setting, [s], direction[None], single)
+                found.append((float(_gain(setting, s, rows)[0]), one))
+    yield from promising(found)
+    for a, b in [(a, b) for a in axes for b in axes if a < b and members[a] and members[b]]:
+        both, swap = members[a] + members[b], np.eye(3)
+        swap[[a, b]] = swap[[b, a]]
+        names = f"{'xyz'[a]} and {'xyz'[b]}", f"{'xyz'[b]} and {'xyz'[a]}"
+        yield _turned(setting, both, given[both] @ swap, several, names)
+
+
+def _turned(
+    setting: Setting,
+    some: list[int],
+    new: Floats,
+    price: float,
+    names: tuple[str, str] | None = None,
+) -> Mistake:
+    """Return the mistake of sensors that measure along ``new`` (sensors, 3) in truth."""
+    assert setting.state.geometry is not None
+    given = setting.state.geometry.sensor_directions
+    before, after = names or (axis_name(given[some[0]]), axis_name(new[0]))
+    sensors = tuple(setting.names.sensors[s] for s in some)
+    numbers = {
+        "sensors": enumeration(sensors, MANY),
+        "given": before,
+        "better": after,
+        "s": "s" * (len(some) == 1),
+        "turn": " in turn" if names else "",
+    }
+    change = partial(relocated, sensors=some, sensor_directions=new)
+    return Mistake("wrong-direction", sensors, change, price, numbers)
+
+
+def counted_from_one(setting: Setting) -> Iterator[Mistake]:
+    """Yield all sensors at the node, or the degree of freedom, before their own."""
+    geometry, selection = in_space(setting), setting.state.selection
+    if selection is None:
+        return
+    every = list(range(selection.shape[0]))
+    if geometry is not None:
+        if (geometry.sensor_nodes == 0).any() or not geometry.sensor_directions.any(axis=1).all():
+            return
+        change = partial(relocated, sensors=every, sensor_nodes=geometry.sensor_nodes - 1)
+    else:
+        first = selection[:, [0]]
+        if first.nnz or not selection.nnz:
+            return
+        shifted = scipy.sparse.hstack([selection[:, 1:], first], format="csr")
+        change = partial(at_rows, sensors=every, rows=shifted)
+    what = "degrees of freedom" if geometry is None else "nodes"
+    yield Mistake("counted-from-one", (what,), change, one_of(USUAL, 1), {"what": what})

@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.diagnosis.evidence import State
-from modefront.diagnosis.measured import assigned, mac_values, median
+from modefront.diagnosis.measured import NOTHING, mac_values, median
 from modefront.diagnosis.mistakes.record import (
     MANY,
     OFTEN,
     USUAL,
+    Mistake,
     Setting,
-    Variant,
     changed,
-    mistake,
     one_of,
 )
-from modefront.diagnosis.student import NOTHING
 from modefront.findings.knowledge import enumeration
+from modefront.pairing.match import assigned
 
 WRONG = {"frequency": 0.2, "shape": 1.0}
 """Scale of values that are wrong: of logarithms of frequencies, and of shapes."""
@@ -36,10 +36,9 @@ LOOKS = {
 """Causes of factors on the frequencies of a set."""
 
 
-@mistake("set-factor", USUAL)
-def set_factor(setting: Setting) -> Iterator[Variant]:
+def set_factor(setting: Setting) -> Iterator[Mistake]:
     """Yield the median ratio of the frequencies of each set to those of the others."""
-    f = setting.state.data.frequency
+    f, sets = setting.state.data.frequency, setting.names.sets
     for k in setting.compared:
         ratios = np.log(f[k]) - median(np.log(np.delete(f, k, axis=0)))
         if np.isfinite(ratios).sum() < 2:
@@ -48,8 +47,8 @@ def set_factor(setting: Setting) -> Iterator[Variant]:
         percent = 100 * (factor - 1)
         is_unit = abs(percent) > 40
         numbers = {
-            "set": setting.sets[k],
-            "other": setting.others(k),
+            "set": sets[k],
+            "other": _others(sets, k),
             "size": f"{factor:.3g} times" if is_unit else f"{percent:+.1f} % off",
             "looks": next((x for y, x in LOOKS.items() if abs(np.log(factor / y)) < 0.1), ""),
             "mend": "give all data sets in Hz"
@@ -57,22 +56,22 @@ def set_factor(setting: Setting) -> Iterator[Variant]:
             else "the structure differed (mass, temperature, supports): update with one of the "
             "sets, or say by frequency_std how far frequencies scatter",
         }
-
-        def new(f: Floats, k: int = k, factor: float = factor) -> Floats:
-            f[k] /= factor
-            return f
-
-        price = one_of(len(setting.sets))
-        yield Variant((setting.sets[k],), changed("frequency", new), numbers, price)
+        over = np.where(np.arange(len(sets)) == k, factor, 1.0)[:, None]
+        change = changed("frequency", partial(np.multiply, 1 / over))
+        yield Mistake("set-factor", (sets[k],), change, one_of(USUAL, len(sets)), numbers)
 
 
-@mistake("set-numbers", USUAL)
-def other_numbers(setting: Setting) -> Iterator[Variant]:
+def _others(sets: tuple[str, ...], k: int) -> str:
+    """Return the names of the data sets besides one."""
+    return enumeration([*sets[:k], *sets[k + 1 :]], 2)
+
+
+def other_numbers(setting: Setting) -> Iterator[Mistake]:
     """Yield the numbering of the modes of each set that makes it most like the others.
 
     Modes without anything in common keep their numbers.
     """
-    data = setting.state.data
+    data, sets, modes = setting.state.data, setting.names.sets, setting.names.modes
     for k in setting.compared:
         rest = replace(data, **{x: np.delete(getattr(data, x), k, axis=0) for x in PARTS})
         mac = mac_values(data.psi[k], data.seen[k], rest.mean.T)
@@ -81,84 +80,82 @@ def other_numbers(setting: Setting) -> Iterator[Variant]:
         known = np.isfinite(mac) | np.isfinite(distance)
         index = assigned(np.where(known, cost, 1.0 - np.eye(len(cost))))
         rows = np.flatnonzero(index != np.arange(index.size))
-        if not rows.size or np.unique(index).size < index.size:
-            continue
-
-        def change(state: State, k: int = k, index: Ints = index) -> State:
-            parts = {name: getattr(state.data, name).copy() for name in PARTS}
-            for name, values in parts.items():
-                values[k, index] = getattr(state.data, name)[k]
-            return replace(state, data=replace(state.data, **parts))
-
-        modes, of = (
-            enumeration([str(setting.modes[r]) for r in x], MANY) for x in (rows, index[rows])
-        )
-        numbers = {"set": setting.sets[k], "other": setting.others(k), "modes": modes, "of": of}
-        yield Variant((setting.sets[k],), change, numbers, one_of(len(setting.sets)))
+        if rows.size:
+            wrong, right = (
+                enumeration([str(modes[r]) for r in x], MANY) for x in (rows, index[rows])
+            )
+            numbers = {"set": sets[k], "other": _others(sets, k), "modes": wrong, "of": right}
+            change = partial(_renumbered, k=k, index=index)
+            yield Mistake("set-numbers", (sets[k],), change, one_of(USUAL, len(sets)), numbers)
 
 
-@mistake("odd-frequency", OFTEN)
-def odd_frequency(setting: Setting) -> Iterator[Variant]:
+def _renumbered(state: State, k: int, index: Ints) -> State:
+    parts = {name: getattr(state.data, name).copy() for name in PARTS}
+    for name, values in parts.items():
+        values[k, index] = getattr(state.data, name)[k]
+    return replace(state, data=replace(state.data, **parts))
+
+
+def odd_frequency(setting: Setting) -> Iterator[Mistake]:
     """Yield the frequency of each mode that differs most from those of other sets."""
     data = setting.state.data
     yield from _odd(setting, "frequency", np.abs(np.log(data.frequency) - data.logs))
 
 
-@mistake("odd-shape", OFTEN)
-def odd_shape(setting: Setting) -> Iterator[Variant]:
+def odd_shape(setting: Setting) -> Iterator[Mistake]:
     """Yield the shape of each mode that differs most from those of other sets."""
     data = setting.state.data
     away = ((data.psi - data.factors(data.mean) * data.mean) ** 2).sum(axis=2)
     yield from _odd(setting, "shape", np.where(data.seen.any(axis=2), away, np.nan))
 
 
-def _odd(setting: Setting, part: str, away: Floats) -> Iterator[Variant]:
+def _odd(setting: Setting, part: str, away: Floats) -> Iterator[Mistake]:
     """Yield the values of single sets that are farthest ``away`` (sets, modes), one a mode.
 
     Of two sets nobody knows which one is wrong: both are yielded, and blame the mode.
     """
-    price = one_of(len(setting.sets) * len(setting.modes))
-    for r, mode in enumerate(setting.modes if len(setting.sets) > 1 else ()):
+    sets, frequency = setting.names.sets, setting.state.data.frequency
+    price = one_of(OFTEN, len(sets) * len(setting.names.modes))
+    for r, mode in enumerate(setting.names.modes if len(sets) > 1 else ()):
         known = np.flatnonzero(np.isfinite(away[:, r]))
         for k in known[np.argsort(-away[known, r])][: 2 if known.size > 1 else 0].tolist():
-
-            def change(state: State, k: int = k, r: int = r) -> State:
-                values = getattr(state.data, part).copy()
-                count = float(np.isfinite(values[k, r]).sum())
-                left_out = state.data.left_out + count * (NOTHING + np.log(WRONG[part]))
-                values[k, r] = np.nan
-                data = replace(state.data, left_out=left_out, **{part: values})
-                return replace(state, data=data)
-
-            others, odd = [j for j in known.tolist() if j != k], setting.sets[k]
-            names = [setting.sets[j] for j in others]
-            two = setting.sets[max(k, others[0])], setting.sets[min(k, others[0])]
-            is_clear = len(others) > 1
-            f = setting.state.data.frequency[:, r]
-            value, other = float(f[k]), float(np.exp(median(np.log(f[others, None]))[0]))
-            if not is_clear:
-                value, other = float(f[known[1]]), float(f[known[0]])
+            others, subject = [j for j in known.tolist() if j != k], [str(mode)]
+            value, other = frequency[k, r], np.exp(median(np.log(frequency[others, r, None]))[0])
+            if len(others) > 1:
+                subject.append(sets[k])
+                names = enumeration([sets[j] for j in others], 3)
+                who = f"set {sets[k]} disagrees with {names}"
+                look = f"look at set {sets[k]} again, or leave out its"
+            else:
+                (first, second), look = known, "look at both again, or leave out the worse"
+                value, other = frequency[second, r], frequency[first, r]
+                who = f"sets {sets[second]} and {sets[first]} disagree"
             numbers = {
-                "mode": mode,
-                "who": f"set {odd} disagrees with {enumeration(names, 3)}"
-                if is_clear
-                else f"sets {two[0]} and {two[1]} disagree",
-                "look": f"look at set {odd} again, or leave out its"
-                if is_clear
-                else "look at both again, or leave out the worse",
-                **{"f": value, "other": other, "percent": 100 * (value / other - 1)},
+                **{"mode": mode, "who": who, "look": look},
+                **{"f": float(value), "other": float(other)},
+                "percent": float(100 * (value / other - 1)),
             }
-            yield Variant((str(mode), *([odd] if is_clear else [])), change, numbers, price)
+            change = partial(_left_out, part=part, k=k, r=r)
+            yield Mistake(f"odd-{part}", tuple(subject), change, price, numbers)
 
 
-@mistake("foreign-mode", USUAL)
-def foreign_mode(setting: Setting) -> Iterator[Variant]:
+def _left_out(state: State, part: str, k: int, r: int) -> State:
+    values = getattr(state.data, part).copy()
+    count = float(np.isfinite(values[k, r]).sum())
+    left_out = state.data.left_out + count * (NOTHING + np.log(WRONG[part]))
+    values[k, r] = np.nan
+    return replace(state, data=replace(state.data, left_out=left_out, **{part: values}))
+
+
+def foreign_mode(setting: Setting) -> Iterator[Mistake]:
     """Yield modes that the model does not have."""
-    for r, mode in enumerate(setting.modes):
-
-        def change(state: State, r: int = r) -> State:
-            return replace(state, foreign=state.foreign | (np.arange(state.foreign.size) == r))
-
+    modes = setting.names.modes
+    for r, mode in enumerate(modes):
         f = np.exp(setting.state.data.logs[r])
         numbers = {"mode": mode, "at": "" if np.isnan(f) else f" at {f:.4g} Hz"}
-        yield Variant((str(mode),), change, numbers, one_of(len(setting.modes)))
+        price = one_of(USUAL, len(modes))
+        yield Mistake("foreign-mode", (str(mode),), partial(_foreign, r=r), price, numbers)
+
+
+def _foreign(state: State, r: int) -> State:
+    return replace(state, foreign=state.foreign | (np.arange(state.foreign.size) == r))

@@ -5,6 +5,7 @@ Each key of a table of members is the argument of a class of `modefront.fem`.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, get_args
@@ -69,28 +70,30 @@ NODES = Requirement(
     any_of(PLACE, array(PLACE, 1)),
 )
 
-SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
-    "rectangle": (fem.rectangle, ("b_y", "b_z")),
-    "hollow_rectangle": (fem.hollow_rectangle, ("b_y", "b_z", "wall")),
-    "circle": (fem.circle, ("diameter",)),
-    "tube": (fem.tube, ("diameter", "wall")),
-    "constants": (fem.Section, ("A", "I_y", "I_z", "J")),
-}
-"""Shapes of sections, with the numbers above 0 that they need."""
+Members = tuple[Callable[..., Any], Sequence[Option]]
+"""A class of `modefront.fem`, and the keys of a table that are its arguments."""
 
-FACTOR = number("a shear factor above 0", above=0)
-OF_CONSTANTS = {
-    "kappa_y": FACTOR,
-    "kappa_z": FACTOR,
-    "shear_centre": numbers("its y and z", PAIR),
+
+def _members(make: Callable[..., Any], **known: Requirement) -> Members:
+    """Return a class with the keys of its tables; required are its fields without default."""
+    fields = inspect.signature(make).parameters.values()
+    needed = {each.name for each in fields if each.default is each.empty}
+    return make, keys([name for name in known if name in needed], **known)
+
+
+SHAPES: Mapping[str, Members] = {
+    "rectangle": _members(fem.rectangle, b_y=LENGTH, b_z=LENGTH),
+    "hollow_rectangle": _members(fem.hollow_rectangle, b_y=LENGTH, b_z=LENGTH, wall=LENGTH),
+    "circle": _members(fem.circle, diameter=LENGTH),
+    "tube": _members(fem.tube, diameter=LENGTH, wall=LENGTH),
+    "constants": _members(
+        fem.Section,
+        **dict.fromkeys(("A", "I_y", "I_z", "J"), LENGTH),
+        **dict.fromkeys(("kappa_y", "kappa_z"), number("a shear factor above 0", above=0)),
+        shear_centre=numbers("its y and z", PAIR),
+    ),
 }
-OF_SHAPES = {
-    shape: keys(
-        names, **dict.fromkeys(names, LENGTH), **(OF_CONSTANTS if make is fem.Section else {})
-    )
-    for shape, (make, names) in SHAPES.items()
-}
-"""Keys of sections by their shapes."""
+"""Shapes of sections."""
 
 STRAIN = number("a strain")
 
@@ -101,8 +104,9 @@ def _section(group: Table, key: str) -> fem.Section | None:
     if table is None or shape is None:
         return None
     try:
-        values = table.read(OF_SHAPES[shape])
-        return SHAPES[shape][0](**values) if values else None
+        make, known = SHAPES[shape]
+        values = table.read(known)
+        return make(**values) if values else None
     except fem.FemError as error:
         table.fault("", "a section that is possible", str(error))
         return None
@@ -123,36 +127,32 @@ def _of(known: Sequence[Option], **single: str) -> Schema:
 SECTION = Requirement(
     "a table with shape = " + ", ".join(SHAPES),
     TABLE,
-    entries=chosen("shape", {shape: _of(known, shape=shape) for shape, known in OF_SHAPES.items()}),
+    entries=chosen(
+        "shape", {shape: _of(known, shape=shape) for shape, (_, known) in SHAPES.items()}
+    ),
     read=_section,
 )
 STRAINS = Requirement(
     "a table, group = free strain", TABLE, entries=table_of(NUMBER), read=_strains
 )
 
-ELEMENTS: Mapping[Kind, tuple[Callable[..., Any], Sequence[Option]]] = {
-    "beam": (
+ELEMENTS: Mapping[Kind, Members] = {
+    "beam": _members(
         fem.Beams,
-        keys(
-            ["section"],
-            section=SECTION,
-            orientation=OF_VECTOR,
-            offsets=Requirement("a vector of 3 numbers for either end", array(VECTOR, 2, 2)),
-            releases=Requirement(f"a list for either end, of {NAMES}", array(array(NAMED), 2, 2)),
-            force=FORCE,
-        ),
+        section=SECTION,
+        orientation=OF_VECTOR,
+        offsets=Requirement("a vector of 3 numbers for either end", array(VECTOR, 2, 2)),
+        releases=Requirement(f"a list for either end, of {NAMES}", array(array(NAMED), 2, 2)),
+        force=FORCE,
     ),
-    "truss": (fem.Trusses, keys(["area"], area=AREA, force=FORCE)),
-    "shell": (
+    "truss": _members(fem.Trusses, area=AREA, force=FORCE),
+    "shell": _members(
         fem.Shells,
-        keys(
-            ["thickness"],
-            thickness=number("a thickness above 0", above=0),
-            offset=number("a distance"),
-            direction=OF_VECTOR,
-        ),
+        thickness=number("a thickness above 0", above=0),
+        offset=number("a distance"),
+        direction=OF_VECTOR,
     ),
-    "solid": (fem.Solids, keys([], axes=AXES)),
+    "solid": _members(fem.Solids, axes=AXES),
 }
 """Kinds of elements of a group, with their keys beside name, elements and material."""
 
@@ -162,55 +162,40 @@ def _one_or(count: int, expected: str, one: Schema) -> Requirement:
     return Requirement(expected, any_of(one, array(NOT_NEGATIVE, count, count)))
 
 
-MEMBERS: Mapping[str, tuple[Callable[..., Any], Sequence[Option]]] = {
-    "support": (fem.Support, keys(["nodes"], nodes=NODES, directions=DIRECTIONS, axes=AXES)),
-    "spring": (
+MEMBERS: Mapping[str, Members] = {
+    "support": _members(fem.Support, nodes=NODES, directions=DIRECTIONS, axes=AXES),
+    "spring": _members(
         fem.Spring,
-        keys(
-            ["name", "nodes", "stiffness"],
-            name=text("the name of the springs"),
-            nodes=NODES,
-            to=NODES,
-            stiffness=_one_or(6, "a stiffness above 0, or 6 of 0 or more", ABOVE_ZERO),
-            direction=DIRECTION,
-            axes=AXES,
-        ),
+        name=text("the name of the springs"),
+        nodes=NODES,
+        to=NODES,
+        stiffness=_one_or(6, "a stiffness above 0, or 6 of 0 or more", ABOVE_ZERO),
+        direction=DIRECTION,
+        axes=AXES,
     ),
-    "mass": (
+    "mass": _members(
         fem.Mass,
-        keys(
-            ["name", "nodes", "mass"],
-            name=text("the name of the masses"),
-            nodes=NODES,
-            mass=_one_or(3, "a mass of 0 or more, or 3 for x, y and z", NOT_NEGATIVE),
-            inertia=numbers("3 moments of inertia of 0 or more", array(NOT_NEGATIVE, 3, 3)),
-            offset=OF_VECTOR,
-        ),
+        name=text("the name of the masses"),
+        nodes=NODES,
+        mass=_one_or(3, "a mass of 0 or more, or 3 for x, y and z", NOT_NEGATIVE),
+        inertia=numbers("3 moments of inertia of 0 or more", array(NOT_NEGATIVE, 3, 3)),
+        offset=OF_VECTOR,
     ),
-    "link": (
-        fem.Link,
-        keys(["master", "slaves"], master=NODES, slaves=NODES, directions=DIRECTIONS),
-    ),
-    "coupling": (
+    "link": _members(fem.Link, master=NODES, slaves=NODES, directions=DIRECTIONS),
+    "coupling": _members(
         fem.Coupling,
-        keys(
-            ["node", "of"],
-            node=NODES,
-            of=NODES,
-            weights=numbers("numbers above 0", array(ABOVE_ZERO, 1)),
-            directions=DIRECTIONS,
-        ),
+        node=NODES,
+        of=NODES,
+        weights=numbers("numbers above 0", array(ABOVE_ZERO, 1)),
+        directions=DIRECTIONS,
     ),
-    "load": (
+    "load": _members(
         fem.Load,
-        keys(
-            ["name"],
-            name=text("the name of the load"),
-            nodes=NODES,
-            force=numbers("3 components, or 6 with moments", any_of(VECTOR, array(NUMBER, 6, 6))),
-            acceleration=OF_VECTOR,
-            strains=STRAINS,
-        ),
+        name=text("the name of the load"),
+        nodes=NODES,
+        force=numbers("3 components, or 6 with moments", any_of(VECTOR, array(NUMBER, 6, 6))),
+        acceleration=OF_VECTOR,
+        strains=STRAINS,
     ),
 }
 """Tables of members at nodes, with their keys."""
@@ -219,14 +204,14 @@ SINGLE = ("master", "node")
 """Keys of members that name one node."""
 
 DENSITY = number("a density of 0 or more", least=0)
-ISOTROPIC = keys(
-    ["E", "nu", "rho"],
+_, ISOTROPIC = _members(
+    fem.Material,
     E=number("Young's modulus above 0", above=0),
     nu=number("Poisson's ratio between -1 and 0.5", above=-1, below=0.5),
     rho=DENSITY,
 )
-ORTHOTROPIC = keys(
-    ["E", "nu", "G", "rho"],
+_, ORTHOTROPIC = _members(
+    fem.Orthotropic,
     **{key: numbers(f"three values of {key}", VECTOR) for key in ("E", "nu", "G")},
     rho=DENSITY,
 )
