@@ -1,8 +1,6 @@
 """Results of tasks in a folder, one small file a task, so that an interrupted run loses only one.
 
-A file ends with a checksum of all before, which alone says whether it is whole; a task of which it
-is not is done again. Arrays are stored exactly, so that a run that is continued gives the same
-results to the last digit as one that was not interrupted.
+A file ends with a checksum, which alone says whether it is whole; arrays are stored exactly.
 """
 
 from __future__ import annotations
