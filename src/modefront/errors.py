@@ -115,13 +115,13 @@ def refuse(faults: Iterable[Fault]) -> None:
 
 
 @contextmanager
-def writing(folder: Path) -> Iterator[None]:
-    """Raise InputError, with the reason, where a folder cannot be written to."""
+def writing(path: Path, place: str = "folder") -> Iterator[None]:
+    """Raise InputError, with the reason, where a folder, or a file, cannot be written to."""
     try:
         yield
     except OSError as error:
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
+        known = "folder that can be written to" if place == "folder" else "file that can be written"
+        raise InputError(Fault(str(path), place, f"a {known}", reason(error))) from None
 
 
 def reason(error: BaseException) -> str:

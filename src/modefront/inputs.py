@@ -1,9 +1,4 @@
-"""Files that are read: regular ones, of a size that their kind can have, and without holes.
-
-A pipe or a device in place of a file would be waited for, or be read without an end; a file with
-holes (sparse, or left by a broken transfer) announces more than there is. What a file declares is
-compared with what it holds; what has a key is there once; lines of numbers are whole to the end.
-"""
+"""Files that are read: regular ones, whole, of a size that their kind can have."""
 
 from __future__ import annotations
 
@@ -44,22 +39,10 @@ SAMPLES, SAMPLE = 32, 4096
 
 
 def file_size(path: Path, expected: str, most: int | None = None) -> int:
-    """Return the size of a regular file in bytes.
+    """Return the size of a regular file, ``most`` or less, in bytes; links are followed.
 
-    Parameters
-    ----------
-    path
-        The file; links are followed.
-    expected
-        What the file should be, for messages.
-    most
-        Size in bytes above which the file is refused.
-
-    Raises
-    ------
-    InputError
-        Where there is no such file, where it is a folder, a pipe or a device, and where it is too
-        large.
+    ``expected`` says what it should be. Raises InputError where there is no such file, where it is
+    a folder, a pipe or a device, and where it is too large.
     """
     try:
         status = path.stat()

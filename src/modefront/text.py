@@ -1,9 +1,4 @@
-"""Text that comes from files, other programs and users, made fit for terminals and file names.
-
-What is read may hold escape sequences, control characters and halves of surrogate pairs, and may
-be of any length. `clean` is applied to it before it enters a message or a table; `file_name` before
-it becomes the name of a file.
-"""
+"""Text that comes from files, other programs and users, made fit for terminals and file names."""
 
 from __future__ import annotations
 
@@ -22,39 +17,11 @@ RESERVED = frozenset(
 )
 """Names that are devices on Windows, whatever their ending."""
 
-SPELLED: Mapping[str, str] = {
-    "±": "+-",
-    "×": "x",
-    "÷": "/",
-    "…": "...",
-    "–": "-",
-    "—": "-",
-    "−": "-",
-    "²": "^2",
-    "³": "^3",
-    "⁺": "+",
-    "·": "*",
-    "√": "sqrt",
-    "≤": "<=",
-    "≥": ">=",
-    "≈": "~",
-    "°": " deg",
-    "→": "->",
-    "‘": "'",
-    "’": "'",
-    "“": '"',
-    "”": '"',
-    "─": "-",
-    "━": "-",
-    "│": "|",
-    "•": "*",
-    "█": "#",
-    "θ": "theta",
-    "φ": "phi",
-    "λ": "lambda",
-    "σ": "sigma",
-    "ζ": "zeta",
-}
+_SPELLED = (
+    "± +-,× x,÷ /,… ...,– -,— -,− -,² ^2,³ ^3,⁺ +,· *,√ sqrt,≤ <=,≥ >=,≈ ~,°  deg,→ ->,"
+    "‘ ',’ ',“ \",” \",─ -,━ -,│ |,• *,█ #,θ theta,φ phi,λ lambda,σ sigma,ζ zeta"
+)
+SPELLED: Mapping[str, str] = dict(row.split(" ", 1) for row in _SPELLED.split(","))
 """Replacements for characters of the program that an encoding lacks."""
 
 SPELL = "modefront-spell"

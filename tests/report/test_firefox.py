@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 from pages import HOSTILE, chain, hostile, written
 
-from modefront.results.selection import front_points
+from modefront.findings.selection import front_points
 
 websocket = pytest.importorskip("tornado.websocket")
 

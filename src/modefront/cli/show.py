@@ -12,14 +12,12 @@ import xarray as xr
 from rich.console import Console
 
 from modefront.cli.layout import BLANK, Line, Screen
-from modefront.cli.lists import LISTS
-from modefront.cli.overview import models_in
-from modefront.cli.predictions import predictions_in_short
+from modefront.cli.lists import LISTS, models_in, predictions_in_short
 from modefront.cli.terminal import command, say_next
 from modefront.findings.catalogue import Severity
 from modefront.findings.record import PAGE
+from modefront.findings.selection import verdict
 from modefront.results.remarks import digest, findings_of, headlines
-from modefront.results.selection import verdict
 from modefront.study.estimate import Estimate
 from modefront.work.costs import Costs
 

@@ -1,14 +1,9 @@
 """The schema of results: every variable and attribute with dimensions, unit and meaning.
 
-These tables are the one place where results are described. The attributes of the variables in
-``results.nc``, the checks when a file is read and the tables of ``docs/results.md`` are made from
-them. Kinds of predictions describe their own variables (`modefront.predictions`), and results hold
-these descriptions.
-
-A row has a name, with ``*`` where every file has it and ``@`` before the first format that has it;
-the dimensions of a variable; what it holds, where that is not numbers, and its unit; and its
-meaning. Headings name the section of the documentation, and variables of which a file has all or
-none.
+The attributes in ``results.nc``, checks of files and docs/results.md are made from these tables. A
+row has a name, with ``*`` where every file has it and ``@`` before the first format that has it;
+dimensions; what it holds, where that is not numbers, and its unit; and its meaning. Headings name
+the section of the documentation, and variables of which a file has all or none.
 """
 
 from __future__ import annotations

@@ -1,14 +1,8 @@
 r"""Mode shapes of one model at all its degrees of freedom, beside the measured ones.
 
-Those of all points, in a common basis, are in `modefront.results.mode_shapes`.
-
-The shape of a model mode and that of a measured one have a scale and a sign of their own. Model
-shapes are scaled to a greatest displacement of 1 at the nodes; the measured shape follows by the
-modal scale factor, which fits the one to the other at the sensors,
-
-.. math:: \mathrm{MSF} = \hat\varphi^T \varphi / (\hat\varphi^T \hat\varphi)
-
-(Allemang, Sound and Vibration 37 (8), 2003).
+Model shapes have a greatest displacement of 1 at the nodes; the measured shape follows by the modal
+scale factor :math:`\hat\varphi^T \varphi / (\hat\varphi^T \hat\varphi)` at the sensors (Allemang,
+Sound and Vibration 37 (8), 2003).
 """
 
 from __future__ import annotations
@@ -18,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.brief import as_html, brief
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
@@ -69,13 +63,8 @@ def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:
         raise ModelError(f"{row['label'].values!s} has no modes: its model cannot be solved")
     index = paired.astype(int) - 1
     _, phi, Phi = shapes_at(full_of(problem.model), theta, int(index.max()) + 1)
-    computed, geometry, displacement = phi[:, index].T, geometry_of(problem.model), None
-    if geometry is not None and Phi is not None:
-        displacement = geometry.displacement(Phi[:, index])
-    scale = unit_scale(problem.data, computed, displacement)
-    computed = computed * scale[:, None]
-    if displacement is not None:
-        displacement = displacement * scale[:, None, None]
+    Phi = None if Phi is None else Phi[:, index]
+    computed, displacement = scaled_shapes(problem, Phi, phi[:, index])
     return PairedShapes(
         problem.data.modes,
         row["frequency"].values,
@@ -85,8 +74,24 @@ def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:
         computed,
         _fitted(problem.data, computed),
         problem.data.sensors,
-        geometry,
+        geometry_of(problem.model),
     )
+
+
+def scaled_shapes(
+    problem: UpdatingProblem, Phi: Floats | None, phi: Floats, nodes: Ints | None = None
+) -> tuple[Floats, Floats | None]:
+    """Return modes at the sensors (modes, sensors) and at nodes (modes, nodes, 3) in one scale.
+
+    ``Phi`` (N, modes) and ``phi`` (sensors, modes) are the modes of the model; there are none at
+    nodes of a model without geometry.
+    """
+    geometry, computed, displacement = geometry_of(problem.model), phi.T, None
+    if geometry is not None and Phi is not None:
+        displacement = geometry.displacement(Phi)
+        displacement = displacement if nodes is None else displacement[:, nodes]
+    scale = unit_scale(problem.data, computed, displacement)[:, None]
+    return computed * scale, None if displacement is None else displacement * scale[..., None]
 
 
 def unit_scale(data: ModalData, computed: Floats, displacement: Floats | None) -> Floats:

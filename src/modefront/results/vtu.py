@@ -1,8 +1,4 @@
-"""Mode shapes as a VTU file, for ParaView and other programs that read VTK's formats.
-
-Every mode is a vector of displacements at the nodes, with a greatest length of 1; measured shapes
-are vectors along the sensors, in the scale of the model's, and zero where nothing is measured.
-"""
+"""Mode shapes as a VTU file for ParaView: vectors at the nodes, measured ones along the sensors."""
 
 from __future__ import annotations
 
@@ -14,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.errors import Fault, InputError, ModelError, reason
+from modefront.errors import Fault, InputError, ModelError, writing
 from modefront.models.geometry import Cells, Geometry
 from modefront.outputs import output_by_name
 from modefront.results.shapes import PairedShapes
@@ -59,17 +55,13 @@ def write_grid(
         point_data=dict(point_data),
         cell_data={"group": [np.full(len(x.nodes), groups.index(x.group)) for x in cells]},
     )
-    try:
-        # meshio prints warnings of its own.
-        with (
-            contextlib.redirect_stdout(io.StringIO()),
-            contextlib.redirect_stderr(io.StringIO()),
-            output_by_name(path) as copy,
-        ):
-            meshio.write(copy, mesh, file_format="vtu")
-    except OSError as error:
-        expected = "a file that can be written"
-        raise InputError(Fault(str(path), "file", expected, reason(error))) from None
+    with (
+        writing(path, "file"),
+        contextlib.redirect_stdout(io.StringIO()),  # meshio prints warnings of its own
+        contextlib.redirect_stderr(io.StringIO()),
+        output_by_name(path) as copy,
+    ):
+        meshio.write(copy, mesh, file_format="vtu")
 
 
 def _at_sensors(geometry: Geometry, measured: Floats) -> Floats:
