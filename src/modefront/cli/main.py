@@ -235,7 +235,7 @@ def show(
 @click.option("--all", "every", is_flag=True, help="All parameters and predictions.")
 def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
     """Set the results in several DIRECTORIES side by side."""
-    from modefront.cli.compare import comparison_as_json, print_comparison
+    from modefront.cli.show import comparison_as_json, print_comparison
     from modefront.results.compare import compare as compare_results
 
     comparison = compare_results(directories)

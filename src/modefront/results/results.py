@@ -25,8 +25,7 @@ from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.remarks import CHANGED, headlines
-from modefront.results.shapes import PairedShapes, paired_shapes
-from modefront.results.vtu import write_vtu
+from modefront.results.shapes import PairedShapes, paired_shapes, write_vtu
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -36,13 +36,6 @@ SIZES: Mapping[str, int] = {
 }
 """Sizes of dimensions that are always the same."""
 
-COUNTS = (
-    *("seed", "front_is_a_point", "model_evaluations", "front_evaluations", "nbi_evaluations"),
-    *("full_eigensolutions", "reduced_solutions", "prediction_eigensolutions"),
-    *("corrected_eigensolutions", "factorisations", "shape_eigensolutions", "format"),
-)
-"""Attributes that count something."""
-
 LARGEST = 1e9
 """Greatest count."""
 
@@ -67,7 +60,7 @@ def _structure(data: xr.Dataset) -> Iterator[Wrong]:
         if name not in data.attrs:
             yield from [(place, attribute.meaning, "nothing")] * attribute.required
         elif isinstance(data.attrs[name], str) != (attribute.values == "text"):
-            yield place, f"a {attribute.values}", f"{data.attrs[name]!r}"
+            yield place, f"a {attribute.values}", repr(data.attrs[name])
     for name, kinds in COORDINATES.items():
         place, known = f"coordinate '{name}'", data.coords.get(name)
         if known is None:
@@ -189,7 +182,7 @@ def _of_file(data: xr.Dataset) -> Iterator[Wrong]:
         value = np.asarray(data.attrs[name])
         if value.ndim or value.dtype.kind not in "fiub":
             yield f"attribute '{name}'", "a number", clean(repr(data.attrs[name]), NAME)
-        elif name in COUNTS and not (0 <= value < 2**63 and value == np.round(value)):
+        elif attribute.values == "count" and not (0 <= value < 2**63 and value == np.round(value)):
             yield f"attribute '{name}'", "a whole number of 0 or more", str(value)
     if "certified" in data and "eigenvalue_tolerance" not in data.attrs:
         yield "attribute 'eigenvalue_tolerance'", "it, as there is 'certified'", "nothing"

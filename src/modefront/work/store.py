@@ -117,8 +117,7 @@ def locked(folder: Path) -> Iterator[None]:
             known = "another run"
             with suppress(OSError):
                 if holder.is_file():  # a pipe in its place would be waited for
-                    with holder.open("rb") as stream:
-                        text = stream.read(400).decode("utf-8", "replace")
+                    text = holder.read_text("utf-8", "replace")
                     known = clean(f"the run of {text}", NAME)
             found = f"{known}: wait until it has ended, or choose another folder with -o"
             if isinstance(lock, SoftFileLock):

@@ -188,7 +188,7 @@ class Cluster:
     where no scheduler answers, no worker joins, or the versions differ.
     """
 
-    ready, gone = True, (CancelledError, OSError)
+    ready = True
 
     def __init__(self, address: str) -> None:
         place = "--scheduler"
@@ -198,6 +198,7 @@ class Cluster:
             expected = "the extra 'cluster': pip install modefront[cluster]"
             raise InputError(Fault("", place, expected, "no package 'distributed'")) from None
         self.lost = (distributed.KilledWorker,)
+        self.gone = (CancelledError, OSError, distributed.client.ClosedClientError)
         try:
             logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors say what it logs
             self._client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
