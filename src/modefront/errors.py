@@ -11,11 +11,8 @@ from pathlib import Path
 
 from modefront.text import NAME, clean, one_line, shortened
 
-MOST_LINES = 20
-"""Lines of a message, at most."""
-
-MOST_CHARACTERS = 2000
-"""Characters of a message, at most."""
+MOST_LINES, MOST_CHARACTERS = 20, 2000
+"""Lines and characters of a message, at most."""
 
 LONGEST = {"file": 300, "place": 240, "expected": 480, "found": 480}
 """Characters of each part of a fault that a message shows."""

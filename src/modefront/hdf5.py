@@ -9,11 +9,8 @@ import h5py
 import numpy as np
 import scipy.sparse
 
-LARGE = 64 * 10**6
-"""Bytes of a dataset from which on it is compared with what is stored of it."""
-
-RATIO = 1000
-"""Bytes of a dataset over those stored beyond which it is taken for a bomb."""
+LARGE, RATIO = 64 * 10**6, 1000
+"""Bytes of a dataset, and times those that are stored of it, beyond which it is none."""
 
 
 class ForeignError(ValueError):

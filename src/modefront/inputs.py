@@ -14,13 +14,9 @@ from modefront._typing import Ints
 from modefront.errors import Fault, InputError, reason
 
 MEGABYTE = 10**6
-"""Bytes."""
 
-MOST_DATA = 2000 * MEGABYTE
-"""Bytes of a file of data, at most. Chosen against files that fill the memory."""
-
-MOST_TABLES = 64 * MEGABYTE
-"""Bytes of a TOML file, at most. Chosen against files that fill the memory when parsed."""
+MOST_DATA, MOST_TABLES = 2000 * MEGABYTE, 64 * MEGABYTE
+"""Bytes of a file of data, and of a TOML file: chosen against files that fill the memory."""
 
 KINDS = {
     stat.S_IFDIR: "a folder",

@@ -6,11 +6,8 @@ import codecs
 import re
 from collections.abc import Iterable, Mapping
 
-NAME = 80
-"""Characters of a name that messages and tables show."""
-
-FILE_NAME = 60
-"""Characters of a file name that is made from a name, without its ending."""
+NAME, FILE_NAME = 80, 60
+"""Characters of a name that messages show, and of a file name made from one, without its ending."""
 
 RESERVED = frozenset(
     ("con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10)))

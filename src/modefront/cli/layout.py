@@ -14,14 +14,9 @@ from rich.text import Text
 
 from modefront.text import SPELL, clean
 
-GAP = 2
-"""Spaces between columns."""
-
-LEAST = 8
-"""Width of a column down to which long words are broken."""
-
-KEY = 0.45
-"""Greatest part of the width that the names of the rows take."""
+GAP, LEAST, KEY = 2, 8, 0.45
+"""Spaces between columns; width of one down to which long words are broken; greatest part of the
+whole width that the names of the rows take."""
 
 PART = re.compile(r"[^\s_/.-]*[-_/.]|[^\s_/.-]+")
 """Part of a title that is not broken: a word, or what a hyphen or the like ends."""

@@ -42,11 +42,8 @@ TITLES: Mapping[str, str] = {
 }
 """Stages of a run in words, where these are others than their names."""
 
-WIDTH = 24
-"""Characters of a study's name in the bar, so that all fits into 80 columns."""
-
-LEAST = 8
-"""Characters of the bar; a terminal that has not so many is shown none."""
+WIDTH, LEAST = 24, 8
+"""Characters of a study's name, so that all fits into 80 columns, and of the bar, at least."""
 
 PER_SECOND = 4
 """Drawings of the lines a second: clock and counts go on while a task takes long."""

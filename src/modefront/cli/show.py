@@ -24,17 +24,8 @@ from modefront.results.remarks import digest, findings_of, headlines
 from modefront.study.estimate import Estimate
 from modefront.work.costs import Costs
 
-HEIGHT = 40
-"""Lines of the first screen, about."""
-
-TABLE = 14
-"""Lines of the first screen for the table of models, at least."""
-
-PREDICTIONS = 4
-"""Predictions on the first screen."""
-
-LEAST = 4
-"""Lines of the first screen for findings, at least."""
+HEIGHT, TABLE, LEAST, PREDICTIONS = 40, 14, 4, 4
+"""Lines of the first screen, about; of it for models and for findings, at least; predictions."""
 
 
 def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:

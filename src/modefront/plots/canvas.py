@@ -20,14 +20,8 @@ from modefront.text import NAME, clean
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 """Told apart by the colour-blind (Okabe and Ito)."""
 
-MAP = "cividis"
-"""Colours of values, told apart by the colour-blind too."""
-
-PANEL = (2.6, 2.1)
-"""Width and height of a panel in inches."""
-
-COLUMNS = 3
-"""Panels side by side."""
+PANEL, COLUMNS = (2.6, 2.1), 3
+"""Width and height of a panel in inches; panels side by side."""
 
 STYLE: Mapping[Any, Any] = {
     "font.size": 8.5,

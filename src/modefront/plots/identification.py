@@ -11,11 +11,8 @@ from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
 from modefront.plots.canvas import COLOURS, Picture, panels, picture, plain, single
 
-MOST_PANELS = 12
-"""Functions in a picture, at most: more are too small to read."""
-
-SHORT = 40
-"""Characters of the name of a data set in those of its files."""
+MOST_PANELS, SHORT = 12, 40
+"""Functions in a picture: more are too small to read; characters of a data set in file names."""
 
 
 def figures(

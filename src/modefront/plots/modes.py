@@ -15,11 +15,8 @@ from modefront._typing import Floats, Ints
 from modefront.findings.selection import position, reference
 from modefront.plots.canvas import COLOURS, COLUMNS, Picture, panels, picture, plain, short
 
-REACH = 0.15
-"""Greatest displacement that is drawn, over the diagonal of the model."""
-
-NAMES = 14
-"""Sensors up to which each is named."""
+REACH, NAMES = 0.15, 14
+"""Greatest displacement over the diagonal of the model; sensors up to which each is named."""
 
 
 _Shape: TypeAlias = tuple[str, Floats, Floats, Floats | None]

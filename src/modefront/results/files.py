@@ -27,10 +27,8 @@ from modefront.text import NAME, clean
 
 FILE = "results.nc"
 
-READER = "modefront.results.netcdf:contents"
-
-SECONDS = 120.0
-"""Time that reading may take."""
+READER, SECONDS = "modefront.results.netcdf:contents", 120.0
+"""Function that reads the file, and the time that it may take."""
 
 CHECKSUM = "checksum"
 """Attribute that holds the checksum, which it leaves out."""

@@ -20,14 +20,9 @@ from modefront.rounding import ACCUMULATED
 CHANGED = "changed"
 """Attribute of results that were read: how they are not as a run has written them."""
 
-MOST = 10
-"""Findings that are printed, at most, unless all are asked for."""
-
-NAMED = 6
-"""Points, or runs of them, that are named one by one in a sentence."""
-
-FEW = 2
-"""Modes whose pairs change, and parameters at bounds, that a first screen names one by one."""
+MOST, NAMED, FEW, RANGES = 10, 6, 2, 4
+"""Findings that are printed, unless all are asked for; points, or runs of them, that a sentence
+names; modes whose pairs change and parameters at bounds on a first screen; ranges in a sentence."""
 
 NEGATIVE = 1e-6
 """Size of a negative weight, the sum of all being 1, that solutions do not leave by rounding: ten
@@ -39,10 +34,6 @@ hundred times the tolerance of a step, which minima that are nearly flat miss by
 
 POOR = 0.5
 """MAC below which a pair is poor."""
-
-
-RANGES = 4
-"""Parameters whose ranges a sentence names."""
 
 WIDE = 1.02
 """Ratio of greatest to least prediction from which a spread is worth a sentence."""

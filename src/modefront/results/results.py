@@ -33,13 +33,10 @@ if TYPE_CHECKING:
 SHOWN = (Kind.NOMINAL, Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL, Kind.EDGE)
 """Kinds of models in the short representation, in its order."""
 
-SENTENCES, ROWS, COLUMNS = 8, 6, 6
-"""Sentences, models and groups in the short representation."""
-
 ALONE = "expected results with their study, read_results(folder, study), found results alone"
 
-LINES, WIDTH = 11, 96
-"""Lines of its sentences as text, and their characters."""
+SENTENCES, LINES, WIDTH, ROWS, COLUMNS = 8, 11, 96, 6, 6
+"""Sentences in the short representation, their lines as text and characters; models and groups."""
 
 
 @dataclass(frozen=True, repr=False)

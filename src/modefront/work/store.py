@@ -28,17 +28,12 @@ from modefront.work.codec import decode, encode
 from modefront.work.costs import Costs
 from modefront.work.task import Task
 
-FOLDER = "tasks"
-"""Folder of the kept results, within that of the results of a run."""
+FOLDER, NOTE = "tasks", "study"
+"""Folder of the kept results within that of a run's results, and the file in it with the path of
+the study file from there."""
 
-NOTE = "study"
-"""File beside these results, with the path of the study file from those of the run."""
-
-CHECKSUM = 32
-"""Bytes of the checksum at the end of a file."""
-
-LONGEST = 60
-"""Characters of a key at most in a file name, which ends in a hash."""
+CHECKSUM, LONGEST = 32, 60
+"""Bytes of the checksum at the end of a file; characters of a key in its name, at most."""
 
 
 @dataclass(frozen=True)
@@ -89,11 +84,9 @@ def hash_text(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-FILE = "lock"
-"""File that is locked; it stays, since a lock on a file that is removed keeps nobody out."""
-
-HOLDER = "lock-holder"
-"""File that says which process holds the lock."""
+FILE, HOLDER = "lock", "lock-holder"
+"""File that is locked, which stays, since a lock on a file that is removed keeps nobody out; and
+file that says which process holds the lock."""
 
 
 @contextmanager

@@ -38,11 +38,8 @@ SHORT, TINY = 0.02, 0.005
 """Seconds of tasks that are sent together, about, and of all tasks below which they are computed in
 the calling process."""
 
-QUEUED = 2
-"""Messages that are sent, over the number of processes."""
-
-SHARE = 0.6
-"""Share of the memory that is available that processes may take."""
+QUEUED, SHARE = 2, 0.6
+"""Messages that are sent, over the number of processes, which may take this share of the memory."""
 
 WARM = "modefront.front.pareto", "modefront.analysis.front"
 """What processes import when they start: nearly all that the tasks of a run need."""
