@@ -8,7 +8,6 @@ are many.
 from __future__ import annotations
 
 import math
-import time
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -64,12 +63,11 @@ class State:
     done: int
     running: int
     expected: int
-    elapsed: float
     left: Span | None
     of_stage: tuple[int, int] = (0, 0)
 
 
-# 13 fields: five are given, the others are its state.
+# 11 fields: four are given, the others are its state.
 @dataclass
 class Progress:
     """Follows the tasks of a run and calls ``report`` with its state after every change.
@@ -78,7 +76,6 @@ class Progress:
     """
 
     report: Callable[[State], object] = lambda _: None
-    clock: Callable[[], float] = time.monotonic
     spent: Costs = field(default_factory=Costs)
     workers: int = 1
     plan: Plan | None = None
@@ -89,7 +86,6 @@ class Progress:
     _computed: Counter[str] = field(default_factory=Counter)
     _seconds: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))
     _ended: set[str] = field(default_factory=set)
-    _began: float | None = None
 
     def expect(self, stages: Mapping[str, int]) -> None:
         """Note the number of tasks of each stage that are still to come."""
@@ -99,8 +95,6 @@ class Progress:
 
     def start(self, stage: str) -> None:
         """Take note that a task of a stage is being computed, or taken from what is kept."""
-        if self._began is None:
-            self._began = self.clock()
         if stage != self._stage and self._stage:
             before = self._stage
             self._expected[before] = self._done[before] + self._running[before]
@@ -129,7 +123,6 @@ class Progress:
             self._done.total(),
             self._running.total(),
             sum(extents.values()),
-            0.0 if self._began is None else self.clock() - self._began,
             self._left(extents),
             (self._done[self._stage], extents.get(self._stage, 0)),
         )
