@@ -20,7 +20,7 @@ from smu import Structure, frequencies_and_shapes, read, weighted_minimum
 
 from modefront import Pairing
 from modefront._typing import Floats
-from modefront.work.costs import counted, total
+from modefront.work.costs import counted
 
 
 def run(structure: Structure, pairing: Pairing, starts: Floats, *, reduced: bool = False) -> None:
@@ -41,7 +41,7 @@ def run(structure: Structure, pairing: Pairing, starts: Floats, *, reduced: bool
         f"{sum(hits)} of {len(starts)} starts find the truth; "
         f"seconds a start: median {np.median(seconds):.2f}, greatest {max(seconds):.2f}; "
         f"eigenproblems a start: median {np.median(cost):.0f}, greatest {max(cost)}, "
-        f"{total(costs).eigenproblems} of all in full"
+        f"{sum(x.eigenproblems for x in costs)} of all in full"
     )
 
 

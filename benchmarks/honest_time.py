@@ -122,7 +122,7 @@ def measured(seed: int, limit: int) -> dict[str, Any]:
 
     signal.signal(signal.SIGVTALRM, signal.default_int_handler)
     signal.setitimer(signal.ITIMER_VIRTUAL, limit)
-    progress = Progress(note, time.process_time, plan=expected.plan)
+    progress = Progress(note, plan=expected.plan)
     began = time.process_time()
     try:
         mf.run(study, progress=progress)

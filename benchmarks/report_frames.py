@@ -11,7 +11,8 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from modefront.reports.page import write_page
+from modefront.reports.page import page as page_with
+from modefront.reports.page import write_html
 from modefront.results.files import read_dataset
 
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -32,7 +33,7 @@ def frames(results: Path) -> float:
     """Return the frames a second while the mode shape of a report moves."""
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         file = Path(folder) / "report.html"
-        write_page([(results.name, read_dataset(results))], file)
+        write_html(page_with([(results.name, read_dataset(results))]), file)
         browser = playwright.chromium.launch(
             executable_path=Path("/usr/bin/chromium"), args=ARGUMENTS
         )

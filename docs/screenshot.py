@@ -13,7 +13,8 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 import modefront as mf
-from modefront.reports.page import write_page
+from modefront.reports.page import page as page_with
+from modefront.reports.page import write_html
 from modefront.results.files import read_dataset
 from modefront.study.examples import write_example
 
@@ -36,7 +37,7 @@ def example(folder: Path) -> Path:
 
 def screenshot(results: Path, file: Path, target: Path) -> None:
     """Write the report of results into a file, and the picture of its views."""
-    write_page([(results.name, read_dataset(results))], file)
+    write_html(page_with([(results.name, read_dataset(results))]), file)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
         page = browser.new_page(viewport={"width": 1240, "height": 800})

@@ -7,11 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
-LINE = 96
-"""Characters of a line."""
-
-MOST = 18
-"""Lines of fields."""
+LINE, MOST = 96, 18
+"""Characters of a line, and lines of fields."""
 
 
 def brief(record: Any) -> str:

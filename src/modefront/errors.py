@@ -11,11 +11,8 @@ from pathlib import Path
 
 from modefront.text import NAME, clean, one_line, shortened
 
-MOST_LINES = 20
-"""Lines of a message, at most."""
-
-MOST_CHARACTERS = 2000
-"""Characters of a message, at most."""
+MOST_LINES, MOST_CHARACTERS = 20, 2000
+"""Lines and characters of a message, at most."""
 
 LONGEST = {"file": 300, "place": 240, "expected": 480, "found": 480}
 """Characters of each part of a fault that a message shows."""
@@ -115,13 +112,13 @@ def refuse(faults: Iterable[Fault]) -> None:
 
 
 @contextmanager
-def writing(folder: Path) -> Iterator[None]:
-    """Raise InputError, with the reason, where a folder cannot be written to."""
+def writing(path: Path, place: str = "folder") -> Iterator[None]:
+    """Raise InputError, with the reason, where a folder, or a file, cannot be written to."""
     try:
         yield
     except OSError as error:
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
+        known = "folder that can be written to" if place == "folder" else "file that can be written"
+        raise InputError(Fault(str(path), place, f"a {known}", reason(error))) from None
 
 
 def reason(error: BaseException) -> str:

@@ -19,23 +19,12 @@ T = TypeVar("T")
 class Family(Mapping[str, T], Generic[T]):
     """The members of a family by their names, in the order in which they came.
 
-    Parameters
-    ----------
-    group
-        Name of the entry points that bring members.
-    what
-        Description of a member, for messages.
-    takes
-        Whether an object can be a member.
-    name
-        Returns the name of a member.
-    own
-        Members of the package, of which no other one takes the place.
-    faults
-        Yields what keeps an object from being a member.
+    Entry points of a ``group`` bring members; ``what`` describes one in messages. ``takes`` says
+    whether an object can be a member, ``faults`` what keeps it from being one. No other one takes
+    the place of the package's ``own``.
     """
 
-    # 6 arguments: see above.
+    # 6 arguments: what a family is.
     def __init__(
         self,
         group: str,

@@ -1,9 +1,4 @@
-"""HDF5 files that hold what they show: no links to other files, no data kept elsewhere.
-
-External links, external storage and virtual datasets make the library open files that are named in
-the file that is read. Links are looked at before they are followed, and how data is kept before any
-of it is read.
-"""
+"""HDF5 files that hold what they show: no links to other files, no data kept elsewhere."""
 
 from __future__ import annotations
 
@@ -14,11 +9,8 @@ import h5py
 import numpy as np
 import scipy.sparse
 
-LARGE = 64 * 10**6
-"""Bytes of a dataset from which on it is compared with what is stored of it."""
-
-RATIO = 1000
-"""Bytes of a dataset over those stored beyond which it is taken for a bomb."""
+LARGE, RATIO = 64 * 10**6, 1000
+"""Bytes of a dataset, and times those that are stored of it, beyond which it is none."""
 
 
 class ForeignError(ValueError):
@@ -50,13 +42,6 @@ def check_dataset(name: str, item: h5py.Dataset) -> None:
     size, stored = item.size * item.dtype.itemsize, item.id.get_storage_size()
     if size > LARGE and size > RATIO * stored:
         raise ForeignError(f"'{name}' announces {size / 1e6:.6g} MB and holds {stored / 1e6:.3g}")
-
-
-def check_file(file: h5py.File) -> None:
-    """Raise ForeignError where any part of a file that holds no groups is kept elsewhere."""
-    for name in file:
-        if isinstance(inner(file, name), h5py.Group):
-            raise ForeignError(f"'{name}' is a group")
 
 
 def check_tree(group: h5py.Group) -> None:

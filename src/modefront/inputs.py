@@ -1,9 +1,4 @@
-"""Files that are read: regular ones, of a size that their kind can have, and without holes.
-
-A pipe or a device in place of a file would be waited for, or be read without an end; a file with
-holes (sparse, or left by a broken transfer) announces more than there is. What a file declares is
-compared with what it holds; what has a key is there once; lines of numbers are whole to the end.
-"""
+"""Files that are read: regular ones, whole, of a size that their kind can have."""
 
 from __future__ import annotations
 
@@ -19,13 +14,9 @@ from modefront._typing import Ints
 from modefront.errors import Fault, InputError, reason
 
 MEGABYTE = 10**6
-"""Bytes."""
 
-MOST_DATA = 2000 * MEGABYTE
-"""Bytes of a file of data, at most. Chosen against files that fill the memory."""
-
-MOST_TABLES = 64 * MEGABYTE
-"""Bytes of a TOML file, at most. Chosen against files that fill the memory when parsed."""
+MOST_DATA, MOST_TABLES = 2000 * MEGABYTE, 64 * MEGABYTE
+"""Bytes of a file of data, and of a TOML file: chosen against files that fill the memory."""
 
 KINDS = {
     stat.S_IFDIR: "a folder",
@@ -36,30 +27,15 @@ KINDS = {
 }
 """Names of the kinds of files that are not regular."""
 
-HDF5, USER_BLOCK = b"\x89HDF\r\n\x1a\n", 512
-"""Signature of HDF5, and the size of the smallest user block before it."""
-
 SAMPLES, SAMPLE = 32, 4096
 """Number and length of the parts of a file that are checked for holes."""
 
 
 def file_size(path: Path, expected: str, most: int | None = None) -> int:
-    """Return the size of a regular file in bytes.
+    """Return the size of a regular file, ``most`` or less, in bytes; links are followed.
 
-    Parameters
-    ----------
-    path
-        The file; links are followed.
-    expected
-        What the file should be, for messages.
-    most
-        Size in bytes above which the file is refused.
-
-    Raises
-    ------
-    InputError
-        Where there is no such file, where it is a folder, a pipe or a device, and where it is too
-        large.
+    ``expected`` says what it should be. Raises InputError where there is no such file, where it is
+    a folder, a pipe or a device, and where it is too large.
     """
     try:
         status = path.stat()
@@ -103,16 +79,9 @@ def refuse_holes(path: Path, expected: str, size: int) -> None:
 
 def is_hdf5(path: Path) -> bool:
     """Return whether a file holds HDF5, at its beginning or after a block of the user's."""
-    with path.open("rb") as stream:
-        start = 0
-        while True:
-            stream.seek(start)
-            signature = stream.read(len(HDF5))
-            if len(signature) < len(HDF5):
-                return False
-            if signature == HDF5:
-                return True
-            start = 2 * start or USER_BLOCK
+    import h5py  # takes time
+
+    return bool(h5py.is_hdf5(path))
 
 
 def available_memory() -> int:

@@ -1,10 +1,7 @@
 """Readers of other packages in processes of their own, with limits on time and memory.
 
-A reader that ends its process, runs without an end, or takes all memory takes only this process
-with it. What it has read comes back as plain arrays and texts in a file that is not unpickled.
-
-A server is started with the first file: it imports what readers need once, and has each file read
-by a fork of itself. Where the system has no forks, it reads one file and ends.
+A server imports what readers need once, and has each file read by a fork of itself; where the
+system has no forks, it reads one file and ends. Nothing that comes back is unpickled.
 """
 
 from __future__ import annotations
@@ -18,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import astuple
@@ -55,24 +53,11 @@ def isolated(
 ) -> Read:
     """Return the arrays and texts that a function reads from a file in another process.
 
-    Parameters
-    ----------
-    function
-        ``module:name`` of a function that takes the path and returns `Read`.
-    path
-        The file, or what its name begins with.
-    seconds, memory
-        Limits, by the size of the file and what is free unless given; that of memory, in bytes,
-        holds where the system has such limits.
-    arguments
-        Further texts that the function takes.
+    ``function`` is the ``module:name`` of one that takes the path, or what the names of files begin
+    with, and further texts, and returns `Read`. Limits in seconds and bytes are chosen by the size
+    of the file and what is free unless given; that of memory holds where the system has such.
 
-    Raises
-    ------
-    IsolatedError
-        Where nothing was read.
-    InputError
-        Where the function raises it.
+    Raises IsolatedError where nothing was read, and InputError where the function raises it.
     """
     if _INSIDE:
         return _called(function, path, arguments)
@@ -137,26 +122,19 @@ class _Server:
     def status(self, request: Sequence[object], seconds: float) -> int | None:
         """Return how the reading of a file has ended; None where it has not."""
         with self._lock:
-            process, late = self._started(), threading.Event()
-
-            def give_up() -> None:
-                late.set()
-                _kill(process)
-
-            assert process.stdin is not None
-            assert process.stdout is not None
-            timer = threading.Timer(seconds + 30, give_up)  # s to start and to answer
+            process, late = self._started(), time.monotonic() + seconds + 30  # to start and answer
+            timer = threading.Timer(late - time.monotonic(), _kill, [process])
             timer.start()
             line = ""
             try:
+                assert process.stdin is not None
+                assert process.stdout is not None
                 with suppress(BrokenPipeError):  # it has ended, and says so below
                     process.stdin.write(json.dumps(request) + "\n")
                     process.stdin.flush()
                 line = process.stdout.readline()
-                if line:
-                    return int(line)
-                code = process.wait()
-                return None if late.is_set() else code
+                code = int(line) if line else process.wait()
+                return code if line or time.monotonic() < late else None
             finally:
                 timer.cancel()
                 if not line:  # it has ended, or there was an interrupt
@@ -177,17 +155,19 @@ class _Server:
             self.end()
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
         environment |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONUTF8": "1"}
-        self._process = subprocess.Popen(
-            # -P: nothing is imported from the folder that the user works in
-            [sys.executable, "-P", "-c", "from modefront.isolated import serve; serve()"],
-            env=environment,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            text=True,
-            start_new_session=True,  # interrupts of the terminal are for this process
+        self._owner, self._process = (
+            os.getpid(),
+            subprocess.Popen(
+                # -P: nothing is imported from the folder that the user works in
+                [sys.executable, "-P", "-c", "from modefront.isolated import serve; serve()"],
+                env=environment,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                text=True,
+                start_new_session=True,  # interrupts of the terminal are for this process
+            ),
         )
-        self._owner = os.getpid()
         return self._process
 
 

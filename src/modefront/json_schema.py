@@ -1,8 +1,4 @@
-"""JSON Schema of single values, and the test whether a value in plain Python meets it.
-
-Only the words that the package itself uses are known, those of draft 7. A number is finite, and a
-whole number is none that has a decimal point.
-"""
+"""JSON Schema (draft 7) of single values, and the test whether a value in plain Python meets it."""
 
 from __future__ import annotations
 

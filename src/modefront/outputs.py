@@ -1,9 +1,4 @@
-"""Files that are written: whole or not at all, and never through a link.
-
-A file is written under a name that nobody else has, in the same folder, and then takes the place of
-what has its name: of a link, the link and not what it leads to. Nothing else here opens a file for
-writing (`tests/test_outputs.py`).
-"""
+"""Files that are written: whole or not at all, under another name first, never through a link."""
 
 from __future__ import annotations
 

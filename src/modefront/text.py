@@ -1,9 +1,4 @@
-"""Text that comes from files, other programs and users, made fit for terminals and file names.
-
-What is read may hold escape sequences, control characters and halves of surrogate pairs, and may
-be of any length. `clean` is applied to it before it enters a message or a table; `file_name` before
-it becomes the name of a file.
-"""
+"""Text that comes from files, other programs and users, made fit for terminals and file names."""
 
 from __future__ import annotations
 
@@ -11,50 +6,19 @@ import codecs
 import re
 from collections.abc import Iterable, Mapping
 
-NAME = 80
-"""Characters of a name that messages and tables show."""
-
-FILE_NAME = 60
-"""Characters of a file name that is made from a name, without its ending."""
+NAME, FILE_NAME = 80, 60
+"""Characters of a name that messages show, and of a file name made from one, without its ending."""
 
 RESERVED = frozenset(
     ("con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10)))
 )
 """Names that are devices on Windows, whatever their ending."""
 
-SPELLED: Mapping[str, str] = {
-    "±": "+-",
-    "×": "x",
-    "÷": "/",
-    "…": "...",
-    "–": "-",
-    "—": "-",
-    "−": "-",
-    "²": "^2",
-    "³": "^3",
-    "⁺": "+",
-    "·": "*",
-    "√": "sqrt",
-    "≤": "<=",
-    "≥": ">=",
-    "≈": "~",
-    "°": " deg",
-    "→": "->",
-    "‘": "'",
-    "’": "'",
-    "“": '"',
-    "”": '"',
-    "─": "-",
-    "━": "-",
-    "│": "|",
-    "•": "*",
-    "█": "#",
-    "θ": "theta",
-    "φ": "phi",
-    "λ": "lambda",
-    "σ": "sigma",
-    "ζ": "zeta",
-}
+_SPELLED = (
+    "± +-,× x,÷ /,… ...,– -,— -,− -,² ^2,³ ^3,⁺ +,· *,√ sqrt,≤ <=,≥ >=,≈ ~,°  deg,→ ->,"
+    "‘ ',’ ',“ \",” \",─ -,━ -,│ |,• *,█ #,θ theta,φ phi,λ lambda,σ sigma,ζ zeta"
+)
+SPELLED: Mapping[str, str] = dict(row.split(" ", 1) for row in _SPELLED.split(","))
 """Replacements for characters of the program that an encoding lacks."""
 
 SPELL = "modefront-spell"

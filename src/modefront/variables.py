@@ -13,17 +13,9 @@ Values = Literal["number", "count", "truth", "text"]
 class Variable:
     """A variable of the results.
 
-    Attributes
-    ----------
-    name : of the variable
-    dimensions : its dimensions
-    meaning : in words
-    values : what it holds
-    unit : of the values; empty where there is none, or where it is that of the model
-    section : heading of the table in the documentation
-    required : whether every file of results has it
-    since : first format that has it
-    together : name of variables of which a file has all or none; empty for a variable alone
+    The unit is empty where there is none, or where it is that of the model; ``section`` is a
+    heading of the documentation, ``since`` the first format that has it, ``together`` a name of
+    variables of which a file has all or none.
     """
 
     name: str

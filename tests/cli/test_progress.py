@@ -30,7 +30,7 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     costs = Costs()
     lines = _Lines("a study of a bridge", costs, lambda: now, began=0.0)
     assert drawn(lines, 80)[1] == "starting"
-    lines.take(State("front", 2, 1, 27, 0.0, (100.0, 400.0)))
+    lines.take(State("front", 2, 1, 27, (100.0, 400.0)))
     now, costs.eigenproblems = 30.0, 143
     with listening(lines.hear):
         note("search 7 of 60")
@@ -45,7 +45,7 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     with listening(lines.hear):
         note("search 8 of 60")
     assert "search 8 of 60, 143 models" in drawn(lines, 80)[1], "a new one has no steps yet"
-    lines.take(State("front", 3, 0, 27, 30.0, (50.0, np.inf)))
+    lines.take(State("front", 3, 0, 27, (50.0, np.inf)))
     now = 40.0
     assert drawn(lines, 80)[1] == "front, 143 models solved, 40 s or more"
     lines.end()
@@ -54,15 +54,15 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
 
 def test_what_is_not_known_of_the_time_is_not_said() -> None:
     lines = _Lines("a study", Costs(), lambda: 0.0, began=0.0)
-    lines.take(State("predict", 3, 1, 9, 0.0, (0.2, 40.0), (2, 8)))
+    lines.take(State("predict", 3, 1, 9, (0.2, 40.0), (2, 8)))
     assert drawn(lines, 80)[1] == "predictions 2 of 8, at most 40 s left"
-    lines.take(State("edges", 349, 1, 384, 0.0, (0.0, np.inf), (349, 350)))
+    lines.take(State("edges", 349, 1, 384, (0.0, np.inf), (349, 350)))
     assert drawn(lines, 80)[1] == "edges and weighted models 349, longer than expected"
 
 
 def test_nothing_is_cut_in_a_narrow_terminal() -> None:
     lines = _Lines("three-story C0, chain M0", Costs(), lambda: 0.0, began=0.0)
-    lines.take(State("probe-basis", 12, 1, 12345, 0.0, (3000.0, 5000.0)))
+    lines.take(State("probe-basis", 12, 1, 12345, (3000.0, 5000.0)))
     lines.hear("search 12 of at most 1000000")
     text = " ".join(" ".join(drawn(lines, 40)).split())
     assert "…" not in text
@@ -73,8 +73,8 @@ def test_a_log_has_a_line_a_stage() -> None:
     stream = io.StringIO()
     log = _Log(Console(file=stream), "a\x1b[31m")
     for done in range(3):
-        log(State("front", done, 1, 20, 1.0, (100.0 * done, 400.0)))
-    log(State("edges", 3, 0, 20, 1.0, None))
+        log(State("front", done, 1, 20, (100.0 * done, 400.0)))
+    log(State("edges", 3, 0, 20, None))
     assert stream.getvalue() == (
         "a\\x1b[31m: 0 tasks done: front, at most 7 min left\n"
         "a\\x1b[31m: 3 tasks done: edges and weighted models\n"

@@ -12,10 +12,9 @@ import xarray as xr
 from rich.console import Console
 
 import modefront as mf
-from modefront.cli.compare import print_comparison
 from modefront.cli.layout import Screen
 from modefront.cli.lists import LISTS
-from modefront.cli.show import print_results
+from modefront.cli.show import print_comparison, print_results
 from modefront.results.compare import Apart, Comparison, Spread, Summary
 from modefront.results.remarks import headlines, remarks
 

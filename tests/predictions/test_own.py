@@ -26,8 +26,7 @@ from modefront.models.base import Model
 from modefront.options import check_fields, text, whole
 from modefront.predictions import ResultVariable, Setting
 from modefront.predictions.registry import kinds_in
-from modefront.reports.payload import payload
-from modefront.reports.words import topics
+from modefront.reports.payload import payload, topics
 from modefront.results.files import read_dataset
 from modefront.results.soundness import faults
 

@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -18,7 +19,7 @@ from typing import Any
 import pytest
 from pages import HOSTILE, chain, hostile, written
 
-from modefront.results.selection import front_points
+from modefront.findings.selection import front_points
 
 websocket = pytest.importorskip("tornado.websocket")
 
@@ -121,10 +122,13 @@ def firefox(downloads: Path) -> Iterator[str]:
         stdout=subprocess.DEVNULL,
         text=True,
     )
+    assert process.stderr is not None
+    # The browser waits where nobody reads what it says.
+    reader = threading.Thread(target=process.stderr.read, daemon=True)
     try:
-        assert process.stderr is not None
         for line in process.stderr:
             if result := re.search(r"WebDriver BiDi listening on (ws://\S+)", line):
+                reader.start()
                 yield f"{result[1]}/session"
                 break
         else:
@@ -132,8 +136,9 @@ def firefox(downloads: Path) -> Iterator[str]:
     finally:
         process.terminate()
         process.wait()
-        if process.stderr is not None:
-            process.stderr.close()
+        if reader.ident:
+            reader.join()
+        process.stderr.close()
         shutil.rmtree(profile, ignore_errors=True)
 
 

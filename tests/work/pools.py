@@ -10,15 +10,14 @@ from dataclasses import dataclass, field
 
 from modefront.work import transfer
 from modefront.work.transfer import Message, Reply
-from modefront.work.workers import Loss
 
 
 @dataclass
 class Threads:
     """Computes messages after delays, in milliseconds, one after another taken in turn.
 
-    The messages with the numbers ``broken`` are lost with all that are under way; from the one
-    numbered ``gone`` on, there is no cluster any more. Every message ``forgets`` shared objects.
+    The messages with the numbers ``broken`` are lost; from the one numbered ``cut`` on, there is no
+    cluster any more. Every message ``forgets`` shared objects.
     Where there is ``known``, each message meets a process that knows no other shared objects among
     those of the message than the ones in these places, taken in turn.
     """
@@ -26,12 +25,13 @@ class Threads:
     count: int = 2
     delays: Sequence[int] = (0,)
     broken: Sequence[int] = ()
-    gone: int | None = None
+    cut: int | None = None
     forgets: bool = False
     known: Sequence[Collection[int]] = ()
     ready: bool = True
+    lost: tuple[type[Exception], ...] = (BrokenProcessPool,)
+    gone: tuple[type[Exception], ...] = (CancelledError,)
     sent: list[Message] = field(default_factory=list)
-    restarts: int = 0
     closed: bool = False
     most: int = 0
     under_way: set[Future[Reply]] = field(default_factory=set)
@@ -40,7 +40,7 @@ class Threads:
     def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
         number = len(self.sent)
         self.sent.append(message)
-        if self.gone is not None and number >= self.gone:
+        if self.cut is not None and number >= self.cut:
             raise CancelledError
         future = self.executor.submit(self._compute, number, message, objects)
         self.under_way = {x for x in self.under_way if not x.done()} | {future}
@@ -60,14 +60,6 @@ class Threads:
                     if place not in places:
                         transfer._OBJECTS.pop(name, None)
         return transfer.work(message, objects)
-
-    def lost(self, error: Exception, /) -> Loss | None:
-        if isinstance(error, CancelledError):
-            return Loss.CLUSTER
-        return Loss.POOL if isinstance(error, BrokenProcessPool) else None
-
-    def restart(self) -> None:
-        self.restarts += 1
 
     def close(self) -> None:
         self.closed = True

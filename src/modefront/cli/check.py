@@ -55,23 +55,15 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
 
 
 def _print_modes(screen: Screen, beside: Comparison) -> None:
-    rows = []
-    for r, (mode, measured) in enumerate(
-        zip(beside.data.modes, beside.data.mean_frequency, strict=True)
+    rows, pairs, data = [], beside.pairs, beside.data
+    for mode, measured, q, mac in zip(
+        data.modes, data.mean_frequency, pairs.index.tolist(), pairs.mac, strict=True
     ):
-        q = int(beside.pairs.index[r])
         f = float(beside.frequency[q])
         error = 100 * (f / measured - 1)
-        rows.append(
-            [
-                str(mode),
-                number(measured, ".4g", ""),
-                f"{f:.4g}",
-                number(error, "+.1f" if abs(error) < 1e4 else "+.1e", ""),
-                number(beside.pairs.mac[r], ".4f", ""),
-                str(q + 1),
-            ]
-        )
+        cells = [number(measured, ".4g", ""), f"{f:.4g}"]
+        cells.append(number(error, "+.1f" if abs(error) < 1e4 else "+.1e", ""))
+        rows.append([str(mode), *cells, number(mac, ".4f", ""), str(q + 1)])
     columns = ["mode", "measured Hz", "model Hz", "error %", "MAC", "model mode"]
     screen.table("nominal model beside the measured modes", columns, rows)
 

@@ -1,15 +1,11 @@
-"""Sentences and tables that fit the terminal: wrapped at words, split into blocks, never cut.
-
-A table that is too wide is printed as several blocks, one below the other, which repeat the names
-of the rows. Names that do not fit are broken over lines. All text is cleaned (`modefront.text`),
-and characters that the terminal's encoding lacks are spelled.
-"""
+"""Sentences and tables that fit the terminal: wrapped at words, split into blocks, never cut."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 
 import numpy as np
 from rich.cells import cell_len, chop_cells
@@ -18,14 +14,12 @@ from rich.text import Text
 
 from modefront.text import SPELL, clean
 
-GAP = 2
-"""Spaces between columns."""
+GAP, LEAST, KEY = 2, 8, 0.45
+"""Spaces between columns; width of one down to which long words are broken; greatest part of the
+whole width that the names of the rows take."""
 
-LEAST = 8
-"""Width of a column down to which long words are broken."""
-
-KEY = 0.45
-"""Greatest part of the width that the names of the rows take."""
+PART = re.compile(r"[^\s_/.-]*[-_/.]|[^\s_/.-]+")
+"""Part of a title that is not broken: a word, or what a hyphen or the like ends."""
 
 Row = Sequence[str]
 
@@ -106,28 +100,17 @@ class Screen:
         columns: Row,
         rows: Sequence[Row],
         keys: int = 1,
-        part: float = KEY,
     ) -> list[Line]:
         """Return the lines of a table, in blocks where it is too wide; none without rows.
 
-        Parameters
-        ----------
-        title
-            Sentence above the table.
-        columns
-            Titles, those of the names of the rows first.
-        rows
-            Cells; a row of one cell is a heading within the table.
-        keys
-            Number of columns with names of the rows, which every block repeats.
-        part
-            Greatest part of the width that these take; longer names are broken over lines.
+        The first ``keys`` columns are names of the rows, which every block repeats, within a
+        part `KEY` of the width. A row of one cell is a heading within the table.
         """
         if not rows:
             return []
         out = self.sentence(title, style="bold") if title else []
         cells = [[self.shown(x) for x in row] for row in rows]
-        grid = _Grid([self.shown(x) for x in columns], cells, keys, part)
+        grid = _Grid([self.shown(x) for x in columns], cells, keys)
         for number, block in enumerate(grid.blocks(self.width)):
             out += [BLANK] * (number > 0) + block
         return out
@@ -144,11 +127,10 @@ class _Grid:
     columns: list[str]
     rows: list[list[str]]
     keys: int
-    part: float
 
     def blocks(self, width: int) -> Iterator[list[Line]]:
         """Yield the lines of each block, with their styles."""
-        most = max(int(self.part * width) // self.keys, LEAST)
+        most = max(int(KEY * width) // self.keys, LEAST)
         keys = [min(self._width(j), most) for j in range(self.keys)]
         room = width - sum(keys) - GAP * self.keys
         widths = {j: min(self._width(j), room) for j in range(self.keys, len(self.columns))}
@@ -163,25 +145,24 @@ class _Grid:
     def _width(self, j: int) -> int:
         """Return the width of a column: that of its cells and of the words of its title."""
         cells = [cell_len(row[j]) for row in self.rows if len(row) > 1]
-        return max([*cells, *map(cell_len, _parts(self.columns[j])), 1])
+        return max([*cells, *map(cell_len, PART.findall(self.columns[j])), 1])
 
     def _block(self, widths: list[int], chosen: list[int], whole: int) -> list[Line]:
         """Return the lines of the chosen columns, with their styles."""
         order = [*range(self.keys), *chosen]
-        titles = [_titled(self.columns[j], width) for j, width in zip(order, widths, strict=True)]
-        depth = max(map(len, titles))
-        titles = [[""] * (depth - len(title)) + title for title in titles]
-        out = [(self._joined(parts, widths), "bold") for parts in zip(*titles, strict=True)]
-        out = [line for line in out if line[0].strip()]
+        titles = [
+            _broken(self.columns[j], width, parts=True)[::-1]
+            for j, width in zip(order, widths, strict=True)
+        ]
+        rows = [self._joined(parts, widths) for parts in zip_longest(*titles, fillvalue="")]
+        out = [(row, "bold") for row in rows[::-1] if row.strip()]
         out.append((self._joined(["─" * width for width in widths], widths), "dim"))
         for row in self.rows:
             if len(row) == 1:
                 out += [(line, "italic") for line in _broken(row[0], whole)]
                 continue
             cells = [_broken(row[j], width) for j, width in zip(order, widths, strict=True)]
-            depth = max(map(len, cells))
-            cells = [cell + [""] * (depth - len(cell)) for cell in cells]
-            out += [(self._joined(parts, widths), "") for parts in zip(*cells, strict=True)]
+            out += [(self._joined(x, widths), "") for x in zip_longest(*cells, fillvalue="")]
         return out
 
     def _joined(self, cells: Sequence[str], widths: Sequence[int]) -> str:
@@ -193,44 +174,25 @@ class _Grid:
         return (" " * GAP).join(parts)
 
 
-def _parts(title: str) -> list[str]:
-    """Return the parts of a title that are not broken: words, and what hyphens join."""
-    return [part for part in re.split(r"\s+|(?<=[-_/.])", title) if part]
+def _wrapped(text: str, width: int, *, whole: bool = False, parts: bool = False) -> list[str]:
+    """Return lines of at most this width; longer words are broken, or left ``whole``.
 
-
-def _titled(title: str, width: int) -> list[str]:
-    """Return a title over lines."""
-    if cell_len(title) <= width:
-        return [title]
-    lines = [""]
-    for word in title.split():
-        for k, part in enumerate(_parts(word)):
-            joined = lines[-1] + (" " if k == 0 and lines[-1] else "") + part
-            if cell_len(joined) <= width or not lines[-1]:
-                lines[-1] = joined
-            else:
-                lines.append(part)
-    return [piece for line in lines for piece in _broken(line, width)]
-
-
-def _broken(text: str, width: int) -> list[str]:
-    """Return a text over lines: at words where that is possible."""
-    if cell_len(text) <= width:
-        return [text]
-    return _wrapped(text, width)
-
-
-def _wrapped(text: str, width: int, *, whole: bool = False) -> list[str]:
-    """Return lines of at most this width; longer words are broken, or left ``whole``."""
+    Titles are broken behind hyphens and the like, too: words have ``parts``.
+    """
     lines = [""]
     for word in text.split():
-        joined = f"{lines[-1]} {word}" if lines[-1] else word
-        if cell_len(joined) <= width:
-            lines[-1] = joined
-            continue
-        pieces = [word] if whole or cell_len(word) <= width else chop_cells(word, width)
-        if lines[-1]:
-            lines.append("")
-        lines[-1] = pieces[0]
-        lines += pieces[1:]
+        for k, part in enumerate(PART.findall(word) if parts else [word]):
+            joined = f"{lines[-1]} {part}" if lines[-1] and not k else f"{lines[-1]}{part}"
+            if cell_len(joined) <= width:
+                lines[-1] = joined
+                continue
+            fits = whole or cell_len(part) <= width
+            if lines[-1]:
+                lines.append("")
+            lines[-1:] = [part] if fits else chop_cells(part, width)
     return lines
+
+
+def _broken(text: str, width: int, *, parts: bool = False) -> list[str]:
+    """Return a text as it is where it fits, else over lines."""
+    return [text] if cell_len(text) <= width else _wrapped(text, width, parts=parts)

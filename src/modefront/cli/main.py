@@ -1,8 +1,4 @@
-"""The command ``modefront``.
-
-Nothing that takes long to import is imported before a command needs it: ``--help`` is to answer
-at once.
-"""
+"""The command ``modefront``; what takes long to import is imported where a command needs it."""
 
 from __future__ import annotations
 
@@ -25,10 +21,7 @@ from modefront.errors import InputError, UnfinishedError, reason
 from modefront.text import one_line
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from modefront.study.definition import Study
-    from modefront.work.costs import Costs
     from modefront.work.task import Backend
 
 PATH = click.Path(path_type=Path)
@@ -43,21 +36,17 @@ OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; 130 is that of shells for an interrupt."""
 
 
-class Numbers(click.ParamType[Any]):
-    """Numbers with commas between them."""
+def _numbers(kind: type[int] | type[float]) -> Callable[[str], tuple[float, ...]]:
+    """Return the type of numbers with commas between them."""
 
-    name = "numbers"
-
-    def __init__(self, kind: type[int] | type[float]) -> None:
-        """Take the kind of the numbers."""
-        self.kind = kind
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[float, ...]:
-        """Return the numbers; a word that is none is wrong usage."""
+    def numbers(text: str) -> tuple[float, ...]:
         try:
-            return tuple(self.kind(word) for word in str(value).split(","))
+            return tuple(map(kind, text.split(",")))
         except ValueError:
-            self.fail(f"expected numbers with commas between them, found {value!r}", param, ctx)
+            expected = "expected numbers with commas between them"
+            raise click.BadParameter(f"{expected}, found {text!r}") from None
+
+    return numbers
 
 
 LISTS: Mapping[str, str] = {
@@ -105,7 +94,7 @@ def init(directory: Path, example: str) -> None:
 
 @cli.command()
 def schema() -> None:
-    """Print the JSON Schema of study files, with which editors complete and check them."""
+    """Print the JSON Schema of study files, for editors."""
     from modefront.study.schema import as_text
 
     click.echo(as_text(), nl=False)
@@ -171,12 +160,21 @@ def run(
     with ExitStack() as early:
         if scheduler is None:  # they start while the study is read
             carrier = nullcontext(early.enter_context(carrier))
-        data, spent = _run(study, directory, carrier, fresh=fresh, refine=refine)
-    from modefront.cli.show import print_summary
-    from modefront.results.selection import not_converged, uncertified
+        from modefront.cli.progress import progress_bar
+        from modefront.cli.show import print_summary, say_estimate
+        from modefront.findings.selection import not_converged, uncertified
+        from modefront.study.estimate import SHORT, estimate
+        from modefront.study.file import load
+        from modefront.study.session import run_on
 
+        loaded = _refined(load(study), refine)
+        expected = estimate(loaded)
+        if expected is not None and expected.range[1] > SHORT:
+            say_estimate(expected, err=True)
+        with progress_bar(loaded.name, expected.plan if expected else None) as progress:
+            data = run_on(carrier, loaded, directory, fresh=fresh, progress=progress).dataset
     try:
-        print_summary(data, directory, spent)
+        print_summary(data, directory, progress.spent)
         if sys.stdout is not None:
             sys.stdout.flush()
     except BrokenPipeError:  # as by `| head`: the status is that of the run all the same
@@ -236,7 +234,7 @@ def show(
 @click.option("--all", "every", is_flag=True, help="All parameters and predictions.")
 def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
     """Set the results in several DIRECTORIES side by side."""
-    from modefront.cli.compare import comparison_as_json, print_comparison
+    from modefront.cli.show import comparison_as_json, print_comparison
     from modefront.results.compare import compare as compare_results
 
     comparison = compare_results(directories)
@@ -296,12 +294,12 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
     metavar="FILE.html",
     help="One HTML file to look at, in which poles are chosen for the test file.",
 )
-@click.option("--keep", type=Numbers(int), metavar="1,2,…", help="Modes that stay, of the table.")
-@click.option("--drop", type=Numbers(int), metavar="7,…", help="Modes that do not stay.")
+@click.option("--keep", type=_numbers(int), metavar="1,2,…", help="Modes that stay, of the table.")
+@click.option("--drop", type=_numbers(int), metavar="7,…", help="Modes that do not stay.")
 @click.option(
     "--seed",
     "seeds",
-    type=Numbers(float),
+    type=_numbers(float),
     metavar="4.6,13.8",
     help="Frequencies in Hz at which there is to be a mode, whatever its evidence.",
 )
@@ -407,30 +405,6 @@ def export(
     say_next("show", directory, "--points")
 
 
-def _run(
-    study: Path,
-    directory: Path,
-    carrier: AbstractContextManager[Backend],
-    *,
-    fresh: bool,
-    refine: float | None,
-) -> tuple[xr.Dataset, Costs]:
-    """Do the work of a study; return its results and what it cost."""
-    from modefront.cli.progress import progress_bar
-    from modefront.cli.show import say_estimate
-    from modefront.study.estimate import SHORT, estimate
-    from modefront.study.file import load
-    from modefront.study.session import run_on
-
-    loaded = _refined(load(study), refine)
-    expected = estimate(loaded)
-    if expected is not None and expected.range[1] > SHORT:
-        say_estimate(expected, err=True)
-    with progress_bar(loaded.name, expected.plan if expected else None) as progress:
-        results = run_on(carrier, loaded, directory, fresh=fresh, progress=progress)
-    return results.dataset, progress.spent
-
-
 def _refined(study: Study, size: float | None) -> Study:
     """Return a study whose front is refined; errors name the option."""
     if size is None:
@@ -438,9 +412,8 @@ def _refined(study: Study, size: float | None) -> Study:
     try:
         return replace(study, pareto=replace(study.pareto, refined=size))
     except InputError as error:
-        file = str(study.file)
-        faults = [replace(fault, file=file, place="--refine") for fault in error.faults]
-        raise InputError(faults) from None
+        named = {"file": str(study.file), "place": "--refine"}
+        raise InputError(replace(fault, **named) for fault in error.faults) from None
 
 
 @contextmanager
@@ -490,30 +463,24 @@ def _status() -> int:
         cli.main(standalone_mode=False)
         if sys.stdout is not None:
             sys.stdout.flush()
-        status = OK
+        return OK
     except click.exceptions.Exit as exit_:
-        status = exit_.exit_code
-    except click.ClickException as error:
-        complain(usage(error))
-        status = WRONG_INPUT
-    except InputError as error:
-        complain(str(error))
-        status = WRONG_INPUT
-    except UnfinishedError as error:
-        complain(f"modefront: {error}")
-        status = UNDONE
+        return exit_.exit_code
+    except (click.ClickException, InputError) as error:
+        complain(str(error) if isinstance(error, InputError) else usage(error))
+        return WRONG_INPUT
     except (KeyboardInterrupt, click.Abort):
         complain("modefront: interrupted; what was done is kept, run again to continue")
-        status = INTERRUPTED
+        return INTERRUPTED
     except BrokenPipeError:
         _abandon_output()
-        status = UNDONE
+    except UnfinishedError as error:
+        complain(f"modefront: {error}")
     except (OSError, MemoryError) as error:  # such as a full disk
         _abandon_output()
         where = getattr(error, "filename", None)
         place = f"{where}: " if where else ""
         complain(f"modefront: {place}{reason(error)}; what was done is kept")
-        status = UNDONE
     except Exception as error:
         if os.environ.get("MODEFRONT_TRACEBACK"):
             raise
@@ -522,5 +489,4 @@ def _status() -> int:
             f"{one_line(error, 1000)}\n"
             "please report it, with the output of the same command under MODEFRONT_TRACEBACK=1"
         )
-        status = UNDONE
-    return status
+    return UNDONE

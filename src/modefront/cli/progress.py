@@ -1,8 +1,4 @@
-"""Progress of a run on standard error: two lines in a terminal, one line a stage in a log.
-
-The first line has the study, a bar, the tasks done, and the time; the second one says in words what
-goes on, inside long tasks too, and from and to how long it will take.
-"""
+"""Progress of a run on standard error: two lines in a terminal, one line a stage in a log."""
 
 from __future__ import annotations
 
@@ -30,17 +26,13 @@ TITLES: Mapping[str, str] = {
     "known": "known models",
     "edges": "edges and weighted models",
     "near": "edges within the tolerance",
-    "front": "front",
     "gap": "gaps of the front",
-    "optimal-weights": "optimal weights",
     "most-probable": "most probable model",
     "sample-posterior": "draws of the posterior",
-    "posterior": "posterior",
     "iterated-weights": "iteration of the weights",
     "identifiable": "identifiable part",
     "manifold": "equivalent models",
     "second-derivatives": "uncertainty",
-    "bootstrap": "bootstrap",
     "nominal": "nominal model",
     "shapes": "mode shapes",
     "snapshot": "snapshots",
@@ -48,13 +40,10 @@ TITLES: Mapping[str, str] = {
     "certificate": "certificates",
     "predict": "predictions",
 }
-"""Stages of a run in words."""
+"""Stages of a run in words, where these are others than their names."""
 
-WIDTH = 24
-"""Characters of a study's name in the bar, so that all fits into 80 columns."""
-
-LEAST = 8
-"""Characters of the bar; a terminal that has not so many is shown none."""
+WIDTH, LEAST = 24, 8
+"""Characters of a study's name, so that all fits into 80 columns, and of the bar, at least."""
 
 PER_SECOND = 4
 """Drawings of the lines a second: clock and counts go on while a task takes long."""
@@ -77,21 +66,13 @@ def progress_bar(title: str, plan: Plan | None) -> Iterator[Progress]:
 
 @dataclass
 class _Lines:
-    """What is drawn, with the time at which it is drawn.
-
-    Attributes
-    ----------
-    title : of the study
-    costs : counts the models that are solved
-    clock : returns seconds
-    """
+    """What is drawn, with the time at which it is drawn."""
 
     title: str
     costs: Costs
     clock: Callable[[], float] = time.monotonic
     state: State | None = None
-    step: str = ""
-    iteration: str = ""
+    steps: tuple[str, ...] = ()
     taken: float = 0.0
     began: float = field(default_factory=time.monotonic)
     is_done: bool = False
@@ -99,15 +80,13 @@ class _Lines:
     def take(self, state: State) -> None:
         """Note the state of the run."""
         if self.state is None or state.stage != self.state.stage or state.done != self.state.done:
-            self.step = self.iteration = ""
+            self.steps = ()
         self.state, self.taken = state, self.clock()
 
     def hear(self, text: str) -> None:
         """Note the step that the running task reports."""
-        if text.startswith(ITERATION):
-            self.iteration = text
-        else:
-            self.step, self.iteration = text, ""
+        before = self.steps if text.startswith(ITERATION) else ()
+        self.steps = (*(x for x in before if not x.startswith(ITERATION)), text)
 
     def end(self) -> None:
         """Take note that the run is done."""
@@ -144,15 +123,11 @@ class _Lines:
             return f"done, {self.costs.model_evaluations} models solved"
         if self.state is None or not self.state.stage:
             return "starting"
-        parts = [_stage(self.state)]
-        if self.step:
-            parts.append(self.step)
-        if self.iteration:
-            parts.append(self.iteration)
+        parts = [_stage(self.state), *self.steps]
         if self.costs.model_evaluations:
             parts.append(f"{self.costs.model_evaluations} models solved")
-        left = _left(self.state, self.clock() - self.taken)
-        return ", ".join([*parts, left] if left else parts)
+        parts.append(_left(self.state, self.clock() - self.taken))
+        return ", ".join(filter(None, parts))
 
 
 class _Log:
@@ -164,16 +139,19 @@ class _Log:
     def __call__(self, state: State) -> None:
         if state.stage and state.stage != self.stage:
             self.stage = state.stage
-            left = _left(state)
-            words = ", ".join([TITLES.get(state.stage, state.stage), *([left] if left else [])])
+            words = ", ".join(filter(None, [_title(state.stage), _left(state)]))
             text = f"{self.title}: {state.done} tasks done: {words}"
             self.screen.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def _title(stage: str) -> str:
+    return TITLES.get(stage, stage.replace("-", " "))
 
 
 def _stage(state: State) -> str:
     """Return the stage, and how many of its tasks are done: of how many, where that is known."""
     done, expected = state.of_stage
-    title = TITLES.get(state.stage, state.stage)
+    title = _title(state.stage)
     if expected < 2:
         return title
     return f"{title} {done} of {expected}" if state.stage in COUNTED else f"{title} {done}"

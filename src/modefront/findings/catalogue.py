@@ -106,7 +106,7 @@ misfit | all {models} Pareto-optimal models have {whole}; {subject} has {referen
 branches | the front is not connected: it has {branches} branches
 spacing | neighbours on the front are up to {gap:.3g} apart, though {requested:g} is requested: no
     point between them was found
-not-optimal | {subject}: no local Pareto optimum (a weight is negative)
+not-optimal | no local Pareto optimum, as a weight is negative: {subject}
 jump | the objectives jump next to {subject}, as where measured modes are paired with other modes
     of the model: no step from there improves the model
 poor-pair | measured mode{|s} {subject} {resembles its|resemble their} model mode{|s} poorly (MAC
@@ -181,8 +181,8 @@ iteration-differs | the optimal weights are not unique: their fixed-point iterat
     set
 branch-ends | the front has a gap: branch {subject} ends at J = {end}, branch {other} starts at J =
     {start}
-between-branches | {subject}: dominated by a known model that is no point of the front, such as the
-    start of a branch
+between-branches | dominated by a known model that is no point of the front, such as the start of a
+    branch: {subject}
 remark | {subject}
 reduced | reduced basis from {full} full eigensolutions and {corrected} corrected with their
     factors: relative errors of eigenvalues up to {eigenvalue:.1e} (estimated; tolerance

@@ -13,21 +13,13 @@ from modefront.identifiability.scale import Scale
 from modefront.identifiability.sparse import SAME, sparse_basis
 from modefront.residuals.groups import Group
 
-PARTS = 5
-"""Parameters of a combination that are named, at most."""
-
-NAMED = 20
-"""Parameters that change alike, at most, that are named one by one."""
-
-TOGETHER = 3
-"""Parameters alike of which pairs are named, at most."""
+PARTS, NAMED, TOGETHER, SHOWN = 5, 20, 3, 3
+"""Numbers of what is named one by one, at most: parameters of a combination, parameters that change
+alike, those of which pairs are named, and directions that are not determined."""
 
 MOST = 100
 """Combinations that are not determined, beyond which they are counted and not listed: a
 simple basis of them takes the fourth power of their number."""
-
-SHOWN = 3
-"""Directions that are not determined, at most, that a sentence names one by one."""
 
 
 def enumeration(names: Sequence[str], most: int | None = None) -> str:

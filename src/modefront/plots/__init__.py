@@ -1,7 +1,4 @@
-"""Pictures of results: all of them are registered in `PLOTS`.
-
-matplotlib, an extra, is imported when a picture is drawn.
-"""
+"""Pictures of results, registered in `PLOTS`; matplotlib, an extra, is imported to draw one."""
 
 from __future__ import annotations
 
@@ -14,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from modefront.errors import Fault, InputError, reason
+from modefront.errors import Fault, InputError, writing
 from modefront.outputs import output
 from modefront.text import file_name
 
@@ -131,13 +128,17 @@ def _missing(data: xr.Dataset, name: str) -> tuple[str, str] | None:
 
 def pictures(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
     """Yield name and figure of everything that the results hold, each prediction by itself."""
-    plots = Plots(data)
     for name in PLOTS:
         if _missing(data, name) is None:
-            yield name, getattr(plots, name)()
+            yield name, getattr(Plots(data), name)()
         if name == "predictions" and "range" in data.sizes:
-            with _drawing():
-                yield from import_module("modefront.plots.predictions").pages(data)
+            yield from _figures("predictions", data)
+
+
+def _figures(module: str, *arguments: object) -> Iterator[tuple[str, Picture]]:
+    """Yield what ``figures`` of a module yields."""
+    with _drawing():
+        yield from import_module(f"modefront.plots.{module}").figures(*arguments)
 
 
 def write_figures(data: xr.Dataset, folder: Path, form: str = "svg") -> list[Path]:
@@ -150,20 +151,14 @@ def write_figures(data: xr.Dataset, folder: Path, form: str = "svg") -> list[Pat
 
 def paper_figures(studies: Sequence[tuple[str, xr.Dataset]], folder: Path) -> list[Path]:
     """Write figures 2 to 7 of the paper for named results; see `modefront.plots.paper`."""
-    with _drawing():
-        return write_pictures(import_module("modefront.plots.paper").figures(studies), folder)
+    return write_pictures(_figures("paper", studies), folder)
 
 
 def identification_figures(
     names: Sequence[str], identified: Sequence[Identification], folder: Path
 ) -> list[Path]:
-    """Write four pictures for every data set of an identification and return their paths.
-
-    Raises what `write_figures` raises.
-    """
-    with _drawing():
-        figures = import_module("modefront.plots.identification").figures
-        return write_pictures(figures(names, identified), folder)
+    """Write four pictures for every data set of an identification and return their paths."""
+    return write_pictures(_figures("identification", names, identified), folder)
 
 
 def write_pictures(
@@ -172,15 +167,11 @@ def write_pictures(
     """Write named figures into a folder; raises what `write_figures` raises."""
     written: list[Path] = []
     metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form)
-    try:
+    with writing(folder), _drawing():
         folder.mkdir(parents=True, exist_ok=True)
-        with _drawing():
-            for name, figure in named:
-                path = folder / f"{file_name(name, [each.stem for each in written])}.{form}"
-                with output(path) as stream:
-                    figure.savefig(stream, format=form, metadata=metadata, dpi=150)
-                written.append(path)
-    except OSError as error:
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
+        for name, figure in named:
+            path = folder / f"{file_name(name, [each.stem for each in written])}.{form}"
+            with output(path) as stream:
+                figure.savefig(stream, format=form, metadata=metadata, dpi=150)
+            written.append(path)
     return written

@@ -1,36 +1,29 @@
-"""Values along a front of two objectives: points of the front on the abscissa.
-
-A panel a quantity, after figures 5 to 7 of Christodoulou et al. (2008,
-doi:10.1016/j.cma.2008.04.010). Other models stand beside the front; the reference has a bar of one
-standard deviation of its posterior to either side. Points are joined along branches only.
+"""Values along a front, a panel a quantity, as figures 5 to 7 of Christodoulou et al. (2008,
+doi:10.1016/j.cma.2008.04.010); neighbours on a front of two objectives are joined.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 
 from modefront._typing import Floats
+from modefront.findings.selection import front_points, reference
 from modefront.front.point import INTERNAL, Kind
 from modefront.plots.canvas import (
     COLOURS,
     COLUMNS,
-    MAP,
     Picture,
+    is_path,
     panels,
-    picture,
     short,
     titled,
 )
-from modefront.plots.models import front_of, is_path, reference_of, shown
 
 
 class Along:
@@ -39,10 +32,10 @@ class Along:
     def __init__(self, data: xr.Dataset) -> None:
         self.data = data
         kinds = data["kind"].values
-        self.front = front_of(data)
+        self.front = front_points(data)
         edge = Kind.EDGE.value if self.front.size else ""
         self.others = np.flatnonzero(~np.isin(kinds, [Kind.FRONT.value, edge, *INTERNAL]))
-        self.best = reference_of(data)
+        self.best = reference(data)
         self.pareto = np.asarray(data["pareto"].values, dtype=np.bool_)
         step = max(1.6, 0.08 * self.front.size)
         self.beside = self.front.size + step * (1 + np.arange(self.others.size))
@@ -78,10 +71,10 @@ class Along:
     def finish(self, figure: Picture, grid: Sequence[Axes], columns: int) -> None:
         """Put ticks and labels on the abscissae, and one legend below the panels."""
         n = self.front.size
-        step = max(1, math.ceil(n / 4 / 5) * 5) if n > 6 else 1
+        step = max(1, -(-n // 20) * 5) if n > 6 else 1
         marked = sorted({1, *range(step, n + 1, step)} - {0}) if n else []
-        labels = [str(self.data["label"].values[i]) for i in self.others]
-        names = [short(name.removesuffix("-weights")) for name in labels]
+        others = self.data["label"].values[self.others]
+        names = [short(str(name).removesuffix("-weights")) for name in others]
         for i, axes in enumerate(grid):
             axes.set_xticks([*marked, *self.beside], [*map(str, marked), *names])
             for tick in axes.get_xticklabels()[len(marked) :]:
@@ -92,14 +85,12 @@ class Along:
             if axes.get_yscale() == "linear":
                 axes.ticklabel_format(axis="y", style="sci", scilimits=(-3, 4), useOffset=False)
             if n and i + columns >= len(grid):
-                axes.annotate(
-                    "point of the front",
-                    (0, 0),
-                    xycoords="axes fraction",
-                    xytext=(0, -20),
-                    textcoords="offset points",
-                    va="top",
-                )
+                offset: dict[str, Any] = {
+                    "xytext": (0, -20),
+                    "textcoords": "offset points",
+                    "va": "top",
+                }
+                axes.annotate("point of the front", (0, 0), xycoords="axes fraction", **offset)
         handles, labels = grid[0].get_legend_handles_labels()
         if not self.pareto[self.front].all():
             hollow = Line2D([], [], ls="", marker="o", mfc="w", mec="0.3", ms=4)
@@ -144,73 +135,5 @@ def at_reference(data: xr.Dataset, values: Floats, std: xr.DataArray | None) -> 
     if std is None:
         return None
     out = np.full(values.shape, np.nan)
-    out[reference_of(data)] = std.values
+    out[reference(data)] = std.values
     return values - out, values + out
-
-
-def parallel(axes: Axes, data: xr.Dataset, values: Floats, names: Sequence[str]) -> None:
-    """Draw values (points, quantities); thin lines are Pareto-optimal models.
-
-    Their colour is their error of the first group. The reference is red, the nominal model dashed.
-    """
-    x = np.arange(len(names))
-    chosen = np.flatnonzero(shown(data))
-    error = data["error"].values[chosen, 0]
-    span = np.ptp(error) or 1.0
-    colours = colormaps[MAP]((error - error.min()) / span)
-    best = reference_of(data)
-    marker = "o" if len(names) < 2 else ""
-    for i, colour in zip(chosen.tolist(), colours, strict=True):
-        axes.plot(x, values[i], "-", color=colour, lw=0.8, alpha=0.8, marker=marker, ms=3)
-    nominal = np.flatnonzero(data["kind"].values == Kind.NOMINAL.value)
-    for i in nominal.tolist():
-        axes.plot(x, values[i], "--X", color="0.4", lw=1, ms=5, label="nominal")
-    label = str(data["label"].values[best]).replace("-", " ")
-    axes.plot(
-        x, values[best], "-*", color=COLOURS[1], mec="k", mew=0.5, ms=8, lw=1.6, label=short(label)
-    )
-    axes.plot([], [], "-", color=colormaps[MAP](0.5), lw=0.8, label="Pareto-optimal models")
-    turned = len(names) > 6 or max(map(len, names), default=0) > 8
-    axes.set_xticks(
-        x,
-        [short(name) for name in names],
-        rotation=60 if turned else 0,
-        ha="right" if turned else "center",
-        rotation_mode="anchor",
-    )
-    axes.set_xlim(-0.3, max(len(names) - 0.7, 0.3))
-
-
-def key(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the colours of the lines beside the axes, and a legend above."""
-    error = data["error"].values[shown(data), 0]
-    figure = axes.get_figure()
-    if figure is not None and np.ptp(error) > 0:
-        scale = ScalarMappable(Normalize(error.min(), error.max()), MAP)
-        bar = figure.colorbar(scale, ax=axes, pad=0.01, fraction=0.04)
-        bar.set_label(f"error of {short(data['group'].values[0])}")
-    handles, labels = axes.get_legend_handles_labels()
-    if figure is not None:
-        figure.legend(handles, labels, loc="outside upper left", ncols=3)
-
-
-def across(
-    data: xr.Dataset,
-    values: Floats,
-    names: Sequence[str],
-    label: str,
-    line: float | None = None,
-    width: float = 0.4,
-) -> Picture:
-    """Return a figure of values (points, quantities) in parallel coordinates.
-
-    A dashed ``line`` is where nothing is wrong; ``width`` is that of a quantity in inches.
-    """
-    figure = picture(max(5.2, width * len(names)), 3.4)
-    axes = figure.add_subplot()
-    parallel(axes, data, values, names)
-    if line is not None:
-        axes.axhline(line, color="k", ls="--", lw=1, zorder=0)
-    axes.set_ylabel(label)
-    key(axes, data)
-    return figure

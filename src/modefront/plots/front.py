@@ -1,4 +1,4 @@
-"""The front in the space of errors: two axes, or pairs and parallel coordinates."""
+"""The front in the space of errors: two axes, or all pairs."""
 
 from __future__ import annotations
 
@@ -8,9 +8,19 @@ from matplotlib.axes import Axes
 
 from modefront._typing import Floats
 from modefront.front.methods import METHODS
-from modefront.plots.along import key, parallel
-from modefront.plots.canvas import COLOURS, Picture, picture, plain, short
-from modefront.plots.models import branches, draw_models, is_path, shown
+from modefront.plots.canvas import (
+    COLOURS,
+    Picture,
+    branches,
+    draw_models,
+    is_path,
+    names_of,
+    picture,
+    plain,
+    short,
+    shown,
+    single,
+)
 
 FAR = 2.5
 """Error over the greatest of the Pareto-optimal models from which a model is beyond the axes."""
@@ -21,7 +31,7 @@ def front(data: xr.Dataset, *, log: bool = False) -> Picture:
     error = data["error"].values
     if log:
         error = np.maximum(error, 1e-4 * np.nanmax(error))
-    groups = [plain(name) for name in data["group"].values]
+    groups = names_of(data, "group")
     if len(groups) == 1:
         return _one(data, error, groups[0])
     if len(groups) == 2:
@@ -30,9 +40,8 @@ def front(data: xr.Dataset, *, log: bool = False) -> Picture:
 
 
 def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
-    labels = [short(label, 24) for label in data["label"].values]
-    figure = picture(4.6, 0.9 + 0.25 * len(labels))
-    axes = figure.add_subplot()
+    labels = names_of(data, "label", 24)
+    figure, axes = single(4.6, 0.9 + 0.25 * len(labels))
     draw_models(axes, data, np.column_stack([error[:, 0], np.arange(len(labels))]))
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()
@@ -42,8 +51,7 @@ def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
 
 
 def _two(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
-    figure = picture(5.2, 4.0)
-    axes = figure.add_subplot()
+    figure, axes = single(5.2, 4.0)
     method = METHODS.get(data.attrs["method"])
     if is_path(data) and method is not None and method.programme is not None:
         for branch in branches(data):
@@ -78,13 +86,11 @@ def _limits(axes: Axes, data: xr.Dataset, error: Floats) -> None:
 
 
 def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
-    """Draw all pairs of errors, and a line a model across them below."""
+    """Draw all pairs of errors."""
     n = len(groups)
     size = 2.1 if n < 6 else 1.5
-    figure = picture(max(size * (n - 1), 5.2), size * (n - 1) + 2.6)
-    parts = figure.subfigures(2, 1, squeeze=False, height_ratios=[size * (n - 1), 2.6])
-    above, below = parts[:, 0]
-    grid = above.subplots(n - 1, n - 1, squeeze=False, sharex="col", sharey="row")
+    figure = picture(max(size * (n - 1), 5.2), size * (n - 1) + 0.2)
+    grid = figure.subplots(n - 1, n - 1, squeeze=False, sharex="col", sharey="row")
     for i in range(1, n):
         for j in range(n - 1):
             axes = grid[i - 1][j]
@@ -100,11 +106,5 @@ def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> P
                 axes.set_ylabel(f"error of {short(groups[i])}")
     handles, labels = grid[0][0].get_legend_handles_labels()
     once = dict(zip(labels, handles, strict=True))
-    above.legend(once.values(), once.keys(), loc="upper right")
-    axes = below.add_subplot()
-    parallel(axes, data, error, groups)
-    axes.set_ylabel("error")
-    if log:
-        axes.set_yscale("log")
-    key(axes, data)
+    figure.legend(once.values(), once.keys(), loc="upper right")
     return figure

@@ -9,33 +9,25 @@ import numpy as np
 from modefront.identification.indicators import complex_indicators, multivariate_indicators
 from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
-from modefront.plots.canvas import COLOURS, Picture, panels, picture, plain
+from modefront.plots.canvas import COLOURS, Picture, panels, picture, plain, single
 
-MOST_PANELS = 12
-"""Functions in a picture, at most: more are too small to read."""
-
-SHORT = 40
-"""Characters of the name of a data set in those of its files."""
+MOST_PANELS, SHORT = 12, 40
+"""Functions in a picture: more are too small to read; characters of a data set in file names."""
 
 
 def figures(
     names: Sequence[str], identified: Sequence[Identification]
 ) -> Iterator[tuple[str, Picture]]:
     """Yield names and four pictures of every data set."""
-    kinds = {
-        "stabilisation": _stabilisation,
-        "indicators": _indicators,
-        "functions": _functions,
-        "auto-mac": _auto_mac,
-    }
     for name, identification in zip(names, identified, strict=True):
-        for kind, draw in kinds.items():
+        for draw in (_stabilisation, _indicators, _functions, _auto_mac):
+            kind = draw.__name__[1:].replace("_", "-")
             yield f"{name[:SHORT]}-{kind}", draw(identification)
 
 
 def _stabilisation(identification: Identification) -> Picture:
-    figure, diagram = picture(7.0, 4.0), identification.diagram
-    axes = figure.add_subplot()
+    (figure, axes), diagram = single(7.0, 4.0), identification.diagram
+    measured = identification.functions.data
     for stable, marker, colour, label in (
         (False, "x", "0.7", "unstable"),
         (True, "o", COLOURS[0], "stable"),
@@ -50,9 +42,9 @@ def _stabilisation(identification: Identification) -> Picture:
     axes.set_xlim(*identification.band)
     behind = axes.twinx()
     with np.errstate(divide="ignore"):
-        level = 10 * np.log10(np.nanmean(np.abs(identification.functions.data.H) ** 2, axis=(0, 1)))
-    behind.plot(identification.functions.data.frequency, level, color="0.6", lw=0.6)
-    behind.set_ylabel(f"mean {identification.functions.data.quantity} in dB")
+        level = 10 * np.log10(np.nanmean(np.abs(measured.H) ** 2, axis=(0, 1)))
+    behind.plot(measured.frequency, level, color="0.6", lw=0.6)
+    behind.set_ylabel(f"mean {measured.quantity} in dB")
     axes.legend(loc="upper right")
     return figure
 
@@ -85,11 +77,9 @@ def _functions(identification: Identification) -> Picture:
     figure, grid = panels(listed.size)
     for axes, position in zip(grid, listed, strict=True):
         j, i = np.unravel_index(position, share.shape)
-        f, lines = fitted.data.frequency, (fitted.data.H, fitted.synthesised)
-        for H, colour, label in zip(
-            lines, ("0.6", COLOURS[1]), ("measured", "synthesised"), strict=True
-        ):
-            axes.semilogy(f, np.abs(H[j, i]), color=colour, lw=0.8, label=label)
+        measured = (fitted.data.H, "0.6", "measured")
+        for H, colour, label in (measured, (fitted.synthesised, COLOURS[1], "synthesised")):
+            axes.semilogy(fitted.data.frequency, np.abs(H[j, i]), color=colour, lw=0.8, label=label)
         pair = f"{fitted.data.references[j]} to {fitted.data.responses[i]}"
         axes.set_title(f"{plain(pair)}: residual {share[j, i]:.1%}")
         axes.set_xlabel("frequency in Hz")
@@ -99,8 +89,7 @@ def _functions(identification: Identification) -> Picture:
 
 
 def _auto_mac(identification: Identification) -> Picture:
-    figure = picture(3.6, 3.2)
-    axes = figure.add_subplot()
+    figure, axes = single(3.6, 3.2)
     mac = auto_mac(np.array([mode.shape.complex_shape for mode in identification.modes]))
     ticks = [f"{mode.frequency:.4g}" for mode in identification.modes]
     image = axes.imshow(mac, vmin=0, vmax=1, cmap="Blues")

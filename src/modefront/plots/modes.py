@@ -1,9 +1,4 @@
-"""Mode shapes of a model at all nodes, the measured shapes over them.
-
-A chain is drawn from the side, its floors at their heights; a mesh in space with arrows along the
-sensors; a model without geometry by the components at its sensors. Measured shapes are scaled to
-the model's by the modal scale factor.
-"""
+"""Mode shapes of a model: a chain from the side, a mesh in space, components at sensors alone."""
 
 from __future__ import annotations
 
@@ -17,24 +12,21 @@ from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from modefront._typing import Floats, Ints
+from modefront.findings.selection import position, reference
 from modefront.plots.canvas import COLOURS, COLUMNS, Picture, panels, picture, plain, short
-from modefront.plots.models import position, reference_of
 
-REACH = 0.15
-"""Greatest displacement that is drawn, over the diagonal of the model."""
-
-NAMES = 14
-"""Sensors up to which each is named."""
+REACH, NAMES = 0.15, 14
+"""Greatest displacement over the diagonal of the model; sensors up to which each is named."""
 
 
 _Shape: TypeAlias = tuple[str, Floats, Floats, Floats | None]
-"""One mode of a model: title; (sensors,) of the model; (sets, sensors) as measured, in the same
-scale, NaN for none; and displacements (nodes, 3) of the drawn nodes, None without geometry."""
+"""One mode: title; (sensors,) of the model; (sets, sensors) as measured, in the same scale; and
+displacements (nodes, 3), None without geometry."""
 
 
 def modes(data: xr.Dataset, *, point: str | int | None = None) -> Picture:
     """Return a panel a mode of one model, the reference unless a point is given."""
-    i = reference_of(data) if point is None else position(data, point)
+    i = reference(data) if point is None else position(data, point)
     shapes = [_shape(data, i, r) for r in range(data.sizes["mode"])]
     in_space = "node" in data and data.attrs.get("geometry") != "chain"
     if in_space:
@@ -62,9 +54,8 @@ def _shape(data: xr.Dataset, i: int, r: int) -> _Shape:
     title = f"mode {data['mode'].values[r]}: {f:.4g} Hz, MAC {mac:.3f}"
     moved = None
     if "shape_basis" in data:
-        moved = np.einsum(
-            "b,bnk->nk", data["shape_coefficient"].values[i, r], data["shape_basis"].values
-        )
+        c, B = data["shape_coefficient"].values[i, r], data["shape_basis"].values
+        moved = np.einsum("b,bnk->nk", c, B)
     return title, computed, measured * factor[:, None], moved
 
 
@@ -101,8 +92,7 @@ def _rings(axes: Axes, sets: Iterable[tuple[Any, Any]], **size: Any) -> None:
 
 def _in_space(data: xr.Dataset, shapes: list[_Shape]) -> Picture:
     nodes = data["node"].values
-    lines = _array(data, "line_nodes", 2)
-    faces = _array(data, "face_nodes", 4)
+    lines, faces = data["line_nodes"].values, data["face_nodes"].values
     diagonal = float(np.linalg.norm(np.ptp(nodes, axis=0))) or 1.0
     columns = min(COLUMNS, len(shapes))
     rows = -(-len(shapes) // columns)
@@ -129,25 +119,19 @@ def _in_space(data: xr.Dataset, shapes: list[_Shape]) -> Picture:
     return figure
 
 
-def _array(data: xr.Dataset, name: str, width: int) -> Ints:
-    return np.asarray(data[name].values) if name in data else np.empty((0, width), dtype=int)
-
-
 def _mesh(axes: Axes3D, X: Floats, lines: Ints, faces: Ints, colour: str, alpha: float) -> None:
     if len(lines):
         axes.add_collection3d(Line3DCollection(list(X[lines]), colors=colour, linewidths=0.9))
     if len(faces):
         corners = [X[face[face >= 0]] for face in faces]
-        axes.add_collection3d(
-            Poly3DCollection(corners, facecolors=(colour, alpha), edgecolors=colour, linewidths=0.3)
-        )
+        marks = {"facecolors": (colour, alpha), "edgecolors": colour, "linewidths": 0.3}
+        axes.add_collection3d(Poly3DCollection(corners, **marks))
 
 
 def _same_scale(axes: Axes3D, X: Floats) -> None:
     low, high = X.min(axis=0), X.max(axis=0)
     span = np.maximum(high - low, 0.15 * (high - low).max() or 1.0)
     middle = (low + high) / 2
-    axes.set_xlim(middle[0] - span[0] / 2, middle[0] + span[0] / 2)
-    axes.set_ylim(middle[1] - span[1] / 2, middle[1] + span[1] / 2)
-    axes.set_zlim(middle[2] - span[2] / 2, middle[2] + span[2] / 2)
+    for k, name in enumerate("xyz"):
+        axes.set(**{f"{name}lim": (middle[k] - span[k] / 2, middle[k] + span[k] / 2)})
     axes.set_box_aspect(tuple(span.tolist()))

@@ -1,25 +1,10 @@
-"""Figures 2 to 7 of the paper, for the studies of the three-story building.
-
-The order and the layout are those of Christodoulou, Ntotsios, Papadimitriou & Panetsos (2008,
-doi:10.1016/j.cma.2008.04.010) as far as its text describes them; each study has a colour and a mark
-of its own:
-
-======  ============================================================================
-figure  what it shows
-======  ============================================================================
-2       fronts in the space of errors, with the edges, equal and optimal weights
-3       Pareto-optimal parameters in the planes of each two of them
-4       parameters along the front
-5       errors of the frequencies and MAC along the front
-6       peaks of the frequency response along the front
-7       probabilities of failure along the front
-======  ============================================================================
-"""
+"""Figures 2 to 7 of Christodoulou et al. (2008, doi:10.1016/j.cma.2008.04.010)."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -27,8 +12,19 @@ from matplotlib.axes import Axes
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse
-from modefront.plots.canvas import COLOURS, COLUMNS, Picture, legend, panels, picture, plain, titled
-from modefront.plots.models import branches, front_of
+from modefront.findings.selection import front_points
+from modefront.plots.canvas import (
+    COLOURS,
+    COLUMNS,
+    Picture,
+    branches,
+    legend,
+    names_of,
+    panels,
+    plain,
+    single,
+    titled,
+)
 from modefront.predictions.registry import predictions_in
 
 Studies = Sequence[tuple[str, xr.Dataset]]
@@ -54,8 +50,8 @@ def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
     count = studies[0][1].sizes["parameter"]
     faults = []
     for name, data in studies:
-        if data.sizes["group"] != 2 or not front_of(data).size:
-            found = f"{data.sizes['group']} groups, {front_of(data).size} points"
+        if data.sizes["group"] != 2 or not front_points(data).size:
+            found = f"{data.sizes['group']} groups, {front_points(data).size} points"
             faults.append(Fault(name, "--figures", "a front of two groups", found))
         if data.sizes["parameter"] != count:
             expected = f"as many parameters as in the first study, {count}"
@@ -64,14 +60,15 @@ def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
     yield "figure-2", _fronts(studies)
     yield "figure-3", _planes(studies)
     numbered = list(enumerate(data for _, data in studies))
-    names = [plain(name) for name in studies[0][1]["parameter"].values]
+    names = names_of(studies[0][1], "parameter")
     curves = [[(k, x["theta"].values[:, j]) for k, x in numbered] for j in range(count)]
     yield "figure-4", _along(studies, names, curves)
     numbers = studies[0][1]["mode"].values
-    curves = []
-    for of in (_errors, lambda data: data["mac"].values):
-        for r in range(len(numbers)):
-            curves.append([(k, of(x)[:, r]) for k, x in numbered if r < x.sizes["mode"]])
+    curves = [
+        [(k, of(x)[:, r]) for k, x in numbered if r < x.sizes["mode"]]
+        for of in (_errors, lambda data: data["mac"].values)
+        for r in range(len(numbers))
+    ]
     titles = [*(f"mode {number}" for number in numbers), *([""] * len(numbers))]
     figure = _along(studies, titles, curves, len(numbers))
     for axes in figure.axes[: len(numbers)]:
@@ -80,23 +77,21 @@ def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
     figure.axes[len(numbers)].set_ylabel("MAC")
     yield "figure-5", figure
     for number, dimension in ((6, "frf"), (7, "failure")):
-        rows = [
-            (k, data, each.kind.ranged[0], i)
-            for k, data in numbered
-            for each in predictions_in(data)
-            for i in each.positions
-            if each.kind.dimension == dimension
-        ]
         of_places: dict[str, Curves] = {}
-        for k, data, variable, i in rows:
-            values = data[variable.name].values[:, i]
-            shown = np.where(values > 0, values, np.nan) if variable.logarithmic else values
-            of_places.setdefault(str(data[dimension].values[i]), []).append((k, shown))
-        if rows:
+        for k, data in numbered:
+            for each in predictions_in(data):
+                if each.kind.dimension != dimension:
+                    continue
+                variable = each.kind.ranged[0]
+                for i, place in zip(each.positions, each.places, strict=True):
+                    values = data[variable.name].values[:, i]
+                    shown = np.where(values > 0, values, np.nan) if variable.logarithmic else values
+                    of_places.setdefault(place, []).append((k, shown))
+        if of_places:
             figure = _along(studies, list(of_places), list(of_places.values()))
             for axes in figure.axes:
-                axes.set_yscale("log" if rows[0][2].logarithmic else "linear")
-            figure.axes[0].set_ylabel(rows[0][2].key)
+                axes.set_yscale("log" if variable.logarithmic else "linear")
+            figure.axes[0].set_ylabel(variable.key)
             yield f"figure-{number}", figure
 
 
@@ -107,24 +102,21 @@ def _errors(data: xr.Dataset) -> Floats:
 
 def _fronts(studies: Studies) -> Picture:
     """Return figure 2: the fronts in the space of errors, with numbers at their points."""
-    figure = picture(5.6, 4.2)
-    axes = figure.add_subplot()
+    figure, axes = single(5.6, 4.2)
     for k, (name, data) in enumerate(studies):
         error = data["error"].values
         for branch in branches(data):
             axes.plot(*error[branch].T, "-", color=_colour(k), lw=0.8, alpha=0.6)
         _points(axes, data, error, k, name)
-        for number, i in enumerate(front_of(data).tolist(), start=1):
+        for number, i in enumerate(front_points(data).tolist(), start=1):
             if number == 1 or number % 5 == 0:
-                axes.annotate(
-                    str(number),
-                    (float(error[i, 0]), float(error[i, 1])),
-                    xytext=(4, 3),
-                    textcoords="offset points",
-                    fontsize=6.5,
-                    color=_colour(k),
-                )
-    first, second = (plain(group) for group in studies[0][1]["group"].values)
+                marks: dict[str, Any] = {
+                    "fontsize": 6.5,
+                    "color": _colour(k),
+                    "textcoords": "offset points",
+                }
+                axes.annotate(str(number), error[i].tolist(), xytext=(4, 3), **marks)
+    first, second = names_of(studies[0][1], "group")
     axes.set(xlabel=f"error of {first}, $e_1$", ylabel=f"error of {second}, $e_2$")
     for sign, size, name in ((EQUAL, 8, "equal weights"), (OPTIMAL, 12, "optimal weights")):
         axes.plot([], [], sign, color="0.7", mec="k", mew=0.6, ms=size, ls="", label=name)
@@ -134,7 +126,7 @@ def _fronts(studies: Studies) -> Picture:
 
 def _planes(studies: Studies) -> Picture:
     """Return figure 3: the models in the planes of each two parameters."""
-    names = [plain(name) for name in studies[0][1]["parameter"].values]
+    names = names_of(studies[0][1], "parameter")
     pairs = list(combinations(range(len(names)), 2)) or [(0, 0)]
     figure, grid = panels(len(pairs))
     for axes, (i, j) in zip(grid, pairs, strict=True):
@@ -154,7 +146,7 @@ def _along(
         titled(axes, title)
         for k, values in chosen:
             name, data = studies[k]
-            front, pareto = front_of(data), data["pareto"].values.astype(bool)
+            front, pareto = front_points(data), data["pareto"].values.astype(bool)
             x, y = np.full(values.shape, np.nan), np.where(pareto, values, np.nan)[front]
             x[front] = np.arange(1, front.size + 1)
             axes.plot(x[front], y, "-", color=_colour(k), lw=0.8, alpha=0.6)
@@ -181,7 +173,7 @@ def _points(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> 
 # 6 arguments: the values, and how they are marked.
 def _front(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str, size: float) -> None:
     """Draw pairs of values (points, 2) of the front, hollow where dominated."""
-    front, pareto = front_of(data), data["pareto"].values.astype(bool)
+    front, pareto = front_points(data), data["pareto"].values.astype(bool)
     marker, colour = MARKERS[k % len(MARKERS)], _colour(k)
     best, others = values[front[pareto[front]]], values[front[~pareto[front]]]
     axes.plot(*best.T, marker, color=colour, ms=size, ls="", label=plain(name))

@@ -8,14 +8,11 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats
-from modefront.plots.along import Along, across, at_reference, panels_along
-from modefront.plots.canvas import COLOURS, Picture, picture, plain, short
-from modefront.plots.models import is_path, reference_of, shown
+from modefront.findings.selection import reference
+from modefront.plots.along import Along, at_reference, panels_along
+from modefront.plots.canvas import COLOURS, Picture, plain, short, shown, single
 from modefront.predictions import PredictionKind, ResultVariable
 from modefront.predictions.registry import RecordedPrediction, predictions_in
-
-FEW = 12
-"""Values of a prediction up to which each has a panel of its own along the front."""
 
 
 def predictions(data: xr.Dataset) -> Picture:
@@ -23,7 +20,7 @@ def predictions(data: xr.Dataset) -> Picture:
 
     Ticks are the posterior's standard deviation to either side; the cross is the nominal model.
     """
-    best, chosen = reference_of(data), shown(data)
+    best, chosen = reference(data), shown(data)
     nominal = np.flatnonzero(data["kind"].values == "nominal")
     rows = []
     for each in predictions_in(data):
@@ -33,8 +30,7 @@ def predictions(data: xr.Dataset) -> Picture:
                 label = f"{each.name}, {place}: {variable.key}"
                 std = _relative_std(data, each.kind, variable, i, values[best])
                 rows.append((label, values, std))
-    figure = picture(6.4, 1.0 + 0.24 * max(len(rows), 1))
-    axes = figure.add_subplot()
+    figure, axes = single(6.4, 1.0 + 0.24 * max(len(rows), 1))
     for y, (_, values, std) in enumerate(rows):
         ratio = values / values[best] if values[best] else np.full(values.shape, np.nan)
         known = ratio[chosen & np.isfinite(ratio)]
@@ -72,7 +68,7 @@ def _relative_std(
     return 1 + abs(float(std.values[i] / value)) if std is not None and value else np.nan
 
 
-def pages(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
+def figures(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
     """Yield a name and a picture of each prediction at all models."""
     for each in predictions_in(data):
         yield f"{each.kind.dimension} {each.name}", _page(data, each)
@@ -84,11 +80,7 @@ def _page(data: xr.Dataset, of: RecordedPrediction) -> Picture:
     values, dimension = data[variable.name].values[:, positions], of.kind.dimension
     if variable.logarithmic:
         values = np.where(values > 0, values, np.nan)
-    if not is_path(data) or len(positions) > FEW:
-        figure = across(data, values, of.places, variable.title)
-        if variable.logarithmic and np.isfinite(values).any():
-            figure.axes[0].set_yscale("log")
-    elif variable.logarithmic:
+    if variable.logarithmic:
         figure = _levels(data, of, variable, values)
     else:
         std = data.get(f"posterior_{variable.name}_std")
@@ -104,10 +96,8 @@ def _levels(
     data: xr.Dataset, of: RecordedPrediction, variable: ResultVariable, values: Floats
 ) -> Picture:
     """Return a line a level of probabilities along the front."""
-    figure = picture(4.8, 3.3)
-    axes = figure.add_subplot()
-    axes.set_yscale("log")
-    axes.set_ylabel(variable.title)
+    figure, axes = single(4.8, 3.3)
+    axes.set(yscale="log", ylabel=variable.title)
     along, std = Along(data), data.get(f"posterior_{of.kind.dimension}_log_std")
     logarithms = None if std is None else std[list(of.positions)]
     bars = at_reference(data, np.log(values), logarithms)

@@ -1,9 +1,8 @@
-"""Parameters, frequencies and MAC of all models: along the front, or as parallel coordinates.
-
-Likewise all minima that were found, and models that fit equally well.
-"""
+"""Parameters, frequencies and MAC along the front, minima, and the scatter of these."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,22 +11,24 @@ from matplotlib.patches import Ellipse
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from modefront._typing import Floats
+from modefront.findings.selection import front_points, reference
 from modefront.front.point import preferred
-from modefront.plots.along import across, at_reference, panels_along
-from modefront.plots.canvas import COLOURS, Picture, legend, picture, plain, short
-from modefront.plots.models import draw_models, front_of, is_path, reference_of
+from modefront.plots.along import at_reference, panels_along
+from modefront.plots.canvas import (
+    COLOURS,
+    Picture,
+    draw_models,
+    legend,
+    names_of,
+    picture,
+    plain,
+    single,
+)
 
 
 def parameters(data: xr.Dataset) -> Picture:
-    """Return a panel a parameter with one standard deviation, or lines across parameters.
-
-    Lines are in units of the nominal values, where these are above zero.
-    """
-    theta, bounds = data["theta"].values, data["bounds"].values
-    names = [str(name) for name in data["parameter"].values]
-    if not is_path(data):
-        unit, title = unit_of(data)
-        return across(data, theta / unit, names, title, width=0.45)
+    """Return a panel a parameter, with one standard deviation."""
+    theta, bounds, std = data["theta"].values, data["bounds"].values, parameter_std(data)
 
     def mark(axes: Axes, j: int) -> None:
         low, high = axes.get_ylim()
@@ -35,16 +36,13 @@ def parameters(data: xr.Dataset) -> Picture:
             if low - 0.1 * (high - low) <= bound <= high + 0.1 * (high - low):
                 axes.axhline(bound, color="k", ls=":", lw=1, label="bound")
 
-    std = parameter_std(data)
+    names = names_of(data, "parameter")
     return panels_along(data, theta, names, bars=(theta - std, theta + std), mark=mark)
 
 
 def frequencies(data: xr.Dataset) -> Picture:
-    """Return a panel a mode with the measured frequency, or errors in % across the modes."""
+    """Return a panel a mode with the measured frequency."""
     f, measured = data["frequency"].values, data["measured_frequency"].values
-    if not is_path(data):
-        error = 100 * (f / measured - 1)
-        return across(data, error, _modes(data), "error of the frequency, %", line=0)
 
     def mark(axes: Axes, r: int) -> None:
         if np.isfinite(measured[r]):
@@ -55,10 +53,8 @@ def frequencies(data: xr.Dataset) -> Picture:
 
 
 def mac(data: xr.Dataset) -> Picture:
-    """Return a panel a mode with MAC values, or lines across the modes."""
+    """Return a panel a mode with MAC values."""
     values = data["mac"].values
-    if not is_path(data):
-        return across(data, values, _modes(data), "MAC", line=1)
     bars = at_reference(data, values, data.get("posterior_mac_std"))
     bars = bars and (bars[0], np.minimum(bars[1], 1.0))
     return panels_along(data, values, _modes(data), "MAC", bars)
@@ -88,10 +84,8 @@ def unit_of(data: xr.Dataset) -> tuple[Floats, str]:
 
 def minima(data: xr.Dataset) -> Picture:
     """Return a line a minimum across the parameters; thin lines are equivalent models."""
-    names = [short(name) for name in data["parameter"].values]
-    unit, title = unit_of(data)
-    figure = picture(max(5.6, 0.45 * len(names)), 3.6)
-    axes = figure.add_subplot()
+    names, (unit, title) = names_of(data, "parameter", 18), unit_of(data)
+    figure, axes = single(max(5.6, 0.45 * len(names)), 3.6)
     x = np.arange(len(names))
     of = [str(each) for each in data["minimum_of"].values]
     colours = {name: COLOURS[k % len(COLOURS)] for k, name in enumerate(dict.fromkeys(of))}
@@ -127,7 +121,7 @@ def uncertainty(data: xr.Dataset) -> Picture:
     if "posterior_covariance" in data:
         covariance = np.asarray(data["posterior_covariance"].values)
     elif "theta_covariance" in data:
-        covariance = np.asarray(data["theta_covariance"].values[reference_of(data)])
+        covariance = np.asarray(data["theta_covariance"].values[reference(data)])
         covariance = covariance if np.isfinite(covariance).all() else None
     scattered = data.sizes["group"] == 2 and "objective_covariance" in data
     parts = 1 + (covariance is not None) + scattered
@@ -145,19 +139,17 @@ def uncertainty(data: xr.Dataset) -> Picture:
 def _parameters(axes: Axes, data: xr.Dataset) -> None:
     unit, title = unit_of(data)
     std, theta = parameter_std(data) / unit, data["theta"].values / unit
-    kinds, best = data["kind"].values, reference_of(data)
+    kinds, best = data["kind"].values, reference(data)
     rows = [best, *np.flatnonzero(kinds == "edge").tolist()]
-    names = [short(name) for name in data["parameter"].values]
+    names = names_of(data, "parameter", 18)
     y = np.arange(len(names))
     for k, i in enumerate(rows):
         shift = y + 0.7 * ((k + 0.5) / len(rows) - 0.5)
         colour = COLOURS[1] if i == best else COLOURS[(k - 1) % len(COLOURS)]
         if i != best and colour == COLOURS[1]:
             colour = "0.3"
-        for width, factor in ((1.0, 2), (2.4, 1)):
-            axes.hlines(
-                shift, theta[i] - factor * std[i], theta[i] + factor * std[i], colour, lw=width
-            )
+        for width, reach in ((1.0, 2 * std[i]), (2.4, std[i])):
+            axes.hlines(shift, theta[i] - reach, theta[i] + reach, colour, lw=width)
         label = plain(data["label"].values[i])
         axes.plot(theta[i], shift, "o", color=colour, ms=4, label=label)
     axes.set_yticks(y, names)
@@ -170,7 +162,7 @@ def _correlation(axes: Axes, data: xr.Dataset, covariance: Floats) -> None:
     size = np.sqrt(np.maximum(np.diag(covariance), 0))
     scale = np.outer(size, size)
     r = np.divide(covariance, scale, out=np.zeros(covariance.shape), where=scale > 0)
-    names = [short(name) for name in data["parameter"].values]
+    names = names_of(data, "parameter", 18)
     axes.imshow(r, vmin=-1, vmax=1, cmap="PuOr")
     axes.grid(False)
     axes.set_xticks(range(len(names)), names, rotation=90)
@@ -187,7 +179,7 @@ def _ellipses(axes: Axes, data: xr.Dataset) -> None:
     error, C = data["error"].values, data["objective_covariance"].values
     J = data["objective"].values
     ratio = np.divide(error, 2 * J, out=np.full(J.shape, np.nan), where=J > 0)  # de / dJ
-    for i in front_of(data).tolist():
+    for i in front_points(data).tolist():
         S = C[i] * np.outer(ratio[i], ratio[i])
         # Where a group is fitted exactly, e has no derivative and no ellipse.
         if not np.isfinite(S).all() or (np.sqrt(np.diag(S)) > error[i]).any():
@@ -195,11 +187,9 @@ def _ellipses(axes: Axes, data: xr.Dataset) -> None:
         values, vectors = np.linalg.eigh(S)
         width, height = 2 * np.sqrt(np.maximum(values, 0))
         angle = float(np.degrees(np.arctan2(vectors[1, 0], vectors[0, 0])))
-        centre = (float(error[i, 0]), float(error[i, 1]))
-        axes.add_patch(
-            Ellipse(centre, width, height, angle=angle, fc=COLOURS[4], ec=COLOURS[0], alpha=0.25)
-        )
+        marks: dict[str, Any] = {"angle": angle, "fc": COLOURS[4], "ec": COLOURS[0], "alpha": 0.25}
+        axes.add_patch(Ellipse(error[i].tolist(), width, height, **marks))
     draw_models(axes, data, error, "nominal")
-    first, second = (plain(name) for name in data["group"].values)
+    first, second = names_of(data, "group")
     axes.set(xlabel=f"error of {first}", ylabel=f"error of {second}")
     axes.set_title("front with its scatter", loc="left")

@@ -18,11 +18,8 @@ from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
 from modefront.reports.page import page_of, write_html
 
-MOST_LINES = 600
-"""Lines of a curve: more are not seen."""
-
-MOST_FUNCTIONS = 40
-"""Functions of a data set, those with the greatest residuals first."""
+MOST_LINES, MOST_FUNCTIONS = 600, 40
+"""Lines of a curve: more are not seen; functions of a data set, the greatest residuals first."""
 
 
 def write_identification(test: IdentifiedTest, path: Path) -> Path:

@@ -1,8 +1,4 @@
-"""The page of a report: one file that holds its script, its style and its data.
-
-A content-security policy allows the script and the style of the page by their hashes and nothing
-else: no request leaves the page, and what results say is text to it.
-"""
+"""The page of a report: one file, whose content-security policy lets no request leave it."""
 
 from __future__ import annotations
 
@@ -15,7 +11,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from modefront.errors import Fault, InputError, reason
+from modefront.errors import Fault, InputError, writing
 from modefront.outputs import write_text
 from modefront.reports.payload import payload
 from modefront.results.compare import read_together
@@ -79,27 +75,16 @@ def report(folders: Path | str | Sequence[Path | str], output: Path | str | None
     """
     results = read_together(folders)
     path = Path(output) if output else Path(results[0][0]) / "report.html"
-    write_page(results, path)
-    return path
-
-
-def write_page(results: Sequence[tuple[str, xr.Dataset]], path: Path) -> None:
-    """Write the page of results whole or not at all.
-
-    Raises InputError where the file cannot be written.
-    """
     write_html(page(results), path)
+    return path
 
 
 def write_html(text: str, path: Path) -> None:
     """Write a page whole or not at all; raises InputError where the file cannot be written."""
     if path.suffix.lower() not in SUFFIXES:
         raise InputError(Fault(str(path), "-o", "a file that ends in .html", f"'{path.name}'"))
-    try:
+    with writing(path, "-o"):
         write_text(path, text, lasting=True)
-    except OSError as error:
-        expected = "a file that can be written"
-        raise InputError(Fault(str(path), "-o", expected, reason(error))) from None
 
 
 def _digest(text: str) -> str:

@@ -11,6 +11,7 @@ import base64
 import gzip
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,12 +19,14 @@ import xarray as xr
 
 from modefront._typing import Floats
 from modefront._version import __version__
+from modefront.findings.catalogue import Severity
+from modefront.findings.selection import front_points, verdict
+from modefront.front.methods import METHODS
 from modefront.front.point import preferred
 from modefront.predictions import ResultVariable
 from modefront.predictions.registry import RecordedPrediction, predictions_in
-from modefront.reports.words import texts, topics
 from modefront.results.compare import short_names
-from modefront.results.selection import front_points
+from modefront.results.remarks import findings_of
 
 INFINITE = 10**400
 """An integer that JavaScript reads as Infinity, for which JSON has no word."""
@@ -71,13 +74,7 @@ class _Arrays:
     """The binary part: arrays behind each other, each at a multiple of four bytes."""
 
     def __init__(self) -> None:
-        self._parts: list[bytes] = []
-        self._size = 0
-
-    @property
-    def content(self) -> bytes:
-        """All arrays."""
-        return b"".join(self._parts)
+        self.content = bytearray()
 
     def whole(self, values: Floats) -> dict[str, Any]:
         """Add numbers as 16-bit integers of a common unit, and return where they are."""
@@ -90,11 +87,9 @@ class _Arrays:
         return self._add("int32", np.asarray(values).astype("<i4"))
 
     def _add(self, kind: str, values: np.ndarray[Any, Any]) -> dict[str, Any]:
-        content = values.tobytes()
-        out = {"at": self._size, "type": kind, "shape": list(values.shape)}
-        content += bytes(-len(content) % 4)
-        self._parts.append(content)
-        self._size += len(content)
+        out = {"at": len(self.content), "type": kind, "shape": list(values.shape)}
+        self.content += values.tobytes()
+        self.content += bytes(-len(self.content) % 4)
         return out
 
 
@@ -185,19 +180,15 @@ def _noise(data: xr.Dataset) -> Floats:
 
 def _measured_std(data: xr.Dataset) -> Floats:
     """Return the standard deviation of the mean of each measured frequency; NaN where unknown."""
-    modes = data.sizes["mode"]
     if "set_frequency" not in data:
-        return np.full(modes, np.nan)
+        return np.full(data.sizes["mode"], np.nan)
     f, std = data["set_frequency"].values, data["set_frequency_std"].values
-    out = np.full(modes, np.nan)
-    for r in range(modes):
-        known = np.isfinite(f[:, r])
-        count = int(known.sum())
-        given = std[known, r]
-        if count and np.isfinite(given).all():
-            out[r] = np.sqrt((given**2).sum()) / count
-        elif count > 1:
-            out[r] = f[known, r].std(ddof=1) / np.sqrt(count)
+    known = np.isfinite(f)
+    count = known.sum(axis=0)
+    deviation = np.where(known, f - np.nansum(f, axis=0) / count, 0.0)
+    scatter = np.sqrt((deviation**2).sum(axis=0) / (count - 1) / count)
+    given = np.sqrt((np.where(known, std, 0.0) ** 2).sum(axis=0)) / count
+    out: Floats = np.where(np.isfinite(given), given, np.where(count > 1, scatter, np.nan))
     return out
 
 
@@ -267,3 +258,55 @@ def plain(values: Any) -> Any:
         if array.dtype == np.float32:
             return float(f"{value:.7g}")
     return value
+
+
+@dataclass(frozen=True)
+class Topic:
+    """Sentences on one question; those of the first answer have no heading."""
+
+    heading: str
+    sentences: tuple[str, ...]
+
+
+def texts(values: Any) -> list[str]:
+    """Return the texts of an array."""
+    return [str(x) for x in values.tolist()]
+
+
+def topics(data: xr.Dataset) -> list[Topic]:
+    """Return the sentences: the first answer, then those on each question."""
+    found = findings_of(data)
+
+    def of(*severities: Severity) -> tuple[str, ...]:
+        return tuple(
+            f"{text[:1].upper()}{text[1:]}".rstrip(".") + "."
+            for text in (str(x) for x in found if x.severity in severities)
+        )
+
+    failed = of(Severity.FAILURE) or ("All models that were solved for converged.",)
+    all_topics = (
+        Topic("", tuple(verdict(data))),
+        Topic("How well the best models do", of(Severity.FIT)),
+        Topic("What to beware of", (*failed, *of(Severity.CAUTION))),
+        Topic("What the data leave open", of(Severity.OPEN)),
+        Topic("What was studied", (_study(data),)),
+    )
+    return [topic for topic in all_topics if topic.sentences]
+
+
+def _study(data: xr.Dataset) -> str:
+    groups, method = texts(data["group"].values), str(data.attrs["method"])
+    title = METHODS[method].title if method in METHODS else method
+    sizes = {
+        "parameter": data.sizes["parameter"],
+        "measured mode": data.sizes["mode"],
+        "group": len(groups),
+        "eigenproblem": int(data.attrs["model_evaluations"]),
+    }
+    counts = [f"{count} {noun}{'s' * (count != 1)}" for noun, count in sizes.items()]
+    remark = f" {data.attrs['remark']}." if data.attrs.get("remark") else ""
+    return (
+        f"A model with {counts[0]} is compared with {counts[1]} in {counts[2]} of measured "
+        f"properties: {', '.join(groups)}. The front is found by {title}, and {counts[3]} were "
+        f"solved in all.{remark}"
+    )

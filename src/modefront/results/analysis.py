@@ -39,15 +39,10 @@ ALL = "all data"
 
 @dataclass(frozen=True)
 class Determination:
-    """Combinations of parameters that the data determine at a point.
+    """Combinations of parameters that each group, then all data determine at a point.
 
-    Attributes
-    ----------
-    point : the point
-    scale : units of the parameters there
-    idle : positions of parameters without effect
-    combinations : of each group, then of all data, by name
-    effects : (p, p) products of the effects of the parameters on all weighted residuals
+    ``idle`` are positions of parameters without effect, ``effects`` (p, p) products of the effects
+    of parameters on all weighted residuals.
     """
 
     point: Point

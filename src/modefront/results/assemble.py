@@ -93,18 +93,13 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
 
 def _minima(problem: UpdatingProblem, front: Front) -> Values:
     """Return all distinct minima of single objectives and of the optimally weighted residuals."""
-    minima = [
-        (name, minimum)
-        for name, edge in zip(problem.objectives, front.edges, strict=True)
-        for minimum in edge.minima
-    ]
-    minima += [(label(Kind.OPTIMAL), minimum) for minimum in front.optimal]
-    if front.iterated:
-        minima.append((ITERATED, front.iterated))
-    solutions = [minimum for _, minimum in minima]
+    names = [*problem.objectives, label(Kind.OPTIMAL), ITERATED]
+    minima = [*(edge.minima for edge in front.edges), front.optimal]
+    minima.append([front.iterated] if front.iterated else [])
+    solutions = [minimum for each in minima for minimum in each]
     theta, J = _theta_and_J(problem, solutions)
     return {
-        "minimum_of": [name for name, _ in minima],
+        "minimum_of": np.repeat(names, list(map(len, minima))),
         "minimum_theta": theta,
         "minimum_objective": J,
         "minimum_converged": [x.converged for x in solutions],

@@ -1,19 +1,16 @@
 r"""Results of several model classes and configurations side by side.
 
 All is measured in the space of errors :math:`e_i = \sqrt{J_i / a_i}`, which has the same meaning
-for every model class and configuration (Christodoulou et al. 2008,
-doi:10.1016/j.cma.2008.04.010): a good class has a front close to the origin, and a front that is
-short makes the choice among its models matter little. Its length is that of the shortest tree that
-joins its Pareto-optimal points, gaps between its branches left out. Ranges and distances are those
-of all Pareto-optimal models, edges and weighted ones included: a model that is better than the
-points of the front is never left out.
+for every class (Christodoulou et al. 2008, doi:10.1016/j.cma.2008.04.010). The length of a front is
+that of the shortest tree that joins its Pareto-optimal points, without gaps. Ranges and distances
+are those of all Pareto-optimal models, edges and weighted ones included.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain, combinations
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,10 +21,10 @@ from scipy.spatial.distance import cdist, pdist, squareform
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError
+from modefront.findings.selection import front_points
 from modefront.front.point import Kind, preferred
 from modefront.predictions.registry import kinds_in
 from modefront.results.files import read_dataset
-from modefront.results.selection import front_points
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,14 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Spread:
-    """Least and greatest value of one quantity over the Pareto-optimal models.
-
-    Attributes
-    ----------
-    name : of the quantity
-    least, greatest : over the models; NaN where none has a value
-    reference : value of the reference model
-    """
+    """Least and greatest value over the Pareto-optimal models, and the reference's; or NaN."""
 
     name: str
     least: float
@@ -55,21 +45,10 @@ class Spread:
 class Summary:
     """One front, in the space of errors; a row of the comparison, whose columns these are.
 
-    Attributes
-    ----------
-    name : folder of the results
-    study, method : what they are of
-    points : number of Pareto-optimal points of the front
-    eigenproblems : solved in all
-    length : of the front
-    length_ratio : to that of the first front; NaN where that is a point
-    extent : (groups,) range of each error over the Pareto-optimal models
-    distance : of the Pareto-optimal model that is closest to the origin
-    optimal_distance : of the optimally weighted model from the origin; NaN where there is none
-    reference : label of the model that the data prefer, of other weights where there is none
-    reference_distance : of that model from the origin
-    parameters : least and greatest value of each parameter
-    predictions : likewise of each prediction
+    ``points`` is the number of Pareto-optimal points, ``length_ratio`` that to the first front,
+    ``extent`` (groups,) the range of each error, ``distance`` that of the closest model from the
+    origin, ``optimal_distance`` and ``reference_distance`` those of the optimally weighted model
+    and of the one that the data prefer. What there is none of is NaN.
     """
 
     name: str
@@ -92,14 +71,8 @@ class Summary:
 class Apart:
     """Distance of two fronts in their common parameters, over the bounds of the first one.
 
-    Attributes
-    ----------
-    first, second : folders of the results
-    common : names of the parameters of both
-    least, greatest : distance of a Pareto-optimal model of one from the nearest of the other one:
-        least of all, and greatest from either side (Hausdorff); NaN without common parameters
-    optimal : distance of the optimally weighted models; NaN where there is none
-    reference : distance of the reference models
+    ``least`` and ``greatest`` (Hausdorff) are distances of a Pareto-optimal model of one from the
+    nearest of the other one, ``optimal`` and ``reference`` those of these models; or NaN.
     """
 
     first: str
@@ -129,22 +102,23 @@ class Comparison:
     @property
     def rows(self) -> dict[str, list[object]]:
         """Quantities by their names, with a value of each front."""
-        fronts = self.fronts
-        return {
-            "study": [x.study for x in fronts],
-            "method": [x.method for x in fronts],
-            "Pareto-optimal points": [x.points for x in fronts],
-            "eigenproblems": [x.eigenproblems for x in fronts],
-            "length of the front": [x.length for x in fronts],
-            "  over that of the first": [x.length_ratio for x in fronts],
-            **{
-                f"range of error, {group}": [x.extent[i] for x in fronts]
-                for i, group in enumerate(self.groups)
-            },
-            "least distance from origin": [x.distance for x in fronts],
-            "reference model": [x.reference for x in fronts],
-            "  its distance from origin": [x.reference_distance for x in fronts],
-        }
+        ranges = [f"range of error, {group}" for group in self.groups]
+        columns = [
+            {
+                "study": x.study,
+                "method": x.method,
+                "Pareto-optimal points": x.points,
+                "eigenproblems": x.eigenproblems,
+                "length of the front": x.length,
+                "  over that of the first": x.length_ratio,
+                **dict(zip(ranges, x.extent, strict=True)),
+                "least distance from origin": x.distance,
+                "reference model": x.reference,
+                "  its distance from origin": x.reference_distance,
+            }
+            for x in self.fronts
+        ]
+        return {name: [column[name] for column in columns] for name in columns[0]}
 
     @property
     def table(self) -> pd.DataFrame:
@@ -236,8 +210,8 @@ def _optimal(data: xr.Dataset) -> xr.Dataset:
 
 def _best(data: xr.Dataset) -> xr.Dataset:
     """Return all Pareto-optimal models of any kind; those of the front where there is none."""
-    best = np.flatnonzero(data["pareto"].values)
-    return data.isel(point=best) if best.size else _optimal(data)
+    best = data["pareto"].values
+    return data.isel(point=np.flatnonzero(best)) if best.any() else _optimal(data)
 
 
 def _reference(data: xr.Dataset) -> xr.Dataset:
@@ -258,13 +232,10 @@ def _length(data: xr.Dataset) -> float:
 def _summary(name: str, data: xr.Dataset, first: float) -> Summary:
     models, length, reference = _best(data), _length(data), _reference(data)
     weighted = data["error"].values[data["kind"].values == Kind.OPTIMAL.value]
-    from_origin = np.linalg.norm(models["error"].values, axis=1)
-    quantities = [("", "parameter", "theta"), ("frequency ", "mode", "frequency")]
-    quantities.append(("mac ", "mode", "mac"))
+    quantities = [("frequency ", "mode", "frequency"), ("mac ", "mode", "mac")]
     for kind in kinds_in(models):
         names = [x.name for x in kind.ranged if x.name in models]
         quantities += [(f"{each} ", kind.dimension, each) for each in names]
-    spreads = [tuple(_spreads(*each, models, reference)) for each in quantities]
     return Summary(
         name,
         str(data.attrs.get("study", "")),
@@ -274,12 +245,12 @@ def _summary(name: str, data: xr.Dataset, first: float) -> Summary:
         length,
         length / first if first > 0 else float("nan"),
         tuple(np.ptp(models["error"].values, axis=0).tolist()),
-        float(from_origin.min()),
+        float(np.linalg.norm(models["error"].values, axis=1).min()),
         float(np.linalg.norm(weighted[0])) if len(weighted) else float("nan"),
         preferred(data.attrs),
         float(np.linalg.norm(reference["error"].values)),
-        spreads[0],
-        tuple(chain.from_iterable(spreads[1:])),
+        tuple(_spreads("", "parameter", "theta", models, reference)),
+        tuple(x for each in quantities for x in _spreads(*each, models, reference)),
     )
 
 
@@ -306,13 +277,9 @@ def _apart(first_results: tuple[str, xr.Dataset], second_results: tuple[str, xr.
         return theta
 
     away = cdist(scaled(_best(a)), scaled(_best(b)))
+    greatest = max(away.min(axis=0).max(), away.min(axis=1).max())
     weighted = [scaled(x)[x["kind"].values == Kind.OPTIMAL.value] for x in (a, b)]
-    return Apart(
-        first,
-        second,
-        tuple(common),
-        float(away.min()),
-        float(max(away.min(axis=0).max(), away.min(axis=1).max())),
-        float(np.linalg.norm(weighted[0][0] - weighted[1][0])) if all(map(len, weighted)) else nan,
-        float(np.linalg.norm(scaled(_reference(a)) - scaled(_reference(b)))),
-    )
+    optimal = np.linalg.norm(weighted[0][0] - weighted[1][0]) if all(map(len, weighted)) else nan
+    reference = np.linalg.norm(scaled(_reference(a)) - scaled(_reference(b)))
+    distances = map(float, (away.min(), greatest, optimal, reference))
+    return Apart(first, second, tuple(common), *distances)

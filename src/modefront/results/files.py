@@ -20,7 +20,6 @@ from modefront.errors import Fault, InputError, reason
 from modefront.inputs import available_memory, file_size
 from modefront.isolated import isolated
 from modefront.outputs import output
-from modefront.results.netcdf import contents
 from modefront.results.remarks import CHANGED
 from modefront.results.schema import FORMAT, variables_in
 from modefront.results.soundness import faults
@@ -28,10 +27,8 @@ from modefront.text import NAME, clean
 
 FILE = "results.nc"
 
-READER = "modefront.results.netcdf:try_file"
-
-SECONDS = 120.0
-"""Time that reading may take."""
+READER, SECONDS = "modefront.results.netcdf:contents", 120.0
+"""Function that reads the file, and the time that it may take."""
 
 CHECKSUM = "checksum"
 """Attribute that holds the checksum, which it leaves out."""
@@ -121,11 +118,13 @@ def _text(*parts: object) -> bytes:
 
 
 def _read(path: Path) -> xr.Dataset:
-    """Return the contents of a netCDF file, after a process that damaged files may end read it."""
-    isolated(READER, path, SECONDS, available_memory())
-    variables, attributes = contents(path)
-    raw = xr.Dataset({name: xr.Variable(*each) for name, each in variables.items()})
-    return xr.decode_cf(raw.assign_attrs(attributes), decode_times=False)
+    """Return the contents of a netCDF file, which a process that damaged files may end reads."""
+    arrays, (variables, attributes) = isolated(READER, path, SECONDS, available_memory())
+    values = {
+        name: xr.Variable(dimensions, arrays[str(k)], own)
+        for k, (name, dimensions, own) in enumerate(variables)
+    }
+    return xr.decode_cf(xr.Dataset(values, attrs=attributes), decode_times=False)
 
 
 def _plain(data: xr.Dataset) -> xr.Dataset:

@@ -41,14 +41,15 @@ def findings(
     determinations: Sequence[Determination],
 ) -> list[Finding]:
     """Return the findings; ``front`` holds all points, those of ``analysis`` too."""
-    out = [
-        *_search(problem, front),
-        *_identifiability(problem, determinations[0]),
-        *_flat(problem, front, analysis),
-        *_manifolds(problem, analysis),
-        *_scatter(problem, front, analysis),
-    ]
-    return in_order(out)
+    return in_order(
+        [
+            *_search(problem, front),
+            *_identifiability(problem, determinations[0]),
+            *_flat(problem, front, analysis),
+            *_manifolds(problem, analysis),
+            *_scatter(problem, front, analysis),
+        ]
+    )
 
 
 def as_values(findings: Sequence[Finding]) -> Values:
@@ -81,10 +82,9 @@ def _search(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
         if edge.doubtful:
             yield found("doubtful-edge", name, starts=edge.starts, minima=edge.found)
     for k, gap in enumerate(front.gaps, start=1):
-        if gap.end is None:
-            yield found("unknown-end", str(k), end="ends")
-        if gap.start is None:
-            yield found("unknown-end", str(k + 1), end="starts")
+        for at, branch, end in ((gap.end, k, "ends"), (gap.start, k + 1, "starts")):
+            if at is None:
+                yield found("unknown-end", str(branch), end=end)
 
 
 def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iterator[Finding]:
@@ -107,14 +107,12 @@ def _flat(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> It
         return
     total = len(of_kind(front.points, Kind.FRONT))
     said: dict[str, Any] = {"points": total, "tolerance": 100 * analysis.tolerance}
-    for name, count in zip(problem.objectives, part.flat.tolist(), strict=True):
-        if count:
-            then = "" if part.points else "; without them it is one point"
-            edge = label(Kind.EDGE, name)
-            yield found("flat", name, edge=edge, flat=count, then=then, **said)
-    for name, count in zip(problem.objectives, part.uncut.tolist(), strict=True):
-        if count:
-            yield found("uncut", name, edge=label(Kind.EDGE, name), flat=count, **said)
+    then: dict[str, Any] = {"then": "" if part.points else "; without them it is one point"}
+    for kind, counts, more in (("flat", part.flat, then), ("uncut", part.uncut, {})):
+        for name, count in zip(problem.objectives, counts.tolist(), strict=True):
+            if count:
+                edge = label(Kind.EDGE, name)
+                yield found(kind, name, edge=edge, flat=count, **said, **more)
 
 
 def _manifolds(problem: UpdatingProblem, analysis: FrontAnalysis) -> Iterator[Finding]:

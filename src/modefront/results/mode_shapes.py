@@ -1,21 +1,9 @@
 r"""Mode shapes of all points at the nodes of the model, in a common basis, and at the sensors.
 
-The shapes of neighbouring models hardly differ: those of all points, each scaled to a greatest
-displacement of 1, are kept as
-
-.. math:: u_{ir} = \sum_b c_{irb}\, B_b
-
-with the few columns B that all of them need up to `TOLERANCE`. Only nodes of lines and of faces
-are kept, of solids those of the surface: what can be drawn.
-
-========  ======================================================================
-symbol    meaning
-========  ======================================================================
-u         (3 nodes,) displacement of the drawn nodes in mode r of point i
-Q, C      orthonormal basis while points are added, coefficients in it
-B         (3 nodes, n) columns over their greatest coefficient, the longest first
-c         coefficients, between -1 and 1
-========  ======================================================================
+The displacements u_r of the drawn nodes in mode r of a point, with a greatest length of 1, are
+:math:`u_r = \sum_b c_{rb} B_b`, with the few columns B that the shapes of all points need up to
+`TOLERANCE`, and coefficients c between -1 and 1. Drawn are the nodes of lines and faces, of solids
+those of the surface. Q and C are an orthonormal basis, and the coefficients in it.
 """
 
 from __future__ import annotations
@@ -34,7 +22,7 @@ from modefront.pairing.match import mean_mac, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values
 from modefront.results.schema import described
-from modefront.results.shapes import unit_scale
+from modefront.results.shapes import scaled_shapes
 from modefront.rounding import TINY
 from modefront.work.codec import record
 
@@ -80,13 +68,9 @@ class ModeShapes:
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """Lines, faces and nodes of a geometry that pictures show.
+    """Nodes of a geometry that pictures show (ascending), lines (n, 2) and faces (n, 4) of these.
 
-    Attributes
-    ----------
-    nodes : (drawn nodes,) nodes of the geometry, ascending
-    lines : (lines, 2) drawn nodes that a line joins
-    faces : (faces, 4) drawn nodes round a face; -1 in the last column of a triangle
+    A triangle has -1 in the last column.
     """
 
     nodes: Ints
@@ -96,18 +80,13 @@ class Drawing:
 
 def drawing(geometry: Geometry) -> Drawing:
     """Return lines and faces of the cells of a geometry, and the nodes that these have."""
-    lines: list[Ints] = [np.empty((0, 2), dtype=np.int64)]
-    shells: list[Ints] = [np.empty((0, 4), dtype=np.int64)]
-    solids: list[Ints] = [np.empty((0, 4), dtype=np.int64)]
-    for cells in geometry.cells:
-        if cells.type.startswith("line"):
-            lines.append(cells.nodes[:, :2])
-        elif cells.type.startswith(("triangle", "quad")):
-            shells.append(_faces(cells))
-        else:
-            solids.append(_faces(cells))
-    all_lines = np.vstack(lines)
-    all_faces = np.vstack([*shells, _surface(np.vstack(solids))])
+    flat = ("line", "triangle", "quad")
+    lines = [cells.nodes[:, :2] for cells in geometry.cells if cells.type.startswith("line")]
+    shells = [_faces(cells) for cells in geometry.cells if cells.type.startswith(flat[1:])]
+    solids = [_faces(cells) for cells in geometry.cells if not cells.type.startswith(flat)]
+    none = np.empty((0, 4), dtype=np.int64)
+    all_lines = np.vstack([none[:, :2], *lines])
+    all_faces = np.vstack([none, *shells, _surface(np.vstack([none, *solids]))])
     # Sensors are drawn as well, at nodes between cells too.
     used = [all_lines.ravel(), all_faces[all_faces >= 0], geometry.sensor_nodes]
     nodes = np.unique(np.concatenate(used)).astype(np.int64)
@@ -161,13 +140,9 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> Mod
             continue
         frequency[i] = np.sqrt(np.maximum(lam[:count], 0)) / (2 * np.pi)
         mac[i] = mean_mac(data, phi[:, :count])
-        u = np.zeros((modes, 0, 3))
-        if geometry is not None and Phi is not None:
-            u = geometry.displacement(Phi[:, index])[:, drawn]
-        phi = phi[:, index].T
-        scale = unit_scale(data, phi, u if u.size else None)
-        sensed[i] = phi * scale[:, None]
-        rows[i] = basis.coefficients((u * scale[:, None, None]).reshape(modes, -1).T)
+        Phi = Phi[:, index] if drawn.size and Phi is not None else None
+        sensed[i], u = scaled_shapes(problem, Phi, phi[:, index], drawn)
+        rows[i] = basis.coefficients(np.zeros((0, modes)) if u is None else u.reshape(modes, -1).T)
     if geometry is None or not rows:
         return ModeShapes(frequency, mac, sensed, None, None)
     B, C = basis.longest([rows[i] for i in rows])

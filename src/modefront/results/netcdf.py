@@ -1,8 +1,7 @@
-"""A netCDF file read in whole, in a process that it may end: what ends well here does so again."""
+"""A netCDF file read in whole, in a process of its own (`modefront.isolated`)."""
 
 from __future__ import annotations
 
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -10,47 +9,44 @@ import h5netcdf
 import h5py
 import numpy as np
 
-from modefront.hdf5 import check_file
-
-Values = np.ndarray[Any, Any]
-
-Contents = dict[str, tuple[tuple[str, ...], Values, dict[str, Any]]]
-"""Dimensions, values and attributes of variables."""
+from modefront.hdf5 import check_tree
+from modefront.isolated import Read
 
 
-def try_file(path: Path) -> tuple[dict[str, Values], dict[str, Any]]:
-    """Read all variables and attributes, and return nothing of them.
+def contents(path: Path) -> Read:
+    """Return the values of all variables in their order, and what belongs to them.
 
-    Raises ForeignError where the file refers to others, ValueError for values that are neither
-    numbers nor texts.
-    """
-    with h5py.File(path, "r") as file:
-        check_file(file)
-    variables, attributes = contents(path)
-    parts = [(values, *own.values()) for _, values, own in variables.values()]
-    for value in chain(attributes.values(), *parts):
-        if (kind := np.asarray(value).dtype).kind not in "OUSTbiuf":
-            raise ValueError(f"values of the type {kind}, neither numbers nor texts")
-    return {}, {}
-
-
-def contents(path: Path) -> tuple[Contents, dict[str, Any]]:
-    """Return the variables and the attributes of a file.
-
+    That is the name, dimensions and attributes of each variable, and the attributes of the file.
     Names of dimensions and values are those of h5py: h5netcdf looks for the dimensions of a
-    variable anew whenever it is asked for either.
+    variable anew whenever it is asked for either. Raises ForeignError where the file refers to
+    others, ValueError for values that are neither numbers nor texts.
     """
-    with h5netcdf.File(path, "r") as file, h5py.File(path, "r") as plain:
-        variables = {
-            name: (_dimensions(name, plain[name]), _values(plain[name]), dict(each.attrs))
-            for name, each in file.variables.items()
-        }
-        return variables, dict(file.attrs)
+    with h5py.File(path, "r") as plain:
+        check_tree(plain)
+        with h5netcdf.File(path, "r") as file:
+            variables = [
+                [name, _dimensions(name, plain[name]), _attributes(each.attrs)]
+                for name, each in file.variables.items()
+            ]
+            arrays = {str(k): _values(plain[name]) for k, (name, *_) in enumerate(variables)}
+            return arrays, [variables, _attributes(file.attrs)]
 
 
-def _dimensions(name: str, item: h5py.Dataset) -> tuple[str, ...]:
-    return (name,) if item.is_scale else tuple(each[0].name[1:] for each in item.dims)
+def _dimensions(name: str, item: h5py.Dataset) -> list[str]:
+    return [name] if item.is_scale else [each[0].name[1:] for each in item.dims]
 
 
-def _values(item: h5py.Dataset) -> Values:
-    return np.asarray(item.asstr()[...] if h5py.check_string_dtype(item.dtype) else item[...])
+def _values(item: h5py.Dataset) -> np.ndarray[Any, Any]:
+    if h5py.check_string_dtype(item.dtype):
+        return np.asarray(item.asstr()[...], dtype=str)
+    return _sound(np.asarray(item[...]))
+
+
+def _attributes(attributes: Any) -> dict[str, Any]:
+    return {name: _sound(np.asarray(value)).tolist() for name, value in attributes.items()}
+
+
+def _sound(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    if values.dtype.kind not in "OUSTbiuf":
+        raise ValueError(f"values of the type {values.dtype.kind}, neither numbers nor texts")
+    return values

@@ -15,6 +15,7 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found, from_text
+from modefront.findings.selection import reference
 from modefront.front.point import preferred
 from modefront.predictions import Prediction
 from modefront.predictions.registry import kinds_in
@@ -23,7 +24,6 @@ from modefront.results.analysis import Values, left_open
 from modefront.results.findings import as_values
 from modefront.results.predictions import by_kind
 from modefront.results.schema import described
-from modefront.results.selection import reference
 from modefront.uncertainty.inference import Inference
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.prediction import (

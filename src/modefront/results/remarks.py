@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 import xarray as xr
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools
 from modefront.findings.catalogue import Severity
 from modefront.findings.record import Finding, found, from_text, in_order
+from modefront.findings.selection import front_points, not_converged, uncertified
 from modefront.front.point import Kind, preferred
 from modefront.optim.problem import at_bounds
 from modefront.predictions.registry import kinds_in
-from modefront.results.selection import front_points, not_converged, uncertified
 from modefront.rounding import ACCUMULATED
 
 CHANGED = "changed"
 """Attribute of results that were read: how they are not as a run has written them."""
 
-MOST = 10
-"""Findings that are printed, at most, unless all are asked for."""
-
-NAMED = 6
-"""Points, or runs of them, that are named one by one in a sentence."""
-
-FEW = 2
-"""Modes whose pairs change, and parameters at bounds, that a first screen names one by one."""
+MOST, NAMED, FEW, RANGES = 10, 6, 2, 4
+"""Findings that are printed, unless all are asked for; points, or runs of them, that a sentence
+names; modes whose pairs change and parameters at bounds on a first screen; ranges in a sentence."""
 
 NEGATIVE = 1e-6
 """Size of a negative weight, the sum of all being 1, that solutions do not leave by rounding: ten
@@ -38,10 +34,6 @@ hundred times the tolerance of a step, which minima that are nearly flat miss by
 
 POOR = 0.5
 """MAC below which a pair is poor."""
-
-
-RANGES = 4
-"""Parameters whose ranges a sentence names."""
 
 WIDE = 1.02
 """Ratio of greatest to least prediction from which a spread is worth a sentence."""
@@ -119,14 +111,13 @@ def _front(data: xr.Dataset) -> Iterator[Finding]:
     elif front.size:
         said = "all" if optimal == front.size else optimal
         yield found("front", points=int(front.size), optimal=said)
-    gaps = data.sizes.get("end", 0) // 2
-    if gaps:
+    if gaps := data.sizes.get("end", 0) // 2:
         yield found("branches", branches=gaps + 1)
     for k in range(gaps):
-        end, start = data["end_objective"].values[2 * k : 2 * k + 2]
-        if np.isfinite([end, start]).all():
-            ends = _vector(end), _vector(start)
-            yield found("branch-ends", str(k + 1), other=k + 2, end=ends[0], start=ends[1])
+        ends = data["end_objective"].values[2 * k : 2 * k + 2]
+        if np.isfinite(ends).all():
+            end, start = ("(" + ", ".join(f"{x:.5g}" for x in J) + ")" for J in ends)
+            yield found("branch-ends", str(k + 1), other=k + 2, end=end, start=start)
     if "piece" in data:
         inside = ~pareto & ~data["dominated_among_front"].values
         inside &= data["kind"].values == Kind.FRONT.value
@@ -153,16 +144,15 @@ def places(data: xr.Dataset, chosen: Bools) -> str:
     labels = [str(x) for x in data["label"].values]
     front = front_points(data).tolist() if data.sizes["group"] == 2 else []
     along = {i: k for k, i in enumerate(front)}
-    runs: list[list[int]] = []
+    runs: list[list[str]] = []
+    before = -1
     for i in np.flatnonzero(chosen).tolist():
-        if runs and i in along and along.get(runs[-1][-1]) == along[i] - 1:
-            runs[-1].append(i)
+        if runs and i in along and along.get(before) == along[i] - 1:
+            runs[-1].append(labels[i])
         else:
-            runs.append([i])
-    parts: list[str] = []
-    for run in runs:
-        named = [labels[i] for i in run]
-        parts += [f"{named[0]} to {named[-1]}"] if len(run) > 2 else named
+            runs.append([labels[i]])
+        before = i
+    parts = [x for run in runs for x in ([f"{run[0]} to {run[-1]}"] if run[2:] else run)]
     if len(parts) > NAMED:
         return f"{int(chosen.sum())} of {len(labels)} models"
     return ", ".join(parts)
@@ -262,9 +252,9 @@ def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
     labels, paired = data["label"].values[front], data["paired_mode"].values[front]
     out, changed = [], []
     for r, column in zip(data["mode"].values, paired.T, strict=True):
-        numbers, counts = np.unique(column[np.isfinite(column)], return_counts=True)
+        counts = Counter(sorted(column[np.isfinite(column)])).most_common()
         changes = np.flatnonzero(np.diff(column)).tolist()
-        if numbers.size < 2:
+        if len(counts) < 2:
             continue
         changed.append(str(r))
         if data.sizes["group"] == 2 and len(changes) <= 2:
@@ -273,10 +263,8 @@ def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
                 ends = {"first": labels[i], "second": labels[i + 1]}
                 out.append(found("changed-pair", str(r), before=before, after=after, **ends))
             continue
-        order = np.argsort(-counts, kind="stable").tolist()
-        each = [f"{numbers[k]:.0f} at {counts[k]}" for k in order]
-        said = f": {', '.join(each)} of {front.size} points"
-        out.append(found("changed-pairs", str(r), counts=said))
+        each = ", ".join(f"{number:.0f} at {count}" for number, count in counts)
+        out.append(found("changed-pairs", str(r), counts=f": {each} of {front.size} points"))
     if most is not None and len(out) > most:
         return [found("changed-pairs", ", ".join(changed), many=True, counts="")]
     return out
@@ -285,14 +273,14 @@ def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
 def _at_bounds(data: xr.Dataset, most: int | None) -> Iterator[Finding]:
     """Yield which parameters are at a bound and where, of more than ``most`` only how many."""
     at_bound = at_bounds(data["theta"].values, *data["bounds"].values.T) != 0
-    names = [str(x) for x in data["parameter"].values]
-    held = np.flatnonzero(at_bound.any(axis=0)).tolist()
-    if most is not None and len(held) > most:
-        named = ", ".join(names[j] for j in held[:most])
-        yield found("many-at-bounds", named, parameters=len(held))
-    elif held:
-        named = "; ".join(f"{names[j]} ({places(data, at_bound[:, j])})" for j in held)
-        yield found("at-bounds", named)
+    held = np.flatnonzero(at_bound.any(axis=0))
+    names = data["parameter"].values[held]
+    if most is not None and held.size > most:
+        yield found("many-at-bounds", ", ".join(names[:most]), parameters=int(held.size))
+    elif held.size:
+        where = [places(data, at_bound[:, j]) for j in held]
+        named = [f"{name} ({at})" for name, at in zip(names, where, strict=True)]
+        yield found("at-bounds", "; ".join(named))
 
 
 def _ranges(data: xr.Dataset) -> Iterator[Finding]:
@@ -307,19 +295,18 @@ def _ranges(data: xr.Dataset) -> Iterator[Finding]:
         rest = len(order) - len(first)
         less = f" ({rest} parameter{'s' * (rest > 1)} more var{'y' if rest > 1 else 'ies'} less)"
         yield found("ranges", said + less * (rest > 0), models=int(best.size))
-    widest: list[tuple[float, str]] = []
-    for kind in kinds_in(data):
-        for variable in kind.ranged:
-            ratios = data[f"{variable.name}_range"].values[2].tolist()
-            places = data[kind.dimension].values.tolist()
-            widest += [
-                (x, f"{variable.key} of {place} {_times(x)}")
-                for x, place in zip(ratios, places, strict=True)
-                if np.isfinite(x) and x > WIDE
-            ]
+    widest = [
+        (ratio, f"{variable.key} of {place} {_times(ratio)}")
+        for kind in kinds_in(data)
+        for variable in kind.ranged
+        for ratio, place in zip(
+            data[f"{variable.name}_range"].values[2], data[kind.dimension].values, strict=True
+        )
+        if np.isfinite(ratio) and ratio > WIDE
+    ]
     if widest:
-        some = [text for _, text in sorted(widest, key=lambda each: -each[0])[:3]]
-        yield found("spread", "; ".join(some))
+        widest.sort(key=lambda each: -each[0])
+        yield found("spread", "; ".join(text for _, text in widest[:3]))
 
 
 def _times(ratio: float) -> str:
@@ -366,7 +353,3 @@ def _numerics(data: xr.Dataset) -> Iterator[Finding]:
         yield found("coverage", hypervolume=volume, igd=igd, gap=gap, missing=missing)
     spent, front = (int(attrs[f"{of}_evaluations"]) for of in ("model", "front"))
     yield found("effort", spent=spent, front=front)
-
-
-def _vector(values: Floats) -> str:
-    return "(" + ", ".join(f"{x:.5g}" for x in values) + ")"

@@ -17,6 +17,7 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.brief import as_html, brief
 from modefront.errors import ModelError
+from modefront.findings.selection import front_points, position, verdict
 from modefront.front.point import Kind, preferred
 from modefront.models.base import matrices_at
 from modefront.models.matrices import MatrixModel
@@ -24,9 +25,7 @@ from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.remarks import CHANGED, headlines
-from modefront.results.selection import front_points, verdict
-from modefront.results.shapes import PairedShapes, paired_shapes
-from modefront.results.vtu import write_vtu
+from modefront.results.shapes import PairedShapes, paired_shapes, write_vtu
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,11 +33,10 @@ if TYPE_CHECKING:
 SHOWN = (Kind.NOMINAL, Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL, Kind.EDGE)
 """Kinds of models in the short representation, in its order."""
 
-SENTENCES, ROWS, COLUMNS = 8, 6, 6
-"""Sentences, models and groups in the short representation."""
+ALONE = "expected results with their study, read_results(folder, study), found results alone"
 
-LINES, WIDTH = 11, 96
-"""Lines of its sentences as text, and their characters."""
+SENTENCES, LINES, WIDTH, ROWS, COLUMNS = 8, 11, 96, 6, 6
+"""Sentences in the short representation, their lines as text and characters; models and groups."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -109,10 +107,7 @@ class ReportedModel:
     @property
     def _matrices(self) -> MatrixModel:
         if self.problem is None:
-            raise ModelError(
-                "the matrices of a model: expected results with their study, "
-                "read_results(folder, study), found results alone"
-            )
+            raise ModelError(f"the matrices of a model: {ALONE}")
         model = matrices_at(self.problem.model, self._values)
         if model is None:
             kind = type(self.problem.model).__name__
@@ -160,11 +155,6 @@ class Results:
         return getattr(self.dataset, name)
 
     @property
-    def attrs(self) -> dict[Any, Any]:
-        """Attributes of the dataset."""
-        return self.dataset.attrs
-
-    @property
     def plot(self) -> Plots:
         """Pictures: ``plot.front()``, ``plot.parameters()`` and so on, see `Plots`."""
         return Plots(self.dataset)
@@ -205,16 +195,14 @@ class Results:
 
         Raises KeyError for an unknown label, IndexError for a position that there is not.
         """
-        row = self.dataset.isel(point=self._position(point))
-        return ReportedModel(
-            str(row["label"].values),
-            str(row["kind"].values),
-            dict(zip(map(str, row["parameter"].values), row["theta"].values.tolist(), strict=True)),
-            dict(zip(map(str, row["group"].values), row["objective"].values.tolist(), strict=True)),
-            row["frequency"].values,
-            row["mac"].values,
-            self.problem,
+        row = self.dataset.isel(point=position(self.dataset, point))
+        label, kind = (str(row[name].values) for name in ("label", "kind"))
+        theta, J = (
+            dict(zip(map(str, row[names].values), row[values].values.tolist(), strict=True))
+            for names, values in (("parameter", "theta"), ("group", "objective"))
         )
+        f, mac = row["frequency"].values, row["mac"].values
+        return ReportedModel(label, kind, theta, J, f, mac, self.problem)
 
     def shapes(self, point: str | int) -> PairedShapes:
         """Return the mode shapes of a model at all nodes and sensors, beside the measured ones.
@@ -223,11 +211,8 @@ class Results:
         without their study, KeyError for an unknown label.
         """
         if self.problem is None:
-            raise ModelError(
-                "mode shapes of a model: expected results with their study, "
-                "read_results(folder, study), found results alone"
-            )
-        return paired_shapes(self.dataset.isel(point=self._position(point)), self.problem)
+            raise ModelError(f"mode shapes of a model: {ALONE}")
+        return paired_shapes(self.dataset.isel(point=position(self.dataset, point)), self.problem)
 
     def write_vtu(self, path: Path | str, point: str | int) -> None:
         """Write the mode shapes of a model for ParaView, at all nodes, and the measured ones.
@@ -258,14 +243,6 @@ class Results:
         frame = pd.DataFrame(columns, index=pd.Index(data["label"].values, name="model"))
         return frame.loc[list(points)] if points else frame
 
-    def _position(self, point: str | int) -> int:
-        if not isinstance(point, str):
-            return point
-        labels = [str(x) for x in self["label"].values]
-        if point not in labels:
-            raise KeyError(f"expected one of {', '.join(labels)}, found {point!r}")
-        return labels.index(point)
-
     def _of(self, kind: Kind) -> xr.Dataset:
         return self.dataset.isel(point=np.flatnonzero(self["kind"].values == kind.value))
 
@@ -281,8 +258,8 @@ class Results:
     def _short(self) -> pd.DataFrame:
         import pandas as pd
 
-        kinds = self["kind"].values.tolist()
-        order = [i for kind in SHOWN for i, each in enumerate(kinds) if each == kind.value][:ROWS]
+        kinds = self["kind"].values
+        order = [i for kind in SHOWN for i in np.flatnonzero(kinds == kind.value)][:ROWS]
         index = pd.Index(self["label"].values[order], name="model")
         groups = [f"error {group}" for group in self["group"].values[:COLUMNS]]
         return pd.DataFrame(self["error"].values[order, :COLUMNS], index=index, columns=groups)
@@ -298,7 +275,7 @@ class Results:
 
     def _repr_html_(self) -> str:
         said = "".join(f"<p>{html.escape(text)}</p>" for text in self._said)
-        return f"{said}{self._short.to_html(float_format='{:.4g}'.format, escape=True)}"
+        return said + self._short.to_html(float_format="{:.4g}".format, escape=True)
 
 
 def read_results(folder: Path | str, problem: UpdatingProblem | None = None) -> Results:

@@ -1,14 +1,9 @@
 """The schema of results: every variable and attribute with dimensions, unit and meaning.
 
-These tables are the one place where results are described. The attributes of the variables in
-``results.nc``, the checks when a file is read and the tables of ``docs/results.md`` are made from
-them. Kinds of predictions describe their own variables (`modefront.predictions`), and results hold
-these descriptions.
-
-A row has a name, with ``*`` where every file has it and ``@`` before the first format that has it;
-the dimensions of a variable; what it holds, where that is not numbers, and its unit; and its
-meaning. Headings name the section of the documentation, and variables of which a file has all or
-none.
+The attributes in ``results.nc``, checks of files and docs/results.md are made from these tables. A
+row has a name, with ``*`` where every file has it and ``@`` before the first format that has it;
+dimensions; what it holds, where that is not numbers, and its unit; and its meaning. Headings name
+the section of the documentation, and variables of which a file has all or none.
 """
 
 from __future__ import annotations
@@ -234,7 +229,7 @@ shape_coefficient@2 | point mode basis | | how much of each the paired model mod
 """
 
 _ATTRIBUTES = """\
-format*@2 | number | version of this schema
+format*@2 | count | version of this schema
 version* | text | version of modefront
 study | text | name of the study
 inputs | text | hash of the study file and of all files that it names
@@ -242,21 +237,21 @@ checksum@2 | text | BLAKE2b hash of all variables and attributes, in hexadecimal
 assumed | text | which errors of the data are assumed, and how great
 verdict | text | sentences of the first screen, one a line
 remark | text | why a requested option is not in use
-seed* | number | seed of all random numbers
+seed* | count | seed of all random numbers
 method* | text | method by which the front was found
 reference* | text | label of the model to use, around which the posterior lies; empty where none is
 prediction_kinds@3 | text | kinds of the predictions, in JSON
-front_is_a_point* | number | 1 where one model is the best in every group
-model_evaluations* | number | eigenproblems solved
-full_eigensolutions | number | those solved in full
-reduced_solutions | number | those solved in a reduced basis
-shape_eigensolutions@2 | number | those for mode shapes at all nodes, besides `model_evaluations`
+front_is_a_point* | count | 1 where one model is the best in every group
+model_evaluations* | count | eigenproblems solved
+full_eigensolutions | count | those solved in full
+reduced_solutions | count | those solved in a reduced basis
+shape_eigensolutions@2 | count | those for mode shapes at all nodes, besides `model_evaluations`
 geometry@2 | text | chain or mesh: what the nodes are of
-front_evaluations* | number | those for points of the front
-nbi_evaluations | number | likewise; 0 for other methods
-prediction_eigensolutions | number | those for predictions, which are always full
-corrected_eigensolutions | number | those of a reduced basis without a factor of their own
-factorisations | number | factorisations of sparse matrices
+front_evaluations* | count | those for points of the front
+nbi_evaluations | count | likewise; 0 for other methods
+prediction_eigensolutions | count | those for predictions, which are always full
+corrected_eigensolutions | count | those of a reduced basis without a factor of their own
+factorisations | count | factorisations of sparse matrices
 eigenvalue_tolerance | number | tolerance of a reduced model
 refined | number | distance of neighbours above which points were added
 hypervolume* | number | volume dominated by the front, up to 1.1 in each objective, in units of the

@@ -1,7 +1,4 @@
-"""Conditions on results: variables of the schema that belong together, values with a meaning.
-
-Files may be damaged, or made by other programs.
-"""
+"""Conditions on results: variables of the schema that belong together, values with a meaning."""
 
 from __future__ import annotations
 
@@ -39,13 +36,6 @@ SIZES: Mapping[str, int] = {
 }
 """Sizes of dimensions that are always the same."""
 
-COUNTS = (
-    *("seed", "front_is_a_point", "model_evaluations", "front_evaluations", "nbi_evaluations"),
-    *("full_eigensolutions", "reduced_solutions", "prediction_eigensolutions"),
-    *("corrected_eigensolutions", "factorisations", "shape_eigensolutions", "format"),
-)
-"""Attributes that count something."""
-
 LARGEST = 1e9
 """Greatest count."""
 
@@ -66,47 +56,48 @@ def faults(data: xr.Dataset, *, whole: bool = True) -> list[Wrong]:
 def _structure(data: xr.Dataset) -> Iterator[Wrong]:
     """Yield what is missing, or of another type or other dimensions."""
     for name, attribute in ATTRIBUTES.items():
+        place = f"attribute '{name}'"
         if name not in data.attrs:
-            if attribute.required:
-                yield f"attribute '{name}'", attribute.meaning, "nothing"
+            yield from [(place, attribute.meaning, "nothing")] * attribute.required
         elif isinstance(data.attrs[name], str) != (attribute.values == "text"):
-            yield f"attribute '{name}'", f"a {attribute.values}", f"{data.attrs[name]!r}"
+            yield place, f"a {attribute.values}", repr(data.attrs[name])
     for name, kinds in COORDINATES.items():
-        if name not in data.coords:
-            yield f"coordinate '{name}'", DIMENSIONS[name], "nothing"
-        elif data[name].dims != (name,) or data[name].dtype.kind not in kinds:
-            found = f"{data[name].dtype} of the dimensions {', '.join(map(str, data[name].dims))}"
-            yield f"coordinate '{name}'", DIMENSIONS[name], found
+        place, known = f"coordinate '{name}'", data.coords.get(name)
+        if known is None:
+            yield place, DIMENSIONS[name], "nothing"
+        elif known.dims != (name,) or known.dtype.kind not in kinds:
+            found = f"{known.dtype} of the dimensions {', '.join(map(str, known.dims))}"
+            yield place, DIMENSIONS[name], found
     try:
         variables = variables_of(kinds_from(str(data.attrs.get(ATTRIBUTE, ""))))
     except ValueError as error:
         yield f"attribute '{ATTRIBUTE}'", "kinds of predictions in JSON", str(error)
         return
     for name, variable in variables.items():
+        place = f"variable '{name}'"
         if name not in data:
-            if variable.required:
-                yield f"variable '{name}'", variable.meaning, "nothing"
-        elif data[name].dims != variable.dimensions:
-            dimensions = ", ".join(variable.dimensions) or "none"
-            found = ", ".join(map(str, data[name].dims)) or "none"
-            yield f"variable '{name}'", f"dimensions {dimensions}", found
+            yield from [(place, variable.meaning, "nothing")] * variable.required
+        elif (dims := data[name].dims) != variable.dimensions:
+            expected, found = (
+                ", ".join(map(str, x)) or "none" for x in (variable.dimensions, dims)
+            )
+            yield place, f"dimensions {expected}", found
         elif data[name].dtype.kind not in DTYPES[variable.values]:
-            yield f"variable '{name}'", f"values of type {variable.values}", str(data[name].dtype)
+            yield place, f"values of type {variable.values}", str(data[name].dtype)
     if not data.sizes.get("point") or not data.sizes.get("mode"):
         yield "dimensions 'point' and 'mode'", "at least one each", "none"
 
 
 def _together(data: xr.Dataset) -> Iterator[Wrong]:
     """Yield variables and coordinates without which others cannot be shown."""
-    sets: dict[str, list[str]] = {}
-    for name, variable in variables_in(data).items():
-        if variable.together:
-            sets.setdefault(variable.together, []).append(name)
-    for names in sets.values():
-        present = [name for name in names if name in data]
-        missing = [name for name in names if name not in data]
-        if present and missing:
-            yield f"variable '{missing[0]}'", f"it, as there is '{present[0]}'", "nothing"
+    first: dict[str, str] = {}
+    variables = [(x.together, name) for name, x in variables_in(data).items() if x.together]
+    for together, name in variables:
+        if name in data:
+            first.setdefault(together, name)
+    for together, name in variables:
+        if together in first and name not in data:
+            yield f"variable '{name}'", f"it, as there is '{first[together]}'", "nothing"
     kinds = [kind.dimension for kind in kinds_in(data)]
     for name in kinds:
         if name not in data.dims:
@@ -123,37 +114,31 @@ def _sizes(data: xr.Dataset) -> Iterator[Wrong]:
     for name in ("point", "parameter", "group", "mode"):
         if not data.sizes.get(name):
             yield f"dimension '{name}'", f"at least one: {DIMENSIONS[name]}", "none"
-    for name, size in SIZES.items():
+    others = {f"{name}_other": data.sizes[name] for name in ("parameter", "group")}
+    for name, size in {**SIZES, **others}.items():
         if data.sizes.get(name, size) != size:
             yield f"dimension '{name}'", f"{size}: {DIMENSIONS[name]}", str(data.sizes[name])
     if data.sizes.get("end", 0) % 2:
         yield "dimension 'end'", "an end and a start for each gap", str(data.sizes["end"])
-    for name in ("parameter", "group"):
-        size = data.sizes[name]
-        if data.sizes.get(f"{name}_other", size) != size:
-            found = str(data.sizes[f"{name}_other"])
-            yield f"dimension '{name}_other'", f"{size}, as '{name}'", found
 
 
 def _texts(data: xr.Dataset) -> Iterator[Wrong]:
     for name, variable in data.variables.items():
-        if variable.dtype.kind in "OST":
-            wrong = [value for value in variable.values.ravel() if not isinstance(value, str)]
-            if wrong:
-                yield _place(data, name), "texts", repr(wrong[0])
-                return
+        wrong = [x for x in variable.values.ravel() if not isinstance(x, str)]
+        if variable.dtype.kind in "OST" and wrong:
+            yield _place(data, name), "texts", repr(wrong[0])
+            return
     for name in UNIQUE:
         values = data[name].values.tolist()
         if len(set(values)) < len(values):
             repeated = next(value for value in values if values.count(value) > 1)
             yield _place(data, name), "each value once", f"{clean(repeated, NAME)!r} again"
     kinds, known = data["kind"].values.tolist(), [kind.value for kind in Kind]
-    unknown = [str(kind) for kind in kinds if kind not in known]
-    if unknown:
-        yield "variable 'kind'", f"any of {', '.join(known)}", clean(repr(unknown[0]), NAME)
-    for kind in REFERENCES:
-        if kinds.count(kind.value) > 1:
-            yield "variable 'kind'", f"'{kind.value}' once", "more"
+    for kind in [str(kind) for kind in kinds if kind not in known][:1]:
+        yield "variable 'kind'", f"any of {', '.join(known)}", clean(repr(kind), NAME)
+    for reference in REFERENCES:
+        if kinds.count(reference.value) > 1:
+            yield "variable 'kind'", f"'{reference.value}' once", "more"
 
 
 def _numbers(data: xr.Dataset) -> Iterator[Wrong]:
@@ -163,37 +148,29 @@ def _numbers(data: xr.Dataset) -> Iterator[Wrong]:
             continue
         values = data[name].values
         kind = variables[name].values if name in variables else "count"
-        expected, wrong = "", np.zeros(values.shape, dtype=bool)
         if kind == "truth":
-            expected, wrong = "truth values, 0 or 1", ~np.isin(values, (0, 1))
+            yield from _all(data, name, "truth values, 0 or 1", np.isin(values, (0, 1)))
         elif kind == "count":
-            wrong = ~((np.abs(values) <= LARGEST) & (values == np.round(values)))
-            expected = "whole numbers"
+            whole = (np.abs(values) <= LARGEST) & (values == np.round(values))
+            yield from _all(data, name, "whole numbers", whole)
         elif name in FINITE:
-            expected, wrong = "finite numbers", ~np.isfinite(values)
-        if wrong.any():
-            yield _place(data, name), expected, _first(values, wrong)
+            yield from _all(data, name, "finite numbers", np.isfinite(values))
     for name in ("objective", "error", "minimum_objective"):
-        values = data[name].values
-        if (values < 0).any():
-            yield f"variable '{name}'", "numbers of 0 or more", _first(values, values < 0)
+        yield from _all(data, name, "numbers of 0 or more", ~(data[name].values < 0))
     bounds = data["bounds"].values
     if bounds.shape[1] == 2 and not (bounds[:, 0] < bounds[:, 1]).all():
         yield "variable 'bounds'", "lower bounds below upper ones", str(bounds[0].tolist())
-    measured = data["measured_frequency"].values
-    if not (np.isnan(measured) | ((measured > 0) & np.isfinite(measured))).all():
-        yield "variable 'measured_frequency'", "frequencies above 0", str(measured.min())
+    f = data["measured_frequency"].values
+    known = np.isnan(f) | ((f > 0) & np.isfinite(f))
+    yield from _all(data, "measured_frequency", "frequencies above 0", known)
 
 
 def _geometry(data: xr.Dataset) -> Iterator[Wrong]:
     count = data.sizes.get("drawn_node", 0)
     for name, least in (("line_nodes", 0), ("face_nodes", -1), ("sensor_node", 0)):
         if name in data:
-            values = data[name].values
-            wrong = ~((values >= least) & (values < count))
-            if wrong.any():
-                expected = f"nodes from {least} to {count - 1}"
-                yield f"variable '{name}'", expected, _first(values, wrong)
+            right = (data[name].values >= least) & (data[name].values < count)
+            yield from _all(data, name, f"nodes from {least} to {count - 1}", right)
     if "face_nodes" in data and (data["face_nodes"].values[:, :3] < 0).any():
         yield "variable 'face_nodes'", "three corners at least", "-1 among the first three"
 
@@ -205,7 +182,7 @@ def _of_file(data: xr.Dataset) -> Iterator[Wrong]:
         value = np.asarray(data.attrs[name])
         if value.ndim or value.dtype.kind not in "fiub":
             yield f"attribute '{name}'", "a number", clean(repr(data.attrs[name]), NAME)
-        elif name in COUNTS and not (0 <= value < 2**63 and value == np.round(value)):
+        elif attribute.values == "count" and not (0 <= value < 2**63 and value == np.round(value)):
             yield f"attribute '{name}'", "a whole number of 0 or more", str(value)
     if "certified" in data and "eigenvalue_tolerance" not in data.attrs:
         yield "attribute 'eigenvalue_tolerance'", "it, as there is 'certified'", "nothing"
@@ -218,5 +195,7 @@ def _place(data: xr.Dataset, name: object) -> str:
     return f"{'coordinate' if name in data.coords else 'variable'} '{name}'"
 
 
-def _first(values: np.ndarray, wrong: np.ndarray) -> str:
-    return f"{values[wrong].ravel()[0] if values.ndim else values[()]}"
+def _all(data: xr.Dataset, name: str, expected: str, right: np.ndarray) -> Iterator[Wrong]:
+    """Yield the first value of a variable that is not ``right``."""
+    if not right.all():
+        yield _place(data, name), expected, str(data[name].values[~np.asarray(right)].ravel()[0])

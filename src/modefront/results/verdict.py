@@ -17,11 +17,11 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.findings.catalogue import VERDICT
 from modefront.findings.knowledge import enumeration
+from modefront.findings.selection import front_points
 from modefront.front.point import Kind, preferred
 from modefront.predictions.registry import predictions_in
 from modefront.results.posterior import TRUST
 from modefront.results.remarks import fit_of
-from modefront.results.selection import front_points
 
 FAR = 10.0
 """Errors over those expected, from which no model is advised: far above what is called noise."""

@@ -31,7 +31,7 @@ from modefront.programs.base import ProgramMesh, read_mesh
 from modefront.programs.changes import Change, read_changes, write_deck
 from modefront.results.files import FILE, read_dataset
 from modefront.results.results import ReportedModel, Results
-from modefront.results.vtu import write_grid
+from modefront.results.shapes import write_grid
 from modefront.study.definition import Study
 from modefront.study.file import load
 from modefront.text import file_name

@@ -1,8 +1,6 @@
-"""Records as JSON and arrays, and back to the last digit.
+"""Records as JSON and arrays, and back to the last digit; nothing that is read is executed.
 
-A record is a frozen dataclass, or an enumeration, that is registered by `record`. Its fields hold
-records, arrays, numbers, texts, None, and tuples, lists and dictionaries of these. Only registered
-classes are made from a file; nothing that is read is executed.
+Fields hold records, arrays, numbers, texts, None, and tuples, lists and dictionaries of these.
 """
 
 from __future__ import annotations

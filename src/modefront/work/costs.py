@@ -1,12 +1,8 @@
-"""Costs of tasks: counted where an eigenproblem is solved, and nowhere else.
-
-`spend` adds to every count that is open (`counted`) in the same thread or task, so the costs of a
-task are its own, whatever else is computed at the same time.
-"""
+"""Costs of tasks: counted where an eigenproblem is solved, by all counts that are open there."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -16,14 +12,8 @@ from dataclasses import dataclass
 class Costs:
     """Numbers of solutions, and seconds that they took.
 
-    Attributes
-    ----------
-    eigenproblems : solved in full, with derivatives or without
-    corrected : solved in full with the factor of another one, for a reduced basis
-    factorisations : of sparse matrices, for these and for certificates
-    reduced : eigenproblems solved in a reduced basis
-    certificates : estimates of the error of reduced solutions
-    full_time, corrected_time, reduced_time, certificate_time : seconds that these took
+    Eigenproblems are solved in full, ``corrected`` ones with the factor of another one, ``reduced``
+    ones in a basis; ``certificates`` are estimates of the error of these.
     """
 
     eigenproblems: int = 0
@@ -49,14 +39,6 @@ class Costs:
 
 
 _OPEN: ContextVar[tuple[Costs, ...]] = ContextVar("open", default=())
-
-
-def total(costs: Iterable[Costs]) -> Costs:
-    """Return the sum of costs."""
-    out = Costs()
-    for each in costs:
-        out.add(each)
-    return out
 
 
 def spend(costs: Costs) -> None:

@@ -1,16 +1,13 @@
 """Progress of a run: its stage, tasks done, and the time that is left, as a range.
 
-Every task belongs to a stage. The extent of a stage is an estimate until a task of another stage
-starts: then it has ended, with the tasks that it had. A plan says from and to how many searches
-each stage takes. What a stage has taken is subtracted from it; a stage with tasks of a known number
-takes for each that is left as long as for those before. A search takes as long as those of the
-edges and the front so far, and as planned before there are many.
+A stage ends when a task of another one starts. A plan says from and to how many searches each
+stage takes; a search takes as long as those of edges and front so far, and as planned before there
+are many.
 """
 
 from __future__ import annotations
 
 import math
-import time
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -35,14 +32,7 @@ of those before, from and to."""
 
 @dataclass(frozen=True)
 class Plan:
-    """What a run will probably take.
-
-    Attributes
-    ----------
-    search : seconds of a search
-    searches : of each stage, from and to
-    other : seconds of stages that take something else
-    """
+    """Seconds of a search, searches of each stage from and to, and seconds of other stages."""
 
     search: float = 0.0
     searches: Mapping[str, Span] = field(default_factory=dict)
@@ -63,45 +53,29 @@ class Plan:
 
 @dataclass(frozen=True)
 class State:
-    """The state of a run.
+    """The state of a run: the stage of the last task that was started, and numbers of tasks.
 
-    Attributes
-    ----------
-    stage : that of the last task that was started; empty before the first one
-    done : tasks done, those kept from an earlier run included
-    running : tasks that are being computed
-    expected : tasks in all, as far as is known; never less than those done and running
-    elapsed : seconds since the run began
-    left : seconds until it ends, from and to, infinite where a search takes longer than planned;
-        None where nothing is planned
-    of_stage : tasks of this stage that are done, and expected
+    ``left`` are the seconds until it ends, from and to, infinite where a search takes longer than
+    planned, None where nothing is; ``of_stage`` tasks of this stage that are done, and expected.
     """
 
     stage: str
     done: int
     running: int
     expected: int
-    elapsed: float
     left: Span | None
     of_stage: tuple[int, int] = (0, 0)
 
 
-# 13 fields: five are given, the others are its state.
+# 11 fields: four are given, the others are its state.
 @dataclass
 class Progress:
-    """Follows the tasks of a run and reports its state after every change.
+    """Follows the tasks of a run and calls ``report`` with its state after every change.
 
-    Attributes
-    ----------
-    report : is called with the state
-    clock : returns seconds
-    spent : costs of the tasks computed, without those kept from an earlier run
-    workers : tasks that are computed at the same time, as far as there are so many
-    plan : what each stage will probably take; None for unknown
+    ``spent`` are the costs of tasks that were computed and not kept from an earlier run.
     """
 
     report: Callable[[State], object] = lambda _: None
-    clock: Callable[[], float] = time.monotonic
     spent: Costs = field(default_factory=Costs)
     workers: int = 1
     plan: Plan | None = None
@@ -112,7 +86,6 @@ class Progress:
     _computed: Counter[str] = field(default_factory=Counter)
     _seconds: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))
     _ended: set[str] = field(default_factory=set)
-    _began: float | None = None
 
     def expect(self, stages: Mapping[str, int]) -> None:
         """Note the number of tasks of each stage that are still to come."""
@@ -122,8 +95,6 @@ class Progress:
 
     def start(self, stage: str) -> None:
         """Take note that a task of a stage is being computed, or taken from what is kept."""
-        if self._began is None:
-            self._began = self.clock()
         if stage != self._stage and self._stage:
             before = self._stage
             self._expected[before] = self._done[before] + self._running[before]
@@ -152,7 +123,6 @@ class Progress:
             self._done.total(),
             self._running.total(),
             sum(extents.values()),
-            0.0 if self._began is None else self.clock() - self._began,
             self._left(extents),
             (self._done[self._stage], extents.get(self._stage, 0)),
         )

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
-from typing import Any
 
-from modefront.work.costs import Costs, total
+from modefront.work.costs import Costs
 from modefront.work.progress import Progress
 from modefront.work.store import Store
 from modefront.work.task import Backend, InTurn, Key, R, Task
@@ -15,15 +13,7 @@ from modefront.work.task import Backend, InTurn, Key, R, Task
 
 @dataclass
 class Run:
-    """Carries out tasks, and keeps what they return.
-
-    Attributes
-    ----------
-    store : keeps the results; None for none
-    progress : is told of every task
-    backend : computes the tasks
-    costs : of every task, by its key and turn, kept ones included
-    """
+    """Has a backend carry out tasks, keeps results in a store, and counts the costs of all."""
 
     store: Store | None = None
     progress: Progress = field(default_factory=Progress)
@@ -55,7 +45,10 @@ class Run:
         elsewhere = [k for k in left if not tasks[k].in_process]
         for ks, backend in ((elsewhere, self.backend), (here, InTurn())):
             chosen = [tasks[k] for k in ks]
-            started = partial(self._started, chosen)
+
+            def started(position: int, chosen: Sequence[Task[R]] = chosen) -> None:
+                self.progress.start(chosen[position].stage)
+
             for position, done in backend.compute(chosen, started):
                 task = chosen[position]
                 results[ks[position]] = done.result
@@ -66,9 +59,10 @@ class Run:
                 self.progress.end(task.stage, done.seconds)
         return [results[k] for k in range(len(tasks))]
 
-    def _started(self, tasks: Sequence[Task[Any]], position: int) -> None:
-        self.progress.start(tasks[position].stage)
-
     def total(self, chosen: Callable[[str], bool] = lambda _: True) -> Costs:
         """Return the costs of the tasks of the chosen stages."""
-        return total(costs for (key, _), costs in self.costs.items() if chosen(str(key[0])))
+        out = Costs()
+        for (key, _), costs in self.costs.items():
+            if chosen(str(key[0])):
+                out.add(costs)
+        return out

@@ -1,8 +1,6 @@
 """Results of tasks in a folder, one small file a task, so that an interrupted run loses only one.
 
-A file ends with a checksum of all before, which alone says whether it is whole; a task of which it
-is not is done again. Arrays are stored exactly, so that a run that is continued gives the same
-results to the last digit as one that was not interrupted.
+A file ends with a checksum, which alone says whether it is whole; arrays are stored exactly.
 """
 
 from __future__ import annotations
@@ -30,17 +28,12 @@ from modefront.work.codec import decode, encode
 from modefront.work.costs import Costs
 from modefront.work.task import Task
 
-FOLDER = "tasks"
-"""Folder of the kept results, within that of the results of a run."""
+FOLDER, NOTE = "tasks", "study"
+"""Folder of the kept results within that of a run's results, and the file in it with the path of
+the study file from there."""
 
-NOTE = "study"
-"""File beside these results, with the path of the study file from those of the run."""
-
-CHECKSUM = 32
-"""Bytes of the checksum at the end of a file."""
-
-LONGEST = 60
-"""Characters of a key at most in a file name, which ends in a hash."""
+CHECKSUM, LONGEST = 32, 60
+"""Bytes of the checksum at the end of a file; characters of a key in its name, at most."""
 
 
 @dataclass(frozen=True)
@@ -91,11 +84,9 @@ def hash_text(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-FILE = "lock"
-"""File that is locked; it stays, since a lock on a file that is removed keeps nobody out."""
-
-HOLDER = "lock-holder"
-"""File that says which process holds the lock."""
+FILE, HOLDER = "lock", "lock-holder"
+"""File that is locked, which stays, since a lock on a file that is removed keeps nobody out; and
+file that says which process holds the lock."""
 
 
 @contextmanager
@@ -119,8 +110,7 @@ def locked(folder: Path) -> Iterator[None]:
             known = "another run"
             with suppress(OSError):
                 if holder.is_file():  # a pipe in its place would be waited for
-                    with holder.open("rb") as stream:
-                        text = stream.read(400).decode("utf-8", "replace")
+                    text = holder.read_text("utf-8", "replace")
                     known = clean(f"the run of {text}", NAME)
             found = f"{known}: wait until it has ended, or choose another folder with -o"
             if isinstance(lock, SoftFileLock):

@@ -1,9 +1,6 @@
 """Tasks and executors: the work of a run, apart from who does it.
 
-A task is a module-level function with picklable arguments and a key that nothing else in the run
-has. Tasks of one call of `Executor.run` are independent of each other; their results come back in
-the order of the tasks, whoever computed them and whenever. Random numbers belong to the task: a
-task with a seed passes a generator of its own to its function.
+Tasks of one call of `Executor.run` are independent, and their results come back in their order.
 """
 
 from __future__ import annotations
@@ -99,13 +96,7 @@ IMMEDIATE = Immediate()
 
 @dataclass(frozen=True)
 class Within:
-    """An executor for a repetition of the work.
-
-    Attributes
-    ----------
-    inner : carries out the tasks
-    turn : put behind the turns of the tasks
-    """
+    """An executor for a repetition of the work, whose tasks have a further turn."""
 
     inner: Executor
     turn: Key

@@ -1,8 +1,7 @@
 """Tasks as bytes for other processes, and large objects that they share sent once.
 
-An object of a class that is registered by `shared` is replaced by a name in the tasks that have it
-among their arguments. A process that does not know the name says so, and the tasks are sent again
-with the object. As another process may take them then, it is sent what any of them has lacked.
+An object of a class that is registered by `shared` is replaced by a name. A process that does not
+know the name says so; the tasks are sent again with all that any process has lacked.
 """
 
 from __future__ import annotations
@@ -99,12 +98,7 @@ class Sender:
 
 
 class _Pickler(pickle.Pickler):
-    """Pickles tasks, or the ``root`` among the shared objects, with names of these in them.
-
-    Attributes
-    ----------
-    met : shared objects by their names, each after its parts
-    """
+    """Pickles tasks, or a shared ``root``, with names of shared objects that are ``met``."""
 
     def __init__(self, stream: io.BytesIO, sender: Sender, root: Shared | None = None) -> None:
         super().__init__(stream, pickle.HIGHEST_PROTOCOL)
@@ -134,13 +128,9 @@ _LOCK = threading.Lock()
 
 @dataclass(frozen=True)
 class Reply:
-    """Results and costs that a process sends back.
+    """Results that a process sends back, with the error of the task after these, if any.
 
-    Attributes
-    ----------
-    done : results of tasks, of the first ones where one has failed
-    error : of the task after these; None where none has
-    lacking : names of shared objects that the process does not know; then nothing was computed
+    Nothing was computed where the process does not know shared objects, which it names.
     """
 
     done: Sequence[Done] = ()

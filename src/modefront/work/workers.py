@@ -1,11 +1,8 @@
 """A backend that hands tasks to other processes: of this machine, or those of a Dask cluster.
 
-Tasks are sent as bytes, short ones several at a time. Where a process is lost, the tasks that it
-may have computed are done again, one at a time. One that is lost alone as well, or whose memory
-does not suffice twice, is given up: the others are computed to the end, and an error names it.
-
-A process of this machine is spawned, ends with the one that has started it, whatever ends that, and
-leaves interrupts of the terminal to it.
+Short tasks are sent several at a time. Those of a process that is lost are done again, alone, and
+given up the second time: the others are computed to the end, and an error names it. A process of
+this machine ends with the one that has started it, and leaves interrupts of the terminal to it.
 """
 
 from __future__ import annotations
@@ -24,7 +21,6 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ProcessP
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
-from enum import Enum
 from functools import cache
 from multiprocessing import connection, resource_tracker
 from pickle import PicklingError
@@ -42,11 +38,8 @@ SHORT, TINY = 0.02, 0.005
 """Seconds of tasks that are sent together, about, and of all tasks below which they are computed in
 the calling process."""
 
-QUEUED = 2
-"""Messages that are sent, over the number of processes."""
-
-SHARE = 0.6
-"""Share of the memory that is available that processes may take."""
+QUEUED, SHARE = 2, 0.6
+"""Messages that are sent, over the number of processes, which may take this share of the memory."""
 
 WARM = "modefront.front.pareto", "modefront.analysis.front"
 """What processes import when they start: nearly all that the tasks of a run need."""
@@ -54,20 +47,14 @@ WARM = "modefront.front.pareto", "modefront.analysis.front"
 MOST = 61
 """Processes of this machine at most; Windows waits for no more."""
 
+GONE = "the Dask scheduler is gone; what was done is kept"
+
 ANSWER, JOIN = 10.0, 60.0
 """Seconds in which a scheduler has to answer, and one of its workers to join."""
 
 ONE_THREAD = {"RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 """Environment of a process with one thread: of rslab, `modefront.linalg.products` and the BLAS. A
 BLAS that is limited only after it has started its threads makes imports take half as long again."""
-
-
-class Loss(Enum):
-    """Tasks that are lost with an error that is not one of a task."""
-
-    PROCESS = "the process that computed the task"
-    POOL = "all processes, which can be started again"
-    CLUSTER = "the cluster"
 
 
 class Pool(Protocol):
@@ -80,36 +67,34 @@ class Pool(Protocol):
     @property
     def ready(self) -> bool:
         """Whether a message would be computed at once."""
-        return True
+
+    @property
+    def lost(self) -> tuple[type[Exception], ...]:
+        """Errors of messages whose process has ended."""
+
+    @property
+    def gone(self) -> tuple[type[Exception], ...]:
+        """Errors where there are no processes any more."""
 
     def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
         """Compute a message in one of the processes."""
-
-    def lost(self, error: Exception, /) -> Loss | None:
-        """Return the loss that an error means; None where it is an error of the task."""
-
-    def restart(self) -> None:
-        """Start the processes again, where nothing else replaces them."""
-        return
 
     def close(self) -> None:
         """End all processes, whatever they do."""
 
 
-@dataclass
 class LocalPool:
     """Processes of this machine, spawned, with one thread each.
 
-    They import the modules ``warm`` when they start, and with them what most tasks need.
+    They import the modules ``warm`` when they start, and with them what most tasks need. Where one
+    has ended, the executor ends the others, and new ones compute what is sent next.
     """
 
-    count: int
-    warm: Sequence[str] = ()
-    _executor: ProcessPoolExecutor = field(init=False)
-    _first: Future[int] = field(init=False)
+    lost, gone = (BrokenProcessPool,), ()
 
-    def __post_init__(self) -> None:
-        self.restart()
+    def __init__(self, count: int, warm: Sequence[str] = ()) -> None:
+        self.count, self._warm = count, warm
+        self._start()
 
     @property
     def ready(self) -> bool:
@@ -118,19 +103,18 @@ class LocalPool:
 
     def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
         """Compute a message in one of the processes."""
-        with _starting():  # the executor may start a process that it has not needed yet
+        with suppress(BrokenProcessPool), _starting():  # of a process that was not needed yet
+            return self._executor.submit(work, message, objects)
+        self._start()
+        with _starting():
             return self._executor.submit(work, message, objects)
 
-    def lost(self, error: Exception, /) -> Loss | None:
-        """Return that all processes are lost where one has ended: the executor ends the others."""
-        return Loss.POOL if isinstance(error, BrokenProcessPool) else None
-
-    def restart(self) -> None:
+    def _start(self) -> None:
         """Start the processes, or others in their place."""
         spawn = multiprocessing.get_context("spawn")
         try:
             with _starting():
-                self._executor = ProcessPoolExecutor(self.count, spawn, _prepare, (self.warm,))
+                self._executor = ProcessPoolExecutor(self.count, spawn, _prepare, (self._warm,))
                 # The executor starts a process a task, as long as none of them is idle.
                 self._first, *_ = [self._executor.submit(int) for _ in range(self.count)]
         except BaseException:  # an interrupt that was held back
@@ -194,41 +178,39 @@ def _starting() -> Iterator[None]:
             signal.pthread_sigmask(signal.SIG_SETMASK, signals)
 
 
-@dataclass
-class Cluster(Pool):
+class Cluster:
     """Workers of a Dask cluster that runs already, at the address of its scheduler.
 
     Raises InputError where `distributed` is not installed or the address is none, UnfinishedError
     where no scheduler answers, no worker joins, or the versions differ.
     """
 
-    address: str
-    _count: int = 1
-    _counted: float = -math.inf
-    _client: Any = field(init=False)
-    _executor: Any = field(init=False)
+    ready = True
 
-    def __post_init__(self) -> None:
+    def __init__(self, address: str) -> None:
         place = "--scheduler"
         try:
             distributed: Any = importlib.import_module("distributed")
         except ImportError:
             expected = "the extra 'cluster': pip install modefront[cluster]"
             raise InputError(Fault("", place, expected, "no package 'distributed'")) from None
+        self.lost = (distributed.KilledWorker,)
+        self.gone = (CancelledError, OSError, distributed.client.ClosedClientError)
         try:
             logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors say what it logs
-            self._client = distributed.Client(self.address, timeout=ANSWER, set_as_default=False)
+            self._client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
         except ValueError as error:
             expected = "an address like tcp://HOST:PORT"
-            raise InputError(Fault("", place, expected, f"{self.address}: {error}")) from None
+            raise InputError(Fault("", place, expected, f"{address}: {error}")) from None
         except OSError:
-            raise UnfinishedError(f"no Dask scheduler answers at {self.address}") from None
+            raise UnfinishedError(f"no Dask scheduler answers at {address}") from None
         try:
             self._client.wait_for_workers(1, timeout=JOIN)
         except TimeoutError:
             self._client.close()
-            raise UnfinishedError(f"no worker has joined the scheduler {self.address}") from None
+            raise UnfinishedError(f"no worker has joined the scheduler {address}") from None
         self._executor = self._client.get_executor(pure=False, retries=0)
+        self._count, self._counted = 1, -math.inf
 
     @property
     def count(self) -> int:
@@ -243,14 +225,6 @@ class Cluster(Pool):
         """Compute a message in one of the workers."""
         return self._executor.submit(_work_of_one_thread, message, objects)
 
-    def lost(self, error: Exception, /) -> Loss | None:
-        """Return whether a worker or the whole cluster is lost."""
-        from distributed import KilledWorker
-
-        if isinstance(error, KilledWorker):
-            return Loss.PROCESS
-        return Loss.CLUSTER if isinstance(error, CancelledError | OSError) else None
-
     def close(self) -> None:
         """Leave the cluster, which cancels what it still computes for this run."""
         with suppress(Exception):  # a scheduler that is gone needs no farewell
@@ -263,51 +237,26 @@ def _work_of_one_thread(message: Message, objects: dict[str, bytes]) -> Reply:
     return work(message, objects)
 
 
-@dataclass(frozen=True)
-class _Sent:
-    """Tasks that were sent.
-
-    Attributes
-    ----------
-    positions : of the tasks in their call
-    message : with the tasks
-    lacked : names of shared objects that came with it, as some process did not know them
-    """
-
-    positions: Sequence[int]
-    message: Message
-    lacked: frozenset[str] = frozenset()
-
-
 @dataclass
 class _Call:
-    """Tasks of one call: where they are, by their positions.
+    """Tasks of one call, by their positions: to be sent, to be sent alone, sent, and failed.
 
-    Attributes
-    ----------
-    tasks : of the call
-    pending : to be sent
-    alone : to be sent one at a time, since a process was lost with them
-    flying : sent, by what will come back
-    errors : of tasks that have failed
+    What is sent has a message, and names of shared objects that came with it, as some process did
+    not know them.
     """
 
     tasks: Sequence[Task[Any]]
     pending: deque[int]
     alone: deque[int] = field(default_factory=deque)
-    flying: dict[Future[Reply], _Sent] = field(default_factory=dict)
+    flying: dict[Future[Reply], tuple[Sequence[int], Message, frozenset[str]]] = field(
+        default_factory=dict
+    )
     errors: dict[int, Exception] = field(default_factory=dict)
 
 
 @dataclass
 class Workers:
-    """Hands tasks to the processes of a pool.
-
-    Attributes
-    ----------
-    pool : the processes
-    memory : bytes that they may take together
-    """
+    """Hands tasks to the processes of a pool, which may take so many bytes of memory together."""
 
     pool: Pool
     memory: float = field(default_factory=lambda: SHARE * available_memory())
@@ -346,8 +295,7 @@ class Workers:
                 continue
             self._send(call, begun)
             for future in wait(call.flying, return_when=FIRST_COMPLETED).done:
-                if future in call.flying:  # else it was lost with another one
-                    yield from self._received(call, future)
+                yield from self._received(call, future)
         if call.errors:
             raise call.errors[min(call.errors)]
 
@@ -368,8 +316,8 @@ class Workers:
         """Send tasks of a call, as many as the processes have room for."""
         if call.alone:
             if not call.flying:
-                k = call.alone.popleft()
-                self._submit(call, _Sent([k], self._message(call, [k])))
+                positions = [call.alone.popleft()]
+                self._submit(call, positions, self._message(call, positions))
             return
         while call.pending and len(call.flying) < QUEUED * self.pool.count:
             share = math.ceil(len(call.pending) / self.pool.count)
@@ -377,10 +325,10 @@ class Workers:
             count = max(1, min(share, int(SHORT / max(each, SHORT / 1000))))
             positions = [call.pending[k] for k in range(count)]
             message = self._message(call, positions)
-            taken = sum(sent.message.memory for sent in call.flying.values())
+            taken = sum(sent.memory for _, sent, _ in call.flying.values())
             if call.flying and taken + message.memory > self.memory:
                 return
-            self._submit(call, _Sent(positions, message))
+            self._submit(call, positions, message)
             for k in positions:
                 call.pending.popleft()
                 begun(k)
@@ -392,49 +340,39 @@ class Workers:
             expected = "a model that other processes can import: functions of a module"
             raise InputError(Fault("", "workers", expected, str(error))) from None
 
-    def _submit(self, call: _Call, sent: _Sent) -> None:
-        objects = self._sender.objects([x for x in sent.message.names if x in sent.lacked])
+    def _submit(
+        self,
+        call: _Call,
+        positions: Sequence[int],
+        message: Message,
+        lacked: frozenset[str] = frozenset(),
+    ) -> None:
+        objects = self._sender.objects([name for name in message.names if name in lacked])
         try:
-            call.flying[self.pool.submit(sent.message, objects)] = sent
-        except Exception as error:
-            loss = self.pool.lost(error)
-            if loss is Loss.CLUSTER:
-                raise UnfinishedError("the Dask scheduler is gone") from None
-            if loss is not Loss.POOL:
-                raise
-            self.pool.restart()
-            call.flying[self.pool.submit(sent.message, objects)] = sent
+            call.flying[self.pool.submit(message, objects)] = positions, message, lacked
+        except self.pool.gone:
+            raise UnfinishedError(GONE) from None
 
     def _received(self, call: _Call, future: Future[Reply]) -> Iterator[tuple[int, Done]]:
-        sent = call.flying.pop(future)
+        positions, message, lacked = call.flying.pop(future)
         try:
             reply = future.result()
-        except Exception as error:
-            loss = self.pool.lost(error)
-            if loss is None:
-                raise
-            if loss is Loss.CLUSTER:
-                text = "the Dask scheduler is gone; what was done is kept"
-                raise UnfinishedError(text) from None
-            lost = [sent]
-            if loss is Loss.POOL:
-                lost += call.flying.values()
-                call.flying.clear()
-                self.pool.restart()
-            for k in (k for each in lost for k in each.positions):
+        except self.pool.lost:
+            for k in positions:
                 self._lose(call, k, "the process that computed it ended")
             return
+        except self.pool.gone:
+            raise UnfinishedError(GONE) from None
         if reply.lacking:
-            lacked = sent.lacked.union(reply.lacking)
-            self._submit(call, _Sent(sent.positions, sent.message, lacked))
+            self._submit(call, positions, message, lacked.union(reply.lacking))
             return
-        for k, done in zip(sent.positions, reply.done, strict=False):
+        for k, done in zip(positions, reply.done, strict=False):
             self._learn(call.tasks[k], done.seconds)
             spend(done.costs)
             yield k, done
         if reply.error is None:
             return
-        failed, *others = sent.positions[len(reply.done) :]
+        failed, *others = positions[len(reply.done) :]
         if isinstance(reply.error, MemoryError):
             self._lose(call, failed, "its memory does not suffice")
         else:

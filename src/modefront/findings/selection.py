@@ -14,9 +14,19 @@ def front_points(data: xr.Dataset) -> Ints:
     return np.flatnonzero(data["kind"].values == Kind.FRONT.value)
 
 
+def position(data: xr.Dataset, point: str | int) -> int:
+    """Return the position of a point from its label or position; raises KeyError without one."""
+    if not isinstance(point, str):
+        return point
+    labels = [str(x) for x in data["label"].values]
+    if point not in labels:
+        raise KeyError(f"expected one of {', '.join(labels)}, found {point!r}")
+    return labels.index(point)
+
+
 def reference(data: xr.Dataset) -> int:
     """Return the position of the model that the data prefer."""
-    return [str(x) for x in data["label"].values].index(preferred(data.attrs))
+    return position(data, preferred(data.attrs))
 
 
 def verdict(data: xr.Dataset) -> list[str]:
