@@ -72,6 +72,9 @@ MOST_STEPS = 60
 MOST_OF_BACKGROUND = 0.9
 """Share of the background that a step takes away, at most."""
 
+SHORTEST = 1e-3
+"""Share of a step of the background below which it is left out."""
+
 TERMS = 2
 """Terms of what a force moves besides, over frequency: a constant and a slope."""
 
@@ -108,6 +111,22 @@ class Band:
         """Sum of the real part of F F^* over the lines, (sensors, sensors)."""
         out: Floats = np.tensordot(self.count, self.power.real, 1)
         return out
+
+    @property
+    def prior(self) -> Floats:
+        """Sum of squares of the background a priori, (sensors, sensors)."""
+        out: Floats = (PRIOR + len(self.floor)) * np.diag(self.floor)
+        return out
+
+    @property
+    def weight(self) -> float:
+        """Number of lines, and of those that the prior is worth."""
+        return float(self.count.sum() + PRIOR + len(self.floor))
+
+    @property
+    def background(self) -> Floats:
+        """The most likely background without modes, (sensors, sensors)."""
+        return (self.total + self.prior) / self.weight
 
 
 @dataclass(frozen=True)
@@ -182,15 +201,19 @@ class Density:
         R = np.zeros((n, len(precision)))
         return replace(self, coherent=R, middle=float(ends.mean()), precision=precision)
 
-    def without(self, mode: int) -> Density:
-        """Return the model without one of its modes, and without R."""
-        kept = np.delete(np.arange(len(self.omega)), mode)
+    def without(self, mode: int, band: Band) -> Density:
+        """Return the model without one of its modes, whose power becomes background, and R."""
+        kept, phi = np.delete(np.arange(len(self.omega)), mode), self.phi[:, mode]
+        h = self.response(band.omega, band.order)[mode]
+        mean = float(band.count @ np.abs(h) ** 2 / band.count.sum())
+        power = self.force[mode, mode].real * mean
         return replace(
             self,
             omega=self.omega[kept],
             zeta=self.zeta[kept],
             phi=self.phi[:, kept],
             root=root_of(self.force[np.ix_(kept, kept)]),
+            background=self.background + power * np.outer(phi, phi),
             free=self.free - (mode < self.free),
             coherent=self.coherent[:, :0],
             precision=self.precision[:0],
@@ -289,8 +312,7 @@ def _matrices(band: Band, model: Density) -> _Matrices:
     Y = np.eye(len(P)) - D @ P
     seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape)
     own, weighted = hat.T @ seen, band.count[:, None, None] * D
-    weight = band.count.sum() + PRIOR + n
-    cost = weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total + _prior(band))
+    cost = band.weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total + band.prior)
     cost += band.count @ determinant - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
     cost += np.sum(model.precision * model.coherent**2) / 2
     return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, float(cost))
@@ -299,21 +321,27 @@ def _matrices(band: Band, model: Density) -> _Matrices:
 def _of_responses(root: Complexes, P: Floats) -> tuple[Complexes, Complexes, Floats]:
     """Return N, D and the logarithm of det(I + N P) at all lines, from H L.
 
-    D is H L (I + L^* H^* P H L)^-1 L^* H^*, of which no rounding makes the inverse singular. The
-    logarithm is infinite where rounding is all that is known of it: forces that cancel each other.
+    D is H L (I + L^* H^* P H L)^-1 L^* H^*. The logarithm is infinite where rounding is all that is
+    known of it: forces that cancel each other.
     """
     adjoint = root.conj().swapaxes(1, 2)
-    value, vector = np.linalg.eigh(adjoint @ P @ root)
-    value = np.maximum(value, 0.0)
-    half = root @ vector / np.sqrt(1 + value)[:, None]
-    rounding = np.finfo(float).eps * value.max(axis=1, initial=0.0)
-    determinant = np.where(rounding < TOLERANCE, np.log1p(value).sum(axis=1), np.inf)
-    return root @ adjoint, half @ half.conj().swapaxes(1, 2), determinant
+    A = adjoint @ P @ root
+    trace = np.einsum("kii->k", A).real
+    lost = ~(np.finfo(float).eps * trace < TOLERANCE)
+    A[lost] = 0.0
+    C = np.linalg.cholesky(A + np.eye(A.shape[1]))
+    half = np.linalg.solve(C, adjoint)
+    determinant = 2 * np.log(np.einsum("kii->ki", C).real).sum(axis=1)
+    determinant[lost] = np.inf
+    return root @ adjoint, half.conj().swapaxes(1, 2) @ half, determinant
 
 
-def evaluate(band: Band, model: Density) -> Fit:
-    """Return the cost of a model with its gradient and the expected second derivatives."""
-    x, c, m = _matrices(band, model), band.count, model.free
+def evaluate(band: Band, model: Density, known: _Matrices | None = None) -> Fit:
+    """Return the cost of a model with its gradient and the expected second derivatives.
+
+    ``known`` are its matrices where they are computed already.
+    """
+    x, c, m = known or _matrices(band, model), band.count, model.free
     d, J = _changes(band, model), _root_changes(model.root)
     W = c[:, None, None] * (x.C - x.Y.conj().swapaxes(1, 2) @ x.own @ x.Y)
     total, again = x.weighted.sum(axis=0), (x.weighted @ x.own @ x.D).sum(axis=0)
@@ -433,27 +461,20 @@ def _expected(band: Band, model: Density, x: _Matrices) -> Floats:
     """Return the background that is most likely if the modal responses are as the model says."""
     again = (x.weighted @ x.own @ x.D).sum(axis=0) + x.weighted.sum(axis=0)
     both = (model.columns @ x.both).real
-    B = band.total - both - both.T + model.columns @ again.real @ model.columns.T + _prior(band)
-    out: Floats = (B + B.T) / (2 * (band.count.sum() + PRIOR + len(B)))
+    B = band.total - both - both.T + model.columns @ again.real @ model.columns.T + band.prior
+    out: Floats = (B + B.T) / (2 * band.weight)
     return out
 
 
-def _prior(band: Band) -> Floats:
-    """Return the sum of squares of the background a priori."""
-    out: Floats = (PRIOR + len(band.floor)) * np.diag(band.floor)
-    return out
-
-
-def _background(band: Band, model: Density, x: _Matrices) -> Floats:
-    r"""Return the background after a step of scoring of its own.
+def _background(band: Band, model: Density, x: _Matrices) -> tuple[Floats, Floats]:
+    r"""Return Q and z of a step of scoring of the background, to Q Q^T with Q as it is for z = 0.
 
     With B = R R^T and changes R Z R^T, the second derivatives are :math:`\sum_k (I - V D V^T) Z
     (I - V D V^T)`, V = R^-1 Psi, and the gradient is the step of expectation and maximisation
     times the number of lines. In an orthonormal basis U of V and beside it, they are solved for
     the parts of Z one by one.
     """
-    c, n = band.count, len(model.phi)
-    weight = c.sum() + PRIOR + n
+    c, weight = band.count, band.weight
     after = _expected(band, model, x)
     R = la.cholesky(model.background, lower=True)
     V = la.solve_triangular(R, model.columns, lower=True)
@@ -475,9 +496,25 @@ def _background(band: Band, model: Density, x: _Matrices) -> Floats:
     rest = right - U @ (U.T @ right)
     Z = (rest - rest @ U @ U.T) / weight + half + half.T + U @ inside @ U.T
     value, vector = la.eigh((Z + Z.T) / 2)
-    root = R @ vector * np.sqrt(1 + np.maximum(value, -MOST_OF_BACKGROUND))
-    out: Floats = root @ root.T
-    return out
+    return R @ vector, value
+
+
+def _with_background(
+    band: Band, model: Density, x: _Matrices, share: float
+) -> tuple[Density, _Matrices, float]:
+    """Return the model after a step of its background, its matrices, and the share of the next.
+
+    The step is halved until the cost falls.
+    """
+    Q, z = _background(band, model, x)
+    z = np.maximum(z, -MOST_OF_BACKGROUND)
+    while share > SHORTEST:
+        trial = replace(model, background=(Q * (1 + share * z)) @ Q.T)
+        after = _matrices(band, trial)
+        if after.cost <= x.cost:
+            return trial, after, min(2 * share, 1.0)
+        share /= 2
+    return model, x, 1.0
 
 
 def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
@@ -486,7 +523,7 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
     Scoring is Newton's method with the expected second derivatives; where a step would increase the
     cost, it is damped as Levenberg and Marquardt do. The background follows every step.
     """
-    fit, damping = evaluate(band, _normalised(model)), 1e-3
+    fit, damping, share = evaluate(band, _normalised(model)), 1e-3, 1.0
     for _ in range(most):
         trial = _moved(fit.model, _step(fit, damping))
         x = _matrices(band, trial)
@@ -496,9 +533,8 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
                 break
             continue
         before = fit.cost
-        fit = evaluate(band, replace(trial, background=_background(band, trial, x)))
-        if not fit.cost < x.cost + TOLERANCE:
-            fit = evaluate(band, replace(trial, background=_expected(band, trial, x)))
+        trial, x, share = _with_background(band, trial, x, share)
+        fit = evaluate(band, trial, x)
         damping = damping / 8
         if abs(before - fit.cost) < TOLERANCE and damping < 1e-2:
             return replace(fit, converged=True)

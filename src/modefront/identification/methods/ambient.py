@@ -67,9 +67,6 @@ MOST_TOGETHER = 5
 DAMPING = 0.002, 0.05
 """Limits of damping ratios to start from."""
 
-QUIET = 0.1
-"""Quantile of the power of a sensor over a band that its background starts from."""
-
 TRIAL_STEPS = 8
 """Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
 
@@ -223,14 +220,17 @@ def _seeded(lines: Transforms, omega: float, phi: Floats | None = None) -> Local
 
 
 def _fitted(
-    setup: _Setup, modes: Sequence[Local], least: float, *, last: bool = False
+    setup: _Setup, modes: Sequence[Local], least: float, *, last: bool = False, first: int = 0
 ) -> list[Local]:
     """Return the modes that data need, each fitted with those that it overlaps.
 
-    The ``last`` fit has the background that their forces move; no mode is judged by it.
+    The ``last`` fit has the background that their forces move; no mode is judged by it. Modes that
+    overlap none from number ``first`` on are left out.
     """
     found = []
     for group in _overlapping(modes):
+        if max(group) < first:
+            continue
         chosen = [modes[k] for k in group]
         band = _band_of(setup.lines, chosen)
         beside = [modes[k] for k in _beside(band, modes, group)]
@@ -277,19 +277,23 @@ def _of_group(
     least: float,
     last: bool,
 ) -> list[Local]:
-    """Return the modes of a band without those that gain less, the weakest first."""
+    """Return the modes of a band without those that gain less, the weakest first.
+
+    A fit that explains less than one without a mode has not reached its maximum.
+    """
     fit = spectral_density.maximise(band, _first(band, [*modes, *beside], len(modes)), TRIAL_STEPS)
-    held, patient = np.array([mode.held for mode in modes]), True
+    held, tried = np.array([mode.held for mode in modes]), False
     while fit.model.free:
-        models = [fit.model.without(r) for r in range(fit.model.free)]
+        models = [fit.model.without(r, band) for r in range(fit.model.free)]
         without = [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
         gain = 2 * (np.array([each.cost for each in without]) - fit.cost)
         worth = np.where(held, np.inf, np.where(_astray(band, fit.model, gain), 0.0, gain))
-        if worth.min() >= least:
-            if fit.converged or not patient:
-                break
-            fit, patient = spectral_density.maximise(band, fit.model), False
+        enough = worth.min() >= least
+        if not tried and not fit.converged and (gain.min() < 0 or (enough and last)):
+            fit, tried = spectral_density.maximise(band, fit.model), True
             continue
+        if enough:
+            break
         pole = fit.model.omega * (1j - fit.model.zeta)
         gone: list[int] = []
         for r in worth.argsort()[: int(np.sum(worth < least))].tolist():
@@ -299,7 +303,7 @@ def _of_group(
         if len(gone) > 1:
             model = fit.model
             for r in sorted(gone[1:], reverse=True):
-                model = model.without(r - (r > gone[0]))
+                model = model.without(r - (r > gone[0]), band)
             fit = spectral_density.maximise(band, model, TRIAL_STEPS)
     else:
         return []
@@ -324,13 +328,12 @@ def _of_group(
 def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
     """Return a model to start from, with the forces that the shapes make of the power."""
     phi = np.array([mode.phi for mode in modes]).T
-    own = np.einsum("kjj->kj", band.power).real
     model = Density(
         np.array([mode.omega for mode in modes]),
         np.array([mode.zeta for mode in modes]),
         phi,
         np.eye(len(modes), dtype=complex),
-        np.diag(np.maximum(np.quantile(own, QUIET, axis=0), band.floor)),
+        band.background,
         free,
         np.zeros((len(phi), 0)),
     )
@@ -430,7 +433,7 @@ def _completed(
             tried = [_tried(setup, setups, groups[r]) for r in lacking]
             known = [row for row in rows if row is not None]
             least = float(chi2.isf(FALSE, len(setup.records.sensors)))
-            found = _fitted(setup, [*known, *tried], least, last=True)
+            found = _fitted(setup, [*known, *tried], least, last=True, first=len(known))
             omega = np.array([mode.omega for mode in (*tried, *known)])
             for mode in found:
                 nearest = int(np.abs(omega - mode.omega).argmin())
