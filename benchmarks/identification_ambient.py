@@ -1,18 +1,20 @@
 """Random ambient tests of 3 to 12 modes in 1 to 5 setups, and how many modes are found.
 
-``python benchmarks/identification_ambient.py FIRST LAST [SETUPS]`` prints for the seeds FIRST to
-LAST of `ambient_in_time` the modes found, missed and false, harmonics that were told apart, the
-share of errors within 90 % intervals, and the processor time.
+``python benchmarks/identification_ambient.py FIRST LAST [GENERATOR [SETUPS]]`` prints for the seeds
+FIRST to LAST of `ambient_in_time`, or of the GENERATOR `ambient_by_newmark`, the modes found,
+missed and false, harmonics that were told apart, the share of errors within 90 % intervals, and the
+processor time.
 """
 
 from __future__ import annotations
 
 import sys
 import time
+from importlib import import_module
 from typing import Any
 
 import numpy as np
-from ambient_in_time import BAND, ambient_test
+from ambient_in_time import BAND
 from scipy.optimize import linear_sum_assignment
 
 from modefront.data.records import Records
@@ -46,11 +48,11 @@ def scored(test: dict[str, Any], result: Any) -> tuple[int, int, list[list[float
     return len(pairs), len(result.modes) - len(pairs), errors
 
 
-def main(first: int, last: int, setups: int | None) -> None:
+def main(first: int, last: int, generator: str, setups: int | None) -> None:
     total, errors = np.zeros(5), [np.zeros(0) for _ in range(3)]
     print("seed modes setups minutes  noise  found false harmonic  CPU s")
     for seed in range(first, last + 1):
-        test = ambient_test(seed, setups)
+        test = import_module(generator).ambient_test(seed, setups)
         records = [
             Records(str(k + 1), tuple(map(str, places)), test["rate"], y)
             for k, (places, y) in enumerate(zip(test["layout"], test["records"], strict=True))
@@ -78,4 +80,6 @@ def main(first: int, last: int, setups: int | None) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else None)
+    generator = sys.argv[3] if len(sys.argv) > 3 else "ambient_in_time"
+    setups = int(sys.argv[4]) if len(sys.argv) > 4 else None
+    main(int(sys.argv[1]), int(sys.argv[2]), generator, setups)

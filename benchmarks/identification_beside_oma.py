@@ -15,6 +15,7 @@ import logging
 import sys
 import time
 from collections.abc import Iterable
+from importlib.metadata import version
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -96,7 +97,8 @@ def compare(seeds: Iterable[int]) -> dict[str, Compared]:
         spent = time.process_time() - between
         results.setdefault("modefront", []).append((ours, between - before))
         for order, modes in others.items():
-            results.setdefault(f"pyOMA2 {order}", []).append((modes, spent))
+            name = f"pyOMA2 {version('pyoma-2')}, order {order}"
+            results.setdefault(name, []).append((modes, spent))
     pairs = {
         name: [
             dict(paired(test, modes[0], modes[2], test["layout"][0]))
@@ -130,11 +132,11 @@ def main(first: int, last: int) -> None:
     seeds = range(first, last + 1)
     total = sum(ambient_test(seed, 1)["f0"].size for seed in seeds)
     print(f"{len(seeds)} tests of {total} modes; errors of the modes that all find")
-    print("program      found  frequency   damping    shapes   CPU s")
+    print("program                found  frequency   damping    shapes   CPU s")
     for name, each in compare(seeds).items():
         f, zeta, phi = each.errors
         print(
-            f"{name:<12} {each.found:5}  {f:9.1e} {zeta:9.1e} {phi:9.1e} {each.seconds:7.1f}",
+            f"{name:<22} {each.found:5}  {f:9.1e} {zeta:9.1e} {phi:9.1e} {each.seconds:7.1f}",
             flush=True,
         )
 

@@ -162,11 +162,13 @@ def ambient_identification(count: int = 4) -> Iterator[Row]:
         return
     found = beside.compare(range(JUDGED, JUDGED + count))
     ours = found.pop("modefront")
-    errors = np.min([each.errors for each in found.values()], axis=0)
-    modes = max(each.found for each in found.values())
-    yield Row(whats[0], str(modes), str(ours.found), ours.found >= modes)
-    for what, least, error in zip(whats[1:], errors, ours.errors, strict=True):
-        yield Row(what, f"{least:.1e}", f"{error:.1e}", bool(error <= 1.05 * least))
+    best = max(found, key=lambda name: found[name].found)
+    target = f"{found[best].found} ({best})"
+    yield Row(whats[0], target, str(ours.found), ours.found >= found[best].found)
+    for k, what in enumerate(whats[1:]):
+        best = min(found, key=lambda name: found[name].errors[k])
+        least, error = found[best].errors[k], ours.errors[k]
+        yield Row(what, f"{least:.1e} ({best})", f"{error:.1e}", bool(error <= 1.05 * least))
 
 
 def evolution() -> Iterator[Row]:

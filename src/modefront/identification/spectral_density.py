@@ -1,48 +1,31 @@
 r"""The likelihood of the Fourier transforms of ambient records, in a band with a few modes.
 
-The transforms :math:`F_k` of the records of all sensors at the lines :math:`\omega_k` are circular
-complex normal and independent, with the spectral density matrix :math:`E_k = \Psi N_k \Psi^T + B`,
-:math:`N_k = H_k S H_k^*`, and the likelihood and h of docs/methods/identification.md:
-S is the spectral density of the modal forces, h is 1 in size at resonance, and B the density of
-noise and of all that is flat over the band. The forces of modes far away are related to those of
-the modes in the band, as one wind drives all of them: what a force :math:`f_r` moves is
-:math:`(\varphi_r h_r + \rho_r + y \sigma_r) f_r`, with real vectors :math:`\rho_r` and
-:math:`\sigma_r` for the flanks of those modes, linear in :math:`y = \omega / \omega_m - 1` from the
-middle of the band on, as the two residual terms of a frequency response function are. Without them
-the interference raises one flank of a mode and moves its frequency. A slope of S over the band is a
-part of :math:`\rho_r` along :math:`\varphi_r`, and its curvature one of :math:`\sigma_r`. So
-:math:`\Psi = [\Phi, R]` and :math:`H = [\operatorname{diag} h;\ I;\ y I]`, R the vectors of the
-modes in the band. Imaginary parts of :math:`\rho_r` along :math:`\varphi_r` have the form of
-:math:`|h_r|^2`, as S has: they cannot be told from it.
-
-Of the modes that the model has, the first ones are in the band; the others lie beside it, and only
-their forces are parameters. With :math:`P = \Psi^T B^{-1}\Psi`, all of it needs matrices of the
-size of the modes only,
+Of docs/methods/identification.md, with one more part: a force :math:`f_r` of a mode in the band
+moves :math:`(\varphi_r h_r + \rho_r + y \sigma_r) f_r`, where :math:`y = \omega/\omega_m - 1` and
+the real vectors rho and sigma are the flanks of modes outside of it, as residual terms are. So
+:math:`E_k = \Psi N_k \Psi^T + B`, :math:`N = H S H^*`, with
+:math:`H = [\operatorname{diag} h;\ I;\ y I]`. With :math:`P = \Psi^T B^{-1}\Psi`, all of it needs
+matrices of the size of the modes only,
 
 .. math:: D = H (I + S H^* P H)^{-1} S H^*,\quad Y = I - D P,\quad
           E^{-1} = B^{-1} - \hat\Psi D \hat\Psi^T,\quad \hat\Psi = B^{-1}\Psi,\quad
           E^{-1}\Psi = \hat\Psi Y,\quad \ln\det E = \ln\det B + \ln\det(I + S H^* P H) .
 
-The cost :math:`J = \sum_k \ln\det E_k + F_k^* E_k^{-1} F_k` has the gradient
-:math:`\sum_k \operatorname{tr} E^{-1}\partial E\,(I - E^{-1}FF^*)`, and the expected second
-derivatives :math:`\sum_k \operatorname{tr} E^{-1}\partial_a E\,E^{-1}\partial_b E`, of which steps
-(scoring) and covariances are made. B follows each of them by a step of its own: by scoring, or by
-expectation and maximisation, as far from the maximum. Given the data, the responses w to the
-forces have the mean :math:`D\hat\Psi^T F` and the covariance D, and B becomes the mean of
-:math:`(F - \Psi w)(F - \Psi w)^*`. Errors of B reach the other parameters to second order only.
+Steps (scoring) and covariances are made of the gradient :math:`\sum_k \operatorname{tr}
+E^{-1}\partial E\,(I - E^{-1}FF^*)` of the cost and the expected second derivatives
+:math:`\sum_k \operatorname{tr} E^{-1}\partial_a E\,E^{-1}\partial_b E`. B follows each of them by a
+step of its own; its errors reach the other parameters to second order only.
 
 ==============  ========================================================================
 symbol          meaning
 ==============  ========================================================================
-Phi             (sensors, modes) real shapes of unit norm
-R               (sensors, 2 x modes in the band, or none) what their forces move besides
+Phi             (sensors, modes) real shapes of unit norm; modes in the band are the first
+R               (sensors, 2 x modes in the band, or none) all rho, then all sigma
 Psi, H          (sensors, columns), (columns, modes); columns are modes in the band, R, modes
                 beside it
 S = L L^*       (modes, modes) spectral density of the modal forces, L lower triangular
 B               (sensors, sensors) real; a priori diagonal, with the weight of `PRIOR` lines
-C               :math:`\Psi^T E^{-1}\Psi = P Y`
-Q               :math:`N C N = N - D`
-q               differentiations of the displacement in the records
+C, Q            :math:`\Psi^T E^{-1}\Psi = P Y`, :math:`N C N = N - D`
 ==============  ========================================================================
 
 Sources: Au, Mech. Syst. Signal Process. 26 (2012) 60-75, doi:10.1016/j.ymssp.2011.06.017 (close
@@ -71,6 +54,9 @@ MOST_STEPS = 60
 
 MOST_OF_BACKGROUND = 0.9
 """Share of the background that a step takes away, at most."""
+
+SHORTEST = 1e-3
+"""Share of a step of the background below which it is left out."""
 
 TERMS = 2
 """Terms of what a force moves besides, over frequency: a constant and a slope."""
@@ -105,9 +91,20 @@ class Band:
 
     @cached_property
     def total(self) -> Floats:
-        """Sum of the real part of F F^* over the lines, (sensors, sensors)."""
-        out: Floats = np.tensordot(self.count, self.power.real, 1)
+        """Sum of the real part of F F^* over the lines, and of the background a priori."""
+        prior = (PRIOR + len(self.floor)) * np.diag(self.floor)
+        out: Floats = np.tensordot(self.count, self.power.real, 1) + prior
         return out
+
+    @property
+    def weight(self) -> float:
+        """Number of lines, and of those that the prior is worth."""
+        return float(self.count.sum() + PRIOR + len(self.floor))
+
+    @property
+    def background(self) -> Floats:
+        """The most likely background without modes, (sensors, sensors)."""
+        return self.total / self.weight
 
 
 @dataclass(frozen=True)
@@ -182,15 +179,18 @@ class Density:
         R = np.zeros((n, len(precision)))
         return replace(self, coherent=R, middle=float(ends.mean()), precision=precision)
 
-    def without(self, mode: int) -> Density:
-        """Return the model without one of its modes, and without R."""
-        kept = np.delete(np.arange(len(self.omega)), mode)
+    def without(self, mode: int, band: Band) -> Density:
+        """Return the model without one of its modes, whose power becomes background, and R."""
+        kept, phi = np.delete(np.arange(len(self.omega)), mode), self.phi[:, mode]
+        h = self.response(band.omega, band.order)[mode]
+        power = self.force[mode, mode].real * np.average(np.abs(h) ** 2, weights=band.count)
         return replace(
             self,
             omega=self.omega[kept],
             zeta=self.zeta[kept],
             phi=self.phi[:, kept],
             root=root_of(self.force[np.ix_(kept, kept)]),
+            background=self.background + power * np.outer(phi, phi),
             free=self.free - (mode < self.free),
             coherent=self.coherent[:, :0],
             precision=self.precision[:0],
@@ -272,10 +272,16 @@ class _Matrices:
     weighted: Complexes
     cost: float
 
-    @property
+    @cached_property
     def both(self) -> Complexes:
-        """Sum of D hat^T F F^* over the lines, (modes, sensors)."""
+        """Sum of D hat^T F F^* over the lines, of w F^* as expected, (columns, sensors)."""
         out: Complexes = np.tensordot(self.weighted, self.seen.conj(), ((0, 2), (0, 2)))
+        return out
+
+    @cached_property
+    def second(self) -> Complexes:
+        """Sum of w w^* as expected, (columns, columns); w are the responses to the forces."""
+        out: Complexes = (self.weighted + self.weighted @ self.own @ self.D).sum(axis=0)
         return out
 
 
@@ -289,8 +295,7 @@ def _matrices(band: Band, model: Density) -> _Matrices:
     Y = np.eye(len(P)) - D @ P
     seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape)
     own, weighted = hat.T @ seen, band.count[:, None, None] * D
-    weight = band.count.sum() + PRIOR + n
-    cost = weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total + _prior(band))
+    cost = band.weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total)
     cost += band.count @ determinant - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
     cost += np.sum(model.precision * model.coherent**2) / 2
     return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, float(cost))
@@ -299,26 +304,31 @@ def _matrices(band: Band, model: Density) -> _Matrices:
 def _of_responses(root: Complexes, P: Floats) -> tuple[Complexes, Complexes, Floats]:
     """Return N, D and the logarithm of det(I + N P) at all lines, from H L.
 
-    D is H L (I + L^* H^* P H L)^-1 L^* H^*, of which no rounding makes the inverse singular. The
-    logarithm is infinite where rounding is all that is known of it: forces that cancel each other.
+    D is H L (I + L^* H^* P H L)^-1 L^* H^*. The logarithm is infinite where rounding is all that is
+    known of it: forces that cancel each other.
     """
     adjoint = root.conj().swapaxes(1, 2)
-    value, vector = np.linalg.eigh(adjoint @ P @ root)
-    value = np.maximum(value, 0.0)
-    half = root @ vector / np.sqrt(1 + value)[:, None]
-    rounding = np.finfo(float).eps * value.max(axis=1, initial=0.0)
-    determinant = np.where(rounding < TOLERANCE, np.log1p(value).sum(axis=1), np.inf)
-    return root @ adjoint, half @ half.conj().swapaxes(1, 2), determinant
+    A = adjoint @ P @ root
+    trace = np.einsum("kii->k", A).real
+    lost = ~(np.finfo(float).eps * trace < TOLERANCE)
+    A[lost] = 0.0
+    C = np.linalg.cholesky(A + np.eye(A.shape[1]))
+    half = np.linalg.solve(C, adjoint)
+    determinant = 2 * np.log(np.einsum("kii->ki", C).real).sum(axis=1)
+    determinant[lost] = np.inf
+    return root @ adjoint, half.conj().swapaxes(1, 2) @ half, determinant
 
 
-def evaluate(band: Band, model: Density) -> Fit:
-    """Return the cost of a model with its gradient and the expected second derivatives."""
-    x, c, m = _matrices(band, model), band.count, model.free
+def evaluate(band: Band, model: Density, known: _Matrices | None = None) -> Fit:
+    """Return the cost of a model with its gradient and the expected second derivatives.
+
+    ``known`` are its matrices where they are computed already.
+    """
+    x, c, m = known or _matrices(band, model), band.count, model.free
     d, J = _changes(band, model), _root_changes(model.root)
     W = c[:, None, None] * (x.C - x.Y.conj().swapaxes(1, 2) @ x.own @ x.Y)
-    total, again = x.weighted.sum(axis=0), (x.weighted @ x.own @ x.D).sum(axis=0)
     measured = np.linalg.solve(model.background, x.both.T).T
-    columns = 2 * ((total + again) @ x.hat.T - measured).real
+    columns = 2 * (x.second @ x.hat.T - measured).real
     NW = np.sum(x.N * W.swapaxes(1, 2), axis=2)[:, :m]
     poles = 2 * np.sum(d * np.hstack([NW, NW]), axis=0).real
     whole = (x.h.conj().swapaxes(1, 2) @ W @ x.h).sum(axis=0).T
@@ -429,55 +439,54 @@ def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Compl
     return out
 
 
-def _expected(band: Band, model: Density, x: _Matrices) -> Floats:
-    """Return the background that is most likely if the modal responses are as the model says."""
-    again = (x.weighted @ x.own @ x.D).sum(axis=0) + x.weighted.sum(axis=0)
-    both = (model.columns @ x.both).real
-    B = band.total - both - both.T + model.columns @ again.real @ model.columns.T + _prior(band)
-    out: Floats = (B + B.T) / (2 * (band.count.sum() + PRIOR + len(B)))
-    return out
-
-
-def _prior(band: Band) -> Floats:
-    """Return the sum of squares of the background a priori."""
-    out: Floats = (PRIOR + len(band.floor)) * np.diag(band.floor)
-    return out
-
-
-def _background(band: Band, model: Density, x: _Matrices) -> Floats:
-    r"""Return the background after a step of scoring of its own.
+def _background(band: Band, model: Density, x: _Matrices) -> tuple[Floats, Floats]:
+    r"""Return Q and z of a step of scoring of the background, to Q Q^T with Q as it is for z = 0.
 
     With B = R R^T and changes R Z R^T, the second derivatives are :math:`\sum_k (I - V D V^T) Z
     (I - V D V^T)`, V = R^-1 Psi, and the gradient is the step of expectation and maximisation
-    times the number of lines. In an orthonormal basis U of V and beside it, they are solved for
-    the parts of Z one by one.
+    times the number of lines. In an orthonormal basis U of V and beside it, the parts of Z are
+    solved for one by one.
     """
-    c, n = band.count, len(model.phi)
-    weight = c.sum() + PRIOR + n
-    after = _expected(band, model, x)
+    c, weight, psi = band.count, band.weight, model.columns
+    both = (psi @ x.both).real
+    after = band.total - both - both.T + psi @ x.second.real @ psi.T
     R = la.cholesky(model.background, lower=True)
-    V = la.solve_triangular(R, model.columns, lower=True)
-    inner = la.solve_triangular(R, after - model.background, lower=True)
-    right = weight * la.solve_triangular(R, inner.T, lower=True)
-    U, T = la.qr(V, mode="economic")
-    size = len(T)
-    value, vector = np.linalg.eigh(T @ x.D @ T.T)
+    V = la.solve_triangular(R, psi, lower=True)
+    inner = la.solve_triangular(R, after - weight * model.background, lower=True)
+    right = la.solve_triangular(R, inner.T, lower=True)
+    U, T = la.qr(V)
+    size = min(T.shape)
+    value, vector = np.linalg.eigh(T[:size] @ x.D @ T[:size].T)
     bounded = vector * np.minimum(value, 1.0)[:, None]  # V D V^T <= I, but for rounding
     D = bounded @ vector.conj().swapaxes(1, 2)
-    single, D = np.tensordot(c, D.real, 1), D.reshape(len(c), -1)
+    single, D, eye = np.tensordot(c, D.real, 1), D.reshape(len(c), -1), np.eye(size)
     double = ((c[:, None] * D).T @ D).real.reshape(size, size, size, size)
-    eye = np.eye(size)
     A = double.transpose(0, 3, 1, 2).reshape(size**2, size**2) + weight * np.eye(size**2)
     A -= np.kron(single, eye) + np.kron(eye, single)
-    beside = la.solve(weight * eye - single, U.T @ right, assume_a="pos")
-    inside = la.solve(A, (U.T @ right @ U).ravel()).reshape(size, size)
-    half = U @ (beside - beside @ U @ U.T)
-    rest = right - U @ (U.T @ right)
-    Z = (rest - rest @ U @ U.T) / weight + half + half.T + U @ inside @ U.T
-    value, vector = la.eigh((Z + Z.T) / 2)
-    root = R @ vector * np.sqrt(1 + np.maximum(value, -MOST_OF_BACKGROUND))
-    out: Floats = root @ root.T
-    return out
+    Z = U.T @ right @ U
+    Z[:size, :size] = la.solve(A, Z[:size, :size].ravel()).reshape(size, size)
+    Z[:size, size:] = la.solve(weight * eye - single, Z[:size, size:], assume_a="pos")
+    Z[size:, :size], Z[size:, size:] = Z[:size, size:].T, Z[size:, size:] / weight
+    z, vector = la.eigh((Z + Z.T) / 2)
+    return R @ U @ vector, z
+
+
+def _with_background(
+    band: Band, model: Density, x: _Matrices, share: float
+) -> tuple[Density, _Matrices, float]:
+    """Return the model after a step of its background, its matrices, and the share of the next.
+
+    The step is halved until the cost falls.
+    """
+    Q, z = _background(band, model, x)
+    z = np.maximum(z, -MOST_OF_BACKGROUND)
+    while share > SHORTEST:
+        trial = replace(model, background=(Q * (1 + share * z)) @ Q.T)
+        after = _matrices(band, trial)
+        if after.cost <= x.cost:
+            return trial, after, min(2 * share, 1.0)
+        share /= 2
+    return model, x, 1.0
 
 
 def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
@@ -486,7 +495,7 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
     Scoring is Newton's method with the expected second derivatives; where a step would increase the
     cost, it is damped as Levenberg and Marquardt do. The background follows every step.
     """
-    fit, damping = evaluate(band, _normalised(model)), 1e-3
+    fit, damping, share = evaluate(band, _normalised(model)), 1e-3, 1.0
     for _ in range(most):
         trial = _moved(fit.model, _step(fit, damping))
         x = _matrices(band, trial)
@@ -496,9 +505,8 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
                 break
             continue
         before = fit.cost
-        fit = evaluate(band, replace(trial, background=_background(band, trial, x)))
-        if not fit.cost < x.cost + TOLERANCE:
-            fit = evaluate(band, replace(trial, background=_expected(band, trial, x)))
+        trial, x, share = _with_background(band, trial, x, share)
+        fit = evaluate(band, trial, x)
         damping = damping / 8
         if abs(before - fit.cost) < TOLERANCE and damping < 1e-2:
             return replace(fit, converged=True)

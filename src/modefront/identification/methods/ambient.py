@@ -1,17 +1,12 @@
 r"""Ambient tests: from the records of all setups to modes, by the likelihood of their transforms.
 
-1. Half spectra of each setup (`spectra`) give poles at many orders, and clusters of them to start
-   from (`stabilisation`).
-2. Modes that overlap share a band; the likelihood of the transforms in it (`spectral_density`) is
-   maximised, with the modes beside the band and, at last, with what forces of modes move besides.
-3. A mode is accepted where the likelihood gains more by it than noise makes somewhere in the band;
-   in the other setups it needs what noise makes at a pole that is known.
-4. A mode with the amplitude of a machine is none. With :math:`a(t)` the modal response to lines
-   about it, :math:`\kappa = \overline{|a|^4} / \overline{|a|^2}^2` is 2 for a normal response and
-   1 for a harmonic; over n samples whose response has the correlations :math:`\rho` at all lags,
-   its variance is :math:`4 \sum |\rho|^4 / n`.
-5. Setups are combined: frequencies and damping ratios by their precision and what they scatter
-   between setups (`sets`), shapes by the sensors that setups share.
+Half spectra of each setup give poles to start from; modes that overlap share a band, in which the
+likelihood is maximised (`spectral_density`). A mode is accepted where it gains more than noise
+makes somewhere in the band; in other setups, where the pole is known, than noise makes there. One
+with the amplitude of a machine is none: with :math:`a(t)` the modal response to lines about it,
+:math:`\kappa = \overline{|a|^4} / \overline{|a|^2}^2` is 2 for a normal response and 1 for a
+harmonic; over n samples whose response has the correlations :math:`\rho` at all lags, its variance
+is :math:`4 \sum |\rho|^4 / n`.
 """
 
 from __future__ import annotations
@@ -66,9 +61,6 @@ MOST_TOGETHER = 5
 
 DAMPING = 0.002, 0.05
 """Limits of damping ratios to start from."""
-
-QUIET = 0.1
-"""Quantile of the power of a sensor over a band that its background starts from."""
 
 TRIAL_STEPS = 8
 """Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
@@ -223,14 +215,17 @@ def _seeded(lines: Transforms, omega: float, phi: Floats | None = None) -> Local
 
 
 def _fitted(
-    setup: _Setup, modes: Sequence[Local], least: float, *, last: bool = False
+    setup: _Setup, modes: Sequence[Local], least: float, *, last: bool = False, first: int = 0
 ) -> list[Local]:
     """Return the modes that data need, each fitted with those that it overlaps.
 
-    The ``last`` fit has the background that their forces move; no mode is judged by it.
+    The ``last`` fit has the background that their forces move; no mode is judged by it. Modes that
+    overlap none from number ``first`` on are left out.
     """
     found = []
     for group in _overlapping(modes):
+        if max(group) < first:
+            continue
         chosen = [modes[k] for k in group]
         band = _band_of(setup.lines, chosen)
         beside = [modes[k] for k in _beside(band, modes, group)]
@@ -263,10 +258,8 @@ def _band_of(lines: Transforms, modes: Sequence[Local]) -> Band:
 def _beside(band: Band, modes: Sequence[Local], group: Sequence[int]) -> list[int]:
     """Return the numbers of other modes in a band, and of the next one on either side."""
     rest = sorted(set(range(len(modes))) - set(group), key=lambda k: modes[k].omega)
-    low, high = band.omega[0], band.omega[-1]
-    below = [k for k in rest if modes[k].omega < low]
-    above = [k for k in rest if modes[k].omega > high]
-    return [*below[-1:], *(k for k in rest if low <= modes[k].omega <= high), *above[:1]]
+    low, high = np.searchsorted([modes[k].omega for k in rest], band.omega[[0, -1]])
+    return rest[max(low - 1, 0) : high + 1]
 
 
 def _of_group(
@@ -277,60 +270,61 @@ def _of_group(
     least: float,
     last: bool,
 ) -> list[Local]:
-    """Return the modes of a band without those that gain less, the weakest first."""
+    """Return the modes of a band without those that gain less, the weakest first.
+
+    A fit that explains less than one without a mode has not reached its maximum.
+    """
     fit = spectral_density.maximise(band, _first(band, [*modes, *beside], len(modes)), TRIAL_STEPS)
-    held, patient = np.array([mode.held for mode in modes]), True
+    held, tried = np.array([mode.held for mode in modes]), False
     while fit.model.free:
-        models = [fit.model.without(r) for r in range(fit.model.free)]
+        models = [fit.model.without(r, band) for r in range(fit.model.free)]
         without = [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
         gain = 2 * (np.array([each.cost for each in without]) - fit.cost)
         worth = np.where(held, np.inf, np.where(_astray(band, fit.model, gain), 0.0, gain))
-        if worth.min() >= least:
-            if fit.converged or not patient:
-                break
-            fit, patient = spectral_density.maximise(band, fit.model), False
+        enough = worth.min() >= least
+        if not tried and not fit.converged and (gain.min() < 0 or (enough and last)):
+            fit, tried = spectral_density.maximise(band, fit.model), True
             continue
+        if enough:
+            break
         pole = fit.model.omega * (1j - fit.model.zeta)
         gone: list[int] = []
         for r in worth.argsort()[: int(np.sum(worth < least))].tolist():
             if (selection.alike(pole[r], pole[gone]) < ALONE).all():
                 gone.append(r)
-        fit, held = without[gone[0]], np.delete(held, gone)
-        if len(gone) > 1:
-            model = fit.model
-            for r in sorted(gone[1:], reverse=True):
-                model = model.without(r - (r > gone[0]))
-            fit = spectral_density.maximise(band, model, TRIAL_STEPS)
+        model, held = fit.model, np.delete(held, gone)
+        for r in sorted(gone, reverse=True):
+            model = model.without(r, band)
+        fit = spectral_density.maximise(band, model, TRIAL_STEPS)
     else:
         return []
     if last:
         fit = spectral_density.maximise(band, fit.model.with_coherent(band))
-    model, out = fit.model, []
-    visible = _shares(band, model)
-    for r in range(model.free):
-        mode = Local(
+    model, visible = fit.model, _shares(band, fit.model)
+    return [
+        Local(
             float(model.omega[r]),
             float(model.zeta[r]),
             model.phi[:, r],
             float(gain[r]),
             fit.covariance(r),
             float(visible[r]),
-            held=bool(held[r]),
+            _kurtosis(setup, model, r),
+            bool(held[r]),
         )
-        out.append(replace(mode, kurtosis=_kurtosis(setup, model, r)))
-    return out
+        for r in range(model.free)
+    ]
 
 
 def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
     """Return a model to start from, with the forces that the shapes make of the power."""
     phi = np.array([mode.phi for mode in modes]).T
-    own = np.einsum("kjj->kj", band.power).real
     model = Density(
         np.array([mode.omega for mode in modes]),
         np.array([mode.zeta for mode in modes]),
         phi,
         np.eye(len(modes), dtype=complex),
-        np.diag(np.maximum(np.quantile(own, QUIET, axis=0), band.floor)),
+        band.background,
         free,
         np.zeros((len(phi), 0)),
     )
@@ -430,7 +424,7 @@ def _completed(
             tried = [_tried(setup, setups, groups[r]) for r in lacking]
             known = [row for row in rows if row is not None]
             least = float(chi2.isf(FALSE, len(setup.records.sensors)))
-            found = _fitted(setup, [*known, *tried], least, last=True)
+            found = _fitted(setup, [*known, *tried], least, last=True, first=len(known))
             omega = np.array([mode.omega for mode in (*tried, *known)])
             for mode in found:
                 nearest = int(np.abs(omega - mode.omega).argmin())
@@ -460,12 +454,10 @@ def _combined(
     count: int | None,
 ) -> Identification:
     """Return the modes of the structure, and what is none."""
-    total = len(setups[0][1])
     modes, rejected = [], []
-    for r in range(total):
-        having = [(setup, rows[r]) for setup, rows in setups if rows[r] is not None]
-        mode = _of_structure([(s, m) for s, m in having if m is not None], sensors, len(setups))
-        why = _harmonic([(s, m) for s, m in having if m is not None])
+    for r in range(len(setups[0][1])):
+        having = [(setup, row) for setup, rows in setups if (row := rows[r]) is not None]
+        mode, why = _of_structure(having, sensors, len(setups)), _harmonic(having)
         if why:
             rejected.append(Rejected(mode.frequency, mode.damping, why))
         else:
@@ -549,11 +541,10 @@ def _functions(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FittedFunc
     edges = np.linspace(lines.omega[0], lines.omega[-1], min(LINES_SHOWN, len(lines.omega)) + 1)
     density = np.full((1, len(sensors), len(edges) - 1), np.nan, complex)
     for setup in reversed(setups):
-        where = np.clip(np.searchsorted(edges, setup.lines.omega, "right") - 1, 0, len(edges) - 2)
-        count = np.maximum(np.bincount(where, minlength=len(edges) - 1), 1)
+        count = np.histogram(setup.lines.omega, edges)[0]
         for name, F in zip(setup.records.sensors, setup.lines.F, strict=True):
-            power = np.bincount(where, np.abs(F) ** 2, len(edges) - 1)
-            density[0, sensors.index(name)] = power / count
+            power = np.histogram(setup.lines.omega, edges, weights=np.abs(F) ** 2)[0]
+            density[0, sensors.index(name)] = power / np.maximum(count, 1)
     f = (edges[1:] + edges[:-1]) / (4 * np.pi)
     data = FrequencyResponses(f, density, "receptance", ("spectral density",), sensors)
     nothing = np.full(density.shape[:2], np.nan)
