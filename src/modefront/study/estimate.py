@@ -34,7 +34,7 @@ from modefront.work.task import seed_sequence
 EDGE = 10.0, 60.0
 """Searches for the best model of a group or of given weights, from and to."""
 
-DRAW = 0.4, 2.0
+DRAW = 0.2, 2.5
 """Time of a draw of the posterior over that of a search, from and to."""
 
 SHORT = 30.0

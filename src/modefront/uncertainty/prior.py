@@ -196,7 +196,7 @@ class Distance:
         return replace(found, J=J, derivatives=slopes, residuals=residuals)
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Standardised:
     """The residuals of a problem as functions of independent standard normal variables z.
 
@@ -205,25 +205,10 @@ class Standardised:
 
     problem: UpdatingProblem
 
-    @property
-    def objectives(self) -> tuple[str, ...]:
-        """Names of the objectives."""
-        return (*self.problem.objectives, "prior")
-
-    @property
-    def lower(self) -> Floats:
-        """Bounds (p,) beyond which the prior has nothing."""
-        return np.full(self.problem.start.size, -FARTHEST)
-
-    @property
-    def upper(self) -> Floats:
-        """The same above the median."""
-        return -self.lower
-
-    @property
-    def start(self) -> Floats:
-        """The median of the prior."""
-        return np.zeros(self.problem.start.size)
+    def __post_init__(self) -> None:
+        self.objectives = (*self.problem.objectives, "prior")
+        self.start = np.zeros(self.problem.start.size)
+        self.lower, self.upper = self.start - FARTHEST, self.start + FARTHEST
 
     def theta(self, z: Floats) -> tuple[Floats, Floats]:
         """Return the parameters (p,) of z (p,) and their derivatives."""

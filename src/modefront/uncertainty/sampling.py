@@ -203,11 +203,6 @@ class Model:
         return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
 
 
-def _log_normal(z: Floats, mean: Floats, precision: Floats) -> float:
-    away = z - mean
-    return float(np.linalg.slogdet(precision)[1] - away @ precision @ away) / 2
-
-
 @record
 @dataclass(frozen=True)
 class Draws:
@@ -253,7 +248,7 @@ def draw_models(
     noise: NoiseModel, maxima: Sequence[Floats], count: int, seed: int, work: Executor
 ) -> Draws:
     """Return models drawn from the posterior, of which all known ``maxima`` (p,) are given."""
-    stage = "sample-posterior"
+    stage, at = "sample-posterior", Standardised(noise.problem).evaluate
     tasks = [Task((stage, "peak", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
     peaks = _mixture(noise, work.run(tasks))
     work.expect({stage: 3 * CHAINS})
@@ -275,8 +270,7 @@ def draw_models(
         if warm:
             beyond = [x.z[-1] for x in found if x.beyond]
             tasks = [
-                Task((stage, "beyond", turn + 1, k + 1), _at, (noise, z))
-                for k, z in enumerate(beyond)
+                Task((stage, "beyond", turn + 1, k + 1), at, (z,)) for k, z in enumerate(beyond)
             ]
             more = _mixture(noise, work.run(tasks))
             peaks, warm = [*peaks, *more], bool(more) and turn + 1 < WARM
@@ -295,11 +289,6 @@ def draw_models(
 
 def _joined(rounds: Sequence[Chain], name: str) -> Floats:
     return np.concatenate([getattr(x, name) for x in rounds])
-
-
-def _at(noise: NoiseModel, z: Floats) -> Evaluation:
-    """Return a model that no peak proposes, about which others are proposed."""
-    return Standardised(noise.problem).evaluate(z)
 
 
 def _peak(noise: NoiseModel, theta: Floats) -> Evaluation:
@@ -339,7 +328,11 @@ def _advanced(
     target, logs = Standardised(noise.problem), noise.programme.logs
     of = Sampler(target, logs, peaks)
     length = np.ones(2) if chain is None or warm else chain.length
-    here = of.begin(rng) if chain is None else Model(target.evaluate(chain.z[-1]), chain.s)
+    if chain is None:
+        peak = peaks[rng.choice(len(peaks))]
+        here = Model(peak.at, peak.expected)
+    else:
+        here = Model(target.evaluate(chain.z[-1]), chain.s)
     out = []
     for t in range(ROUND):
         across = len(peaks) > 1 and t % 2 == 1
@@ -374,15 +367,6 @@ class Sampler:
     logs: LogSum
     peaks: Sequence[Peak]
 
-    def begin(self, rng: np.random.Generator) -> Model:
-        """Return a model about one of the peaks."""
-        peak = self.peaks[rng.choice(len(self.peaks))]
-        for _ in range(STEPS):
-            u = rng.normal(size=peak.at.theta.size + peak.logs.a.size)
-            if model := peak.model(self.target, u, peak.at):
-                return model
-        return Model(peak.at, peak.expected)
-
     def across(
         self, here: Model, b: float, jumps: bool, rng: np.random.Generator
     ) -> tuple[Model, float]:
@@ -416,8 +400,11 @@ class Sampler:
         new = Model(self.target.evaluate(np.clip(z, -FARTHEST, FARTHEST)), here.s)
         if not new.found.feasible:
             return here, 0.0
-        change = new.log_posterior(self.logs) - here.log_posterior(self.logs)
-        change += _log_normal(here.z, *new.newton(b)) - _log_normal(z, mean, precision)
+        back, behind = new.newton(b)
+        ahead, aback = z - mean, here.z - back
+        ratio = np.linalg.slogdet(behind)[1] - np.linalg.slogdet(precision)[1]
+        ratio += ahead @ precision @ ahead - aback @ behind @ aback
+        change = new.log_posterior(self.logs) - here.log_posterior(self.logs) + float(ratio) / 2
         return _taken(here, new, change, rng)
 
 
