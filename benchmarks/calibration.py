@@ -1,6 +1,6 @@
 """How often 90 % intervals of parameters hold the truth, in random simulated tests.
 
-    python benchmarks/calibration.py --seeds 1000:1100 [--draws 100] [--wrong] [--few] [--quiet]
+    python benchmarks/calibration.py --seeds 1000:1100 [--draws 200] [--wrong] [--few] [--quiet]
     python benchmarks/calibration.py --seeds 1000:1100 --prior [--quiet]
 
 Seeds 1000 to 1999 are for development. Seeds from 9000 on are for judgement: nobody tunes
@@ -42,7 +42,7 @@ from modefront.results.verdict import refusals
 from modefront.uncertainty.laplace import laplace
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.prior import NoisePrior
-from modefront.uncertainty.sampling import draw_models
+from modefront.uncertainty.sampling import DRAWS, draw_models
 from modefront.work.task import IMMEDIATE
 
 BOUNDS = (0.3, 3.0)
@@ -172,8 +172,8 @@ def ranks(seed: int, draws: int, few: bool) -> list[int]:
     noise = prior.of(problem, mf.Uncertainty().of(problem.data))
     assert noise is not None
     known = list(np.random.default_rng([seed, 1]).uniform(*BOUNDS, (STARTS, truth.size)))
-    best = most_probable(problem, noise, known, IMMEDIATE)[0]
-    samples = draw_models(noise, best.theta, draws, seed, IMMEDIATE).theta
+    maxima = [x.theta for x in most_probable(problem, noise, known, IMMEDIATE)]
+    samples = draw_models(noise, maxima, draws, seed, IMMEDIATE).theta
     return [int(x) for x in (samples < truth).sum(axis=0)]
 
 
@@ -194,14 +194,16 @@ def judge(seed: int, draws: int, wrong: bool, few: bool) -> list[Verdict]:
     assert noise is not None
     rng = np.random.default_rng([seed, 1])
     known = list(rng.uniform(0.6, 1.6, (STARTS, truth.size)))
-    best = most_probable(problem, noise, known, IMMEDIATE)[0]
+    maxima = most_probable(problem, noise, known, IMMEDIATE)
+    best = maxima[0]
     misfit, nominal = (
         noise.over_expected(noise.problem.evaluate(theta).J)
         for theta in (best.theta, problem.start)
     )
     if refusals(problem.objectives, misfit, nominal):
         return []
-    samples = draw_models(noise, best.theta, draws, seed, IMMEDIATE).theta
+    drawn = draw_models(noise, [x.theta for x in maxima], draws, seed, IMMEDIATE)
+    samples = drawn.theta
     low, middle, high = np.quantile(samples, (0.05, 0.5, 0.95), axis=0, method="weibull")
     std = np.maximum((high - low) / (2 * 1.645), 1e-12)
     determined = high - low < DETERMINED * 0.9 * (BOUNDS[1] - BOUNDS[0])
@@ -212,7 +214,7 @@ def judge(seed: int, draws: int, wrong: bool, few: bool) -> list[Verdict]:
             bool(low[j] - 1e-9 <= truth[j] <= high[j] + 1e-9),
             None if old is None else bool(abs(truth[j] - old[0][j]) <= 1.645 * old[1][j]),
             float(abs(truth[j] - middle[j]) / std[j]),
-            bool(determined[j]),
+            bool(determined[j]) and drawn.settled,
         )
         for j in range(truth.size)
     ]
@@ -257,7 +259,7 @@ def main() -> None:
     """Print the rates over some seeds."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", default="1000:1040")
-    parser.add_argument("--draws", type=int, default=100)
+    parser.add_argument("--draws", type=int, default=DRAWS)
     parser.add_argument("--wrong", action="store_true")
     parser.add_argument("--quiet", action="store_true")
     parser.add_argument("--few", action="store_true")

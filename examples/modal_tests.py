@@ -76,7 +76,7 @@ def hammer_tests(folder: Path) -> None:
             (folder / name).write_text(_measured(H[j], rng), encoding="ascii")
     for model in ADDED:
         test = read_test(folder / f"test-{model}.toml")
-        identified = [identify(part.assembled.data, test.band, test.modes) for part in test.sets]
+        identified = [identify(part.data, test.band, test.modes) for part in test.sets]
         modes = combine([part.name for part in test.sets], identified)
         write_csv(folder / f"modes-{model}.csv", modal_data_of(modes), modes.damping_std)
 

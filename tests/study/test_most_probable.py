@@ -55,7 +55,7 @@ def test_the_reference_is_the_most_probable_model_with_intervals(
     assert (middle < high).all()
     assert (low < best["theta"].values).all()
     assert (best["theta"].values < high).all()
-    assert data["sample_theta"].shape == (100, 2)
+    assert data["sample_theta"].shape == (200, 2)
     assert data["quantile"].values.tolist() == [0.05, 0.5, 0.95]
     assert set(data["trust"].values) <= {"determined", "partly", "not determined"}
     lower, upper = data["bounds"].values.T

@@ -9,7 +9,7 @@ from modefront._typing import Floats
 from modefront.errors import InputError
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.most_probable import log_values, most_probable
-from modefront.uncertainty.prior import NoisePrior
+from modefront.uncertainty.prior import PULL, NoisePrior
 from modefront.work.task import IMMEDIATE
 
 FREQUENCY = np.array([4.9, 14.1, 19.9])
@@ -89,7 +89,7 @@ def test_the_posterior_is_the_integral_over_the_variances() -> None:
     J = [noise.problem.evaluate(theta).J for theta in thetas]
     logs = [sum(np.log(integral(x, a)) for x, a in zip(row, noise.a, strict=True)) for row in J]
     values = log_values(noise, thetas)
-    pull = 1e-6 * ((0.02**2 + 2 * 0.01**2) / 2.7**2)
+    pull = PULL * ((0.02**2 + 2 * 0.01**2) / 2.7**2)
     assert (values[1] - values[0] - pull) / 2 == pytest.approx(logs[0] - logs[1], rel=1e-6)
 
 

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 import scipy.stats
 from exact import Residuals, squares
+from scipy.special import ndtri
 
 from modefront._typing import Floats
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.most_probable import log_values, maximum
-from modefront.uncertainty.prior import NoiseModel
-from modefront.uncertainty.sampling import draw_models, truncated, variances
+from modefront.uncertainty.prior import NoiseModel, Standardised
+from modefront.uncertainty.sampling import Peak, agreement, draw_models
 from modefront.work.task import IMMEDIATE
 
 NU = 4.0
@@ -37,10 +38,11 @@ def test_one_group_of_linear_residuals_has_students_distribution() -> None:
     best = maximum(noise, np.zeros(2))
     exact, (J,), *_ = np.linalg.lstsq(A, y)
     assert best.theta == pytest.approx(exact, abs=1e-5)
-    of = variances(noise, noise.problem.evaluate(best.theta))
-    assert of.dof == pytest.approx([6 + NU - 2], rel=1e-4)
-    assert of.scale == pytest.approx([J + NU])
-    draws = draw_models(noise, best.theta, 800, 1, IMMEDIATE).theta
+    at = Standardised(noise.problem).evaluate(ndtri((best.theta + 3) / 6))
+    of = Peak(at, noise.programme.logs)
+    assert of.dof == pytest.approx([6 + NU - 2], rel=1e-3)
+    assert of.scale == pytest.approx([J + NU], rel=1e-3)
+    draws = draw_models(noise, [best.theta], 800, 1, IMMEDIATE).theta
     size = np.sqrt(np.diag(np.linalg.inv(A.T @ A)) * (J + NU) / 8)
     for x, middle, scale in zip(draws.T, exact, size, strict=True):
         p = scipy.stats.kstest((x - middle) / scale, scipy.stats.t(8).cdf).pvalue
@@ -88,7 +90,7 @@ def test_intervals_are_those_of_integration(
     """A curved valley, two basins and a parameter without effect: to a tenth of the interval."""
     noise = noise_of(function, [-2, -2], [2, 3], [a])
     best = maximum(noise, np.array([0.9, 0.3]))
-    draws = draw_models(noise, best.theta, 400, 2, IMMEDIATE).theta
+    draws = draw_models(noise, [best.theta], 400, 2, IMMEDIATE).theta
     expected = grid_quantiles(noise, 201, [0.05, 0.95])
     found = np.quantile(draws, [0.05, 0.95], axis=0).T
     width = np.ptp(expected, axis=1)[:, None]
@@ -105,25 +107,11 @@ def test_draws_at_bounds_are_those_of_the_truncated_gaussian(mean: float) -> Non
         return [(np.array([(x - mean) / std]), np.array([[1 / std + 0 * x, 0 * x]]))]
 
     noise = replace(noise_of(line, [0, 0], [1, 1], [1.0]), weight=1e8)
-    draws = draw_models(noise, maximum(noise, np.full(2, 0.5)).theta, 600, 5, IMMEDIATE).theta
+    draws = draw_models(noise, [maximum(noise, np.full(2, 0.5)).theta], 600, 5, IMMEDIATE).theta
     ends = (np.array([0, 1]) - mean) / std
     exact = scipy.stats.truncnorm(*ends, loc=mean, scale=std)
     assert scipy.stats.kstest(draws[:, 0], exact.cdf).pvalue > 0.01
     assert scipy.stats.kstest(draws[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01
-
-
-@pytest.mark.parametrize(("mean", "std"), [(-50.0, 1.0), (0.3, 0.4), (3.0, 1e-2), (1e6, 1.0)])
-def test_truncated_draws_have_the_mean_of_the_truncated_gaussian(mean: float, std: float) -> None:
-    rng = np.random.default_rng(0)
-    draws = np.array([truncated(mean, std, 1.0, rng) for _ in range(4000)])
-    away = min(abs(mean), abs(mean - 1))
-    if away > 30 * std:  # exponential from the nearer end
-        exact = std**2 / away if mean < 0 else 1 - std**2 / away
-    else:
-        exact = scipy.stats.truncnorm(-mean / std, (1 - mean) / std, loc=mean, scale=std).mean()
-    assert draws.min() >= 0
-    assert draws.max() <= 1
-    assert draws.mean() == pytest.approx(exact, abs=4 * draws.std() / np.sqrt(4000) + 1e-9)
 
 
 def test_twins_beyond_a_bound_fill_the_triangle() -> None:
@@ -134,16 +122,50 @@ def test_twins_beyond_a_bound_fill_the_triangle() -> None:
         return [(np.array([(x + y - 1.5) / 0.05]), np.array([[20 + 0 * x, 20 + 0 * x]]))]
 
     noise = replace(noise_of(total, [0, 0], [1, 1], [1.0]), weight=1e8)
-    draws = draw_models(noise, np.array([0.75, 0.75]), 400, 6, IMMEDIATE).theta
+    draws = draw_models(noise, [np.array([0.75, 0.75])], 400, 6, IMMEDIATE).theta
     assert draws.sum(axis=1).std() == pytest.approx(0.05, rel=0.15)
     for x in draws.T:  # uniform from 0.5 to 1 but for the noise
         assert scipy.stats.kstest(x, scipy.stats.uniform(0.5, 0.5).cdf).statistic < 0.12
 
 
-def test_draws_are_those_of_the_seed_and_more_add_to_them() -> None:
+def test_draws_are_those_of_the_seed() -> None:
     noise = noise_of(banana, [-2, -2], [2, 3], [2.0])
     theta = maximum(noise, np.array([0.3, 0.1])).theta
-    few, more = (draw_models(noise, theta, n, 3, IMMEDIATE).theta for n in (15, 30))
-    assert few.shape == (15, 2)
-    assert few.tolist() == more[:15].tolist()
-    assert few.tolist() != draw_models(noise, theta, 15, 4, IMMEDIATE).theta.tolist()
+    draws = [draw_models(noise, [theta], 15, seed, IMMEDIATE).theta for seed in (3, 3, 4)]
+    assert draws[0].shape == (15, 2)
+    assert draws[0].tolist() == draws[1].tolist()
+    assert draws[0].tolist() != draws[2].tolist()
+
+
+def many(theta: Floats) -> Residuals:
+    """Ten of thirty directions are known, along a curve; nothing says anything of the others."""
+    u = np.moveaxis(theta, 0, -1)
+    x, y = u[..., :10], u[..., 10:20]
+    r = np.moveaxis((x + 0.3 * y**2 - 0.4) / 0.05, -1, 0)
+    dr = np.zeros((10, 30))
+    dr[:, :10], dr[:, 10:20] = np.eye(10) / 0.05, np.diag(0.6 * y / 0.05)
+    return [(r, dr)]
+
+
+def test_thirty_parameters_with_flat_directions() -> None:
+    """Parameters without effect are uniform, and y is where the known sum lets x be."""
+    noise = replace(noise_of(many, [-1] * 30, [1] * 30, [10.0]), weight=1e8)
+    found = draw_models(noise, [np.r_[np.full(10, 0.4), np.zeros(20)]], 400, 7, IMMEDIATE)
+    assert found.settled
+    x, y, free = np.split(found.theta, 3, axis=1)
+    assert (x + 0.3 * y**2).std(axis=0) == pytest.approx(np.full(10, 0.05), rel=0.2)
+    for column in (*free.T, *y.T):
+        assert scipy.stats.kstest(column, scipy.stats.uniform(-1, 2).cdf).pvalue > 1e-3
+
+
+def test_chains_that_stay_apart_do_not_agree() -> None:
+    """Two basins of which chains know one each; one chain that crawls has a small sample."""
+    rng = np.random.default_rng(0)
+    same = rng.normal(size=(4, 200, 2))
+    ratio, size = agreement(same)
+    assert ratio < 1.02
+    assert size > 300
+    apart = same + np.array([0, 0, 3, 3])[:, None, None] * [1, 0]
+    assert agreement(apart)[0] > 1.3
+    crawling = np.cumsum(same, axis=1)
+    assert agreement(crawling)[1] < 40

@@ -214,6 +214,8 @@ at-wrong-bound | {at}. With {where}, errors of {group} are {after:.2g} of those 
 assumed | Assumed: {assumed}; say yours in [noise].
 unlike | Shapes at these sensors do not tell which modes of the model are those measured as
     {modes}: frequencies decide here. The front pairs them by the MAC, and may be wrong.
+unsettled | The chains that draw from the posterior do not agree: intervals are rough, and no
+    parameter is called determined. Narrower bounds, fewer parameters or more data help.
 determined | Determined (90 %): {parameters}.
 partly | Partly (90 %): {parameters}.
 not determined | Not determined (90 %): {parameters}.

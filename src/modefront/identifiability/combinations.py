@@ -1,21 +1,10 @@
 r"""Combinations of parameters that the data determine, from the singular values of the Jacobian.
 
-The Jacobian of the weighted residuals with respect to changes of the parameters in their units
-:math:`s` (`modefront.identifiability.scale`),
-
-.. math:: G = \big[\sqrt{w_i}\, s_j\, \partial r_i / \partial \theta_j\big]_{ij} ,
-
-has singular values :math:`\sigma_k` and right singular vectors :math:`v_k`. A direction v with a
-small :math:`\sigma` hardly changes any residual: the data do not determine it. The Gauss-Newton
-second derivatives are :math:`H_i = 2\, \partial r_i^T \partial r_i`.
-
-A change of the residuals by 1e-9 of the measured values, for a whole unit of a parameter, is the
-rounding of derivatives: what is below it is no change. A column of G below it belongs
-to a parameter without effect.
-
-With its columns scaled to length one, :math:`\tilde g_j`, the collinearity index of parameters is
-:math:`1 / \sqrt{\lambda_{\min}(\tilde G^T \tilde G)}` (Brun, Reichert & Künsch 2001,
-doi:10.1029/2000WR900350, eq. 2; they call 10 to 20 critical).
+The Jacobian :math:`\sqrt{w_i}\, s_j\, \partial r_i / \partial \theta_j` is that of the weighted
+residuals, with parameters in their units s (`modefront.identifiability.scale`); directions of small
+singular values hardly change any residual. With its columns scaled to length one,
+:math:`\tilde g_j`, the collinearity index is :math:`1 / \sqrt{\lambda_{\min}(\tilde G^T \tilde
+G)}` (Brun, Reichert & Künsch 2001, doi:10.1029/2000WR900350, eq. 2; they call 10 to 20 critical).
 """
 
 from __future__ import annotations

@@ -1,22 +1,14 @@
 r"""The scale in which changes of parameters are large or small.
 
-Changes over :math:`|\theta|` say nothing where a parameter is a difference from a nominal value,
-:math:`K = K_0 + \sum_j \alpha_j K_j` with :math:`\alpha` around 0. What a change does to the
-matrices does not depend on how they are parametrised. The unit :math:`s_j` of a parameter is the
-change by which, to first order,
-
-* some motion loses all of its stiffness: the greatest eigenvalue of
-  :math:`s_j\, \partial K/\partial\theta_j` with respect to :math:`K` has modulus 1; or
-* some degree of freedom loses all of its mass: the greatest relative change of an entry on the
-  diagonal of M is 1; or
-* the whole range between its bounds is gone through,
-
-whichever is the least. Of models without matrices, only the range is known.
+The unit :math:`s_j` of a parameter is the least change by which, to first order, some motion loses
+all of its stiffness (the greatest eigenvalue of :math:`s_j\, \partial K/\partial\theta_j` with
+respect to :math:`K` has modulus 1), some degree of freedom loses all of its mass, or the whole
+range between its bounds is gone through. It does not depend on how matrices are parametrised; of
+models without matrices, only the range is known.
 
 A combination of parameters that scales all of K or all of M is looked for in the same matrices:
-:math:`\sum_j y_j\, \partial K / \partial \theta_j = K` at
-:math:`\sum_j y_j\, \partial M / \partial \theta_j = 0`, and so on. Mode shapes do not change along
-it, and it deserves its name.
+:math:`\sum_j y_j\, \partial K / \partial \theta_j = K` at :math:`\sum_j y_j\, \partial M /
+\partial \theta_j = 0`, and so on. Mode shapes do not change along it.
 """
 
 from __future__ import annotations

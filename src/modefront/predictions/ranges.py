@@ -1,39 +1,19 @@
 r"""Least and greatest values of a prediction over a front and all models that are equivalent.
 
-**Along the front.** A front is known at points, objectives over their ranges r. Two of them are
-neighbours where the ball of which they are the poles holds no other one (Gabriel & Sokal 1969,
-doi:10.2307/2412323); of two objectives, these are next to each other. Half-way between neighbours a
-and b lies
+docs/methods/first-passage.md says which programmes are solved. Neighbours on a front are points of
+which the ball with both as poles holds no other one (Gabriel & Sokal 1969, doi:10.2307/2412323);
+half-way between them lies the point of the front for the middle of their objectives.
 
-.. math:: \min_\theta \max_i c_i + \rho \sum_i c_i, \qquad
-    c_i = \big(J_i - \tfrac12 (J_a + J_b)_i\big) / r_i ,
-
-as all points of a front do (`modefront.front.subproblems`); behind a gap it is where a branch ends.
-A parabola through the least of three even values reaches below it by an eighth of the greatest
-difference at most. Where a point is better than all its neighbours and so much less could be the
-least of all, the front is solved for between it and these, again and again.
-
-**Equivalent models.** Where data leave combinations of parameters open, models form a set on which
-no residual changes, and a point of a front stands for all of it. With the residuals r of all groups
-over the lengths of their derivatives, of the singular values :math:`U \Sigma V^T` of the
-derivatives at the point :math:`\theta_P` over the ranges of the parameters, and :math:`V_0` those
-that vanish, these models are the solutions of
+Equivalent models have the residuals of a point, over the lengths of their derivatives. With the
+singular values :math:`U \Sigma V^T` of these derivatives over the ranges of the parameters,
 
 .. math:: \min \pm q(\theta) \quad\text{subject to}\quad
-    \Sigma^{-1} U^T \big( r(\theta) - r(\theta_P) \big) = 0
+    \Sigma^{-1} U^T \big( r(\theta) - r(\theta_P) \big) = 0,
 
-within the bounds. Only derivatives of q along the null space of the equations count; they are
-differences, of which there are as many as open combinations. Solutions at which an objective has
-grown are no equivalent models (residuals that change to second order), and are left out.
-
-With a slack s models are nearly as good, and for all i
-
-.. math:: \min \pm q(\theta) \quad\text{subject to}\quad J_i(\theta) \le (1 + s) J_i(\theta_P) .
-
-The constraints are a penalty on the greatest violation, exact from some factor on, which grows
-until they are met. A function along a set of models has several extremes: where the bounds to which
-:math:`V_0 V_0^T e_j` leads, the open direction along which parameter j changes most, promise more
-than what is reached, the search goes on from there.
+or, with a slack s, :math:`J_i(\theta) \le (1 + s) J_i(\theta_P)`. Only derivatives of q along the
+null space :math:`V_0` of the equations count. Solutions at which an objective has grown are left
+out. The constraints are a penalty on the greatest violation, which grows until they are met. Where
+the bounds to which :math:`V_0 V_0^T e_j` leads promise more, the search goes on from there.
 """
 
 from __future__ import annotations

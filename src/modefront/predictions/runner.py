@@ -88,7 +88,9 @@ class PredictionRunner:
     def at_models(self, prediction: Prediction, thetas: Floats, name: str) -> list[Predicted]:
         """Return a prediction at other models (m, p), also where they cannot be solved."""
         tasks = [
-            self._task(prediction, (name, i), _at_model, (theta,))
+            self._task(
+                prediction, (name, i, hash_text(f"{theta.tolist()}")[:8]), _at_model, (theta,)
+            )
             for i, theta in enumerate(thetas, start=1)
         ]
         return self.work.run(tasks)

@@ -4,20 +4,9 @@ With h the pulse response scaled by sqrt(2πS/Δt), the response o at t_j is
 
     x_oj = Σ_i Σ_{k<j} h_oi[j-1-k] q_k z_ik  =  a_oj · z,        z ~ N(0, I),
 
-a convolution, done for many samples at once by the fast Fourier transform at a cost that does not
-depend on the number of modes. a_oj, read off the same h backwards in time, is the excitation that
-drives the response to its barrier at t_j with the least effort; σ_oj = |a_oj| is the response's
-standard deviation.
-
-The pulse response is exact for a load held constant over a step. A mode under the load p, and p the
-filtered noise w or w itself, are a linear system ṡ = A s + B w with s = (q, q̇[, f, ḟ]),
-
-    q̈ = -2ζω q̇ - ω² q + p,      p = w    or    p = ω_g² f + 2ζ_g ω_g ḟ,
-                                f̈ = -2ζ_g ω_g ḟ - ω_g² f + w.
-
-With w constant over a step, s(t + Δt) = Φ s(t) + Θ w, where exp([A B; 0 0] Δt) = [Φ Θ; 0 1], so a
-pulse w = 1 on [0, Δt) leaves s(t_j) = Φ^{j-1} Θ. The powers are had by doubling: Φ^K times the
-first K columns are the next K.
+a convolution, done for many samples at once by the fast Fourier transform. The pulse response is
+exact for a load held constant over a step: with ṡ = A s + B w for s = (q, q̇[, f, ḟ]) of a mode and
+the filter, s(t + Δt) = Φ s(t) + Θ w, where exp([A B; 0 0] Δt) = [Φ Θ; 0 1].
 
 ======  ==========================================  ==========================
 symbol  meaning                                     shape

@@ -1,27 +1,16 @@
 """The methods: how samples are drawn, and the weight of each, of which the mean is P.
 
-Failure is the union of the elementary failures E_oj = {|x_oj| > b}, whose probabilities are known,
-P_oj = 2 Φ(-β_oj) with β_oj = b/σ_oj. Given E_oj, z has the standard normal density but for its
-component u = z·a_oj/σ_oj along the design excitation, which is a normal number beyond ±β_oj. So a
-standard normal z is made a sample given E_oj by putting that component right (S. K. Au, J. L. Beck,
-Probab. Eng. Mech. 16 (2001) 193-207, doi:10.1016/S0266-8920(01)00002-9, sec. 4):
+docs/methods/first-passage.md names the elementary failures E_oj and the sources. A standard normal
+z is made a sample given E_oj by putting its component u along the design excitation right (Au &
+Beck 2001, sec. 4):
 
     z* = z + (r - u) a_oj/σ_oj,      r = -Φ⁻¹(v Φ(-β_oj)),   v uniform in (0, 1].
 
-E_oj itself is drawn with probability P_oj/ΣP, so the density of z* is φ(z) N(z)/ΣP with N the
-number of elementary failures that z contains. The weights are
-
-- importance sampling (eqs. 25-29 there): φ/h = ΣP / N(z).
-- additive rules: ΣP · 1[E_oj is the first in time of those that z contains]. With P(A ∪ B) = P(A)
-  + P(B) - P(A ∩ B) the union is a sum of disjoint parts, P_k P(none before | E_k) (K.-V. Yuen,
-  L. S. Katafygiotis, Probab. Eng. Mech. 20 (2005) 109-114, doi:10.1016/j.probengmech.2004.07.003).
-  Its mean over the failures of a sample is 1/N: a check that shares no weight with the first one.
-- directional importance sampling: with z = R e, R is a χ variable of ν degrees of freedom, ν the
-  number of components of z, independent of e, and is integrated out: ΣP · Q(min ρ_oj) / Σ Q(ρ_oj)
-  with Q(ρ) = Γ(ν/2, ρ²/2)/Γ(ν/2) and ρ_oj = b/|x_oj(e)|. By the Rao-Blackwell theorem its variance
-  is no larger than that of the first (cf. M. A. Misraji et al., Mech. Syst. Signal Process. 142
-  (2020) 106621, doi:10.1016/j.ymssp.2020.106621).
-- Monte Carlo: z is standard normal, and the weight 1 where any |x_oj| > b.
+E_oj is drawn with probability P_oj/ΣP. Weights are ΣP / N(z) of importance sampling; ΣP · 1[E_oj
+is the first in time of those that z contains] of the additive rules, of mean 1/N over the failures
+of a sample; ΣP · Q(min ρ_oj) / Σ Q(ρ_oj) with Q(ρ) = Γ(ν/2, ρ²/2)/Γ(ν/2) and ρ_oj =
+b/|x_oj(e)| of directional importance sampling, z = R e with R integrated out; and 1[any |x_oj| > b]
+of Monte Carlo.
 
 Nothing that is computed from z* changes with its sign, so x_oj > b stands for both sides. z is the
 same for all levels.

@@ -1,24 +1,8 @@
-"""The first-passage problem.
+"""The first-passage problem; docs/methods/first-passage.md states it.
 
-A structure at rest at t = 0 is loaded by Gaussian white noise; P is the probability that any of
-its responses leaves [-b, b] at one of the times t_j = j Δt, j = 1 … n, n Δt = T. The noise is
-held constant over a step: its value w_k on [t_k, t_k + Δt) is normal, independent from step to
-step, and of variance
-
-    2πS/Δt  (two-sided density S),     πG/Δt  (one-sided density G = 2S),
-
-so that its covariance tends to 2πS δ(τ) as Δt → 0. Densities are per rad/s. The noise may be
-modulated, q(t_k + Δt/2) w_k, and may then pass a Kanai-Tajimi filter, the absolute acceleration
-of a damped oscillator (the soil) on a base accelerated by it.
-
-======  =====================================  ==========================
-symbol  meaning                                field
-======  =====================================  ==========================
-T       duration, s                            ``duration``
-Δt      time step, s                           ``time_step``
-S, G    spectral density, (load)²/(rad/s)      ``noise``
-q       modulation, a function of time         ``modulation``
-======  =====================================  ==========================
+Densities are per rad/s. The noise may be modulated, q(t_k + Δt/2) w_k, and may then pass a
+Kanai-Tajimi filter, the absolute acceleration of a damped oscillator (the soil) on a base
+accelerated by it.
 """
 
 from collections.abc import Callable

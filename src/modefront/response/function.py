@@ -1,37 +1,21 @@
-r"""Frequency response functions by modal superposition with a static correction.
+"""Frequency response functions by modal superposition with a static correction.
 
-With p(t) = e^{iωt} in the equations of `modefront.response.system`, the receptance between an
-output and an input is (Ewins, *Modal Testing*, 2nd ed., eq. 2.65; the last term, for the modes
-above those given, is its residual, sec. 2.9 — here exact at ω = 0)
+docs/methods/first-passage.md has the receptance (Ewins, *Modal Testing*, 2nd ed., eq. 2.65),
 
     α(ω) = Σ_r A_r / d_r(ω) + R,    A_r = Y_r Γ_r,    d_r(ω) = ω_r² - ω² + 2iζ_r ω_r ω,
                                     R = Y_s - Σ_r A_r / ω_r².
 
-All quantities are one form, T(ω) = (iω)^s α(ω) + D:
+All quantities are T(ω) = (iω)^s α(ω) + D: receptance, mobility and accelerance have s = 0, 1, 2 and
+D = 0; of base motion, the absolute accelerance has s = 2 and D = Y_b.
 
-=====================  ==  ====  ===========================================================
-quantity               s   D     for base motion, p the acceleration of the base
-=====================  ==  ====  ===========================================================
-receptance             0   0     relative displacement
-mobility               1   0     relative velocity
-accelerance            2   0     relative acceleration
-absolute accelerance   2   Y_b   absolute acceleration (the transmissibility); base motion only
-=====================  ==  ====  ===========================================================
+T is analytic in ω, so its derivatives are exact as well. The peaks of |T(ω)| are the zeros of
 
-T is analytic in ω, so its derivatives are exact as well. The peaks of |T(ω)|, all of them in a band
-and not on a grid, are the zeros of
+    g(ω) = d|T|²/dω = 2 Re(T* T'),   where   g'(ω) = 2 (|T'|² + Re(T* T'')) < 0,
 
-    g(ω) = d|T|²/dω = 2 Re(T* T'),   where   g'(ω) = 2 (|T'|² + Re(T* T'')) < 0.
-
-g is analytic on the real axis (its nearest poles are those of the modes, ζ_r ω_r away), so on a
-short enough interval it *is*, to rounding, a Chebyshev series of low degree, all of whose zeros
-are eigenvalues of its colleague matrix (J. P. Boyd, SIAM J. Numer. Anal. 40 (2002) 1666-1682,
-doi:10.1137/S0036142901398325). The band is halved until the series' last coefficients vanish;
-how fine that is follows from the modes, not from a grid, and neither close modes, which may have
-one peak or two, nor a peak beside an antiresonance, need be told apart beforehand. Newton's
-method with the exact g, g' then brings each zero to rounding. What rounding leaves uncertain of g
-is bounded by the same sums with every term taken by its absolute value, and by g' times the spacing
-of floats at ω.
+eigenvalues of the colleague matrices of Chebyshev series (J. P. Boyd, SIAM J. Numer. Anal. 40
+(2002) 1666-1682, doi:10.1137/S0036142901398325): the band is halved until the last coefficients
+vanish. Newton's method brings each to rounding, which is bounded by the same sums with every term
+taken by its absolute value.
 """
 
 from dataclasses import dataclass, replace

@@ -1,9 +1,6 @@
-"""A linear structure in modal coordinates.
+"""A linear structure in modal coordinates, of mass-normalised mode shapes and classical damping.
 
-With mass-normalised mode shapes, u = Σ_r φ_r q_r and classical damping, the equations of motion
-M ü + C u̇ + K u = f p(t) fall apart into
-
-    q̈_r + 2 ζ_r ω_r q̇_r + ω_r² q_r = Γ_r p(t),        y = Σ_r Y_r q_r,
+The modal equations are in docs/methods/first-passage.md.
 
 ==========  =================================================  ===========
 symbol      meaning                                            field

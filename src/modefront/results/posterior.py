@@ -52,12 +52,13 @@ TRUST = ("determined", "partly", "not determined")
 def with_intervals(data: xr.Dataset, inference: Inference) -> xr.Dataset:
     """Return results with what the posterior says.
 
-    A quantile is such that the next draw is below it with its probability.
+    A quantile is such that the next draw is below it with its probability. Of draws that do not
+    settle no parameter is called determined.
     """
     draws, fit, freed = inference.draws, inference.fit, inference.freed
     interval = np.quantile(draws.theta, QUANTILES, axis=0, method="weibull").T
     share = (interval[:, 2] - interval[:, 0]) / inference.widths
-    place = np.where(share < DETERMINED, 0, np.where(share > OPEN, 2, 1))
+    place = np.where((share < DETERMINED) & draws.settled, 0, np.where(share > OPEN, 2, 1))
     p = inference.widths.size
     values = {
         "sample_theta": draws.theta,
@@ -78,7 +79,7 @@ def with_intervals(data: xr.Dataset, inference: Inference) -> xr.Dataset:
     if freed is not None:
         values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
     out = data.assign(described(values)).assign_coords(quantile=list(QUANTILES))
-    return out.assign_attrs(assumed=inference.assumed)
+    return out.assign_attrs(assumed=inference.assumed, settled=int(draws.settled))
 
 
 @dataclass(frozen=True)

@@ -235,6 +235,7 @@ study | text | name of the study
 inputs | text | hash of the study file and of all files that it names
 checksum@2 | text | BLAKE2b hash of all variables and attributes, in hexadecimal digits
 assumed | text | which errors of the data are assumed, and how great
+settled@3 | number | 1 where the chains that draw from the posterior agree
 verdict | text | sentences of the first screen, one a line
 remark | text | why a requested option is not in use
 seed* | count | seed of all random numbers

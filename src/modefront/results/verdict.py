@@ -63,6 +63,8 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     groups = list(map(str, data["group"].values))
     refused = refusals(groups, data["misfit"].values, data["nominal_misfit"].values)
     said = [*_at_bounds(data), *_assumed(data), *_pairs(data)]
+    if not data.attrs.get("settled", 1):
+        said.insert(0, _say("unsettled"))
     if refused:
         said.insert(0, _say("do-not-use", why=enumeration(refused, NAMED)))
         data = data.assign_attrs(reference="")

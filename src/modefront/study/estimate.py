@@ -11,13 +11,11 @@ within the range.
 from __future__ import annotations
 
 import time
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from modefront._typing import Floats
 from modefront.errors import InputError, ModelError
 from modefront.front.proposers.base import USUAL
 from modefront.front.simplex import default_points, size
@@ -31,8 +29,7 @@ from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
 from modefront.uncertainty.most_probable import STARTS as MAXIMA
-from modefront.uncertainty.most_probable import log_values, maximum
-from modefront.uncertainty.sampling import DRAWS, drawn
+from modefront.uncertainty.sampling import DRAWS, steps
 from modefront.work.costs import uncounted
 from modefront.work.progress import Plan, Span
 from modefront.work.task import seed_sequence
@@ -46,9 +43,12 @@ MINIMA = 1, USUAL
 SHORT = 30.0
 """Seconds up to which no advice on a shorter run is given."""
 
-TIMED, FEW, WITHIN = 8, 3, 0.4
-"""Searches and draws of the posterior that are timed, where an evaluation tells that there is time
-for them; seconds within which another search is begun."""
+STEP = 2.0, 6.0
+"""Evaluations of a step from one draw of the posterior to the next, from and to."""
+
+TIMED, WITHIN = 8, 0.4
+"""Searches that are timed, where an evaluation tells that there is time for them; seconds within
+which another one is begun."""
 
 SAMPLES = 100
 """Samples with which a prediction is timed, and three times as many."""
@@ -93,10 +93,14 @@ def estimate(study: Study) -> Estimate | None:
         timed = _search(study)
         if timed is None:
             return None
-        search, evaluations, known = timed
+        search, evaluations = timed
         parts = _parts(study, evaluations)
         advice = [(span[1] * search, text) for span, text in parts.values()]
-        other: dict[str, Span] = {"sample-posterior": _of_draws(study, search / evaluations, known)}
+        other: dict[str, Span] = {}
+        if study.noise.of(problem, study.uncertainty.of(problem.data)) is not None:
+            few, many = steps(max(DRAWS, study.uncertainty.draws))
+            each = search / evaluations
+            other["sample-posterior"] = STEP[0] * few * each, STEP[1] * many * each
         if is_reduced(problem.model):  # snapshots of the basis, and their certificates
             began = time.process_time()
             full_of(problem.model).modes(problem.start, len(problem.data.modes))
@@ -141,11 +145,10 @@ def duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
 
 
-def _search(study: Study) -> tuple[float, float, list[Floats]] | None:
+def _search(study: Study) -> tuple[float, float] | None:
     """Return the seconds and the evaluations of a search; None where there is no nominal model.
 
-    It is one for the edge of a group, from a model within the bounds. What was found comes with
-    them.
+    It is one for the edge of a group, from a model within the bounds.
     """
     problem = replace(study.problem, model=full_of(study.problem.model))
     n, p = len(problem.objectives), problem.start.size
@@ -173,27 +176,7 @@ def _search(study: Study) -> tuple[float, float, list[Floats]] | None:
         seconds, average = (float(np.mean(x)) for x in zip(*found, strict=True))
     if is_reduced(study.problem.model) and isinstance(problem.model, MatrixModel):
         seconds *= reduced_cost(problem.model, len(problem.data.modes)).share
-    return seconds, average, [problem.start, *(end.theta for end in ends)]
-
-
-def _of_draws(study: Study, each: float, known: list[Floats]) -> Span:
-    """Return the seconds of the draws of the posterior, where an evaluation takes ``each``.
-
-    A few are timed, about the most probable model below those that are known.
-    """
-    problem = study.problem
-    noise = study.noise.of(problem, study.uncertainty.of(problem.data))
-    if noise is None:
-        return 0.0, 0.0
-    seconds = 2 * (USUAL + problem.start.size) * each  # two searches
-    if FEW * seconds < WITHIN:
-        with suppress(ModelError):
-            best = known[int(np.argmin(log_values(noise, np.array(known))))]
-            theta, began = maximum(noise, best).theta, time.process_time()
-            drawn(noise, theta, FEW, rng=np.random.default_rng(0))
-            seconds = (time.process_time() - began) / FEW
-    count = max(DRAWS, study.uncertainty.draws)
-    return count * seconds / 2, 2 * count * seconds
+    return seconds, average
 
 
 def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:

@@ -260,13 +260,13 @@ def _results(study: Study, work: Run) -> xr.Dataset:
     if noise is not None:
         minima = [x for edge in front.edges for x in edge.minima]
         known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
-        (best, *_) = most_probable(problem, noise, known, work)
+        maxima = most_probable(problem, noise, known, work)
         points = certified_points(
-            problem, [Point(Kind.MOST_PROBABLE, best)], Within(work, ("most-probable",))
+            problem, [Point(Kind.MOST_PROBABLE, maxima[0])], Within(work, ("most-probable",))
         )
         front = replace(front, points=[*front.points, *points])
         count = max(DRAWS, study.uncertainty.draws)
-        inference = infer(noise, best.theta, count, study.seed, work)
+        inference = infer(noise, [x.theta for x in maxima], count, study.seed, work)
     analysis = analyse_front(
         problem,
         front,

@@ -1,10 +1,7 @@
 """Conditions of each kind of programme on the changes of its solution, and when these are valid.
 
-The equations are derived at the top of `modefront.uncertainty.scatter`. Linearised, they are valid
-as long as no active set changes and the solution remains the same minimum. Each of these conditions
-is that a quantity is positive, and is in doubt where it is less than its own linearised standard
-deviation. A point is near the end of a branch of the front where the end is within its scatter in
-all objectives.
+Linearised (`modefront.uncertainty.scatter`), they are valid as long as no active set changes and
+the solution remains the same minimum: in doubt where one of these is within a standard deviation.
 """
 
 from __future__ import annotations

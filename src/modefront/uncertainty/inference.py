@@ -6,6 +6,7 @@ model are widened at once, and only those beyond which it then lies are to blame
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -84,9 +85,11 @@ class Inference:
         return Posterior(axes, np.zeros(p, dtype=np.bool_), np.zeros((p, 0)))
 
 
-def infer(noise: NoiseModel, theta: Floats, count: int, seed: int, work: Executor) -> Inference:
-    """Return what follows from the posterior with its maximum at theta (p,), by ``count`` draws."""
-    draws = draw_models(noise, theta, count, seed, work)
+def infer(
+    noise: NoiseModel, maxima: Sequence[Floats], count: int, seed: int, work: Executor
+) -> Inference:
+    """Return what follows from the posterior with maxima (p,), the greatest first, by draws."""
+    draws, theta = draw_models(noise, maxima, count, seed, work), maxima[0]
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
     return Inference(
         draws, fit, freed(noise, theta, work), prior_widths(noise.problem), noise.assumed

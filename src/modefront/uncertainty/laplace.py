@@ -1,15 +1,8 @@
-r"""Laplace's approximation of the posterior, with the variance of the errors of each group unknown.
+r"""Laplace's approximation of the posterior with Jeffreys' prior of the variances of the errors.
 
-With Jeffreys' prior of the variances and a uniform one within the bounds, :math:`-\ln p = \tfrac12
-I = \tfrac12 \sum_i a_i \ln J_i`: the optimally weighted model, equation (8), is the most probable
-one (compare Christodoulou & Papadimitriou 2007, Mechanical Systems and Signal Processing 21, 4-23),
-and
-
-.. math:: C = \Big(\tfrac12 \nabla^2 I\Big)^{-1}, \qquad
-    \nabla^2 I = \sum_i \frac{a_i}{J_i} H_i - \sum_i \frac{a_i}{J_i^2} \partial J_i \partial J_i^T .
-
-A parameter that is pressed against a bound is held there: C is that of the others given it.
-Directions in which no residual changes keep their prior; they are named and left out of C.
+Its peak is the optimally weighted model (compare Christodoulou & Papadimitriou 2007, Mechanical
+Systems and Signal Processing 21, 4-23); docs/uncertainty.md has its covariance. A parameter that is
+pressed against a bound is held there, and directions in which no residual changes keep their prior.
 """
 
 from __future__ import annotations

@@ -1,14 +1,9 @@
-r"""Effects of errors of measurement on the objectives and their derivatives.
+r"""Effects of errors of measurement on the objectives and their derivatives, to first order.
 
-To first order both are sums over independent sources of standard deviation one. From standard
-deviations, each value is a source, which each kind of residual derives (`modefront.residuals`); a
-value without one counts as exact. From several data sets, each set is a source: the objectives are
-means over sets, and a mean has the variance of its terms over their number,
-
-.. math:: \delta_k J_r = \frac{J_{r,k} - J_r}{\sqrt{K_r (K_r - 1)}}
-
-(the infinitesimal jackknife; Efron 1982, doi:10.1137/1.9781611970319, chapter 6). Nothing is
-assumed of how errors within a set depend on each other; a mode measured once counts as exact.
+They are sums over independent sources of standard deviation one. From standard deviations, each
+value is a source, and one without counts as exact. From several data sets, each set is a source, by
+the infinitesimal jackknife (Efron 1982, doi:10.1137/1.9781611970319, chapter 6); nothing is assumed
+of how errors within a set depend on each other.
 """
 
 from __future__ import annotations

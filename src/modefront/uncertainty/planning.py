@@ -1,16 +1,8 @@
 r"""What to measure next: how much each further mode or sensor would narrow each parameter.
 
-The covariance about the most probable model becomes less (docs/uncertainty.md) by the rows R
-(rows, p) of further measurements over their expected standard deviations. A frequency has
-:math:`R = \partial f / (\tau f)`. A shape :math:`\chi = \varphi / (\tau \max |\varphi|)` at all
-sensors has, as its factor is fitted, :math:`R = (I - \chi \chi^T / \|\chi\|^2)\, \partial \chi`;
-a sensor s that is added to the components M of a shape gives one row,
-
-.. math:: R = \frac{\partial \chi_s - \chi_s \, \chi_M^T \partial \chi_M / \|\chi_M\|^2}
-    {\sqrt{1 + \chi_s^2 / \|\chi_M\|^2}} .
-
-New measurements are as exact as those that there are, :math:`\tau` by median, and their errors have
-the variance of the group of their kind.
+docs/uncertainty.md has the covariance with the rows R (rows, p) of further residuals. New
+measurements are as exact as those that there are, :math:`\tau` by median, with the variance of the
+group of their kind; the factor of a shape is fitted.
 """
 
 from __future__ import annotations

@@ -1,10 +1,7 @@
 """The points of a front with what each of them solves, so that they can be solved again.
 
-Solved again with data drawn again, they tell how far models and fronts scatter without a
-linearisation. From several data sets, as many sets are drawn with replacement (the bootstrap; Efron
-& Tibshirani 1993, *An Introduction to the Bootstrap*, chapter 6); a draw in which something is
-measured in no set is drawn again. From standard deviations, every value is drawn from a Gaussian
-around it.
+With data drawn again they tell how far models and fronts scatter: data sets with replacement (the
+bootstrap), values from a Gaussian of their standard deviation.
 """
 
 from __future__ import annotations

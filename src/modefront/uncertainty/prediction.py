@@ -1,25 +1,9 @@
-r"""The uncertainty of predictions, given that of the parameters.
+r"""The uncertainty of predictions, given that of the parameters; see docs/uncertainty.md.
 
-A prediction q of covariance C of the parameters has, to first order, the covariance
-:math:`\partial q \, C \, \partial q^T`. With axes R, :math:`R R^T = C`, the parameters are
-:math:`\theta = \hat\theta + R z`, z standard normal, and that is :math:`S S^T` with
-:math:`S = \partial q / \partial z`.
-
-A probability P varies by orders of magnitude. Its logarithm is what is nearly linear: where it has
-the standard deviation s around :math:`\ln \hat P`, P is lognormal with the median :math:`\hat P`,
-the mean :math:`\hat P e^{s^2/2}` and the standard deviation
-
-.. math:: \hat P \sqrt{e^{s^2} (e^{s^2} - 1)} .
-
-Derivatives are differences, central ones where these stay within the bounds and one-sided ones of
-second order elsewhere. A step of one half balances two errors: of smooth peaks it leaves 0.06 % of
-a standard deviation, and failure probabilities, estimated with the same random numbers for all
-models, are rough below it.
-
-Where q bends too much for that, or where there is no gradient, it is evaluated at a sample of the
-Gaussian. The mean of probabilities over the posterior is the robust, or updated, failure
-probability (Papadimitriou, Beck & Katafygiotis 2001, Probabilistic Engineering Mechanics 16,
-103-113, doi:10.1016/S0266-8920(00)00012-6).
+A probability varies by orders of magnitude, and its logarithm is what is nearly linear: P is
+lognormal. Derivatives are central differences, one-sided ones of second order near bounds. A step
+of one half a standard deviation leaves 0.06 % of one for smooth peaks; probabilities, estimated
+with the same random numbers for all models, are rough below it.
 """
 
 from __future__ import annotations

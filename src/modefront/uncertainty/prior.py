@@ -1,31 +1,23 @@
-r"""What is expected of the errors of the data and the model, before the data are fitted.
+r"""What is expected of parameters and errors before the data are fitted, and the posterior.
 
-The residuals of group i over their expected standard deviations are Gaussian with an unknown
-variance of scaled inverse chi-square prior: :math:`\nu` degrees of freedom, about :math:`m_i`. It
-is integrated out (docs/uncertainty.md), and the most probable model has the bounded weights
-:math:`w_i = (a_i + \nu) / (J_i' - S_i + \nu m_i)`.
-
-Expected standard deviations are those of the data, else those that are assumed. The scatter S of
-the data sets about their mean, of d degrees of freedom, corrects these to :math:`m_i = (\nu + S_i)
-/ (\nu + d_i)`. Repeated data sets count once in :math:`a_i`: errors of the model are the same in
-all of them.
-
-The prior of the parameters is uniform within their bounds, and where neither data nor bounds say
-anything a parameter is nearest to its nominal value: :math:`-2 \ln p` has the further term
-:math:`\varepsilon \sum_j (\theta_j - \theta_{0 j})^2 / range_j^2`. For a parameter of normal prior
-that term is :math:`(\theta_j - \theta_{0 j})^2 / \sigma_j^2`, and of lognormal prior
-:math:`\ln^2 (\theta_j / \theta_{0 j}) / \sigma_j^2`.
+docs/uncertainty.md defines :math:`a_i, S_i, d_i, m_i` and :math:`\nu`, and -2 ln p as a function of
+the residuals over their expected standard deviations. Where neither data nor bounds say anything, a
+parameter is nearest to its nominal value by the further term :math:`\varepsilon \sum_j (\theta_j -
+\theta_{0 j})^2 / range_j^2`; for a parameter of normal or lognormal prior that is its own.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
+import scipy.stats
+from scipy.special import ndtr, ndtri
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
+from modefront.models.parameters import Prior
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
 from modefront.optim.scalarisation import LogSum, Rows, no_rows
 from modefront.options import check_fields, number
@@ -35,12 +27,14 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.residuals.shape import without_negligible
 from modefront.uncertainty.noise import Source
 
-PULL = 1e-6
-"""Weight of the distance from the nominal model: a normal prior of a thousand ranges."""
-
+PULL = 1e-3
+"""Weight of the distance from the nominal model: a normal prior of thirty ranges."""
 
 NINETY = 1.6449
 """Half the 90 % interval of a normal distribution, over its standard deviation."""
+
+FARTHEST = 7.0
+"""Distance from the median of a prior, in standard deviations, beyond which nobody looks."""
 
 
 @dataclass(frozen=True)
@@ -202,26 +196,84 @@ class Distance:
         return replace(found, J=J, derivatives=slopes, residuals=residuals)
 
 
-def drawn_prior(problem: UpdatingProblem, rng: np.random.Generator) -> Floats:
-    """Return parameters (p,) drawn from their prior; those beyond the bounds lie at them."""
-    theta = rng.uniform(problem.lower, problem.upper)
-    for j, prior in enumerate(problem.priors):
-        if prior:
-            z = prior.std * rng.normal()
-            nominal = problem.start[j]
-            theta[j] = nominal + z if prior.kind == "normal" else nominal * np.exp(z)
-    return np.clip(theta, problem.lower, problem.upper)
+@dataclass(eq=False)
+class Standardised:
+    """The residuals of a problem as functions of independent standard normal variables z.
+
+    The prior of the parameters makes them such. The last objective is the square of z.
+    """
+
+    problem: UpdatingProblem
+
+    def __post_init__(self) -> None:
+        self.objectives = (*self.problem.objectives, "prior")
+        self.start = np.zeros(self.problem.start.size)
+        self.lower, self.upper = self.start - FARTHEST, self.start + FARTHEST
+
+    def theta(self, z: Floats) -> tuple[Floats, Floats]:
+        """Return the parameters (p,) of z (p,) and their derivatives."""
+        lower, upper = self.problem.lower, self.problem.upper
+        span, density = upper - lower, np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi)
+        theta = np.where(z < 0, lower + span * ndtr(z), upper - span * ndtr(-z))
+        slope = span * density
+        for j, prior in enumerate(self.problem.priors):
+            if prior:
+                law = self._law(j, prior)
+                x = law.ppf(ndtr(z[j])) if z[j] < 0 else law.isf(ndtr(-z[j]))
+                theta[j], slope[j] = self.problem.start[j] + prior.std * x, prior.std
+                if prior.kind == "lognormal":
+                    theta[j] = self.problem.start[j] * np.exp(prior.std * x)
+                    slope[j] *= theta[j]
+                slope[j] *= density[j] / law.pdf(x)
+        return np.clip(theta, lower, upper), slope
+
+    def z(self, theta: Floats) -> Floats:
+        """Return z (p,) of parameters (p,), infinite where these are at their bounds."""
+        lower, upper = self.problem.lower, self.problem.upper
+        z: Floats = ndtri((theta - lower) / (upper - lower))
+        for j, prior in enumerate(self.problem.priors):
+            if prior:
+                z[j] = ndtri(self._law(j, prior).cdf(self._units(j, prior, theta[j])))
+        return z
+
+    def _units(self, j: int, prior: Prior, theta: float) -> float:
+        """Return the distance of a parameter from its nominal value, in standard deviations."""
+        nominal = self.problem.start[j]
+        if prior.kind == "normal":
+            return float((theta - nominal) / prior.std)
+        return float(np.log(theta / nominal) / prior.std) if theta / nominal > 0 else -np.inf
+
+    def _law(self, j: int, prior: Prior) -> Any:
+        """Return the distribution of this distance, between the bounds."""
+        ends = (self._units(j, prior, x[j]) for x in (self.problem.lower, self.problem.upper))
+        return scipy.stats.truncnorm(*sorted(ends))
+
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        """Return the objectives at z (p,), always with the derivatives that residuals take."""
+        del derivatives, second
+        parameters, slope = self.theta(theta)
+        found = self.problem.evaluate(parameters)
+        if not found.feasible:
+            return replace(found, theta=theta, J=np.append(found.J, np.inf))
+        residuals = (
+            *(Residual(x.r, x.dr * slope) for x in found.residuals),
+            Residual(theta, np.eye(theta.size)),
+        )
+        slopes = ObjectiveDerivatives(
+            np.array([2 * x.r @ x.dr for x in residuals]),
+            np.array([2 * x.dr.T @ x.dr for x in residuals]),
+        )
+        return Evaluation(
+            theta, np.append(found.J, theta @ theta), slopes, found.quantities, residuals
+        )
 
 
 def prior_widths(problem: UpdatingProblem) -> Floats:
     """Return the widths (p,) of the 90 % intervals of the priors."""
-    out = 0.9 * (problem.upper - problem.lower)
-    for j, prior in enumerate(problem.priors):
-        if prior:
-            far = NINETY * prior.std
-            nominal = problem.start[j]
-            width = far if prior.kind == "normal" else abs(nominal) * np.sinh(far)
-            out[j] = min(out[j], 2 * width)
+    of, z = Standardised(problem), np.full(problem.start.size, NINETY)
+    out: Floats = of.theta(z)[0] - of.theta(-z)[0]
     return out
 
 

@@ -1,98 +1,206 @@
-r"""Models drawn from the posterior: randomised maximum likelihood.
+r"""Models drawn from the posterior: randomise then optimise, made exact by Metropolis' rule.
 
-Each draw is the model that fits data with other errors, and where these say nothing is nearest to a
-model of the prior (docs/uncertainty.md; Kitanidis 1995, doi:10.1029/94WR02740; Oliver, He &
-Reynolds 1996). Where residuals are linear and bounds far these are independent draws from the
-posterior. It is an approximation elsewhere, which follows curved sets of equivalent models and
-reaches all minima. ``benchmarks/calibration.py`` measures it. Markov chains take a hundred times as
-many models where the data leave much open.
-
-Draws that would be beyond a bound lie at it, while the posterior has no such atom. Each parameter j
-at a bound is drawn again along the line :math:`\theta + t v`, :math:`v_j` one range inwards, on
-which those within their bounds follow, :math:`v_F = -A_{FF}^{-1} A_{Fj} v_j`, with :math:`A =
-\partial r^T \partial r` of the residuals over their standard deviations. To first order t is
-Gaussian,
-
-.. math:: q(t) \propto e^{-a t^2 / 2 - g t}, \qquad a = v^T A v, \quad g = v^T \partial r^T r,
-
-truncated where the line ends; it is taken with the probability of Metropolis, the ratio of the
-posterior over q to that at the bound. Of one parameter and a linear residual the draws are exact.
-
-The variances are drawn from their marginal distribution with the parameters linearised about the
-most probable model, at which :math:`q_i` counts the directions that group i determines,
-
-.. math:: s_i \sim \frac{J_i' - S_i + \nu m_i}{\chi^2_{a_i + \nu - q_i}}, \qquad
-    q_i = \mathrm{tr} \Big[\Big(\sum_k w_k G_k + \delta\Big)^{-1} w_i G_i\Big],
-
-with :math:`G_i = \partial r_i^T \partial r_i` and w the weights. Of one group of linear residuals
-this gives Student's distribution with :math:`a + \nu - p` degrees of freedom, exactly.
-
-The problem is solved from the model of the prior and from the most probable one; the better
-solution is taken.
+docs/uncertainty.md has the equations. The parameters are functions of standard normal variables z.
+About a peak a model of normal variables :math:`\xi` and of variances s of the errors solves
+:math:`F(z) = L \xi` (Bardsley, Solonen, Haario & Laine 2014, doi:10.1137/140964023). Proposals
+change the normal variables, :math:`u' = \sqrt{1 - b^2}\, u + b\, N(0, I)`; the warm-up shortens b
+from 1, independent models, as far as is needed. Steps of the stochastic Newton method go between
+(Martin et al. 2012, doi:10.1137/110845598), and find models beyond a fold of F, which become
+centres of further proposals. Chains go on until they agree and the effective sample is large enough
+(Vehtari et al. 2021, doi:10.1214/20-BA1221).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from scipy.special import log_ndtr, ndtri_exp
+import scipy.stats
+from scipy.special import gammainc, gammaln, logsumexp, ndtr, ndtri, softmax
 
 from modefront._typing import Floats
-from modefront.optim.problem import (
-    Evaluation,
-    ObjectiveDerivatives,
-    Problem,
-    Residual,
-    Wrapped,
-    at_bounds,
-)
-from modefront.optim.scalarisation import weighted
-from modefront.optim.sqp import Options, begin, solve
-from modefront.uncertainty.prior import Distance, NoiseModel, drawn_prior
+from modefront.optim.problem import Evaluation
+from modefront.optim.scalarisation import LogSum
+from modefront.optim.sqp import begin, solve
+from modefront.uncertainty.prior import FARTHEST, NoiseModel, Standardised
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task, seed_sequence
 
-PRIOR = 2.5e-3
-"""Weight of the distance from the model of the prior: a normal prior of twenty ranges."""
+DRAWS = 200
+"""Effective draws for intervals: the 5 % quantile is known to a tenth of a standard deviation."""
 
-BATCH = 10
-"""Draws of a task."""
+CHAINS, ROUND, LONGEST = 4, 50, 12
+"""Chains, steps of a round of them, and steps at most of all chains over the draws."""
 
-DRAWS = 100
-"""Draws for intervals: the 5 % quantile has an error of a sixth of a standard deviation."""
+WARM = 4
+"""Rounds at most in which models that no peak proposes become centres of further proposals."""
 
-NAMES = ("misfit", "distance from the prior")
-"""Objectives of a draw."""
+AGREE = 1.05
+"""Deviation of all chains over that within them, from which they do not agree."""
 
-_LOOSE = Options(step=1e-4, reduction=1e-8, iterations=40)
-"""Draws need a hundredth of their scatter, and no more."""
+ACCEPTED = 0.35
+"""Share of proposals that are taken, below which steps become shorter."""
+
+APART = 1.0
+"""Distance of two peaks, in standard deviations, below which one is enough."""
+
+FAINT = 1e-3
+"""Probability of a peak over that of the greatest one, below which it is left out."""
+
+SOLVED, STEPS = 1e-3, 12
+"""Error of the normal variables behind a model, and steps to it at most."""
 
 
 @dataclass(frozen=True)
-class Variances:
-    """The distribution of the variances s (n,): ``scale`` / chi-square of ``dof``."""
+class Peak:
+    """A peak of the posterior, about which models are proposed.
 
-    scale: Floats
-    dof: Floats
+    Attributes
+    ----------
+    at : the evaluation of the standardised problem there
+    logs : -2 ln p of the squares of the residuals, with the variances integrated out
+    """
 
-    def draw(self, rng: np.random.Generator) -> Floats:
-        """Return variances (n,)."""
-        out: Floats = self.scale / rng.chisquare(self.dof)
+    at: Evaluation
+    logs: LogSum
+
+    @cached_property
+    def G(self) -> Floats:
+        """Derivatives of the residuals (rows, p)."""
+        return np.vstack([x.dr for x in self.at.residuals[:-1]])
+
+    @cached_property
+    def squares(self) -> Floats:
+        """Squares of the derivatives of each group, (n, p, p)."""
+        return np.array([x.dr.T @ x.dr for x in self.at.residuals[:-1]])
+
+    @cached_property
+    def scale(self) -> Floats:
+        """Scale (n,) of the distribution of the variances, scale / chi-square of `dof`."""
+        return self.at.J[:-1] + self.logs.floor
+
+    @property
+    def expected(self) -> Floats:
+        """Variances (n,) at the peak."""
+        return self.scale / self.logs.a
+
+    @cached_property
+    def dof(self) -> Floats:
+        """Degrees of freedom (n,) of the variances."""
+        inverse = np.linalg.inv(self.precision(self.expected))
+        q = np.einsum("jk,ikj->i", inverse, self.squares) / self.expected
+        return np.maximum(self.logs.a - q, 1.0)
+
+    def precision(self, s: Floats) -> Floats:
+        """Return A (p, p)."""
+        out: Floats = np.eye(self.at.theta.size) + np.tensordot(1 / s, self.squares, axes=1)
         return out
 
+    def variances(self, eta: Floats) -> Floats:
+        """Return variances (n,) of normal variables (n,)."""
+        out: Floats = self.scale / scipy.stats.chi2.isf(
+            ndtr(np.clip(-eta, -FARTHEST, FARTHEST)), self.dof
+        )
+        return out
 
-def variances(noise: NoiseModel, evaluation: Evaluation) -> Variances:
-    """Return the distribution of the variances; ``evaluation`` is of the most probable model."""
-    logs = noise.programme.logs
-    span = noise.problem.upper - noise.problem.lower
-    slope = Distance(noise.problem, noise.problem.start, PRIOR).residuals(evaluation.theta)[1]
-    w = logs.gradient(evaluation.J)
-    G = np.array([x.dr.T @ x.dr for x in evaluation.residuals]) * np.outer(span, span)
-    inverse = np.linalg.inv(np.tensordot(w, G, axes=1) + np.diag((slope * span) ** 2))
-    q = w * np.einsum("jk,ikj->i", inverse, G)
-    return Variances(evaluation.J + logs.floor, np.maximum(logs.a - q, noise.weight))
+    def forward(self, model: Model) -> tuple[Floats, Floats]:
+        """Return F (p,) of a model and its derivative (p, p)."""
+        over = np.repeat(1 / model.s, model.rows)[:, None]
+        F = model.z + self.G.T @ (over[:, 0] * model.r)
+        return F, np.eye(len(F)) + self.G.T @ (over * model.dr)
+
+    def behind(self, model: Model) -> Floats:
+        """Return the normal variables (p + n,) behind a model."""
+        xi = np.linalg.solve(np.linalg.cholesky(self.precision(model.s)), self.forward(model)[0])
+        return np.append(xi, -ndtri(gammainc(self.dof / 2, self.scale / model.s / 2)))
+
+    def log_density(self, model: Model) -> float:
+        """Return ln q of a model and its variances; minus infinity beyond a fold of F."""
+        F, slope = self.forward(model)
+        sign, size = np.linalg.slogdet(slope)
+        if sign <= 0:
+            return -np.inf
+        A, s, half = self.precision(model.s), model.s, self.dof / 2
+        size -= np.linalg.slogdet(A)[1] / 2 + F @ np.linalg.solve(A, F) / 2
+        of_s = half * np.log(self.scale / 2) - gammaln(half) - (half + 1) * np.log(s)
+        return float(size + (of_s - self.scale / (2 * s)).sum())
+
+    def model(self, target: Standardised, u: Floats, start: Evaluation) -> Model | None:
+        """Return the model of normal variables (p + n,) by Newton's method; None without one.
+
+        Steps become shorter until the next one does (Deuflhard's natural monotonicity).
+        """
+        p = self.at.theta.size
+        here = Model(start, self.variances(u[p:]))
+        L = np.linalg.cholesky(self.precision(here.s))
+        F, slope = self.forward(here)
+        missing = L @ u[:p] - F
+        for _ in range(STEPS):
+            if np.linalg.norm(np.linalg.solve(L, missing)) < SOLVED:
+                return here
+            inverse = np.linalg.inv(slope)
+            step = inverse @ missing
+            share = min(1.0, 1 / np.abs(step).max())
+            while True:
+                z = np.clip(here.z + share * step, -FARTHEST, FARTHEST)
+                there = Model(target.evaluate(z), here.s)
+                if there.found.feasible:
+                    F, slope = self.forward(there)
+                    missing = L @ u[:p] - F
+                    left = np.linalg.norm(inverse @ missing)
+                    if left <= (1 - share / 4) * np.linalg.norm(step):
+                        break
+                share /= 4
+                if share < SOLVED:
+                    return None
+            here = there
+        return None
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model, evaluated in the standardised problem, with variances s (n,) of its errors."""
+
+    found: Evaluation
+    s: Floats
+
+    @property
+    def z(self) -> Floats:
+        """Standardised parameters (p,)."""
+        return self.found.theta
+
+    @cached_property
+    def rows(self) -> list[int]:
+        """Numbers of residuals of the groups."""
+        return [x.r.size for x in self.found.residuals[:-1]]
+
+    @cached_property
+    def r(self) -> Floats:
+        """Residuals (rows,)."""
+        return np.concatenate([x.r for x in self.found.residuals[:-1]])
+
+    @cached_property
+    def dr(self) -> Floats:
+        """Their derivatives (rows, p)."""
+        return np.vstack([x.dr for x in self.found.residuals[:-1]])
+
+    def log_posterior(self, logs: LogSum) -> float:
+        """Return ln p of the model and its variances."""
+        b = self.found.J[:-1] + logs.floor
+        of_s = (logs.a / 2 + 1) * np.log(self.s) + b / (2 * self.s)
+        return float(-of_s.sum() - self.found.J[-1] / 2)
+
+    def newton(self, b: float) -> tuple[Floats, Floats]:
+        """Return mean (p,) and precision (p, p) of proposals nearby: the stochastic Newton method.
+
+        Of a Gaussian they leave it as it is, whatever b.
+        """
+        over = np.repeat(1 / self.s, self.rows)
+        A = np.eye(self.z.size) + self.dr.T @ (over[:, None] * self.dr)
+        slope = self.z + self.dr.T @ (over * self.r)
+        return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
 
 
 @record
@@ -104,128 +212,233 @@ class Draws:
     ----------
     theta : (draws, p) parameters
     frequency, mac : (draws, modes) of the pairs of measured modes that are most likely
+    settled : whether the chains agree, and are long enough for intervals
     """
 
     theta: Floats
     frequency: Floats
     mac: Floats
+    settled: bool = True
 
 
-def draw_models(noise: NoiseModel, theta: Floats, count: int, seed: int, work: Executor) -> Draws:
-    """Return models drawn from the posterior, with its maximum at theta (p,)."""
-    tasks = [
-        Task(
-            ("sample-posterior", k + 1),
-            drawn,
-            (noise, theta, BATCH),
-            seed_sequence(seed, "sample-posterior", k + 1),
-        )
-        for k in range(-(-count // BATCH))
-    ]
-    work.expect({"sample-posterior": len(tasks)})
-    parts = work.run(tasks)
-    return Draws(
-        *(
-            np.concatenate([getattr(part, name) for part in parts])[:count]
-            for name in ("theta", "frequency", "mac")
-        )
-    )
+@record
+@dataclass(frozen=True)
+class Chain:
+    """A round of a chain.
+
+    Attributes
+    ----------
+    z, theta : (steps, p) standardised parameters, and parameters
+    frequency, mac : (steps, modes)
+    s : (n,) variances at its end
+    length : b of both kinds of proposals
+    beyond : whether no peak proposes the model at its end
+    """
+
+    z: Floats
+    theta: Floats
+    frequency: Floats
+    mac: Floats
+    s: Floats
+    length: Floats
+    beyond: bool
 
 
-def drawn(noise: NoiseModel, theta: Floats, count: int, *, rng: np.random.Generator) -> Draws:
-    """Return some models drawn from the posterior, with its maximum at theta (p,)."""
-    problem = noise.problem
-    best = problem.evaluate(theta)
-    of, w = variances(noise, best), np.ones(2)
-    out = []
-    for _ in range(count):
-        s = of.draw(rng)
-        prior = drawn_prior(problem, rng)
-        errors = [
-            np.sqrt(v) * rng.normal(size=x.r.size) for v, x in zip(s, best.residuals, strict=True)
+def steps(count: int) -> tuple[int, int]:
+    """Return how many steps all chains take for so many effective draws, from and to."""
+    return 2 * CHAINS * ROUND, WARM * CHAINS * ROUND + LONGEST * count
+
+
+def draw_models(
+    noise: NoiseModel, maxima: Sequence[Floats], count: int, seed: int, work: Executor
+) -> Draws:
+    """Return models drawn from the posterior, of which all known ``maxima`` (p,) are given."""
+    stage, at = "sample-posterior", Standardised(noise.problem).evaluate
+    tasks = [Task((stage, "peak", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
+    peaks = _mixture(noise, work.run(tasks))
+    work.expect({stage: 3 * CHAINS})
+    chains: list[Chain | None] = [None] * CHAINS
+    kept: list[list[Chain]] = []
+    warm, settled = True, False
+    for turn in range(WARM + -(-LONGEST * count // (CHAINS * ROUND))):
+        steps = [
+            Task(
+                (stage, k + 1, turn + 1),
+                _advanced,
+                (noise, peaks, chain, warm),
+                seed_sequence(seed, stage, k + 1, turn + 1),
+            )
+            for k, chain in enumerate(chains)
         ]
-        disturbed = _Scaled(s, Distance(problem, prior, PRIOR), errors)
-        target = Wrapped(problem, disturbed.evaluate, NAMES)
-        starts = [target.evaluate(prior), disturbed.of(best)]
-        found = [solve(target, weighted(w), begin(x), _LOOSE) for x in starts if x.feasible]
-        model = min(found, key=lambda x: float(w @ x.J)).evaluation
-        out.append(_within_bounds(noise, s, model, rng))
+        found = work.run(steps)
+        chains = [*found]
+        if warm:
+            beyond = [x.z[-1] for x in found if x.beyond]
+            tasks = [
+                Task((stage, "beyond", turn + 1, k + 1), at, (z,)) for k, z in enumerate(beyond)
+            ]
+            more = _mixture(noise, work.run(tasks))
+            peaks, warm = [*peaks, *more], bool(more) and turn + 1 < WARM
+            continue
+        kept.append(found)
+        ratio, size = agreement(np.array([_joined(x, "z") for x in zip(*kept, strict=True)]))
+        settled = ratio < AGREE and size >= count / 2
+        if settled and size >= count:
+            break
+    every = [x for chain in zip(*kept, strict=True) for x in chain]
+    rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
+    order = rng.permutation(np.linspace(0, len(every) * ROUND - 1, count).round().astype(int))
+    theta, frequency, mac = (_joined(every, x)[order] for x in ("theta", "frequency", "mac"))
+    return Draws(theta, frequency, mac, settled)
+
+
+def _joined(rounds: Sequence[Chain], name: str) -> Floats:
+    return np.concatenate([getattr(x, name) for x in rounds])
+
+
+def _peak(noise: NoiseModel, theta: Floats) -> Evaluation:
+    """Return the peak of the posterior of standardised parameters below a model theta (p,)."""
+    target = Standardised(noise.problem)
+    start = target.evaluate(np.clip(target.z(theta), -2.0, 2.0))
+    return solve(target, noise.programme, begin(start)).evaluation
+
+
+def _mixture(noise: NoiseModel, found: Sequence[Evaluation]) -> list[Peak]:
+    """Return the peaks that count, each once."""
+    logs = noise.programme.logs
+    peaks: list[Peak] = []
+    for x in sorted(found, key=lambda x: noise.programme.value(x.J)):
+        new = Peak(x, logs)
+        ways = [new.behind(Model(y.at, new.expected)) for y in peaks]
+        here = new.behind(Model(x, new.expected))
+        if all(np.linalg.norm(way - here) > APART for way in ways):
+            peaks.append(new)
+    if not peaks:
+        return []
+    value = [noise.programme.value(x.at.J) for x in peaks]
+    size = [np.linalg.slogdet(x.precision(x.expected))[1] for x in peaks]
+    share = softmax(-(np.array(value) + np.array(size)) / 2)
+    return [x for x, v in zip(peaks, share.tolist(), strict=True) if v > FAINT * share.max()]
+
+
+def _advanced(
+    noise: NoiseModel,
+    peaks: Sequence[Peak],
+    chain: Chain | None,
+    warm: bool,
+    *,
+    rng: np.random.Generator,
+) -> Chain:
+    """Return the next round of a chain; a warm-up adapts the lengths of steps."""
+    target, logs = Standardised(noise.problem), noise.programme.logs
+    of = Sampler(target, logs, peaks)
+    length = np.ones(2) if chain is None or warm else chain.length
+    if chain is None:
+        peak = peaks[rng.choice(len(peaks))]
+        here = Model(peak.at, peak.expected)
+    else:
+        here = Model(target.evaluate(chain.z[-1]), chain.s)
+    out = []
+    for t in range(ROUND):
+        across = len(peaks) > 1 and t % 2 == 1
+        here, far = of.across(here, 1.0 if across else length[0], across, rng)
+        b = here.found.J[:-1] + logs.floor
+        here = Model(here.found, b / rng.chisquare(logs.a))
+        here, near = of.nearby(here, length[1], rng)
+        if warm:
+            better = np.array([0.0 if across else far - ACCEPTED, near - ACCEPTED])
+            length = np.minimum(length * np.exp(better / np.sqrt(1 + t / 4)), 1.0)
+        out.append(here.found)
     none = np.empty(0)
-    return Draws(
-        np.array([x.theta for x in out]),
-        *(np.array([x.quantities.get(name, none) for x in out]) for name in ("frequency", "mac")),
+    frequency, mac = (
+        np.array([x.quantities.get(name, none) for x in out]) for name in ("frequency", "mac")
     )
-
-
-def _within_bounds(
-    noise: NoiseModel, s: Floats, model: Evaluation, rng: np.random.Generator
-) -> Evaluation:
-    """Return a draw of which parameters that are at bounds are drawn again."""
-    lower, upper = noise.problem.lower, noise.problem.upper
-    span, sides = upper - lower, at_bounds(model.theta, lower, upper)
-    if not sides.any():
-        return model
-    scaled = _Scaled(s, Distance(noise.problem, noise.problem.start, 0.0))
-    target = Wrapped(noise.problem, scaled.evaluate, NAMES)
-    here = target.evaluate(model.theta)
-    for j in rng.permutation(np.flatnonzero(sides)):
-        theta = here.theta
-        r = np.concatenate([x.r for x in here.residuals])
-        dr = np.vstack([x.dr for x in here.residuals]) * span
-        A = dr.T @ dr + PRIOR * np.eye(span.size)
-        free, v = at_bounds(theta, lower, upper) == 0, np.zeros(span.size)
-        v[j] = -sides[j]
-        v[free] = -np.linalg.solve(A[np.ix_(free, free)], A[free, j] * v[j])
-        ends = np.where(v > 0, upper, lower) - theta
-        reach = float((ends[v != 0] / (v * span)[v != 0]).min())
-        a, g = float(v @ A @ v), float(v @ dr.T @ r)
-        t = truncated(-g / a, a**-0.5, reach, rng)
-        there = target.evaluate(np.clip(theta + t * v * span, lower, upper))
-        excess = float((there.J - here.J).sum()) - a * t**2 - 2 * g * t
-        if rng.random() < np.exp(-max(excess, 0.0) / 2):
-            here = there
-    return here
-
-
-def truncated(mean: float, std: float, reach: float, rng: np.random.Generator) -> float:
-    """Return a draw of a Gaussian between 0 and ``reach``, by inversion in its left tail."""
-    if mean > reach / 2:
-        return reach - truncated(reach - mean, std, reach, rng)
-    inner, outer = log_ndtr(np.array([mean, mean - reach]) / std)
-    u = rng.random()
-    t = mean - std * ndtri_exp(inner + np.log1p(u * np.expm1(outer - inner)))
-    return float(np.clip(t, 0.0, reach))
+    return Chain(
+        np.array([x.theta for x in out]),
+        np.array([target.theta(x.theta)[0] for x in out]),
+        frequency,
+        mac,
+        here.s,
+        length,
+        not np.isfinite(of.densities(here)).any(),
+    )
 
 
 @dataclass(frozen=True)
-class _Scaled:
-    """Residuals over their standard deviations and a distance; with other errors where given."""
+class Sampler:
+    """Transitions that leave the posterior as it is."""
 
-    s: Floats
-    prior: Distance
-    errors: Sequence[Floats] = ()
+    target: Standardised
+    logs: LogSum
+    peaks: Sequence[Peak]
 
-    def evaluate(
-        self, problem: Problem, theta: Floats, derivatives: bool, second: bool
-    ) -> Evaluation:
-        """Return the misfit and the distance, always with the derivatives that residuals take."""
-        del derivatives, second
-        return self.of(problem.evaluate(theta))
+    def across(
+        self, here: Model, b: float, jumps: bool, rng: np.random.Generator
+    ) -> tuple[Model, float]:
+        """Return the model after a step through the normal variables behind it.
 
-    def of(self, found: Evaluation) -> Evaluation:
-        """Return them from an evaluation."""
-        if not found.feasible:
-            return replace(found, J=np.full(2, np.inf))
-        errors = self.errors or [np.zeros(x.r.size) for x in found.residuals]
-        parts = [
-            Residual((x.r + e) / np.sqrt(v), x.dr / np.sqrt(v))
-            for x, e, v in zip(found.residuals, errors, self.s, strict=True)
-        ]
-        misfit = Residual(np.concatenate([x.r for x in parts]), np.vstack([x.dr for x in parts]))
-        r, dr, _ = self.prior.residuals(found.theta)
-        both = (misfit, Residual(r, np.diag(dr)))
-        slopes = ObjectiveDerivatives(
-            np.array([2 * x.r @ x.dr for x in both]), np.array([2 * x.dr.T @ x.dr for x in both])
-        )
-        J = np.array([x.r @ x.r for x in both])
-        return Evaluation(found.theta, J, slopes, found.quantities, both)
+        Returns also the probability with which the step is taken.
+        """
+        own = self.densities(here)
+        weight = here.log_posterior(self.logs) - logsumexp(own)
+        if not np.isfinite(weight):
+            return here, 0.0
+        peak = self.peaks[rng.choice(len(self.peaks), p=None if jumps else softmax(own))]
+        u = rng.normal(size=peak.at.theta.size + peak.logs.a.size)
+        if b < 1:
+            u = np.sqrt(1 - b**2) * peak.behind(here) + b * u
+        new = peak.model(self.target, u, here.found if b < 1 else peak.at)
+        if new is None:
+            return here, 0.0
+        change = new.log_posterior(self.logs) - logsumexp(self.densities(new)) - weight
+        return _taken(here, new, change, rng)
+
+    def densities(self, model: Model) -> Floats:
+        """Return the logarithms (peaks,) of the parts of the mixture."""
+        return np.array([peak.log_density(model) for peak in self.peaks])
+
+    def nearby(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
+        """Return the model after a step of the stochastic Newton method."""
+        mean, precision = here.newton(b)
+        L = np.linalg.cholesky(precision)
+        z = mean + np.linalg.solve(L.T, rng.normal(size=mean.size))
+        new = Model(self.target.evaluate(np.clip(z, -FARTHEST, FARTHEST)), here.s)
+        if not new.found.feasible:
+            return here, 0.0
+        back, behind = new.newton(b)
+        ahead, aback = z - mean, here.z - back
+        ratio = np.linalg.slogdet(behind)[1] - np.linalg.slogdet(precision)[1]
+        ratio += ahead @ precision @ ahead - aback @ behind @ aback
+        change = new.log_posterior(self.logs) - here.log_posterior(self.logs) + float(ratio) / 2
+        return _taken(here, new, change, rng)
+
+
+def _taken(here: Model, new: Model, change: float, rng: np.random.Generator) -> tuple[Model, float]:
+    """Return the next model by Metropolis' rule, and the probability of the new one."""
+    probability = float(np.exp(min(change, 0.0)))
+    return (new if rng.random() < probability else here), probability
+
+
+def agreement(x: Floats) -> tuple[float, float]:
+    """Return R-hat and the effective size of chains (chains, steps, p), of the worst parameter.
+
+    Of ranks, and of ranks of the distance from the median; each chain counts as two halves.
+    """
+    half = x.shape[1] // 2
+    halves = np.concatenate([x[:, :half], x[:, -half:]])
+    halves = halves.reshape(len(halves), half, -1)
+    both = np.concatenate([halves, np.abs(halves - np.median(halves, axis=(0, 1)))], axis=2)
+    ranks = scipy.stats.rankdata(both.reshape(-1, both.shape[2]), axis=0)
+    y = ndtri((ranks - 0.375) / (len(ranks) + 0.25)).reshape(both.shape)
+    within = y.var(axis=1, ddof=1).mean(axis=0)
+    total = within * (half - 1) / half + y.mean(axis=1).var(axis=0, ddof=1)
+    centred = y - y.mean(axis=1, keepdims=True)
+    spectrum = np.abs(np.fft.rfft(centred, 2 * half, axis=1)) ** 2
+    covariance = np.fft.irfft(spectrum, axis=1)[:, :half].mean(axis=0) / half
+    rho = 1 - (within - covariance) / np.maximum(total, 1e-300)
+    rho[0] = 1.0
+    pairs = rho[: half // 2 * 2].reshape(half // 2, 2, -1).sum(axis=1)
+    pairs = np.minimum.accumulate(np.where(np.cumprod(pairs > 0, axis=0), pairs, 0.0), axis=0)
+    tau = np.maximum(2 * pairs.sum(axis=0) - 1, 1 / np.log10(len(ranks)))
+    ratio = np.sqrt(total / np.maximum(within, 1e-300))
+    return float(ratio.max()), float((len(ranks) / tau).min())

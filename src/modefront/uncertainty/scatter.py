@@ -1,28 +1,18 @@
 r"""Scatter of the solution of a programme by errors of the data: the implicit function theorem.
 
-Where the conditions of Karush, Kuhn and Tucker hold, :math:`\sum_i w_i \, \partial J_i = 0` on the
-parameters that no bound holds. Errors of the data change :math:`J` by :math:`\delta J` and
-:math:`\partial J` by :math:`\delta \partial J`, and the solution such that the conditions remain
-satisfied (Fiacco 1983, *Introduction to Sensitivity and Stability Analysis in Nonlinear
-Programming*, section 2.4):
+docs/uncertainty.md derives it from the conditions of Karush, Kuhn and Tucker (Fiacco 1983,
+*Introduction to Sensitivity and Stability Analysis in Nonlinear Programming*, section 2.4):
 
 .. math:: W \delta\theta + \partial J^T \delta w = - \delta \partial J^T w, \qquad
     W = \sum_i w_i H_i ,
 
-together with the conditions of the programme on w (`modefront.uncertainty.conditions`): weights are
-given, :math:`\delta w = 0`; optimal, :math:`w = a / J`; :math:`J_i = v` at a level, where only
-:math:`w_i` changes; or, of a point of NBI, :math:`J_A = (J^* + P (\beta + \tau e))_A` on the active
-bounds A, with :math:`n = P e` and :math:`w_A^T n_A = 1`, and :math:`w_i = \rho / n_i` elsewhere.
-
-With the edges E as columns, :math:`J^* = \operatorname{diag} E` and :math:`P = E - J^* e^T`; of the
-simplex of the ranges, P is diagonal, and their upper ends stay. So points of the front also follow
-the edges, which scatter themselves; :math:`\beta` is fixed. Active bounds are those whose weight is
-more than that of the share :math:`\rho` (`modefront.front.subproblems`); equations are all active.
+with the conditions of each programme on w (`modefront.uncertainty.conditions`). Of a point of NBI,
+:math:`J_A = (J^* + P (\beta + \tau e))_A` on the active bounds A, with :math:`n = P e` and
+:math:`w_A^T n_A = 1`, and :math:`w_i = \rho / n_i` elsewhere; with the edges E as columns,
+:math:`J^* = \operatorname{diag} E` and :math:`P = E - J^* e^T`.
 
 A parameter at an active bound is fixed. Directions in which no residual changes are left out and
-named, since no data determine them.
-
-Reasons to doubt the linearisation are returned with it.
+named. Reasons to doubt the linearisation are returned with it.
 """
 
 from __future__ import annotations
