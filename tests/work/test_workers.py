@@ -258,7 +258,7 @@ def test_processes_import_only_what_most_tasks_need() -> None:
         "import sys, importlib, modefront.__main__\n"
         "from modefront.work.workers import WARM\n"
         "for name in WARM: importlib.import_module(name)\n"
-        f"sys.exit(' '.join({{*{spared}, 'modefront.fem.structure'}} & set(sys.modules)) or 0)"
+        f"sys.exit(' '.join({{*{spared}, 'modefront.fem.assembly'}} & set(sys.modules)) or 0)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
     assert done.returncode == 0, done.stderr
