@@ -9,15 +9,13 @@ parameter is nearest to its nominal value by the further term :math:`\varepsilon
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
-import scipy.stats
 from scipy.special import ndtr, ndtri
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.models.parameters import Prior
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
 from modefront.optim.scalarisation import LogSum, Rows, no_rows
 from modefront.options import check_fields, number
@@ -206,47 +204,54 @@ class Standardised:
     problem: UpdatingProblem
 
     def __post_init__(self) -> None:
-        self.objectives = (*self.problem.objectives, "prior")
-        self.start = np.zeros(self.problem.start.size)
+        problem = self.problem
+        self.objectives = (*problem.objectives, "prior")
+        self.start = np.zeros(problem.start.size)
         self.lower, self.upper = self.start - FARTHEST, self.start + FARTHEST
+        known = [(j, prior) for j, prior in enumerate(problem.priors) if prior]
+        self.known = np.array([j for j, _ in known], dtype=int)
+        self.std = np.array([prior.std for _, prior in known])
+        self.log = np.array([prior.kind == "lognormal" for _, prior in known], dtype=bool)
+        self.below, self.above = (self._units(x) for x in (problem.lower, problem.upper))
+        self.share = ndtr(self.above) - ndtr(self.below)
 
     def theta(self, z: Floats) -> tuple[Floats, Floats]:
         """Return the parameters (p,) of z (p,) and their derivatives."""
-        lower, upper = self.problem.lower, self.problem.upper
+        lower, upper, known = self.problem.lower, self.problem.upper, self.known
         span, density = upper - lower, np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi)
         theta = np.where(z < 0, lower + span * ndtr(z), upper - span * ndtr(-z))
         slope = span * density
-        for j, prior in enumerate(self.problem.priors):
-            if prior:
-                law = self._law(j, prior)
-                x = law.ppf(ndtr(z[j])) if z[j] < 0 else law.isf(ndtr(-z[j]))
-                theta[j], slope[j] = self.problem.start[j] + prior.std * x, prior.std
-                if prior.kind == "lognormal":
-                    theta[j] = self.problem.start[j] * np.exp(prior.std * x)
-                    slope[j] *= theta[j]
-                slope[j] *= density[j] / law.pdf(x)
+        if known.size:
+            left = ndtr(self.below) + self.share * ndtr(z[known])
+            right = ndtr(-self.above) + self.share * ndtr(-z[known])
+            x, nominal = (
+                np.where(left < right, ndtri(left), -ndtri(right)),
+                self.problem.start[known],
+            )
+            shifted = nominal + self.std * x
+            theta[known] = np.where(self.log, nominal * np.exp(self.std * x), shifted)
+            scale = self.std * np.where(self.log, theta[known], 1.0)
+            slope[known] = scale * self.share * np.exp((x**2 - z[known] ** 2) / 2)
         return np.clip(theta, lower, upper), slope
 
     def z(self, theta: Floats) -> Floats:
         """Return z (p,) of parameters (p,), infinite where these are at their bounds."""
-        lower, upper = self.problem.lower, self.problem.upper
-        z: Floats = ndtri((theta - lower) / (upper - lower))
-        for j, prior in enumerate(self.problem.priors):
-            if prior:
-                z[j] = ndtri(self._law(j, prior).cdf(self._units(j, prior, theta[j])))
-        return z
+        lower, upper, x = self.problem.lower, self.problem.upper, self._units(theta)
+        left, right = ((y / (upper - lower)) for y in (theta - lower, upper - theta))
+        left[self.known] = (ndtr(x) - ndtr(self.below)) / self.share
+        right[self.known] = (ndtr(-x) - ndtr(-self.above)) / self.share
+        out: Floats = np.where(left < right, ndtri(left), -ndtri(right))
+        return out
 
-    def _units(self, j: int, prior: Prior, theta: float) -> float:
-        """Return the distance of a parameter from its nominal value, in standard deviations."""
-        nominal = self.problem.start[j]
-        if prior.kind == "normal":
-            return float((theta - nominal) / prior.std)
-        return float(np.log(theta / nominal) / prior.std) if theta / nominal > 0 else -np.inf
+    def _units(self, theta: Floats) -> Floats:
+        """Return the distances of those with a prior from the nominal values, over its deviation.
 
-    def _law(self, j: int, prior: Prior) -> Any:
-        """Return the distribution of this distance, between the bounds."""
-        ends = (self._units(j, prior, x[j]) for x in (self.problem.lower, self.problem.upper))
-        return scipy.stats.truncnorm(*sorted(ends))
+        These are of logarithms for a lognormal prior.
+        """
+        theta, nominal = theta[self.known], self.problem.start[self.known]
+        ratio = np.divide(theta, nominal, out=np.ones(theta.size), where=self.log)
+        with np.errstate(divide="ignore"):
+            return np.where(self.log, np.log(np.maximum(ratio, 0.0)), theta - nominal) / self.std
 
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False

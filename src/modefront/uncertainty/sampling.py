@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import scipy.stats
-from scipy.special import gammainc, gammaln, logsumexp, ndtr, ndtri, softmax
+from scipy.special import chdtri, gammainc, gammaln, logsumexp, ndtr, ndtri, softmax
+from scipy.stats import rankdata
 
 from modefront._typing import Floats
 from modefront.optim.problem import Evaluation
@@ -100,9 +100,7 @@ class Peak:
 
     def variances(self, eta: Floats) -> Floats:
         """Return variances (n,) of normal variables (n,)."""
-        out: Floats = self.scale / scipy.stats.chi2.isf(
-            ndtr(np.clip(-eta, -FARTHEST, FARTHEST)), self.dof
-        )
+        out: Floats = self.scale / chdtri(self.dof, ndtr(np.clip(-eta, -FARTHEST, FARTHEST)))
         return out
 
     def forward(self, model: Model) -> tuple[Floats, Floats]:
@@ -428,7 +426,7 @@ def agreement(x: Floats) -> tuple[float, float]:
     halves = np.concatenate([x[:, :half], x[:, -half:]])
     halves = halves.reshape(len(halves), half, -1)
     both = np.concatenate([halves, np.abs(halves - np.median(halves, axis=(0, 1)))], axis=2)
-    ranks = scipy.stats.rankdata(both.reshape(-1, both.shape[2]), axis=0)
+    ranks = rankdata(both.reshape(-1, both.shape[2]), axis=0)
     y = ndtri((ranks - 0.375) / (len(ranks) + 0.25)).reshape(both.shape)
     within = y.var(axis=1, ddof=1).mean(axis=0)
     total = within * (half - 1) / half + y.mean(axis=1).var(axis=0, ddof=1)
