@@ -161,7 +161,7 @@ def test_a_few_full_solutions_are_enough_and_all_models_hold(whole: xr.Dataset) 
     models = np.vstack([whole["theta"].values, whole["minimum_theta"].values])
     assert whole.attrs["factorisations"] <= 3 + len(np.unique(models, axis=0))
     assert 4 < whole.attrs["corrected_eigensolutions"] <= 10, "four of them at the bounds"
-    assert whole.attrs["reduced_solutions"] < 1500
+    assert whole.attrs["reduced_solutions"] < 2500, "most by the chains of the posterior"
     total = whole.attrs["full_eigensolutions"] + whole.attrs["reduced_solutions"]
     assert whole.attrs["model_evaluations"] == total
 
