@@ -259,6 +259,7 @@ def test_long_names_are_shown_whole_and_pairs_are_outlined(tmp_path: Path, opene
     names = ["stiffness of the columns of the first storey", "k" * 60, "k3"]
     page = opened(written(tmp_path, chain().assign_coords(parameter=names)))
     texts = page.view("parameters").locator("text.name")
+    texts.nth(len(names) - 1).wait_for()  # pictures are drawn again once their width is known
     for name, text in zip(names, texts.all(), strict=True):
         lines = text.locator("tspan").all_text_contents()
         assert "".join(lines).replace(" ", "") == name.replace(" ", "")
