@@ -467,7 +467,9 @@ def test_lost_modes_are_found_after_a_restart(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(sparse, "ALL_AT_ONCE", 100)
     low, high = 10 ** np.linspace(0, 10, 120), 10 ** np.linspace(10.1, 11, 480)
     lam = np.concatenate([low, high])
-    turn = scipy.sparse.block_diag([np.array([[0.8, -0.6], [0.6, 0.8]])] * 300, format="csr")
+    turn = scipy.sparse.block_diag(
+        [scipy.sparse.coo_array([[0.8, -0.6], [0.6, 0.8]])] * 300, format="csr"
+    )
     K = turn @ scipy.sparse.diags_array(lam, format="csr") @ turn.T
     M = scipy.sparse.eye_array(600, format="csr")
     model = matrices(["k"], {"k": (K + K.T) / 2}, {"base": M}, {"low": 0})

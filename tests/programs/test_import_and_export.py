@@ -298,7 +298,7 @@ def test_a_model_is_exported(small: Path) -> None:
     K, M = structure(E=values["E"], k=values["k"])
     for name, right in (("K", K), ("M", M)):
         for computed in (
-            scipy.io.mmread(folder / f"{name}.mtx").toarray(),
+            scipy.io.mmread(folder / f"{name}.mtx", spmatrix=False).toarray(),
             scipy.sparse.load_npz(folder / f"{name}.npz").toarray(),
         ):
             assert np.abs(computed - right).max() < 1e-12 * right.max()

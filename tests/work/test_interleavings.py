@@ -9,6 +9,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+import filelock
 import pytest
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
@@ -114,6 +115,8 @@ def test_at_most_one_run_works(kind: type[Interleavings]) -> None:
 
 
 def test_a_rule_that_takes_locks_of_living_runs_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    if not hasattr(filelock._soft, "owner_is_stale"):
+        pytest.skip("this version of filelock has its rule elsewhere")
     monkeypatch.setattr("filelock._soft.owner_is_stale", lambda *_: True)
     with pytest.raises(AssertionError):
         play(WithoutLocks, 60)

@@ -11,6 +11,7 @@ import json
 import os
 import re
 import socket
+import tempfile
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -19,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from filelock import FileLock, SoftFileLock, Timeout
+from filelock import FileLock, Timeout
 
 from modefront.errors import Fault, InputError, writing
 from modefront.outputs import write_bytes, write_text
@@ -89,6 +90,16 @@ FILE, HOLDER = "lock", "lock-holder"
 file that says which process holds the lock."""
 
 
+def _has_locks(folder: Path) -> bool:
+    """Return whether the drive of a folder has locks of the operating system."""
+    with tempfile.TemporaryDirectory(dir=folder) as probe:
+        try:
+            with FileLock(Path(probe, FILE), fallback_to_soft=False):
+                return True
+        except OSError:
+            return False
+
+
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
     """Hold the lock of a folder of results while a run works in it; its tasks have a folder.
@@ -113,7 +124,7 @@ def locked(folder: Path) -> Iterator[None]:
                     text = holder.read_text("utf-8", "replace")
                     known = clean(f"the run of {text}", NAME)
             found = f"{known}: wait until it has ended, or choose another folder with -o"
-            if isinstance(lock, SoftFileLock):
+            if not _has_locks(folder / FOLDER):
                 found += f"; if it was killed, remove '{path}', as this drive has no locks"
             raise InputError(Fault(str(folder), "folder", "no other run in it", found)) from None
         except OSError:
