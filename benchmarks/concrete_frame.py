@@ -23,8 +23,8 @@ from modefront._typing import Floats
 from modefront.work.costs import counted
 
 
-def run(structure: Structure, pairing: Pairing, starts: Floats, *, reduced: bool = False) -> None:
-    """Print what became of all starts."""
+def run(structure: Structure, pairing: Pairing, starts: Floats, *, reduced: bool = False) -> int:
+    """Print what became of all starts; return how many find the truth."""
     problem = frequencies_and_shapes(structure, pairing, reduced=reduced)
     assert structure.true is not None
     hits, seconds, costs = [], [], []
@@ -43,6 +43,13 @@ def run(structure: Structure, pairing: Pairing, starts: Floats, *, reduced: bool
         f"eigenproblems a start: median {np.median(cost):.0f}, greatest {max(cost)}, "
         f"{sum(x.eigenproblems for x in costs)} of all in full"
     )
+    return sum(hits)
+
+
+def random_starts(structure: Structure, count: int, seed: int = 0) -> Floats:
+    """Return random models (count, p) within the bounds."""
+    rng = np.random.default_rng(seed)
+    return rng.uniform(structure.lower, structure.upper, (count, structure.lower.size))
 
 
 def main() -> None:
@@ -52,9 +59,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
     structure = read("concrete_frame_sim")
-    rng = np.random.default_rng(arguments.seed)
-    size = arguments.starts, structure.lower.size
-    starts = rng.uniform(structure.lower, structure.upper, size)
+    starts = random_starts(structure, arguments.starts, arguments.seed)
     run(structure, Pairing("order"), starts)
     run(structure, Pairing("mac"), starts)
     run(structure, Pairing("order"), starts, reduced=True)

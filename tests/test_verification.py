@@ -10,6 +10,7 @@ from typing import Any
 
 import calibration
 import check
+import concrete_frame
 import elements
 import nafems
 import numpy as np
@@ -37,6 +38,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     replaced(calibration, "judge", [SimpleNamespace(held=True)])
     replaced(check, "spoilt_case", SimpleNamespace(made=["k1"]))
     replaced(check, "diagnosed", [(["k1"], None)])
+    replaced(concrete_frame, "run", 1)
     replaced(rugged, "compare", SimpleNamespace(others={"a": 1}, truth=1, evaluations=9, volume=1))
     replaced(verify, "noisy", np.zeros(1))
     found = SimpleNamespace(found=1, errors=np.ones(3))
