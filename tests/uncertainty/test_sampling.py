@@ -2,15 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
 import pytest
 import scipy.stats
 from exact import Residuals, squares
-from scipy.special import ndtri
+from scipy.special import ndtr, ndtri
 
 from modefront._typing import Floats
+from modefront.models.parameters import Prior
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.most_probable import log_values, maximum
 from modefront.uncertainty.prior import NoiseModel, Standardised
@@ -169,3 +171,24 @@ def test_chains_that_stay_apart_do_not_agree() -> None:
     assert agreement(apart)[0] > 1.3
     crawling = np.cumsum(same, axis=1)
     assert agreement(crawling)[1] < 40
+
+
+@pytest.mark.parametrize("z", [-3.0, -0.4, 0.0, 2.5])
+def test_parameters_have_their_priors_between_the_bounds(z: float) -> None:
+    """Uniform, normal, and lognormal with a lower bound that logarithms do not have."""
+    problem = SimpleNamespace(
+        objectives=(),
+        start=np.array([1.0, 2.0, 0.9]),
+        lower=np.array([0.2, -1.0, 0.0]),
+        upper=np.array([5.0, 7.0, 1.0]),
+        priors=(None, Prior("normal", 1.5), Prior("lognormal", 0.4)),
+    )
+    of, at, step = Standardised(cast(UpdatingProblem, problem)), np.full(3, z), 1e-5
+    theta, slope = of.theta(at)
+    normal, lognormal = (-3 / 1.5, 5 / 1.5), (-np.inf, np.log(1 / 0.9) / 0.4)
+    x, y = (scipy.stats.truncnorm(*ends).ppf(ndtr(z)) for ends in (normal, lognormal))
+    expected = [0.2 + 4.8 * ndtr(z), 2 + 1.5 * x, 0.9 * np.exp(0.4 * y)]
+    assert theta == pytest.approx(expected, rel=1e-7)
+    differences = (of.theta(at + step)[0] - of.theta(at - step)[0]) / (2 * step)
+    assert slope == pytest.approx(differences, rel=1e-6)
+    assert of.z(theta) == pytest.approx(at, abs=1e-9)

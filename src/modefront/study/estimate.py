@@ -29,7 +29,7 @@ from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
 from modefront.uncertainty.most_probable import STARTS as MAXIMA
-from modefront.uncertainty.sampling import DRAWS, steps
+from modefront.uncertainty.sampling import DRAWS, extent
 from modefront.work.costs import uncounted
 from modefront.work.progress import Plan, Span
 from modefront.work.task import seed_sequence
@@ -98,7 +98,7 @@ def estimate(study: Study) -> Estimate | None:
         advice = [(span[1] * search, text) for span, text in parts.values()]
         other: dict[str, Span] = {}
         if study.noise.of(problem, study.uncertainty.of(problem.data)) is not None:
-            few, many = steps(max(DRAWS, study.uncertainty.draws))
+            few, many = extent(max(DRAWS, study.uncertainty.draws))
             each = search / evaluations
             other["sample-posterior"] = STEP[0] * few * each, STEP[1] * many * each
         if is_reduced(problem.model):  # snapshots of the basis, and their certificates

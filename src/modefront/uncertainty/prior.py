@@ -224,12 +224,9 @@ class Standardised:
         if known.size:
             left = ndtr(self.below) + self.share * ndtr(z[known])
             right = ndtr(-self.above) + self.share * ndtr(-z[known])
-            x, nominal = (
-                np.where(left < right, ndtri(left), -ndtri(right)),
-                self.problem.start[known],
-            )
-            shifted = nominal + self.std * x
-            theta[known] = np.where(self.log, nominal * np.exp(self.std * x), shifted)
+            x = np.where(left < right, ndtri(left), -ndtri(right))
+            nominal, away = self.problem.start[known], self.std * x
+            theta[known] = np.where(self.log, nominal * np.exp(away), nominal + away)
             scale = self.std * np.where(self.log, theta[known], 1.0)
             slope[known] = scale * self.share * np.exp((x**2 - z[known] ** 2) / 2)
         return np.clip(theta, lower, upper), slope

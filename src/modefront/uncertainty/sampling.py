@@ -29,7 +29,7 @@ from modefront.work.codec import record
 from modefront.work.task import Executor, Task, seed_sequence
 
 DRAWS = 200
-"""Effective draws for intervals: the 5 % quantile is known to a tenth of a standard deviation."""
+"""Effective draws for intervals: the 5 % quantile is known to 0.15 standard deviations."""
 
 CHAINS, ROUND, LONGEST = 4, 50, 12
 """Chains, steps of a round of them, and steps at most of all chains over the draws."""
@@ -242,7 +242,7 @@ class Chain:
     beyond: bool
 
 
-def steps(count: int) -> tuple[int, int]:
+def extent(count: int) -> tuple[int, int]:
     """Return how many steps all chains take for so many effective draws, from and to."""
     return 2 * CHAINS * ROUND, WARM * CHAINS * ROUND + LONGEST * count
 
