@@ -13,7 +13,6 @@ import pytest
 
 import modefront as mf
 from modefront.front import methods
-from modefront.study.definition import Labels
 from modefront.study.examples import write_example
 from modefront.work.costs import counted
 
@@ -227,18 +226,21 @@ def test_weights_check_themselves() -> None:
     assert (fault.place, fault.expected) == ("weights c", "the name of a group")
 
 
-def test_Labels_a_study_are_those_that_results_have(study: Path) -> None:
-    labels = Labels(["frequencies", "shapes"])
-    for name in ("nbi-1", "nsga2-400", "edge-shapes", "equal-weights", "identifiable-3"):
-        assert name in labels
+def test_given_weights_have_no_label_that_results_have(study: Path) -> None:
+    problem = mf.load(study).problem
+
+    def named(name: str) -> list[mf.Weighted]:
+        return [mf.Weighted(name, {"frequencies": 3.0, "shapes": 1.0})]
+
     for name in ("nbi", "nbi-", "nbi-x", "edge-others", "near-shapes", "sample", "second-1"):
-        assert name not in labels
-    weighted = [mf.Weighted("sample", {"frequencies": 3.0, "shapes": 1.0})]
+        assert mf.Study(problem, weighted=named(name)).weighted[0].name == name
     quick: dict[str, Any] = {"points": 3, "search": mf.Search(doubt=0.5)}
-    data = mf.solve(mf.load(study).problem, weighted=weighted, **quick).dataset
-    assert set(data["label"].values.tolist()) - {"sample"} <= {
-        *(name for name in data["label"].values.tolist() if name in labels)
-    }
+    data = mf.solve(problem, weighted=named("sample"), **quick).dataset
+    labels = {*data["label"].values.tolist()} - {"sample"}
+    assert {"nbi-1", "edge-shapes", "equal-weights"} < labels
+    for name in (*labels, "nsga2-400", "identifiable-3"):
+        with pytest.raises(mf.InputError, match="name: expected another name than the labels"):
+            mf.Study(problem, weighted=named(name))
 
 
 @pytest.mark.slow(7)

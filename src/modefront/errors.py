@@ -20,15 +20,9 @@ LONGEST = {"file": 300, "place": 240, "expected": 480, "found": 480}
 SYSTEM = {
     errno.ENOENT: "no such file or folder",
     errno.EACCES: "no permission: change that of the file or of its folder",
-    errno.EPERM: "no permission: the system does not allow it",
-    errno.EISDIR: "a folder",
-    errno.ENOTDIR: "a file where the path needs a folder",
-    errno.EEXIST: "a file of this name, which is in the way",
     errno.ENAMETOOLONG: "a name that is too long for this drive: choose a shorter one",
-    errno.ELOOP: "a link that leads back to itself",
     errno.ENOSPC: "no space left on the drive: free some, then run again",
     errno.EDQUOT: "no space left in the quota of the drive: free some, then run again",
-    errno.EFBIG: "a file that is too large for this drive",
     errno.EROFS: "a drive that is read-only: choose another folder",
     errno.EIO: "a failure of the drive: try again, and look after the drive",
     errno.ESTALE: "a file that the network drive has lost: try again",
@@ -37,14 +31,8 @@ SYSTEM = {
     errno.EMFILE: "too many open files: raise the limit, ulimit -n",
     errno.ENFILE: "too many open files on this machine: close some programs",
     errno.ENOMEM: "too little memory: close other programs, or use a smaller file",
-    errno.EINVAL: "a name or a request that the system refuses: try another name or drive",
-    errno.ENXIO: "a device that is not there",
-    errno.ENODEV: "a device that does not allow it",
-    errno.ETIMEDOUT: "a network drive that does not answer: try again",
-    errno.ENOTEMPTY: "a folder that is not empty",
-    errno.EXDEV: "another drive: choose a folder on the same one",
 }
-"""Errors of the system in words, with what to do."""
+"""Errors of the system of which its own words do not say what to do."""
 
 
 @dataclass(frozen=True)
@@ -87,11 +75,8 @@ class InputError(ValueError):
 def _message(faults: Sequence[Fault]) -> str:
     """Return the faults, a line each, as many as a message holds, and how many more there are."""
     lines: list[str] = []
-    length = 0
-    for fault in faults[:MOST_LINES]:
-        line = str(fault)
-        length += len(line) + 1
-        if lines and length > MOST_CHARACTERS - 40:
+    for line in map(str, faults[:MOST_LINES]):
+        if lines and sum(map(len, lines)) + len(lines) + len(line) > MOST_CHARACTERS - 41:
             break
         lines.append(line)
     if len(lines) < len(faults):
@@ -140,8 +125,8 @@ def reason(error: BaseException) -> str:
     if isinstance(error, RecursionError):
         return "too many levels, one in another"
     if isinstance(error, OSError) and error.errno is not None:
-        known = SYSTEM.get(error.errno)
-        return known or one_line(error.strerror or f"error {error.errno} of the system", NAME)
+        known = error.strerror or f"error {error.errno} of the system"
+        return SYSTEM.get(error.errno) or one_line(known[:1].lower() + known[1:], NAME)
     return one_line(error, LONGEST["found"]) or type(error).__name__
 
 

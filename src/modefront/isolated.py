@@ -36,6 +36,9 @@ readers that do not end, far above what whole files take."""
 TEXTS = "texts and numbers"
 """Name among the arrays of all that is none, as JSON."""
 
+TOO_MUCH = "a file that takes more than {:.2g} GB to be read: close other programs, or divide it"
+"""What is said of a file that does not fit into the memory."""
+
 Read = tuple[dict[str, np.ndarray[Any, Any]], Any]
 """Arrays by name, and texts and numbers as JSON has them."""
 
@@ -61,8 +64,11 @@ def isolated(
     """
     if _INSIDE:
         return _called(function, path, arguments)
-    seconds = seconds or LEAST_SECONDS + _size(path) / SPEED
-    memory = memory or available_memory()
+    if seconds is None:
+        with suppress(OSError):  # all files that belong to one by their names
+            files = [x for x in path.parent.iterdir() if x.name.startswith(path.stem)]
+            seconds = LEAST_SECONDS + sum(x.stat().st_size for x in files if x.is_file()) / SPEED
+    seconds, memory = seconds or LEAST_SECONDS, memory or available_memory()
     with tempfile.TemporaryDirectory(prefix="modefront-") as folder:
         answer = Path(folder) / "answer.npz"
         called = [str(path), *arguments]
@@ -71,18 +77,20 @@ def isolated(
         if status is None or status == -getattr(signal, "SIGALRM", 0):
             text = f"nothing within {seconds:.0f} s, after which reading was given up"
             raise IsolatedError(text)
+        if status == -getattr(signal, "SIGKILL", 0):  # by the system, which has no more
+            raise IsolatedError(TOO_MUCH.format(memory / 1e9))
         if status < 0 or status > 255:  # ended by the system, on Windows with such a status
             raise IsolatedError(f"a file that ends its reader (signal {abs(status)})")
         try:
             with np.load(answer, allow_pickle=False) as file:
                 arrays = {each: file[each] for each in file.files}
             error, found = json.loads(arrays.pop(TEXTS).tobytes())
-        except (OSError, ValueError, KeyError) as wrong:
+        except (OSError, ValueError, KeyError, MemoryError) as wrong:
             raise IsolatedError(f"nothing that can be used: {reason(wrong)}") from None
     if error == "faults":
         raise InputError(Fault(*parts) for parts in found)
     if error:
-        raise IsolatedError(one_line(error, 400))
+        raise IsolatedError(error)
     return arrays, found
 
 
@@ -98,17 +106,12 @@ def _called(function: str, path: Path, arguments: Sequence[str]) -> Read:
     except (InputError, MemoryError):
         raise
     except (Exception, SystemExit) as error:  # what readers raise is not documented
-        raise IsolatedError(one_line(reason(error), 400) or type(error).__name__) from None
+        cause: BaseException | None = error
+        while cause := cause and (cause.__cause__ or cause.__context__):
+            if isinstance(cause, MemoryError):
+                raise cause from None
+        raise IsolatedError(one_line(reason(error), 400)) from None
     return found
-
-
-def _size(path: Path) -> int:
-    """Return the bytes of all files that belong to one by their names."""
-    try:
-        files = [each for each in path.parent.iterdir() if each.name.startswith(path.stem)]
-        return sum(each.stat().st_size for each in files if each.is_file())
-    except OSError:
-        return 0
 
 
 class _Server:
@@ -155,18 +158,16 @@ class _Server:
             self.end()
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
         environment |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONUTF8": "1"}
-        self._owner, self._process = (
-            os.getpid(),
-            subprocess.Popen(
-                # -P: nothing is imported from the folder that the user works in
-                [sys.executable, "-P", "-c", "from modefront.isolated import serve; serve()"],
-                env=environment,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                text=True,
-                start_new_session=True,  # interrupts of the terminal are for this process
-            ),
+        self._owner = os.getpid()
+        self._process = subprocess.Popen(
+            # -P: nothing is imported from the folder that the user works in
+            [sys.executable, "-P", "-c", "from modefront.isolated import serve; serve()"],
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,  # interrupts of the terminal are for this process
         )
         return self._process
 
@@ -205,10 +206,10 @@ def _read(function: str, called: Sequence[str], answer: str, memory: int, work: 
     global _INSIDE
     _INSIDE = True
 
-    def write(error: str, found: object, arrays: Mapping[str, Any]) -> None:
+    def write(error: str, found: object, arrays: Mapping[str, Any] | None = None) -> None:
         texts = np.frombuffer(json.dumps([error, found]).encode(), np.uint8)
         with output(Path(answer)) as stream:
-            np.savez(stream, allow_pickle=False, **{**arrays, TEXTS: texts})
+            np.savez(stream, allow_pickle=False, **(arrays or {}), **{TEXTS: texts})
 
     # What is printed goes nowhere.
     nowhere, answers = os.open(os.devnull, os.O_WRONLY), os.dup(1)
@@ -221,11 +222,11 @@ def _read(function: str, called: Sequence[str], answer: str, memory: int, work: 
         arrays, texts = _called(function, Path(path), arguments)
         write("", texts, arrays)
     except InputError as error:
-        write("faults", [astuple(fault) for fault in error.faults], {})
+        write("faults", [astuple(fault) for fault in error.faults])
     except MemoryError:
-        write(f"a file that takes more than {memory / 1e9:.2g} GB to be read", None, {})
+        write(TOO_MUCH.format(memory / 1e9), None)
     except Exception as error:
-        write(str(error) or type(error).__name__, None, {})
+        write(reason(error), None)
     sys.stdout.flush()
     os.dup2(answers, 1)
 

@@ -76,7 +76,7 @@ def either(*keys: str) -> Schema:
 
 
 def chosen(key: str, schemas: Mapping[str, Schema]) -> Schema:
-    """Return the schema of a table of which one key says which schema it meets.
+    """Return the schema of a table of which one key says which schema it meets besides.
 
     The keys of all of them are listed, for editors, and what is wrong is said of single keys.
     """
@@ -86,12 +86,14 @@ def chosen(key: str, schemas: Mapping[str, Schema]) -> Schema:
             name: each.get("description") for name, each in schema.get("properties", {}).items()
         }
         known |= {name: {"description": text, **OPEN} for name, text in said.items() if text}
-    cases = [
-        {"if": {"properties": {key: {"enum": [name]}}, "required": [key], **OPEN}, "then": schema}
-        for name, schema in schemas.items()
-    ]
-    properties = {key: {"enum": [*schemas]}, **known}
-    return {"type": "object", "properties": properties, "required": [key], "allOf": cases}
+    cases = []
+    for name, schema in schemas.items():
+        own: Schema = {"properties": {key: {"enum": [name]}}, "required": [key]}
+        properties = own["properties"] | schema.get("properties", {})
+        then = {**schema, "properties": properties, "required": [key, *schema.get("required", [])]}
+        cases.append({"if": {**own, **OPEN}, "then": then})
+    listed = {key: {"enum": [*schemas]}, **known}
+    return {"type": "object", "properties": listed, "required": [key], "allOf": cases}
 
 
 def fits(value: Any, schema: Schema) -> bool:

@@ -19,6 +19,7 @@ import types
 import typing
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import MISSING, dataclass, field, fields, replace
 from enum import Enum
 from itertools import pairwise
@@ -72,10 +73,6 @@ class Requirement:
         if self.record:
             return isinstance(value, self.record)
         return fits(value, self.schema) and self.further(value)
-
-    def fault(self, place: str, value: object) -> Fault | None:
-        """Return the fault of a value, None where it has none."""
-        return None if self.holds(plain(value)) else Fault("", place, self.expected, shown(value))
 
     @property
     def described(self) -> Schema:
@@ -235,7 +232,11 @@ def check_fields(record: Any) -> None:
     """
     given = [(each, getattr(record, each.name)) for each in options(type(record))]
     given = [(each, value) for each, value in given if not (each.optional and value is None)]
-    refuse(x for each, value in given if (x := each.requirement.fault(each.name, value)))
+    refuse(
+        Fault("", each.name, each.requirement.expected, shown(value))
+        for each, value in given
+        if not each.requirement.holds(plain(value))
+    )
     for each, value in given:
         # The record is frozen for everybody else; it is not finished before this.
         object.__setattr__(record, each.name, each.requirement.convert(plain(value)))
@@ -249,11 +250,6 @@ def each_once(place: str, names: Iterable[str]) -> list[Fault]:
 def repeated(names: Iterable[str]) -> list[str]:
     """Return the names that occur more than once."""
     return [name for name, count in Counter(names).items() if count > 1]
-
-
-def is_number(value: object) -> bool:
-    """Return whether a value is a finite number of which products are finite as well."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
 def is_name(value: object) -> bool:
@@ -328,6 +324,15 @@ class Table:
         for fault in faults:
             self.fault(fault.place, fault.expected, fault.found)
 
+    @contextmanager
+    def noting(self) -> Iterator[None]:
+        """Note the faults of options, whose places are keys of the table, and of files."""
+        try:
+            yield
+        except InputError as error:
+            self.note(fault for fault in error.faults if not fault.file)
+            self.faults.extend(fault for fault in error.faults if fault.file)
+
     def path(self, name: str) -> Path:
         """Return the path of a file that a table names, relative to the TOML file, and note it.
 
@@ -392,11 +397,9 @@ class Table:
         are right, what contradicts another.
         """
         values = self.read(options(record))
-        try:
+        with self.noting():
             return None if values is None else record(**values)
-        except InputError as error:
-            self.note(error.faults)
-            return None
+        return None
 
     def table(self, key: str, expected: str = "a table", default: Any = ...) -> Table | None:
         """Return a table within this one."""
@@ -423,11 +426,9 @@ class Table:
     def content(self, key: str, read: Callable[[Path], T]) -> T | None:
         """Return what is read from a file, None without its name; note what is wrong with it."""
         name: Any = self.values.get(key)
-        try:
+        with self.noting():
             return read(self.path(name)) if is_name(name) else None
-        except InputError as error:
-            self.faults.extend(error.faults)
-            return None
+        return None
 
     def names(self, key: str) -> dict[str, str]:
         """Return a table of names for names, such as those of columns; an empty one without it."""
@@ -453,8 +454,7 @@ class Table:
 
     def close(self) -> None:
         """Note every unknown key, once."""
-        known = set(self.requested)
-        for k, key in enumerate(key for key in self.values if key not in known):
+        for k, key in enumerate(key for key in self.values if key not in set(self.requested)):
             found = suggestion(key, self.requested) if k < 20 else repr(clean(key, LENGTH))
             self.fault("", "a known key", found)
         self.requested += self.values

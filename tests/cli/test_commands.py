@@ -380,7 +380,7 @@ def test_what_goes_wrong_on_the_way_is_one_message(
     study: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(session, "run_on", failing(error))
+    monkeypatch.setattr(session, "run", failing(error))
     result, out, err = modefront_("run", study)
     assert (result, out) == (status, "")
     assert says in err
@@ -389,7 +389,7 @@ def test_what_goes_wrong_on_the_way_is_one_message(
 def test_the_traceback_is_there_for_those_who_ask(
     study: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(session, "run_on", failing(ZeroDivisionError("oh")))
+    monkeypatch.setattr(session, "run", failing(ZeroDivisionError("oh")))
     monkeypatch.setattr(sys, "argv", ["modefront", "run", str(study)])
     monkeypatch.setenv("MODEFRONT_TRACEBACK", "1")
     with pytest.raises(ZeroDivisionError):
@@ -399,14 +399,14 @@ def test_the_traceback_is_there_for_those_who_ask(
 def test_points_that_did_not_converge_are_said_and_kept(
     modefront_: Run, study: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = session.run_on
+    run = session.run
 
     def doubtful(*arguments: Any, **options: Any) -> modefront.Results:
         data = run(*arguments, **options)
         data["converged"][1] = False
         return data
 
-    monkeypatch.setattr(session, "run_on", doubtful)
+    monkeypatch.setattr(session, "run", doubtful)
     status, out, err = modefront_("run", study)
     assert status == 1
     assert "not converged: nbi-2" in out

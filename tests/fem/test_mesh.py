@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -185,3 +187,27 @@ def test_a_reader_that_fails_takes_no_other_process_with_it(tmp_path: Path) -> N
     ):
         with pytest.raises(IsolatedError, match=says):
             isolated(function, tmp_path / "a.txt", 60.0, 4 * 10**9)
+
+
+READER = """
+def read(path):
+    try:
+        bytearray(10**12)
+    except MemoryError as error:
+        raise ValueError("it cannot be read") from error
+"""
+
+
+def test_a_reader_without_memory_says_so_whatever_it_makes_of_it(tmp_path: Path) -> None:
+    (tmp_path / "reader.py").write_text(READER)
+    call = "isolated('reader:read', Path('a.txt'), 60.0, 10**9)"
+    code = f"from pathlib import Path; from modefront.isolated import isolated; {call}"
+    path = os.pathsep.join([str(tmp_path), *sys.path])
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+    )
+    assert "a file that takes more than 1 GB to be read" in done.stderr.splitlines()[-1]

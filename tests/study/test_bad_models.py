@@ -14,8 +14,11 @@ CONTRADICTIONS = [
     (
         "[2.0, 1.0]",
         "[2.0, 1.0, 1.0]",
-        "[model] added_masses: ... , as many as masses, found [0.5, 0.0]",
+        "[model] added_masses: expected one a mass, found 2",
     ),
+    ("[3000.0, 2000.0]", "[1.0, 1.0, 1.0, 1.0]", "[model] stiffnesses: expected 2 or 3, as there "),
+    ('["k1", "k2"]', '["k1"]', "[model] stiffness_parameters: expected one a spring, found 1"),
+    ('["", ""]', '["", "", ""]', "[model] mass_parameters: expected one a mass, found 3"),
     ('["k1", "k2"]', '["k1", "k3"]', "stiffness_parameters: ... found 'k3' (did you mean 'k2'?)"),
     ('["k1", "k2"]', '["k1", "base"]', "stiffness_parameters: ... found 'base'"),
     ('["", ""]', '["m", ""]', "mass_parameters: expected names of parameters, found 'm'"),

@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import replace
@@ -111,10 +112,10 @@ def check(study: Path, every: bool) -> None:
     from modefront.study.estimate import estimate
     from modefront.study.file import load
 
-    loaded = load(study)
+    loaded, started = load(study), time.process_time()
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
-    say_estimate(estimate(loaded))
+    say_estimate(estimate(loaded, started))
     say(f"a search ends after {loaded.search.evaluations:,} evaluations: [search] evaluations")
     if not findings.sound and findings.mistakes:
         raise UnfinishedError(
@@ -165,14 +166,15 @@ def run(
         from modefront.findings.selection import not_converged, uncertified
         from modefront.study.estimate import SHORT, estimate
         from modefront.study.file import load
-        from modefront.study.session import run_on
+        from modefront.study.session import run as run_study
 
         loaded = _refined(load(study), refine)
-        expected = estimate(loaded)
+        expected = estimate(loaded, time.process_time())
         if expected is not None and expected.range[1] > SHORT:
             say_estimate(expected, err=True)
         with progress_bar(loaded.name, expected.plan if expected else None) as progress:
-            data = run_on(carrier, loaded, directory, fresh=fresh, progress=progress).dataset
+            done = run_study(loaded, directory, fresh=fresh, progress=progress, workers=carrier)
+        data = done.dataset
     try:
         print_summary(data, directory, progress.spent)
         if sys.stdout is not None:

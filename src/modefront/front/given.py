@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -56,10 +56,3 @@ class Weighted:
     def of(self, groups: Sequence[str]) -> Floats:
         """Return the weights in the order of the groups, shape (groups,)."""
         return np.array([self.weights[group] for group in groups], dtype=float)
-
-
-def label_faults(names: Sequence[str], labels: Container[str]) -> Iterator[Fault]:
-    """Yield names that equal a label which results give to other models."""
-    for name in names:
-        if name in labels:
-            yield Fault("", "name", "another name than the labels of a study's models", f"'{name}'")

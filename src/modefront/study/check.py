@@ -74,7 +74,6 @@ MANY = 100
 KEPT = 500
 """Models that a search keeps with their second derivatives, some."""
 
-
 HARMLESS = {
     "damping",
     "unused-group",
@@ -101,6 +100,7 @@ class Findings:
     cautions : what else a user should know before relying on the results
     beside : the nominal model beside the measured modes
     sensitivities : of the modes to the parameters
+    spoilt : whether mistakes change the residuals, and with them what the data determine
     """
 
     derivatives: Finding
@@ -110,6 +110,7 @@ class Findings:
     cautions: tuple[Finding, ...]
     beside: Comparison
     sensitivities: Sensitivities
+    spoilt: bool
 
     def __repr__(self) -> str:
         """Return the first warnings, one a line."""
@@ -131,11 +132,6 @@ class Findings:
         """Whether the derivatives agree with finite differences."""
         return self.cause is None
 
-    @property
-    def spoilt(self) -> bool:
-        """Whether mistakes change the residuals, and with them what the data determine."""
-        return _spoil(self.mistakes)
-
 
 def check(study: Study) -> Findings:
     """Return the error of the derivatives of a study, and warnings before it is run.
@@ -150,38 +146,32 @@ def check(study: Study) -> Findings:
     InputError
         If no parameter changes a group.
     """
-    with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
-        return _checked(study)
-
-
-def _checked(study: Study) -> Findings:
     problem = study.problem
-    refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
-    nominal, beside = problem.evaluate(problem.start), compare(problem)
-    mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
-    agreement = compared(problem)
-    agrees = agreement.error <= AGREEMENT
-    known, left_open = determined(problem, nominal)
-    if _spoil(mistakes):
-        left_open = [each for each in left_open if each.kind == "no-effect"]
-    return Findings(
-        found(
+    with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
+        refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
+        nominal, beside = problem.evaluate(problem.start), compare(problem)
+        mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
+        agreement = compared(problem)
+        agrees = agreement.error <= AGREEMENT
+        known, left_open = determined(problem, nominal)
+        if spoilt := any(each.kind not in HARMLESS for each in mistakes):
+            left_open = [each for each in left_open if each.kind == "no-effect"]
+        derivatives = found(
             "derivatives",
             verdict="agree with" if agrees else "DIFFER FROM",
             doubt=" at a model with these warnings" * bool(mistakes and not agrees),
             error=agreement.error,
-        ),
-        None if agrees else cause_of(problem, agreement),
-        tuple(known),
-        mistakes,
-        (*left_open, *_of_model(problem, nominal)),
-        beside,
-        sensitivities(problem),
-    )
-
-
-def _spoil(mistakes: Sequence[Finding]) -> bool:
-    return any(each.kind not in HARMLESS for each in mistakes)
+        )
+        return Findings(
+            derivatives,
+            None if agrees else cause_of(problem, agreement),
+            tuple(known),
+            mistakes,
+            (*left_open, *_of_model(problem, nominal)),
+            beside,
+            sensitivities(problem),
+            spoilt,
+        )
 
 
 def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[Finding]:
@@ -207,8 +197,7 @@ def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[Finding
 
 def memory_of(problem: UpdatingProblem) -> float:
     """Return the bytes that second derivatives of the models take that a search keeps."""
-    p = len(problem.model.parameters)
-    return 8.0 * KEPT * len(problem.groups) * p**2
+    return 8.0 * KEPT * len(problem.groups) * len(problem.model.parameters) ** 2
 
 
 def refuse_too_many(problem: UpdatingProblem, file: str) -> None:
@@ -264,22 +253,17 @@ def determined(
         noun = measured_noun(groups)
         known.append(summary("all data together", noun, of_all, names, scale, idle))
     left_open = no_effect(idle, names)
-    weak = [
-        each
-        for each in of_all
-        if each.share < WEAK and np.linalg.norm(each.direction[idle]) <= np.sqrt(0.5)
-    ]
-    for degree, chosen in (
-        ("do not determine", [each for each in weak if each.share <= NONE]),
-        ("hardly determine", [each for each in weak if each.share > NONE]),
-    ):
-        if len(chosen) > SHOWN:
-            several, every = len(chosen), len(names) - len(idle)
-            left_open.append(
-                found("undetermined-many", degree=degree, several=several, every=every)
-            )
+    degrees: dict[str, list[str]] = {"do not determine": [], "hardly determine": []}
+    for each in of_all:
+        if each.share < WEAK and np.linalg.norm(each.direction[idle]) <= np.sqrt(0.5):
+            degree = "do not determine" if each.share <= NONE else "hardly determine"
+            degrees[degree].append(in_words(each, names))
+    for degree, texts in degrees.items():
+        if len(texts) > SHOWN:
+            several, every = len(texts), len(names) - len(idle)
+            many = found("undetermined-many", degree=degree, several=several, every=every)
+            left_open.append(many)
         else:
-            texts = (in_words(each, names) for each in chosen)
             left_open += [found("undetermined", text, degree=degree) for text in texts]
     return known, [*left_open, *alike(gram(nominal, weights, scale), names, idle)]
 
@@ -288,13 +272,9 @@ def determined(
 class Agreement:
     """Agreement of derivatives with finite differences.
 
-    Attributes
-    ----------
-    error : greatest difference over the greatest derivative of the residuals of a group; NaN where
-        the model is not defined around the point
-    theta : the point
-    objective : number of the group with this difference
-    step : (p,) change of the parameters for a difference, in the direction with this difference
+    The ``error`` is the greatest difference over the greatest derivative of the residuals of a
+    group, NaN where the model is not defined around the point ``theta``; it is that of a group, of
+    the number ``objective``, and of a ``step`` (p,) of the parameters.
     """
 
     error: float
@@ -315,8 +295,14 @@ def compared(problem: UpdatingProblem) -> Agreement:
     unit = np.minimum(np.divide(1.0, size, out=span.copy(), where=size > 0), most)
     room = np.minimum(STEP * unit, span / 2)
     theta = np.clip(problem.start, problem.lower + room, problem.upper - room)
+    # One parameter a direction, or several together, with signs by chance.
+    numbers = np.arange(unit.size)
+    place = numbers % MOST
+    together = np.bincount(place)[place]
+    directions = np.zeros((min(unit.size, MOST), unit.size))
+    signs = np.random.default_rng(0).choice((-1.0, 1.0), unit.size)
+    directions[place, numbers] = unit * np.where(together > 1, signs / np.sqrt(together), 1)
     evaluation = problem.evaluate(theta)
-    directions = _directions(unit)
     if not evaluation.feasible:
         return Agreement(float("nan"), theta, 0, STEP * directions[0])
     _, pairs = problem.modes(theta, derivatives=False)
@@ -325,23 +311,10 @@ def compared(problem: UpdatingProblem) -> Agreement:
     error = np.empty((len(exact), len(directions)))
     for column, d in enumerate(directions):
         slopes = _slopes(problem, pairs, theta, d)
-        error[:, column] = [
-            np.linalg.norm(slope - x[:, column]) / size
-            for slope, x, size in zip(slopes, exact, scale, strict=True)
-        ]
+        for row, slope in enumerate(slopes):
+            error[row, column] = np.linalg.norm(slope - exact[row][:, column]) / scale[row]
     i, k = np.unravel_index(int(np.argmax(error)), error.shape)  # the first NaN, if there is any
     return Agreement(float(error[i, k]), theta, int(i), STEP * directions[k])
-
-
-def _directions(unit: Floats) -> Floats:
-    """Return directions (k, p), one a parameter, or several parameters together."""
-    count = min(len(unit), MOST)
-    out = np.zeros((count, len(unit)))
-    signs = np.random.default_rng(0).choice((-1.0, 1.0), len(unit))
-    place = np.arange(len(unit)) % count
-    together = np.bincount(place)[place]
-    out[place, np.arange(len(unit))] = unit * np.where(together > 1, signs / np.sqrt(together), 1)
-    return out
 
 
 def _slopes(
@@ -351,20 +324,21 @@ def _slopes(
 
     NaN where the model is not defined with the shortest.
     """
-
-    def changed(h: float) -> list[Floats]:
-        modes, _ = problem.modes(theta + h * direction, derivatives=False)
-        return problem.vectors(modes, pairs)
-
     for h in (STEP, STEP / 8, STEP / 64):
         try:
             half, whole = (
-                [(a - b) / (2 * k) for a, b in zip(changed(k), changed(-k), strict=True)]
+                [
+                    problem.vectors(
+                        problem.modes(theta + x * direction, derivatives=False)[0], pairs
+                    )
+                    for x in (k, -k)
+                ]
                 for k in (h / 2, h)
             )
-            return [(4 * x - y) / 3 for x, y in zip(half, whole, strict=True)]
         except ModelError:
             continue
+        differences = zip(*half, *whole, strict=True)
+        return [(4 * (a - b) / h - (c - d) / (2 * h)) / 3 for a, b, c, d in differences]
     return [np.full(1, np.nan) for _ in problem.groups]
 
 

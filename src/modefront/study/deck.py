@@ -54,30 +54,6 @@ MODULI: Mapping[str, tuple[Sequence[int], ...]] = {
 """Places of moduli in the lines of ``*ELASTIC``, by its type; lines repeat for temperatures."""
 
 
-@dataclass(frozen=True)
-class Target:
-    """What a parameter multiplies.
-
-    Attributes
-    ----------
-    kind : material, density, spring, mass or section
-    name : of the material or the set of elements
-    """
-
-    kind: str
-    name: str
-
-    def columns(self, line: Line) -> Sequence[int]:
-        """Return the places of the numbers in a line that it multiplies."""
-        option = {"material": line.material, "density": line.material}.get(self.kind, line.elset)
-        if not line.row or (option, line.keyword) != (self.name.upper(), KEYWORDS[self.kind]):
-            return ()
-        if self.kind == "material":
-            rows = MODULI.get(line.type or "ISO", ())
-            return rows[(line.row - 1) % len(rows)] if rows else ()
-        return (0,) if self.kind != "spring" or line.row > 1 else ()
-
-
 KEYWORDS: Mapping[str, str] = {
     "material": "ELASTIC",
     "density": "DENSITY",
@@ -101,6 +77,34 @@ class Line:
     type: str = ""
     material: str = ""
     row: int = 0
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a parameter multiplies.
+
+    Attributes
+    ----------
+    kind : material, density, spring, mass or section
+    name : of the material or the set of elements
+    """
+
+    kind: str
+    name: str
+
+    def of(self, line: Line) -> str:
+        """Return the name that a line has where this one has its own."""
+        return line.material if self.kind in ("material", "density") else line.elset
+
+    def columns(self, line: Line) -> Sequence[int]:
+        """Return the places of the numbers in a line that it multiplies."""
+        where = self.of(line), line.keyword
+        if not line.row or where != (self.name.upper(), KEYWORDS[self.kind]):
+            return ()
+        if self.kind == "material":
+            rows = MODULI.get(line.type or "ISO", ())
+            return rows[(line.row - 1) % len(rows)] if rows else ()
+        return (0,) if self.kind != "spring" or line.row > 1 else ()
 
 
 # 6 arguments: the deck with its parameters, and options by keyword.
@@ -143,24 +147,20 @@ def import_deck(
         raise InputError(Fault("", "--run", "a program that is installed", f"'{run}'"))
     lines = list(lines_of(path))
     targets = _targets(path, lines, parameters)
-    terms = {
-        name: tuple(term.format(name) for term in THICKNESS)
-        for name, target in targets.items()
-        if target.kind == "section"
-    }
-    terms |= {name: tuple(each) for name, each in (functions or {}).items()}
-    counts = {name: len(terms.get(name, (name,))) for name in targets}
-    factors = {name: list(FACTORS[:count]) for name, count in counts.items()}
+    sections = [name for name, target in targets.items() if target.kind == "section"]
+    terms = {name: [term.format(name) for term in THICKNESS] for name in sections}
+    terms |= {name: list(each) for name, each in (functions or {}).items()}
+    factors = {name: list(FACTORS[: len(terms.get(name, (name,)))]) for name in targets}
     jobs = {f"{name}-{factor:g}": {name: factor} for name in targets for factor in factors[name]}
     check = dict(zip(targets, cycle(CHECK), strict=False))
     with writing(folder):
         folder.mkdir(exist_ok=True)
-    for job, values in {"nominal": {}, **jobs, "check": check}.items():
+    runs: dict[str, Mapping[str, float]] = {"nominal": {}, **jobs, "check": check}
+    for job, values in {**runs, "frequencies": {}}.items():
         progress(f"running {run} {folder / job}")
-        text = job_text(path, lines, {targets[name]: x for name, x in values.items()}, stored=True)
-        _run(program, folder / job, text, ".sti")
-    progress(f"running {run} {folder / 'frequencies'}")
-    _run(program, folder / "frequencies", job_text(path, lines, {}, stored=False), ".dat")
+        of_targets, stored = {targets[name]: x for name, x in values.items()}, job in runs
+        text = job_text(path, lines, of_targets, stored=stored)
+        _run(program, folder / job, text, ".sti" if stored else ".dat")
     imported = import_model(
         "calculix",
         folder / "nominal",
@@ -171,9 +171,19 @@ def import_deck(
         modes=modes,
         progress=progress,
     )
-    printed = printed_frequencies(folder / "frequencies.dat")
-    notes = (*imported.notes, *_compared(imported.frequencies, printed))
-    return replace(imported, notes=notes)
+    computed, printed = imported.frequencies, printed_frequencies(folder / "frequencies.dat")
+    if computed is None or not printed.size:
+        return imported
+    count = min(computed.size, printed.size)
+    expected = printed[:count]
+    elastic = expected > 1e-3 * expected.max()  # others are those of a rigid body
+    error = np.abs(computed[:count][elastic] / expected[elastic] - 1).max(initial=0.0)
+    note = f"the first {count} frequencies are those that the program prints, to {error:.0e}"
+    if error >= 1e-4:  # as the digits of the program do not explain
+        shown = " ".join(f"{x:.5g}" for x in expected)
+        of_matrices = f"up to {100 * error:.2g} % from those of its matrices"
+        note = f"the program prints {shown} Hz, {of_matrices}"
+    return replace(imported, notes=(*imported.notes, note))
 
 
 def _targets(path: Path, lines: Sequence[Line], parameters: Mapping[str, str]) -> dict[str, Target]:
@@ -186,8 +196,7 @@ def _targets(path: Path, lines: Sequence[Line], parameters: Mapping[str, str]) -
             expected = f"NAME=WHAT:NAME, WHAT one of {', '.join(KEYWORDS)}"
             faults.append(Fault(str(path), place, expected, repr(text)))
         elif not any(target.columns(line) for line in lines):
-            of = "material" if kind in ("material", "density") else "elset"
-            names = {getattr(x, of) for x in lines if x.keyword == KEYWORDS[kind] and x.row}
+            names = {target.of(x) for x in lines if x.keyword == KEYWORDS[kind] and x.row}
             found = suggestion(name, sorted(names - {""}))
             faults.append(Fault(str(path), place, f"a name with *{KEYWORDS[kind]}", found))
         out[parameter] = target
@@ -226,11 +235,10 @@ def job_text(
     out, found = [], False
     counted = any(line.keyword == "FREQUENCY" and line.row for line in lines)
     for line in lines:
-        text = line.text
+        items = line.text.split(",")
         if line.keyword == "FREQUENCY" and not line.row:
-            text, found = "*FREQUENCY", True
-            text += ", SOLVER=MATRIXSTORAGE" if stored else "\n10" * (not counted)
-        items = text.split(",")
+            ending = ", SOLVER=MATRIXSTORAGE" if stored else "\n10" * (not counted)
+            items, found = [f"*FREQUENCY{ending}"], True
         for target, factor in factors.items():
             for k in target.columns(line):
                 if k < len(items) and items[k].strip():
@@ -264,16 +272,3 @@ def printed_frequencies(path: Path) -> Floats:
     head = path.read_text("utf-8", "replace").split("P A R T I C I P A T I O N")[0]
     rows = [line.split() for line in head.splitlines()]
     return np.array([float(row[3]) for row in rows if len(row) == 5 and row[0].isdigit()])
-
-
-def _compared(computed: Floats | None, printed: Floats) -> list[str]:
-    if computed is None or not printed.size:
-        return []
-    count = min(computed.size, printed.size)
-    f, expected = computed[:count], printed[:count]
-    elastic = expected > 1e-3 * expected.max()  # others are those of a rigid body
-    error = np.abs(f[elastic] / expected[elastic] - 1).max(initial=0.0)
-    if error < 1e-4:  # as the digits of the program explain
-        return [f"the first {count} frequencies are those that the program prints, to {error:.0e}"]
-    shown = " ".join(f"{x:.5g}" for x in expected)
-    return [f"the program prints {shown} Hz, up to {100 * error:.2g} % from those of its matrices"]

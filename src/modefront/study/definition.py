@@ -11,7 +11,7 @@ from typing import Annotated
 from modefront.brief import as_html
 from modefront.errors import Fault, InputError, refuse
 from modefront.findings.record import Finding
-from modefront.front.given import Weighted, label_faults
+from modefront.front.given import Weighted
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
 from modefront.front.point import Kind, label
@@ -38,7 +38,7 @@ class Origin:
     ----------
     file : the study file
     digest : hash of this file and of all files that it names
-    work : hash of the inputs of the front: all but predictions and draws
+    work : hash of the inputs of the problem
     problem : the problem that was read; a study of another problem has another origin
     remark : reason why a requested option is not in use
     notes : mistakes that were found when it was read
@@ -101,25 +101,22 @@ class Study:
     _repr_html_ = as_html
 
     def _contradictions(self) -> Iterator[Fault]:
-        try:
-            _ = self.parameters
-        except InputError as error:
-            yield from error.faults
+        kinds = dict.fromkeys(prediction.kind for prediction in self.predictions)
+        for needed in (lambda: self.parameters, lambda: variables_of(kinds)):
+            try:
+                needed()
+            except InputError as error:
+                yield from error.faults
         groups = self.problem.objectives
         yield from each_once("groups", groups)
         yield from self.pareto.faults(len(groups))
         for weighted in self.weighted:
-            faults = [*weighted.faults(groups), *label_faults([weighted.name], Labels(groups))]
-            for fault in faults:
+            for fault in (*weighted.faults(groups), *label_faults(weighted.name, groups)):
                 yield replace(fault, place=f"weighted '{weighted.name}' {fault.place}")
         yield from each_once("weighted", [weighted.name for weighted in self.weighted])
         yield from self.uncertainty.faults(self.problem.data)
         yield from undrawn(self.uncertainty, len(self.predictions))
         yield from each_once("predictions", [prediction.name for prediction in self.predictions])
-        try:
-            variables_of(dict.fromkeys(prediction.kind for prediction in self.predictions))
-        except InputError as error:
-            yield from error.faults
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -142,27 +139,17 @@ class Study:
         """
         if self.origin is None or self.origin.problem is not self.problem:
             return ""
-        pareto = replace(self.pareto, refined=None)
-        uncertainty = replace(self.uncertainty, draws=0)
-        options = (
-            *(self.seed, pareto, self.weighted, self.search, self.identifiability, uncertainty),
-            self.noise,
-        )
-        return hashlib.sha256(f"{self.origin.work} {options}".encode()).hexdigest()
+        pareto, uncertainty = replace(self.pareto, refined=None), replace(self.uncertainty, draws=0)
+        options = self.seed, pareto, self.weighted, self.search, self.identifiability, uncertainty
+        return _hash(self.origin.work, *options, self.noise)
 
     @property
     def digest(self) -> str:
         """Hash of all inputs; empty where the problem is not read from a file."""
         if self.origin is None or not self.work:
             return ""
-        options = (self.name, self.uncertainty.draws, self.predictions, self.slack)
-        text = f"{self.origin.digest} {self.work} {options}"
-        return hashlib.sha256(text.encode()).hexdigest()
-
-    @property
-    def remark(self) -> str:
-        """Reason why a requested option is not in use; empty where all are."""
-        return self.origin.remark if self.origin else ""
+        options = self.name, self.uncertainty.draws, self.predictions, self.slack
+        return _hash(self.origin.digest, self.work, *options)
 
     def completed(self) -> Study:
         """Return the study with what its predictions take from the nominal model.
@@ -180,29 +167,27 @@ class Study:
         return replace(self, predictions=tuple(out))
 
 
+def _hash(*parts: object) -> str:
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
+
+
 def undrawn(uncertainty: Uncertainty, predictions: int) -> Iterator[Fault]:
     """Yield what is wrong with draws where there is nothing to predict."""
     if uncertainty.draws and not predictions:
         yield Fault("", "draws", "0 without predictions", str(uncertainty.draws))
 
 
-class Labels:
-    """All labels that a study of these groups may give to its models, but those of given weights.
+def label_faults(name: str, groups: Sequence[str]) -> Iterator[Fault]:
+    """Yield the fault of given weights named like another model that a study of groups may have.
 
     Points of the front, and of its identifiable part, have a number behind a beginning; how many
     there are is not known beforehand.
     """
-
-    def __init__(self, groups: Sequence[str]) -> None:
-        numbered, named = (Kind.FRONT, Kind.IDENTIFIABLE), (Kind.EDGE, Kind.IDENTIFIABLE_EDGE)
-        alone = [label(x) for x in Kind if x not in {*named, *numbered, Kind.GIVEN}]
-        labels = [*(label(kind, group) for kind in named for group in groups), *alone]
-        self.single = {"iterated-weights", *labels}  # at which the iteration of weights arrives
-        first = [label(Kind.FRONT, method) for method in METHODS] + [label(Kind.IDENTIFIABLE)]
-        self.numbered = {name.rpartition("-")[0] for name in first}
-
-    def __contains__(self, name: object) -> bool:
-        """Return whether a name is such a label."""
-        beginning, _, end = str(name).rpartition("-")
-        is_number = end.isascii() and end.isdigit()
-        return name in self.single or (is_number and beginning in self.numbered)
+    numbered, named = (Kind.FRONT, Kind.IDENTIFIABLE), (Kind.EDGE, Kind.IDENTIFIABLE_EDGE)
+    alone = [label(x) for x in Kind if x not in {*named, *numbered, Kind.GIVEN}]
+    labels = {"iterated-weights", *alone, *(label(x, group) for x in named for group in groups)}
+    beginning, _, end = name.rpartition("-")
+    first = [*(label(Kind.FRONT, method) for method in METHODS), label(Kind.IDENTIFIABLE)]
+    is_point = end.isascii() and end.isdigit() and f"{beginning}-0" in first
+    if name in labels or is_point:
+        yield Fault("", "name", "another name than the labels of a study's models", f"'{name}'")

@@ -61,16 +61,19 @@ class Estimate:
     Attributes
     ----------
     plan : what each stage of the run takes
+    start : seconds of the program itself, which starts, reads the study and writes results
     advice : what would make the run shorter, that of the longest part first; none for short runs
     """
 
     plan: Plan
+    start: Span = (0.0, 0.0)
     advice: tuple[str, ...] = ()
 
     @property
     def range(self) -> Span:
         """Seconds in all, by one process."""
-        return self.plan.seconds
+        least, most = self.plan.seconds
+        return least + self.start[0], most + self.start[1]
 
     @property
     def text(self) -> str:
@@ -86,20 +89,23 @@ class Estimate:
         )
 
 
-def estimate(study: Study) -> Estimate | None:
-    """Return the time that a study takes; None where the nominal model cannot be evaluated."""
+def estimate(study: Study, started: float = 0.0) -> Estimate | None:
+    """Return the time that a study takes; None where the nominal model cannot be evaluated.
+
+    ``started`` are the seconds of the processor until the study was read: a run spends them as
+    well, and up to as many again on what it imports and writes.
+    """
     problem = study.problem
     with uncounted(), threadpool_limits(1, user_api="blas"):
         timed = _search(study)
         if timed is None:
             return None
         search, evaluations = timed
-        parts = _parts(study, evaluations)
+        each, parts = search / evaluations, _parts(study, evaluations)
         advice = [(span[1] * search, text) for span, text in parts.values()]
         other: dict[str, Span] = {}
         if study.noise.of(problem, study.uncertainty.of(problem.data)) is not None:
             few, many = extent(max(DRAWS, study.uncertainty.draws))
-            each = search / evaluations
             other["sample-posterior"] = STEP[0] * few * each, STEP[1] * many * each
         if is_reduced(problem.model):  # snapshots of the basis, and their certificates
             began = time.process_time()
@@ -110,24 +116,22 @@ def estimate(study: Study) -> Estimate | None:
         models += study.uncertainty.draws or 1 + 2 * len(problem.start)
         for prediction in study.predictions:
             try:
-                spent = _seconds_of(prediction, problem)
+                spent = models * max(_seconds_of(prediction, problem) - each, each)
             except (ModelError, InputError):
                 continue
-            each = search / evaluations
-            spent = models * max(spent - each, each)
             least, most = other.get("predict", (0.0, 0.0))
             other["predict"] = least + spent / 2, most + 2 * spent
             text = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
             advice.append((2 * spent, text))
     plan = Plan(search, {stage: span for stage, (span, _) in parts.items()}, other)
-    most = plan.seconds[1]
+    start, most = (started, 2 * started), plan.seconds[1]
     if most <= SHORT:
-        return Estimate(plan)
+        return Estimate(plan, start)
     advice.sort(key=lambda part: -part[0])
     said = [text for seconds, text in advice if seconds > most / 4 and text]
     if problem.model.size >= 2000 and not is_reduced(problem.model):
         said.insert(0, 'a reduced basis ([model] reduction = "auto")')
-    return Estimate(plan, (*said, "--workers N with as many as there are cores"))
+    return Estimate(plan, start, (*said, "--workers N with as many as there are cores"))
 
 
 def duration(seconds: float) -> str:
@@ -181,6 +185,10 @@ def _search(study: Study) -> tuple[float, float] | None:
 
 def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
     """Return the searches, of so many evaluations, of each stage, and what would shorten it."""
+
+    def near(count: float, text: str = "") -> tuple[Span, str]:
+        return (count * NEAR[0], count * NEAR[1]), text
+
     n, pareto, points = len(study.problem.groups), study.pareto, _points(study)
     edges, budget = n + len(study.weighted) + 1, study.search.evaluations / evaluations
     # The starts after which w(w + 1) / N(N - 1) is the doubt.
@@ -188,24 +196,20 @@ def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
     text = f"fewer evaluations of the search ([search] evaluations, now {study.search.evaluations})"
     out = {"edges": ((float(min(few * edges, budget)), float(min(many * edges, budget))), text)}
     if pareto.method in ("nbi", "weights"):
-        text = f"fewer points of the front ([pareto] points), now {points}"
-        out["front"] = _near(points), text
+        out["front"] = near(points, f"fewer points of the front ([pareto] points), now {points}")
     else:
+        count = pareto.evaluations / evaluations
         text = f"fewer evaluations ([pareto] evaluations, now {pareto.evaluations})"
-        out["front"] = (pareto.evaluations / evaluations, pareto.evaluations / evaluations), text
-    out["optimal-weights"] = _near(edges), ""
+        out["front"] = (count, count), text
+    out["optimal-weights"] = near(edges)
     if study.noise.weight:
         out["most-probable"] = (1.0, float(MAXIMA)), ""
     equivalent = 8 * study.identifiability.models * n / evaluations
     out["manifold"] = (0.0, equivalent), "fewer equivalent models ([identifiability] models)"
     if samples := study.uncertainty.bootstrap:
         text = f"fewer bootstrap samples ([uncertainty] bootstrap, now {samples})"
-        out["bootstrap"] = _near(samples * points), text
+        out["bootstrap"] = near(samples * points, text)
     return out
-
-
-def _near(count: float) -> Span:
-    return count * NEAR[0], count * NEAR[1]
 
 
 def _points(study: Study) -> int:

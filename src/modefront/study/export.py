@@ -6,8 +6,7 @@ import json
 import os
 import shutil
 import tempfile
-import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -22,13 +21,14 @@ from modefront.brief import as_html, brief
 from modefront.data.uff import dataset_55
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError, suggestion, writing
 from modefront.front.point import preferred
-from modefront.inputs import MOST_TABLES
+from modefront.inputs import read_text_bytes
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs, write_dofs
 from modefront.models.geometry import Cells
+from modefront.options import read_toml
 from modefront.outputs import output as written
 from modefront.outputs import write_table, write_text
 from modefront.programs.base import ProgramMesh, read_mesh
-from modefront.programs.changes import Change, read_changes, write_deck
+from modefront.programs.changes import CHANGES, read_changes, write_deck
 from modefront.results.files import FILE, read_dataset
 from modefront.results.results import ReportedModel, Results
 from modefront.results.shapes import write_grid
@@ -128,15 +128,23 @@ def _find_study(results: Path, name: str, digest: str) -> Study:
     Raises InputError where there is none of this name with these inputs, with the files that were
     found, or what is wrong with the only one.
     """
+    files, absolute = [], results.absolute()
+    for note in sorted((results / FOLDER).glob(f"*/{NOTE}")):
+        with suppress(InputError, UnicodeDecodeError):
+            text = read_text_bytes(note, "the path of a study file", 4096).decode().strip()
+            if text.isprintable() and text.endswith(".toml"):
+                files.append(Path(os.path.normpath(results / text)))
+    for folder in (results, *absolute.parents[:3], Path.cwd()):
+        files += sorted(folder.glob("*.toml"))
+    files += sorted(absolute.parent.glob("*/*.toml"))
     changed: list[Path] = []
     broken: InputError | None = None
-    for file in dict.fromkeys(_candidates(results)):
+    for file in dict.fromkeys(files):
         try:
-            if not file.is_file() or file.stat().st_size > MOST_TABLES:
+            root, _ = read_toml(file, "a study file")
+            if root.values["study"]["name"] != name:
                 continue
-            if tomllib.loads(file.read_text("utf-8-sig"))["study"]["name"] != name:
-                continue
-        except (OSError, ValueError, KeyError, TypeError):
+        except (InputError, KeyError, TypeError):
             continue
         try:
             study = load(file)
@@ -151,24 +159,10 @@ def _find_study(results: Path, name: str, digest: str) -> Study:
     expected = f"the study '{name}' where it was run, beside the results or in this folder"
     found = "none: pass --study FILE"
     if changed:
-        files = " and ".join(f"'{file}'" for file in changed[:3])
-        found = f"{files} with other inputs than those of the results: changed since the run"
+        named = " and ".join(f"'{file}'" for file in changed[:3])
+        found = f"{named} with other inputs than those of the results: changed since the run"
         expected = f"the study '{name}' as it was run (pass --study FILE, or run it again)"
     raise InputError(Fault(str(results), "study", expected, found))
-
-
-def _candidates(results: Path) -> Iterator[Path]:
-    """Yield the files that may be the study, the likeliest first."""
-    for file in sorted((results / FOLDER).glob(f"*/{NOTE}")):
-        with suppress(OSError, UnicodeDecodeError):
-            if file.is_file() and file.stat().st_size <= 4096:
-                note = file.read_text("utf-8").strip()
-                if note.isprintable() and note.endswith(".toml"):
-                    yield Path(os.path.normpath(results / note))
-    absolute = results.absolute()
-    for folder in (results, *absolute.parents[:3], Path.cwd()):
-        yield from sorted(folder.glob("*.toml"))
-    yield from sorted(absolute.parent.glob("*/*.toml"))
 
 
 def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[str]:
@@ -190,7 +184,7 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[
             scipy.io.mmwrite(stream, matrix, symmetry="symmetric", precision=17)
     missing = []
     # What an imported study keeps of its program.
-    table = tomllib.loads(study.read_text("utf-8-sig")).get("model", {})
+    table = read_toml(study, "a study file")[0].values["model"]
     of_program = table if table.get("kind") == "matrices" else {}
     if "dofs" not in of_program:
         missing.append("dofs.csv, modes.vtu and modes.uff: the study names no nodes (dofs)")
@@ -214,9 +208,17 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[
             cells = [Cells(x, x, np.searchsorted(number, at)) for x, at in mesh.cells.items()]
             data = {**vectors, "node": number}
             write_grid(folder / "modes.vtu", mesh.coordinates, cells, data)
-    known = study.parent / "changes.json"
+    known = study.parent / CHANGES
     changes = read_changes(known) if of_program and known.is_file() else []
-    write_text(folder / "deck.txt", _updated_values(model, changes))
+    lines = [f"updated values, model '{model.label}'"]
+    for name, value in model.theta.items():
+        lines += ["", f"{name} = {value:.9g}"]
+        of_parameter = [change for change in changes if change.parameter == name]
+        for change in of_parameter:
+            lines += [f"  {change.file}, line {change.line}:", f"  {change.updated(value).strip()}"]
+        if not of_parameter:
+            lines.append("  a factor of what was changed for this parameter")
+    write_text(folder / "deck.txt", "\n".join(lines) + "\n")
     return missing
 
 
@@ -252,16 +254,3 @@ def _uff(
         texts = f"mode {k}", f"{f:.9g} Hz"
         mode = dataset_55(texts, k, (f, 1.0, 0.0, 0.0), number.tolist(), values)
         yield f"{ending}{55:6d}\n{mode}{ending}"
-
-
-def _updated_values(model: ReportedModel, changes: Sequence[Change]) -> str:
-    """Return the updated values: lines of the deck where they are known, factors elsewhere."""
-    lines = [f"updated values, model '{model.label}'"]
-    for name, value in model.theta.items():
-        lines += ["", f"{name} = {value:.9g}"]
-        of_parameter = [change for change in changes if change.parameter == name]
-        for change in of_parameter:
-            lines += [f"  {change.file}, line {change.line}:", f"  {change.updated(value).strip()}"]
-        if not of_parameter:
-            lines.append("  a factor of what was changed for this parameter")
-    return "\n".join(lines) + "\n"

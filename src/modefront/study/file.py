@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args
 
-import numpy as np
-
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, InputError, ModelError
+from modefront.errors import Fault, InputError, ModelError, refuse
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found
-from modefront.front.given import Weighted, label_faults
+from modefront.front.given import Weighted
 from modefront.front.options import Pareto
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
 from modefront.models.base import Model, full_of
-from modefront.models.matrices import MatrixModel, of_free
+from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.model import MEMORY
 from modefront.models.reduced.options import REDUCTION, Reduction
@@ -31,8 +28,8 @@ from modefront.predictions.ranges import SLACK
 from modefront.residuals.base import Scale
 from modefront.residuals.groups import KINDS as RESIDUALS
 from modefront.residuals.groups import MODE_NUMBERS, Group, faults
-from modefront.residuals.problem import UpdatingProblem
-from modefront.study.definition import Labels, Origin, Study, undrawn
+from modefront.residuals.problem import UpdatingProblem, updating_problem
+from modefront.study.definition import Origin, Study, label_faults, undrawn
 from modefront.study.kinds import KINDS
 from modefront.study.measured import read_data
 from modefront.uncertainty.options import Uncertainty
@@ -70,13 +67,10 @@ def load(path: Path | str) -> Study:
         With everything that is wrong with the file and the files that it names.
     """
     root, content = read_toml(Path(path), "a study file")
-    faults = root.faults
     header = root.table("study", "a table [study]")
     of_study = (header and header.read(of_header())) or {}
     names, parameters = read_parameters(root)
     model, reduced = read_model(root, names)
-    if model is not None and not faults:
-        model, parameters = of_free(model, parameters)
     data = read_data(root, model)
     groups = read_groups(root, data)
     weighted = read_weights(root, [group.name for group in groups if group.name])
@@ -91,48 +85,29 @@ def load(path: Path | str) -> Study:
     drafts, slack = read_predictions(root, model, data)
     replace(root, place="[pareto]").note(chosen["pareto"].faults(len(groups)))
     root.close()
-    if faults or model is None or data is None:
-        raise InputError(faults)
+    if root.faults or model is None or data is None:
+        raise InputError(root.faults)
     reduction = Reduction(reduced, of_study.pop("memory", MEMORY))
-    problem = UpdatingProblem(
-        reduction.of(model, data, pairing, parameters),
-        data,
-        groups,
-        np.array([each.lower for each in parameters]),
-        np.array([each.upper for each in parameters]),
-        np.array([each.nominal for each in parameters]),
-        pairing,
-        priors=tuple(each.prior for each in parameters),
+    problem = updating_problem(
+        model, data, groups, pairing=pairing, parameters=parameters, reduction=reduction
     )
     _try_model(root, problem)
     predictions = []
-    for table, prediction in drafts if not faults else ():
-        try:
+    for table, prediction in drafts if not root.faults else ():
+        with table.noting():
             predictions.append(prediction.complete(problem))
-        except InputError as error:
-            table.note(error.faults)
-    if faults:
-        raise InputError(faults)
-    front = {key: value for key, value in root.values.items() if key != "predict"}
-    kept = {key: value for key, value in front.pop("uncertainty", {}).items() if key != "draws"}
-    front |= {"uncertainty": kept} if kept else {}
+    refuse(root.faults)
+    made_of = [root.values.get(key) for key in ("data", "model", "parameter", "group", "pairing")]
     origin = Origin(
         Path(path),
         _digest(content, root.files),
-        _digest(json.dumps(front, sort_keys=True).encode(), root.files),
+        _digest(repr((made_of, reduction)).encode(), root.files),
         problem,
         reduction.fallback(problem.model),
         tuple(note for note in root.notes if isinstance(note, Finding)),
     )
-    return Study(
-        problem,
-        **of_study,
-        **chosen,
-        weighted=weighted,
-        predictions=predictions,
-        slack=slack,
-        origin=origin,
-    )
+    options = {**of_study, **chosen, "weighted": weighted, "slack": slack}
+    return Study(problem, predictions=predictions, origin=origin, **options)
 
 
 def _try_model(root: Table, problem: UpdatingProblem) -> None:
@@ -230,21 +205,19 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
         are_read = len(root.faults) == before
         group = Group(name, scale=table.value("scale", SCALE, "measured"), **modes)
         table.close()
-        wrong = list(faults(group, data))
-        if group.chosen or are_read:
-            for fault in wrong:
-                table.fault(*fault)
         out.append(group)
+        wrong = list(faults(group, data))
+        for fault in wrong if group.chosen or are_read else ():
+            table.fault(*fault)
         if data is None or wrong:
             continue
-        chosen = {kind.name: rs for kind, rs in group.positions(data)}
-        single = {data.modes[r] for r in chosen.get("shape", ())}
+        members = frozenset((kind.name, r) for kind, rs in group.positions(data) for r in rs)
+        single = {data.modes[r] for kind, r in members if kind == "shape"}
         root.notes += [
             found("compared-pair", f"{a} and {b}", group=group.name, modes=f"{a}, {b}")
             for a, b in data.pairs
             if single & {a, b}
         ]
-        members = frozenset((kind.name, r) for kind, rs in group.positions(data) for r in rs)
         if members in held:  # their objectives could not differ
             expected = f"other members than those of '{held[members]}'"
             equal.append(Fault("", "[[group]]", expected, f"'{name}'"))
@@ -268,7 +241,8 @@ def read_weights(root: Table, groups: Sequence[str]) -> tuple[Weighted, ...]:
         if weighted is not None:
             table.note(weighted.faults(groups))
             out.append(weighted)
-        table.note(label_faults(names_of([table]), Labels(groups)))
+        for name in names_of([table]):
+            table.note(label_faults(name, groups))
     root.note(each_once("[[weighted]]", names_of(tables)))
     return tuple(out)
 
@@ -284,18 +258,15 @@ def read_predictions(
     table = root.table("predict", expected)
     if table is None:
         return [], 0.0
-    slack = table.value("slack", SLACK, 0.0)
+    slack, names = table.value("slack", SLACK, 0.0), []
     out: list[tuple[Table, Prediction]] = []
-    names = []
     for key, prediction_class in CLASSES.items():
         for each in table.tables(key, required=False):
             names += names_of([each])
             prediction = each.record(prediction_class)
-            if prediction is None:
-                continue
-            if model is not None and data is not None:
+            if prediction is not None and model is not None and data is not None:
                 each.note(prediction.faults(model, data))
-            out.append((each, prediction))
+            out += [] if prediction is None else [(each, prediction)]
     table.close()
     table.note(each_once("", names))
     return out, float(slack or 0.0)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
@@ -35,6 +34,7 @@ from modefront.programs.changes import (
 )
 from modefront.programs.differences import Differences, Term, Terms, condensed
 from modefront.study.schema import add_schema
+from modefront.text import file_name
 
 QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
 
@@ -87,7 +87,7 @@ class Imported:
             directory.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryDirectory(dir=directory, prefix=".import-") as name:
                 inner = Path(name)
-                text = _study(self, _write_matrices(self.terms, inner))
+                text = _study(self, inner)
                 write_dofs(inner / "dofs.csv", self.terms.dofs)
                 if self.nominal.mesh is not None:
                     write_mesh(inner / "mesh.npz", self.nominal.mesh)
@@ -103,7 +103,7 @@ class Imported:
     _repr_html_ = as_html
 
 
-# 9 arguments: the jobs, and each option of the command by keyword.
+# 9 arguments and many lines: the jobs, and each option of the command by keyword, in turn.
 def import_model(
     program: str,
     base: Path | str,
@@ -149,21 +149,23 @@ def import_model(
         raise InputError(Fault("", "program", f"one of {', '.join(PROGRAMS)}", found))
 
     form, nominal_path, options = PROGRAMS[program], Path(base), options or JobOptions()
-    names, functions = tuple(parameters), functions or {}
-    terms = _term_names(names, functions)
+    names = tuple(parameters)
+    terms = _term_names(names, functions or {})
     runs = _runs(parameters, factors or {}, checks)
-    progress(f"reading {nominal_path}")
-    nominal = form.job(nominal_path, options)
+
+    def read(path: Path, doing: str = "reading") -> Job:
+        progress(f"{doing} {path}")
+        return form.job(path, options)
+
+    nominal = read(nominal_path)
     differences = Differences(nominal, names, terms)
     for _, path, theta in runs:
-        progress(f"reading {path}")
-        differences.add(str(path), form.job(path, options), theta)
+        differences.add(str(path), read(path), theta)
     identified = differences.terms()
     errors = []
     for other, given in checks:
-        progress(f"checking with {other}")
         theta = np.array([given.get(name, 1.0) for name in names])
-        job = form.job(Path(other), options)
+        job = read(Path(other), "checking with")
         errors.append(differences.check(identified, str(other), job, theta))
     notes = list(nominal.notes)
     if form.eliminates:
@@ -176,7 +178,16 @@ def import_model(
         )
         notes += [text] * bool(stayed)
     frequencies, floating = _frequencies(identified, modes, notes, progress)
-    changed = _changes(nominal_path, runs, notes)
+    changed: dict[str, list[Change]] = {}  # by the first run of each parameter
+    for name, path, theta in runs:
+        factor = float(theta[theta != 1][0])
+        changed.setdefault(name, changes(name, nominal_path, path, factor))
+        if differs := other_factor(nominal_path, path, factor):
+            by, line = differs
+            notes.append(
+                f"{name}: the decks differ by a factor of {by:g} (line {line}), but the run is "
+                f"taken for {factor:g} times the nominal value: is --factor {name}={by:g} meant?"
+            )
     return Imported(
         nominal,
         identified,
@@ -184,48 +195,25 @@ def import_model(
         floating,
         tuple(errors),
         tuple(notes),
-        changed,
+        tuple(change for each in changed.values() for change in each),
         program,
         deck_text(nominal_path),
     )
 
 
-def _changes(
-    nominal: Path, runs: Sequence[tuple[str, Path, Floats]], notes: list[str]
-) -> tuple[Change, ...]:
-    """Return the lines of the deck that the first run of each parameter changes.
-
-    Notes where decks differ by another factor than the one that is given.
-    """
-    out: dict[str, list[Change]] = {}
-    for name, path, theta in runs:
-        factor = float(theta[theta != 1][0])
-        out.setdefault(name, changes(name, nominal, path, factor))
-        other = other_factor(nominal, path, factor)
-        if other is not None:
-            notes.append(
-                f"{name}: the decks differ by a factor of {other[0]:g} (line {other[1]}), but the "
-                f"run is taken for {factor:g} times the nominal value: is --factor {name}="
-                f"{other[0]:g} meant?"
-            )
-    return tuple(change for each in out.values() for change in each)
-
-
 def _term_names(names: Sequence[str], functions: Mapping[str, Sequence[str]]) -> list[str]:
     """Return the terms: those declared for a parameter, or the parameter itself."""
     faults = []
-    for name, terms in functions.items():
+    for name, term in ((name, term) for name, terms in functions.items() for term in terms):
+        exponents, place = exponents_of(term, names), f"--function {name}"
         if name not in names:
             faults.append(Fault("", "--function", "a parameter", suggestion(name, names)))
-        for term in terms:
-            exponents = exponents_of(term, names)
-            if exponents is None or not exponents.any():
-                faults.append(Fault("", f"--function {name}", form_of(term + "^"), repr(term)))
-            elif name in names and not exponents[names.index(name)]:
-                faults.append(Fault("", f"--function {name}", f"terms with '{name}'", repr(term)))
-    refuse(faults)
-    every = [term for name in names for term in functions.get(name, (name,))]
-    return list(dict.fromkeys(every))
+        if exponents is None or not exponents.any():
+            faults.append(Fault("", place, form_of(term + "^"), repr(term)))
+        elif name in names and not exponents[names.index(name)]:
+            faults.append(Fault("", place, f"terms with '{name}'", repr(term)))
+    refuse(dict.fromkeys(faults))
+    return list(dict.fromkeys(term for name in names for term in functions.get(name, (name,))))
 
 
 def _runs(
@@ -254,14 +242,12 @@ def _runs(
     out = []
     for k, (name, jobs) in enumerate(parameters.items()):
         paths = [jobs] if isinstance(jobs, str | Path) else list(jobs)
-        values = given.get(name) or ([2.0] if len(paths) == 1 else [])
+        values = given.get(name) or [2.0] * (len(paths) == 1)
         if len(values) != len(paths):
             expected = f"{len(paths)} factors, one for each of its runs"
             raise InputError(Fault("", f"--factor {name}", expected, str(len(given.get(name, [])))))
-        for path, factor in zip(paths, values, strict=True):
-            theta = np.ones(len(names))
-            theta[k] = factor
-            out.append((name, Path(path), theta))
+        thetas = np.where(np.arange(len(names)) == k, np.reshape(values, (-1, 1)), 1.0)
+        out += [(name, Path(path), theta) for path, theta in zip(paths, thetas, strict=True)]
     return out
 
 
@@ -300,62 +286,40 @@ def _frequencies(
     return frequencies, floating
 
 
-def _write_matrices(terms: Terms, folder: Path) -> dict[Quantity, dict[str, str]]:
-    """Write all matrices; return the names of their files by quantity and term."""
-    out: dict[Quantity, dict[str, str]] = {quantity: {} for quantity in QUANTITIES}
-    for quantity, files in out.items():
-        for name, A in terms.of(quantity).items():
-            stem = f"{quantity}-{re.sub(r'[^A-Za-z0-9]+', '-', name).strip('-') or 'term'}"
-            number, file = 1, f"{stem}.npz"
-            while file in files.values():
-                number, file = number + 1, f"{stem}-{number}.npz"
-            with output(folder / file) as stream:
-                scipy.sparse.save_npz(stream, whole(A), compressed=False)
-            files[name] = file
-    return out
-
-
-def _study(imported: Imported, names: dict[Quantity, dict[str, str]]) -> str:
-    dofs = imported.terms.dofs
+def _study(imported: Imported, folder: Path) -> str:
+    """Return the study, of which the matrices are written into a folder."""
+    dofs, quantities = imported.terms.dofs, []
     nodes = dofs.node[dofs.node > 0]
     quoted = partial(json.dumps, ensure_ascii=False)  # TOML has texts as JSON has them
-    pairs = {x: [f"{quoted(k)} = {quoted(v)}" for k, v in y.items()] for x, y in names.items()}
+    for quantity in QUANTITIES:
+        files: dict[str, str] = {}
+        for name, A in imported.terms.of(quantity).items():
+            files[name] = file_name(f"{quantity}-{name}", files.values())
+            with output(folder / f"{files[name]}.npz") as stream:
+                scipy.sparse.save_npz(stream, whole(A), compressed=False)
+        pairs = (f"{quoted(name)} = {quoted(f'{file}.npz')}" for name, file in files.items())
+        quantities.append(f"{quantity} = {{ {', '.join(pairs)} }}")
     lines = [
         f"# Imported from {imported.program}: {Path(imported.nominal.name).name}. "
         "Parameters are factors of the nominal values.",
         *(f"# - {' '.join(note.split())}" for note in imported.notes),
-        "",
-        "[study]",
-        f"name = {quoted(Path(imported.nominal.name).stem)}",
-        "",
-        "# What is left to you: measured modes, and where the sensors are.",
-        "# [data]",
-        '# file = "modes.csv"',
-        "#",
-        "# [model.sensors]",
+        f"\n[study]\nname = {quoted(Path(imported.nominal.name).stem)}",
+        "\n# What is left to you: measured modes, and where the sensors are.",
+        '# [data]\n# file = "modes.csv"\n#\n# [model.sensors]',
         f'# a = {{ node = {int(nodes[-1]) if nodes.size else 12}, direction = "z" }}',
-        "",
-        "[model]",
-        'kind = "matrices"',
-        'dofs = "dofs.csv"',
+        '\n[model]\nkind = "matrices"\ndofs = "dofs.csv"',
         *(['mesh = "mesh.npz"'] if imported.nominal.mesh is not None else []),
         *(["floating = true"] if imported.floating else []),
-        *(f"{quantity} = {{ {', '.join(files)} }}" for quantity, files in pairs.items()),
+        *quantities,
     ]
     used = [d for d in DIRECTIONS[:3] if ((dofs.direction == number_of(d)) & (dofs.node > 0)).any()]
     if used:
         base = ", ".join(f'{d} = {{ direction = "{d}" }}' for d in used)
         lines.append(f"base = {{ {base} }}")
     for name in imported.terms.parameters:
-        lines += [
-            "",
-            "[[parameter]]",
-            f"name = {quoted(name)}",
-            "nominal = 1.0",
-            "bounds = [0.5, 2.0]",
-        ]
+        lines.append(f"\n[[parameter]]\nname = {quoted(name)}\nnominal = 1.0\nbounds = [0.5, 2.0]")
     for group, what in (("frequencies", "frequency"), ("shapes", "shape")):
-        lines += ["", "[[group]]", f'name = "{group}"', f'{what} = "all"']
+        lines.append(f'\n[[group]]\nname = "{group}"\n{what} = "all"')
     return "\n".join(lines) + "\n"
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -63,19 +64,19 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
     table = root.table("data", "a table [data]")
     if table is None:
         return None
-    name = table.value("file", FILE)
-    is_uff = name is not None and is_universal(name)
-    places = (
-        table.table("sensors", "a table, sensor = node and direction", None) if is_uff else None
-    )
-    columns = {} if is_uff else table.names("columns")
+    name, places, columns = table.value("file", FILE), None, {}
+    if name is not None and is_universal(name):
+        places = table.table("sensors", "a table, sensor = node and direction", None)
+    else:
+        columns = table.names("columns")
     table.close()
     if name is None:
         return None
-    path, sensors = Path(name), model.sensors if model else None
-    try:
-        if is_uff:
-            data = _of_nodes(table, places, read_uff55(table.path(name)), model)
+    path, sensors, data = Path(name), model.sensors if model else None, None
+    with root.noting():
+        if is_universal(name):
+            modes = read_uff55(table.path(name))
+            data = _of_nodes(table, places, modes, model) if model else None
         elif path.suffix.lower() == ".csv":
             # Without a model all columns may be sensors: what else is wrong is found nevertheless.
             data = read_csv(table.path(name), sensors, columns)
@@ -84,10 +85,6 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
         else:
             endings = ", ".join([*READERS, ".csv", ".uff"])
             table.fault("file", f"a file that ends in {endings} or .unv", f"'{name}'")
-            return None
-    except InputError as error:
-        root.faults.extend(error.faults)
-        return None
     if data and model and len(data.modes) > model.size:
         found = f"{len(data.modes)} in '{name}'"
         root.fault("[data] file", f"at most {model.size} modes, as the model has", found)
@@ -110,60 +107,48 @@ def _read(reader: DataReader, path: Path, sensors: tuple[str, ...] | None) -> Mo
 
 
 def _of_nodes(
-    table: Table, places: Table | None, modes: NodalModes, model: Model | None
+    table: Table, places: Table | None, modes: NodalModes, model: Model
 ) -> ModalData | None:
     """Return the modes at the sensors of the model, None where a sensor is not found.
 
     A sensor is where ``[data.sensors]`` says, else where its name says, such as ``12Z``, else at
     the node of the test that has its coordinates.
     """
-    if model is None:
-        return None
-    given = {} if places is None else places.values
+    given: Mapping[str, Any] = places.values if places else {}
     geometry = model.geometry if isinstance(model, MatrixModel) else None
     in_space = geometry if geometry is not None and len(geometry.axes) > 1 else None
     placed: dict[str, tuple[int, Floats]] = {}
-    before = len(table.faults)
+    before, names = len(table.faults), modes.measured
+    known = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
     for name in given:
-        if name not in model.sensors and places is not None:
+        if places and name not in model.sensors:
             places.fault(name, "a sensor of the model", suggestion(name, model.sensors))
     for s, name in enumerate(model.sensors):
-        if name in given and places is not None:
+        if places and isinstance(value := given.get(name), str):
+            if (place := modes.place(value)) is None:
+                places.fault(name, f"one of {known}", suggestion(value, names))
+        elif places and name in given:
             place = _given(places, name, modes)
-        else:
-            place = modes.place(name) or _by_coordinates(modes, in_space, s)
-            if place is None:
-                expected = (
-                    f"{name} = node and direction, one of {_listed(modes)}: the file does not say "
-                    "which sensor is which"
-                )
-                table.fault("sensors", expected, "nothing")
+        elif (place := modes.place(name) or _by_coordinates(modes, in_space, s)) is None:
+            expected = f"{name} = node and direction, one of {known}: the file does not say "
+            table.fault("sensors", f"{expected}which sensor is which", "nothing")
         if place is None:
             continue
         placed[name] = place
         axis = None if in_space is None else in_space.sensor_directions[s]
         in_data = modes.in_space(*place)
         if axis is not None and axis.any() and abs(axis @ in_data[:3]) < 0.5:
-            names = axis_name(axis), axis_name(in_data)
-            table.notes.append(found("data-direction", name, model=names[0], data=names[1]))
-    if len(table.faults) > before:
-        return None
-    for name, (node, direction) in placed.items():
+            model_axis, data_axis = axis_name(axis), axis_name(in_data)
+            table.notes.append(found("data-direction", name, model=model_axis, data=data_axis))
+    for name, (node, direction) in placed.items() if len(table.faults) == before else ():
         if np.isnan(modes.along(node, direction)).all():
-            measured = f"one of {_listed(modes)}"
             what = f"{modes.nodes[node]} along {axis_name(direction)}, which is 0 in all modes"
-            table.fault(f"sensors {name}", measured, what)
+            table.fault(f"sensors {name}", f"one of {known}", what)
     return modes.at(placed) if len(table.faults) == before else None
 
 
 def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | None:
-    """Return node and direction of a sensor that ``[data.sensors]`` names."""
-    value = places.values[name]
-    if isinstance(value, str):
-        place = modes.place(value)
-        if place is None:
-            places.fault(name, f"one of {_listed(modes)}", suggestion(value, modes.measured))
-        return place
+    """Return node and direction of a sensor of which ``[data.sensors]`` gives them in a table."""
     inner = places.table(name, 'node and direction, such as "12Z"')
     known = inner.read(OF_PLACE) if inner else None
     if inner is None or known is None:
@@ -193,8 +178,3 @@ def _by_coordinates(
     if not is_known or distance[nearest] > 0.01 * size:  # another node would be as likely
         return None
     return nearest, modes.local(nearest, direction)
-
-
-def _listed(modes: NodalModes) -> str:
-    names = modes.measured
-    return ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")

@@ -18,7 +18,17 @@ from modefront.errors import wrong
 from modefront.families import Family
 from modefront.front.given import Weighted
 from modefront.front.methods import METHODS
-from modefront.json_schema import NAME, OPEN, Schema, array, chosen, closed, file_name, table_of
+from modefront.json_schema import (
+    NAME,
+    OPEN,
+    TABLE,
+    Schema,
+    array,
+    chosen,
+    closed,
+    file_name,
+    table_of,
+)
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.options import Reduction
 from modefront.options import Option, of_options, options, schema_of
@@ -28,6 +38,7 @@ from modefront.predictions.ranges import SLACK
 from modefront.residuals.groups import KINDS as RESIDUALS
 from modefront.study.file import OF_OPTIONS, of_group, of_header
 from modefront.study.kinds import KINDS
+from modefront.study.kinds.sensors import ModelKind
 from modefront.study.measured import FILE, PLACE, READERS
 from modefront.text import NAME as LENGTH
 from modefront.text import clean
@@ -52,7 +63,7 @@ def study_schema() -> dict[str, Any]:
     tables = {
         "study": of_options(of_header()),
         "data": _data(),
-        "model": chosen("kind", {name: _model(name) for name in KINDS}),
+        "model": chosen("kind", {name: _model(kind) for name, kind in KINDS.items()}),
         "parameter": array(schema_of(Parameter), 1),
         "group": array({**of_options(of_group()), "anyOf": has_modes}, 1),
         "weighted": array(schema_of(Weighted), 1),
@@ -101,15 +112,12 @@ def _data() -> Schema:
     return {**table, "if": universal, **without}
 
 
-def _model(name: str) -> Schema:
-    """Return the schema of ``[model]`` of one kind."""
-    kind, own = KINDS[name], {"enum": [name]}
+def _model(kind: ModelKind) -> Schema:
+    """Return the schema of ``[model]`` of one kind, without the key ``kind``."""
     if kind.table is None:
-        return {"type": "object", "properties": {"kind": own}, "required": ["kind"]}
-    known = schema_of(kind.table)
-    more = {each.name: each.schema for each in options(Reduction) if each.name == "reduction"}
-    keys = {"kind": own, **known["properties"], **(more if kind.is_reducible else {})}
-    return closed(keys, ["kind", *known["required"]])
+        return TABLE
+    known = [x for x in options(Reduction) if x.name == "reduction" and kind.is_reducible]
+    return of_options([*options(kind.table), *known])
 
 
 def _drawn_to_predict() -> Schema:

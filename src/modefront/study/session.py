@@ -9,16 +9,12 @@ from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 from threadpoolctl import threadpool_limits
 
 from modefront._version import __version__
-from modefront.analysis.certified import (
-    certificate_attributes,
-    certified_front,
-    certified_points,
-)
+from modefront.analysis.certified import certificate_attributes, certified_front, certified_points
 from modefront.analysis.front import analyse_front
 from modefront.errors import Fault, InputError, writing
 from modefront.front.front import Front
@@ -54,47 +50,30 @@ if TYPE_CHECKING:
     from modefront.results.results import Results
 
 
-# 10 arguments: the problem, and each record of options by keyword.
-def solve(
-    problem: UpdatingProblem,
-    *,
-    pareto: Pareto | None = None,
-    weighted: Sequence[Weighted] = (),
-    seed: int = 0,
-    search: Search | None = None,
-    identifiability: Identifiability | None = None,
-    uncertainty: Uncertainty | None = None,
-    predictions: Sequence[Prediction] = (),
-    noise: NoisePrior | None = None,
-    slack: float = 0.0,
-    **front: Unpack[ParetoOptions],
-) -> Results:
+class StudyOptions(ParetoOptions, total=False):
+    """The fields of `Study` and of its `Pareto` as keywords of a function."""
+
+    pareto: Pareto | None
+    weighted: Sequence[Weighted]
+    seed: int
+    search: Search | None
+    identifiability: Identifiability | None
+    uncertainty: Uncertainty | None
+    predictions: Sequence[Prediction]
+    noise: NoisePrior | None
+    slack: float
+
+
+def solve(problem: UpdatingProblem, **options: Unpack[StudyOptions]) -> Results:
     """Return the Pareto-optimal models, the edges and the weighted models of a problem.
 
     Parameters
     ----------
     problem
         The updating problem, see `updating_problem`.
-    pareto
-        Method and resolution of the front; normal-boundary intersection unless given.
-    weighted
-        Weights for models besides those with equal and optimal weights.
-    seed
-        Seed of all random numbers; the same seed gives the same digits.
-    search
-        Extent of the search for global minima.
-    identifiability
-        Limits of flat parts of the front and of manifolds of equivalent models.
-    uncertainty
-        Source of the errors of the data, and samples of data and models.
-    predictions
-        Predictions of all models, such as `PeakResponse` and `Passage`.
-    noise
-        What is expected of the errors of the data and the model.
-    slack
-        Share by which objectives of models may be greater that count in ranges of predictions.
-    front
-        Fields of ``pareto`` as keywords, ``method="weights", points=10``, in place of its own.
+    options
+        Fields of `Study` as keywords, ``seed=1, search=Search(doubt=0.5)``, and fields of its
+        ``pareto``, ``method="weights", points=10``, in place of its own.
 
     Raises
     ------
@@ -103,19 +82,11 @@ def solve(
     UnfinishedError
         If no minimum of a group is found.
     """
-    study = Study(
-        problem,
-        seed=seed,
-        pareto=replace(pareto or Pareto(), **front),
-        weighted=tuple(weighted),
-        search=search or Search(),
-        identifiability=identifiability or Identifiability(),
-        uncertainty=uncertainty or Uncertainty(),
-        predictions=tuple(predictions),
-        noise=noise or NoisePrior(),
-        slack=slack,
-    )
-    return run(study)
+    chosen: dict[str, Any] = {**options}
+    front = {key: chosen.pop(key) for key in ParetoOptions.__annotations__ if key in chosen}
+    pareto = replace(chosen.pop("pareto", None) or Pareto(), **front)
+    chosen = {key: value for key, value in chosen.items() if value is not None}
+    return run(Study(problem, pareto=pareto, **chosen))
 
 
 # 7 arguments: the study, and how it is run by keyword.
@@ -126,7 +97,7 @@ def run(
     fresh: bool = False,
     refined: float | None = None,
     progress: Progress | None = None,
-    workers: int = 1,
+    workers: int | AbstractContextManager[Backend] = 1,
     scheduler: str | None = None,
 ) -> Results:
     """Return the results of a study or a problem, and write them to ``results.nc`` in a folder.
@@ -147,8 +118,9 @@ def run(
     progress
         Receives reports of tasks that are begun and done; None for no reports.
     workers
-        Number of processes that do the work. Where there are several, a script calls this function
-        under ``if __name__ == "__main__":``, since each of them imports the script.
+        Number of processes that do the work, or what `modefront.work.workers.backend` returns.
+        Where there are several, a script calls this function under
+        ``if __name__ == "__main__":``, since each of them imports the script.
     scheduler
         Address of the scheduler of a Dask cluster that does the work, like ``tcp://HOST:PORT``.
 
@@ -162,35 +134,20 @@ def run(
     UnfinishedError
         If the work cannot be done; what is done is kept.
     """
-    from modefront.study.file import load
-
-    carrier = backend(workers, scheduler)
-    study = load(study) if isinstance(study, Path | str) else study
-    return run_on(carrier, study, folder, fresh=fresh, refined=refined, progress=progress)
-
-
-def run_on(
-    carrier: AbstractContextManager[Backend],
-    study: Study | UpdatingProblem,
-    folder: Path | str | None,
-    *,
-    fresh: bool = False,
-    refined: float | None = None,
-    progress: Progress | None = None,
-) -> Results:
-    """Do the work of `run` with a backend, which is opened when the folder is at hand."""
     from modefront.results.files import FILE, write, written_for
     from modefront.results.results import Results
+    from modefront.study.file import load
 
-    if isinstance(study, UpdatingProblem):
-        study = Study(study)
+    carrier = backend(workers, scheduler) if isinstance(workers, int) else workers
+    study = load(study) if isinstance(study, Path | str) else study
+    study = Study(study) if isinstance(study, UpdatingProblem) else study
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
-    study = study.completed()
-    progress = progress or Progress()
+    study, progress = study.completed(), progress or Progress()
 
     def done(store: Store | None = None) -> xr.Dataset:
-        with carrier as opened:
+        # Dense problems of a hundred unknowns are slower on several threads than on one.
+        with carrier as opened, threadpool_limits(1, user_api="blas"):
             progress.workers = opened.workers
             return worked(study, Run(store, progress, opened))
 
@@ -229,31 +186,19 @@ def worked(study: Study, work: Run) -> xr.Dataset:
 
     Raises InputError where no parameter changes a group.
     """
-    problem, file = study.problem, str(study.file)
-    # Dense problems of a hundred unknowns are slower on several threads of the BLAS than on one.
-    with threadpool_limits(1, user_api="blas"):
-        refuse_too_many(problem, file)
-        (unchanged,) = work.run([Task(("check-groups",), unchanged_groups, (problem,))])
-        refuse_unchanged_groups(problem, file, unchanged)
-        return _results(study, work)
-
-
-def _results(study: Study, work: Run) -> xr.Dataset:
     from modefront.results.assemble import dataset
+    from modefront.results.mode_shapes import mode_shapes, with_mode_shapes
     from modefront.results.posterior import posterior_models, with_intervals, with_posterior
     from modefront.results.predictions import extent, with_predictions
     from modefront.results.verdict import with_verdict
 
-    problem = study.problem
-    search = partial(
-        pareto_front,
-        problem,
-        problem.properties,
-        study.pareto,
-        seed=study.seed,
-        search=study.search,
-        given=[(each.name, each.of(problem.objectives)) for each in study.weighted],
-    )
+    problem, seed, file = study.problem, study.seed, str(study.file)
+    refuse_too_many(problem, file)
+    (unchanged,) = work.run([Task(("check-groups",), unchanged_groups, (problem,))])
+    refuse_unchanged_groups(problem, file, unchanged)
+    weighted = [(each.name, each.of(problem.objectives)) for each in study.weighted]
+    of_search: dict[str, Any] = {"seed": seed, "search": study.search, "given": weighted}
+    search = partial(pareto_front, problem, problem.properties, study.pareto, **of_search)
     front = certified_front(problem, search, work)
     noise = study.noise.of(problem, study.uncertainty.of(problem.data))
     inference = None
@@ -261,30 +206,27 @@ def _results(study: Study, work: Run) -> xr.Dataset:
         minima = [x for edge in front.edges for x in edge.minima]
         known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
         maxima = most_probable(problem, noise, known, work)
-        points = certified_points(
-            problem, [Point(Kind.MOST_PROBABLE, maxima[0])], Within(work, ("most-probable",))
-        )
-        front = replace(front, points=[*front.points, *points])
+        within, points = Within(work, ("most-probable",)), [Point(Kind.MOST_PROBABLE, maxima[0])]
+        added = certified_points(problem, points, within)
+        front = replace(front, points=[*front.points, *added])
         count = max(DRAWS, study.uncertainty.draws)
-        inference = infer(noise, [x.theta for x in maxima], count, study.seed, work)
-    analysis = analyse_front(
-        problem,
-        front,
-        study.pareto,
-        study.identifiability,
-        study.uncertainty,
-        study.seed,
-        work,
-    )
+        inference = infer(noise, [x.theta for x in maxima], count, seed, work)
+    options = study.pareto, study.identifiability, study.uncertainty
+    analysis = analyse_front(problem, front, *options, seed, work)
     (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
     extra = [*analysis.points, Point(Kind.NOMINAL, given(nominal))]
     analysis = replace(analysis, points=certified_points(problem, extra, work))
-    data = _with_shapes(dataset(problem, front, analysis), problem, work)
+    data = dataset(problem, front, analysis)
+    theta, paired = data["theta"].values, data["paired_mode"].values
+    # A refined front has further points: what is kept is that of the points before.
+    mark = hashlib.sha256(theta.tobytes() + paired.tobytes()).hexdigest()[:16]
+    (shapes,) = work.run([Task(("shapes", mark), mode_shapes, (problem, theta, paired))])
+    data = with_mode_shapes(data, problem, shapes)
     gaussian, drawn = analysis.posterior, None
     if inference is not None:
         data = with_intervals(data, inference)
         gaussian, drawn = inference.gaussian, inference.draws.theta
-    runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file)
+    runner = PredictionRunner(problem, study.predictions, seed, work, study.file)
     models = posterior_models(data, runner, gaussian, study.uncertainty.draws, drawn)
     work.expect(extent(study.predictions, data.sizes["point"] + models.count))
     data = with_posterior(with_predictions(data, runner, study.slack), runner, models)
@@ -293,28 +235,17 @@ def _results(study: Study, work: Run) -> xr.Dataset:
     return data
 
 
-def _with_shapes(data: xr.Dataset, problem: UpdatingProblem, work: Run) -> xr.Dataset:
-    """Return results with the mode shapes of all points."""
-    from modefront.results.mode_shapes import mode_shapes, with_mode_shapes
-
-    theta, paired = data["theta"].values, data["paired_mode"].values
-    # A refined front has further points: what is kept is that of the points before.
-    mark = hashlib.sha256(theta.tobytes() + paired.tobytes()).hexdigest()[:16]
-    (shapes,) = work.run([Task(("shapes", mark), mode_shapes, (problem, theta, paired))])
-    return with_mode_shapes(data, problem, shapes)
-
-
 def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | float]:
     """Return version, seed, costs, and the coverage of the front."""
     total = work.total(lambda stage: stage != "shapes")
-    along = work.total(lambda stage: stage == "front")
-    predictions = work.total(lambda stage: stage == "predict")
-    shapes = work.total(lambda stage: stage == "shapes")
+    along, predictions, shapes = (
+        work.total(name.__eq__) for name in ("front", "predict", "shapes")
+    )
     refined = study.pareto.refined
     out: dict[str, str | int | float] = {
         "study": study.name,
         "inputs": study.digest,
-        "remark": study.remark,
+        "remark": study.origin.remark if study.origin else "",
         "version": __version__,
         "seed": study.seed,
         "model_evaluations": total.model_evaluations,

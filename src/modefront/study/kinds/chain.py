@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from modefront.errors import Fault, refuse, suggestion
+from modefront.errors import suggestion
 from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, array, table_of
 from modefront.models.base import Model
 from modefront.models.chain import chain
-from modefront.options import Requirement, Table, check_fields, entries, numbers, shown
+from modefront.options import Requirement, Table, check_fields, entries, numbers
 from modefront.study.kinds.sensors import WEIGHTED, ModelKind, read_places
 
 MASSES = numbers("a list of masses above 0", array(ABOVE_ZERO, 1))
@@ -57,17 +57,6 @@ class Chain:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        n, springs = len(self.masses), len(self.stiffnesses)
-        refuse(
-            Fault("", key, requirement.expected, shown(values))
-            for key, counts, requirement in (
-                ("stiffnesses", (n, n + 1), STIFFNESSES),
-                ("added_masses", (n,), ADDED),
-                ("stiffness_parameters", (springs,), OF_SPRINGS),
-                ("mass_parameters", (n,), OF_MASSES),
-            )
-            if (values := getattr(self, key)) is not None and len(values) not in counts
-        )
 
 
 def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:
@@ -75,28 +64,21 @@ def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:
     before = len(table.faults)
     read, masses = table.record(Chain), table.values.get("masses")
     n = len(masses) if isinstance(masses, list) and MASSES.holds(masses) else None
-    scales: dict[str, list[str | None] | None] = {}
+    members: dict[str, Any] = {}
     for key in ("stiffness_parameters", "mass_parameters"):
         names = (getattr(read, key) if read else None) or ()
         for name in names:
             if name and name not in parameters:
                 table.fault(key, "names of parameters", suggestion(name, parameters))
-        scales[key] = [name or None for name in names] or None
+        members[key] = [name or None for name in names] or None
     sensors = read_places(table, "sensors", n)
     floors = sensors or [f"floor{i + 1}" for i in range(n or 0)]
-    outputs = read_places(table, "outputs", n, taken=floors) or {}
-    if len(table.faults) > before or read is None:
-        return None
-    return chain(
-        parameters,
-        read.masses,
-        read.stiffnesses,
-        added_masses=read.added_masses or [0.0] * len(read.masses),
-        stiffness_parameters=scales["stiffness_parameters"],
-        mass_parameters=scales["mass_parameters"],
-        sensors=sensors,
-        outputs=outputs,
-    )
+    outputs = read_places(table, "outputs", n, taken=floors)
+    if read is not None and len(table.faults) == before:
+        members |= {"added_masses": read.added_masses, "sensors": sensors, "outputs": outputs}
+        with table.noting():
+            return chain(parameters, read.masses, read.stiffnesses, **members)
+    return None
 
 
 CHAIN = ModelKind("chain", read_chain, is_reducible=False, table=Chain)

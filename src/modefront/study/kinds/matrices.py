@@ -20,24 +20,15 @@ from modefront.models.matrices import matrices
 from modefront.models.parameters import BASE, exponents_of, form_of
 from modefront.options import TRUE_OR_FALSE, Option, Table, check_fields, entries, text
 from modefront.programs.base import ProgramMesh, read_mesh
-from modefront.study.kinds.sensors import (
-    BY_NODE,
-    DOF,
-    WEIGHTED,
-    ModelKind,
-    read_places,
-)
+from modefront.study.kinds.sensors import BY_NODE, DOF, WEIGHTED, ModelKind, read_places
 
 FILE = text("the name of a file")
 
 
+ALONE = "of the matrix in it; empty for the only one"
 OF_SEVERAL = (
     Option("file", FILE, required=True),
-    Option(
-        "name",
-        text("the name of a matrix in the file"),
-        meaning="of the matrix in it; empty for the only one",
-    ),
+    Option("name", text("the name of a matrix in the file"), meaning=ALONE),
 )
 """Keys of one of the matrices in a file."""
 
@@ -121,24 +112,26 @@ def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy
         return out
     if not table.values:
         table.fault("", "at least one matrix", "none")
-    for name in table.values:
+    for name, value in table.values.items():
         if exponents_of(name, parameters) is None:
             table.fault(name, form_of(name), suggestion(name, [BASE, *parameters]))
-            continue
-        if isinstance(table.values[name], dict):
-            inner = table.table(name)
-            known = inner.read(OF_SEVERAL) if inner else None
-        else:
-            known = {"file": table.value(name, FILE)}
-        if not known or not known["file"]:
-            continue
-        try:
-            out[name] = read_matrix(table.path(known["file"]), known.get("name"))
-        except InputError as error:  # the file, in which there may be several, under its key
-            table.faults += [
-                replace(x, place=f"{table.place} {name}, {x.place}") for x in error.faults
-            ]
+        elif isinstance(value, dict):
+            if (inner := table.table(name)) and (known := inner.read(OF_SEVERAL)):
+                out |= _matrix(table, name, known["file"], known.get("name"))
+        elif file := table.value(name, FILE):
+            out |= _matrix(table, name, file)
     return out
+
+
+def _matrix(
+    table: Table, term: str, file: str, name: str | None = None
+) -> dict[str, scipy.sparse.coo_array]:
+    """Return the matrix of a term by its name; none where it cannot be read."""
+    try:
+        return {term: read_matrix(table.path(file), name)}
+    except InputError as error:  # the file, in which there may be several, under its key
+        table.faults += [replace(x, place=f"{table.place} {term}, {x.place}") for x in error.faults]
+        return {}
 
 
 def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_array) -> Geometry:

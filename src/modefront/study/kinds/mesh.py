@@ -6,8 +6,9 @@ Each key of a table of members is the argument of a class of `modefront.fem`.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, get_args
 
 from modefront import fem
@@ -54,10 +55,10 @@ from modefront.study.kinds.sensors import (
     ORIENTED,
     VECTOR,
     ModelKind,
+    from_zero,
     read_directions,
 )
 
-KINDS: tuple[Kind, ...] = get_args(Kind)
 OF_VECTOR = numbers("a vector of 3 numbers", VECTOR)
 NAMES = ", ".join(fem.DIRECTIONS)
 NAMED: Schema = {"enum": [*fem.DIRECTIONS]}
@@ -95,41 +96,22 @@ SHAPES: Mapping[str, Members] = {
 }
 """Shapes of sections."""
 
-STRAIN = number("a strain")
-
 
 def _section(group: Table, key: str) -> fem.Section | None:
     table = group.table(key)
-    shape = table.choice("shape", tuple(SHAPES)) if table else None
-    if table is None or shape is None:
-        return None
-    try:
-        make, known = SHAPES[shape]
-        values = table.read(known)
-        return make(**values) if values else None
-    except fem.FemError as error:
-        table.fault("", "a section that is possible", str(error))
-        return None
+    shape = table and table.choice("shape", tuple(SHAPES))
+    return _made(table, SHAPES[shape], "section") if table and shape else None
 
 
 def _strains(load: Table, key: str) -> dict[str, float] | None:
-    table = load.table(key)
-    return {name: table.value(name, STRAIN) for name in table.values} if table else None
-
-
-def _of(known: Sequence[Option], **single: str) -> Schema:
-    """Return the schema of a table of keys, of which ``single`` ones have one text as value."""
-    texts: dict[str, Schema] = {key: {"enum": [value]} for key, value in single.items()}
-    required = [*single, *(each.name for each in known if each.required)]
-    return closed(texts | {each.name: each.schema for each in known}, required)
+    table, strain = load.table(key), number("a strain")
+    return {name: table.value(name, strain) for name in table.values} if table else None
 
 
 SECTION = Requirement(
     "a table with shape = " + ", ".join(SHAPES),
     TABLE,
-    entries=chosen(
-        "shape", {shape: _of(known, shape=shape) for shape, (_, known) in SHAPES.items()}
-    ),
+    entries=chosen("shape", {shape: of_options(known) for shape, (_, known) in SHAPES.items()}),
     read=_section,
 )
 STRAINS = Requirement(
@@ -203,14 +185,17 @@ MEMBERS: Mapping[str, Members] = {
 SINGLE = ("master", "node")
 """Keys of members that name one node."""
 
+NAMED_KINDS = ("group", "spring", "mass", "load")
+"""Tables whose entries have names that parameters scale."""
+
 DENSITY = number("a density of 0 or more", least=0)
-_, ISOTROPIC = _members(
+ISOTROPIC = _members(
     fem.Material,
     E=number("Young's modulus above 0", above=0),
     nu=number("Poisson's ratio between -1 and 0.5", above=-1, below=0.5),
     rho=DENSITY,
 )
-_, ORTHOTROPIC = _members(
+ORTHOTROPIC = _members(
     fem.Orthotropic,
     **{key: numbers(f"three values of {key}", VECTOR) for key in ("E", "nu", "G")},
     rho=DENSITY,
@@ -235,21 +220,9 @@ def _tables(kind: str) -> Requirement:
 
 MATERIALS = entries(
     "a table of materials, name = { E, nu, rho }",
-    table_of(any_of(of_options(ISOTROPIC), of_options(ORTHOTROPIC)), 1),
+    table_of(any_of(of_options(ISOTROPIC[1]), of_options(ORTHOTROPIC[1])), 1),
 )
-GROUPS = entries(
-    "tables [[model.group]]",
-    array(
-        chosen(
-            "elements",
-            {
-                kind: _of([*NAME, *MATERIAL, *known], elements=kind)
-                for kind, (_, known) in ELEMENTS.items()
-            },
-        ),
-        1,
-    ),
-)
+GROUPS = {kind: of_options([*NAME, *MATERIAL, *known]) for kind, (_, known) in ELEMENTS.items()}
 PLACES = any_of(
     *(
         closed(
@@ -286,7 +259,9 @@ class MeshModel:
 
     file: Annotated[str, text("the name of a mesh file")]
     material: Annotated[Mapping[str, Any], MATERIALS]
-    group: Annotated[Sequence[Any], GROUPS]
+    group: Annotated[
+        Sequence[Any], entries("tables [[model.group]]", array(chosen("elements", GROUPS), 1))
+    ]
     sensors: Annotated[Mapping[str, Any], entries("a table of sensors", table_of(PLACES, 1))]
     scale: Annotated[Mapping[str, Any], SCALES]
     floating: Annotated[bool, TRUE_OR_FALSE] = False
@@ -304,113 +279,21 @@ class MeshModel:
         check_fields(self)
 
 
-def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
-    """Return the model that a ``[model]`` table describes, or None where it has faults."""
-    before = len(table.faults)
-    read, name = table.record(MeshModel), table.values.get("file")
-    if not is_name(name):
-        return None
+@contextmanager
+def _noted(table: Table, key: str, expected: str) -> Iterator[None]:
+    """Note what `modefront.fem` finds wrong."""
     try:
-        mesh = read_mesh(table.path(str(name)))
-    except fem.FemError as error:  # what the tables say cannot be judged without the mesh
-        table.fault("file", "a mesh that can be read", str(error))
-        return None
-    structure, outputs = _structure(table, parameters, mesh), _places(table, "outputs")
-    table.notes += unused_groups(mesh, (g.name for g in structure.groups), _named_nodes(table))
-    if len(table.faults) > before or read is None:
-        _look_further(table, structure, mesh)
-        return None
-    try:
-        return mesh_model(structure, parameters, floating=read.floating, outputs=outputs)
+        yield
     except fem.FemError as error:
         for message in error.messages:
-            table.fault("", "a structure that can be assembled", message)
-        return None
+            table.fault(key, expected, message)
 
 
-def _look_further(table: Table, structure: fem.Structure, mesh: Mesh) -> None:
-    """Note what is wrong with sensors and scales, where faults keep the structure from being made.
-
-    Names that other tables give count, faulty or not: of these, the faults are said.
-    """
-    count = len(mesh.nodes)
-    for sensor in structure.sensors:
-        if isinstance(sensor.at, int) and sensor.at >= count:
-            table.fault(f"sensors {sensor.name}", f"nodes from 0 to {count - 1}", str(sensor.at))
-    named = [
-        name
-        for kind in ("group", "spring", "mass", "load")
-        for entry in _given(table, kind)
-        for name in [entry.get("name")]
-        if isinstance(name, str)
-    ]
-    for parameter in structure.parameters:
-        for name in parameter.of:
-            if name not in named:
-                expected = "the name of a group, spring, mass or load"
-                table.fault(f"scale {parameter.name} of", expected, suggestion(name, named))
-
-
-def _structure(table: Table, parameters: Sequence[str], mesh: Mesh) -> fem.Structure:
-    materials = {}
-    for name, entry in table.entries("material", "a table E, nu, rho", "material"):
-        is_isotropic = not isinstance(entry.values.get("E"), list)
-        values = entry.read(ISOTROPIC if is_isotropic else ORTHOTROPIC)
-        try:
-            if values is not None:
-                materials[name] = (fem.Material if is_isotropic else fem.Orthotropic)(**values)
-        except fem.FemError as error:
-            entry.fault("", "a material that is possible", str(error))
-    return fem.Structure(
-        mesh.nodes,
-        _groups(table, mesh, materials),
-        **{
-            f"{kind}es" if kind == "mass" else f"{kind}s": [
-                make(**values)
-                for member in table.tables(kind, required=False)
-                if (values := _arguments(member, known, mesh)) is not None
-            ]
-            for kind, (make, known) in MEMBERS.items()
-        },
-        sensors=_places(table, "sensors"),
-        parameters=_scales(table, parameters),
-    )
-
-
-def _arguments(table: Table, known: Sequence[Option], mesh: Mesh) -> dict[str, Any] | None:
-    """Return the arguments of a class that a table gives, None where something is wrong."""
-    before = len(table.faults)
-    out = table.read(known) or {}
-    for option in known:
-        name, given = option.name, table.values.get(option.name)
-        if option.requirement is NODES and NODES.holds(given):
-            out[name] = _nodes(given, table, name, mesh)
-        elif option.requirement is AXES and name in out:
-            out[name] = out[name][:2].tolist()
-    return out if len(table.faults) == before else None
-
-
-def _nodes(value: Any, table: Table, key: str, mesh: Mesh) -> list[int] | int:
-    """Return nodes: one, or those of a list of nodes and of groups or node sets of the mesh."""
-    nodes: list[int] = []
-    before = len(table.faults)
-    for place in listed(value):
-        if isinstance(place, str):
-            try:
-                nodes += [int(node) for node in mesh.nodes_of(place)]
-            except fem.FemError as error:
-                table.fault(key, "a group or node set of the mesh", str(error))
-        elif place >= len(mesh.nodes):
-            one_off = " (they are counted from 0)" if place == len(mesh.nodes) else ""
-            table.fault(key, f"nodes from 0 to {len(mesh.nodes) - 1}{one_off}", str(place))
-        else:
-            nodes.append(place)
-    nodes = list(dict.fromkeys(nodes))
-    if key not in SINGLE:
-        return nodes
-    if len(nodes) != 1 and len(table.faults) == before:
-        table.fault(key, "one node", f"{len(nodes)} nodes")
-    return nodes[0] if nodes else 0
+def _made(table: Table, members: Members, what: str) -> Any:
+    """Return what a class makes of the values of a table, None where something is wrong."""
+    make, known = members
+    with _noted(table, "", f"a {what} that is possible"):
+        return None if (values := table.read(known)) is None else make(**values)
 
 
 def listed(value: object) -> list[Any]:
@@ -418,47 +301,89 @@ def listed(value: object) -> list[Any]:
     return value if isinstance(value, list) else [value]
 
 
-def _given(model: Table, kind: str) -> list[dict[str, Any]]:
-    """Return the tables of a kind as they are given, faulty or not; what is none is left out."""
-    return [each for each in listed(model.values.get(kind)) if isinstance(each, dict)]
+def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
+    """Return the model that a ``[model]`` table describes, or None where it has faults."""
+    before = len(table.faults)
+    read, name, mesh = table.record(MeshModel), table.values.get("file"), None
+    if is_name(name):
+        with _noted(table, "file", "a mesh that can be read"):
+            mesh = read_mesh(table.path(str(name)))
+    if mesh is None:  # what the tables say cannot be judged without it
+        return None
+    count, used = len(mesh.nodes), set[str]()
+
+    def nodes(member: Table, key: str) -> list[int] | int:
+        """Return nodes: one, or those of a list of nodes and of groups or node sets of the mesh."""
+        out: dict[int, None] = {}
+        before = len(table.faults)
+        for place in listed(member.values[key]):
+            if isinstance(place, str):
+                used.add(place)
+                with _noted(member, key, "a group or node set of the mesh"):
+                    out |= dict.fromkeys(mesh.nodes_of(place).tolist())
+            elif place >= count:
+                member.fault(key, from_zero("nodes", count, place), str(place))
+            else:
+                out[place] = None
+        if key in SINGLE and len(out) != 1 and len(table.faults) == before:
+            member.fault(key, "one node", f"{len(out)} nodes")
+        return [*out, 0][0] if key in SINGLE else [*out]
+
+    on_mesh = replace(NODES, read=nodes)
+    members: dict[str, list[Any]] = {}
+    for kind, (make, known) in MEMBERS.items():
+        known = [replace(x, requirement=on_mesh) if x.requirement is NODES else x for x in known]
+        found = [member.read(known) for member in table.tables(kind, required=False)]
+        members[f"{kind}es" if kind == "mass" else f"{kind}s"] = [make(**x) for x in found if x]
+    structure = fem.Structure(
+        mesh.nodes,
+        _groups(table, mesh),
+        **members,
+        sensors=_places(table, "sensors"),
+        parameters=_scales(table, parameters),
+    )
+    outputs = _places(table, "outputs")
+    table.notes += unused_groups(mesh, (g.name for g in structure.groups), used)
+    if read is not None and len(table.faults) == before:
+        with _noted(table, "", "a structure that can be assembled"):
+            return mesh_model(structure, parameters, floating=read.floating, outputs=outputs)
+        return None
+    # What else would be wrong with the structure; names count in tables with faults as well.
+    for sensor in structure.sensors:
+        if isinstance(sensor.at, int) and sensor.at >= count:
+            table.fault(f"sensors {sensor.name}", from_zero("nodes", count, -1), str(sensor.at))
+    tables = [x for kind in NAMED_KINDS for x in listed(table.values.get(kind))]
+    names = [x["name"] for x in tables if isinstance(x, dict) and isinstance(x.get("name"), str)]
+    expected = "the name of a group, spring, mass or load"
+    for parameter in structure.parameters:
+        for name in {*parameter.of}.difference(names):
+            table.fault(f"scale {parameter.name} of", expected, suggestion(name, names))
+    return None
 
 
-def _named_nodes(model: Table) -> set[str]:
-    """Return the groups and node sets that members name."""
-    return {
-        name
-        for kind, (_, known) in MEMBERS.items()
-        for table in _given(model, kind)
-        for option in known
-        if option.requirement is NODES
-        for name in listed(table.get(option.name))
-        if isinstance(name, str)
-    }
-
-
-def _groups(
-    model: Table, mesh: Mesh, materials: Mapping[str, fem.Material | fem.Orthotropic]
-) -> list[Group]:
+def _groups(model: Table, mesh: Mesh) -> list[Group]:
     """Return the blocks of all groups; one group may have cells of several types."""
     out: list[Group] = []
+    materials = {
+        name: _made(
+            entry, ORTHOTROPIC if isinstance(entry.values.get("E"), list) else ISOTROPIC, "material"
+        )
+        for name, entry in model.entries("material", "a table E, nu, rho", "material")
+    }
     declared = model.values.get("material")  # those with faults too, which are said there
-    names = tuple(declared) if isinstance(declared, dict) else ()
-    material = keys(["material"], material=one_of(*names)) if names else MATERIAL
+    known = [*MATERIAL]
+    if isinstance(declared, dict) and declared:
+        known = [replace(MATERIAL[0], requirement=one_of(*declared))]
     for group in model.tables("group", required=True):
-        kind: Kind | None = group.choice("elements", KINDS)
-        make, known = ELEMENTS[kind] if kind is not None else (None, ())
-        values = _arguments(group, [*NAME, *material, *known], mesh)
-        name = group.values.get("name")
+        kind: Kind | None = group.choice("elements", tuple(ELEMENTS))
+        make, own = ELEMENTS[kind] if kind else (None, ())
+        values, name = group.read([*NAME, *known, *own]), group.values.get("name")
         if kind is None or make is None or not is_name(name):
             continue
-        try:
+        with _noted(group, "name", "a group of the mesh"):
             blocks = mesh.cells_of(str(name), kind)
-        except fem.FemError as error:
-            group.fault("name", "a group of the mesh", str(error))
-            continue
-        if values is not None and values["material"] in materials:
-            values["material"] = materials[values["material"]]
-            out += [make(cells=cells, **values) for cells in blocks]
+            if values and (material := materials.get(values.pop("material"))):
+                out += [make(cells=cells, material=material, **values) for cells in blocks]
     return out
 
 
@@ -469,16 +394,15 @@ def _places(model: Table, key: str) -> list[fem.Sensor]:
     for name, place in model.entries(
         key, "a table node or at, and direction", "sensor" if required else "", required=required
     ):
-        found = {each: place.value(each, PLACED[each], None) for each in PLACED}
-        places = [each for each in found.values() if each is not None]
+        node, at = (place.value(each, PLACED[each], None) for each in ("node", "at"))
         directions = read_directions(place)
         tolerance = place.value("tolerance", TOLERANCE, None)
         place.close()
-        if len(places) != 1:
-            place.fault("", "either node or at", "both" if places else "neither")
-            continue
-        for ending, direction in directions:
-            out.append(fem.Sensor(name + ending, places[0], direction, tolerance))
+        if (node is None) == (at is None):
+            place.fault("", "either node or at", "neither" if at is None else "both")
+        else:
+            spot = at if node is None else node
+            out += [fem.Sensor(name + end, spot, each, tolerance) for end, each in directions]
     given = model.values.get(key)
     names = {*(given if isinstance(given, dict) else ()), *(sensor.name for sensor in out)}
     for name in sorted(names) if required else ():

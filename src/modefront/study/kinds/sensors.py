@@ -10,19 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Floats
 from modefront.data.csv import is_reserved
+from modefront.fem.check import ALONG, axes_of, unit_vector
 from modefront.fem.structure import DIRECTIONS
-from modefront.json_schema import (
-    NUMBER,
-    WHOLE,
-    any_of,
-    array,
-    closed,
-    fits,
-    pair,
-    whole_number,
-)
+from modefront.json_schema import NUMBER, WHOLE, any_of, array, closed, fits, pair, whole_number
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
@@ -59,20 +50,11 @@ WEIGHTED = any_of(DOF, array(pair(DOF, NUMBER), 1))
 VECTOR = array(NUMBER, 3, 3)
 
 
-def _axes(rows: Any) -> Floats:
-    """Return local axes (3, 3), x, y and z in rows."""
-    first, second = np.asarray(rows, dtype=float)
-    x, z = first / np.linalg.norm(first), np.cross(first, second)
-    z /= np.linalg.norm(z)
-    return np.stack([x, np.cross(z, x), z])
-
-
 AXES = Requirement(
     "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane",
     array(VECTOR, 2, 2),
-    _axes,
-    lambda x: (
-        float(np.linalg.norm(np.cross(*x))) > 1e-9 * float(np.prod(np.linalg.norm(x, axis=1)))
+    further=lambda x: bool(
+        np.linalg.norm(np.cross(*x)) > ALONG * np.prod(np.linalg.norm(x, axis=1))
     ),
 )
 DIRECTION = Requirement(
@@ -92,32 +74,31 @@ NODE = whole(1, 2**62)
 BY_NODE = closed({"node": NODE.schema} | ORIENTED, ["node", "direction"])
 
 
+def from_zero(what: str, count: int, found: int) -> str:
+    """Return which numbers are expected of ``what``, which are counted from 0."""
+    return f"{what} from 0 to {count - 1}" + " (they are counted from 0)" * (found == count)
+
+
 def read_directions(place: Table) -> list[tuple[str, Any]]:
     """Return the directions of a sensor in the axes of the model, with what each adds to its name.
 
     A list of named directions makes as many sensors: NAMEx, NAMEy and so on. With ``axes`` they are
     local.
     """
-    value = place.values.get("direction")
-    if isinstance(value, list) and any(isinstance(x, str) for x in value):
-        several = place.value("direction", SEVERAL)
-        found = [(direction.removeprefix("-"), direction) for direction in several or ()]
-    else:
-        direction = place.value("direction", DIRECTION)
-        found = [] if direction is None else [("", direction)]
+    given = place.values.get("direction")
+    several = isinstance(given, list) and any(isinstance(x, str) for x in given)
+    value = place.value("direction", SEVERAL if several else DIRECTION)
     axes = place.value("axes", AXES, None)
     out = []
-    for ending, direction in found:
+    for direction in (value or ()) if several else [value][: value is not None]:
         axis = str(direction).removeprefix("-")
-        if axes is None:
-            out.append((ending, direction))
-        elif not isinstance(direction, str):
-            out.append((ending, (np.asarray(direction, dtype=float) @ axes).tolist()))
-        elif axis in DIRECTIONS[:3]:
-            row = axes[DIRECTIONS.index(axis)]
-            out.append((ending, (-row if direction != axis else row).tolist()))
-        else:
+        if axes is not None and isinstance(direction, str) and axis not in DIRECTIONS[:3]:
             place.fault("direction", "x, y or z where axes are given", f"'{direction}'")
+            continue
+        if axes is not None:
+            local = unit_vector(direction, "")[:3] @ axes_of(axes, "")
+        known = direction if axes is None else local.tolist()
+        out.append((axis if several else "", known))
     return out
 
 
@@ -152,36 +133,30 @@ def read_places(
     for name in set(taken).intersection(table.values):
         table.fault(name, "a name that no sensor has", f"'{name}'")
 
-    def is_right(name: str) -> bool:
-        return is_name(name) and not (key == "sensors" and is_reserved(name, table.values))
+    def is_right(name: str, place: str) -> bool:
+        reserved = key == "sensors" and is_reserved(name, table.values)
+        if wrong := not is_name(name) or name != name.strip() or reserved:
+            table.fault(place, "a name that a column of the data can have", repr(name))
+        return not wrong
 
-    for name, value in table.values.items() if key == "base" else ():
-        if isinstance(value, list) and all(fits(dof, DOF) for dof in value):
-            table.values[name] = [[dof, 1.0] for dof in value]
-        elif dofs is not None and value in [{"direction": direction} for direction in DIRECTIONS]:
-            table.values[name] = [list(pair) for pair in dofs.of_direction(value["direction"])]
     out: dict[str, SensorSpec] = {}
     for name, value in table.values.items():
-        if name != name.strip() or not is_right(name):
-            table.fault(repr(name), "a name that a column of the data can have", repr(name))
-            continue
-        if isinstance(value, dict) and {"node", "direction"} & value.keys():
-            for sensor, spec in _by_node(table, name, dofs).items():
-                if is_right(sensor):
-                    out[sensor] = spec
-                else:
-                    table.fault(name, "a name that a column of the data can have", repr(sensor))
+        if not is_right(name, repr(name)):
             continue
         pairs = [[value, 1.0]] if fits(value, DOF) else value
+        if key == "base" and isinstance(value, list) and all(fits(dof, DOF) for dof in value):
+            pairs = [[dof, 1.0] for dof in value]
+        elif key == "base" and dofs and value in [{"direction": each} for each in DIRECTIONS]:
+            pairs = [list(pair) for pair in dofs.of_direction(value["direction"])]
+        elif isinstance(value, dict) and {"node", "direction"} & value.keys():
+            out |= {x: y for x, y in _by_node(table, name, dofs).items() if is_right(x, name)}
+            continue
         if not fits(pairs, WEIGHTED):
             expected = "a degree of freedom from 0, or a list [[degree of freedom, weight], ...]"
             table.fault(name, expected, shown(value))
-            continue
-        beyond = [dof for dof, _ in pairs if size is not None and dof >= size]
-        if beyond and size is not None:
-            found = ", ".join(map(str, beyond))
-            one_off = " (they are counted from 0)" if max(beyond) == size else ""
-            table.fault(name, f"degrees of freedom from 0 to {size - 1}{one_off}", found)
+        elif beyond := [dof for dof, _ in pairs if size is not None and dof >= size]:
+            expected = from_zero("degrees of freedom", size or 0, max(beyond))
+            table.fault(name, expected, ", ".join(map(str, beyond)))
         elif not any(sum(w for _, w in of) for _, of in groupby(sorted(pairs), itemgetter(0))):
             table.fault(name, "weights that do not cancel", shown(pairs))
         else:
@@ -190,24 +165,16 @@ def read_places(
 
 
 def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, SensorSpec]:
-    """Return the degrees of freedom of a place given by node and direction.
-
-    A list of directions makes as many places: NAMEx, NAMEy and so on. With ``axes`` they are local.
-    """
-    if dofs is None:
+    """Return the degrees of freedom of a place given by node and direction; of each direction."""
+    place = table.table(name) if dofs else None
+    if dofs is None or place is None:
         expected = 'a degree of freedom; nodes and directions need dofs = "dofs.csv"'
         table.fault(name, expected, shown(table.values[name]))
         return {}
-    place = table.table(name)
-    if place is None:
-        return {}
-    node = place.value("node", NODE)
-    directions = read_directions(place)
-    place.close()
-    if node is None:
-        return {}
     out: dict[str, SensorSpec] = {}
-    for ending, direction in directions:
+    node, directions = place.value("node", NODE), read_directions(place)
+    place.close()
+    for ending, direction in directions if node is not None else ():
         try:
             out[name + ending] = dofs.sensor(node, direction)
         except LookupError as error:
