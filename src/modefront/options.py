@@ -325,13 +325,17 @@ class Table:
             self.fault(fault.place, fault.expected, fault.found)
 
     @contextmanager
-    def noting(self) -> Iterator[None]:
-        """Note the faults of options, whose places are keys of the table, and of files."""
+    def noting(self, key: str = "") -> Iterator[None]:
+        """Note the faults of options, whose places are keys of the table, and of files.
+
+        Those of the file that a ``key`` names have it before their places.
+        """
         try:
             yield
         except InputError as error:
             self.note(fault for fault in error.faults if not fault.file)
-            self.faults.extend(fault for fault in error.faults if fault.file)
+            before = f"{self.place} {key}, " if key else ""
+            self.faults += [replace(x, place=before + x.place) for x in error.faults if x.file]
 
     def path(self, name: str) -> Path:
         """Return the path of a file that a table names, relative to the TOML file, and note it.

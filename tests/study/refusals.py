@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
+from faultless import STUDY
 
 from modefront.cli.main import main
 
@@ -31,3 +33,14 @@ def edited(text: str, *edits: tuple[str, str]) -> str:
         assert old in text, old
         text = text.replace(old, new, 1)
     return text
+
+
+def refuses(*rows: tuple[str, str, str]) -> Callable[..., None]:
+    """Return a test that the study with a new part for an old one is refused, and what is said."""
+
+    @pytest.mark.parametrize(("old", "new", "says"), rows)
+    def test(old: str, new: str, says: str, folder: Path, refused: Check) -> None:
+        (folder / "wrong.toml").write_text(edited(STUDY, (old, new)))
+        refused(folder / "wrong.toml", says)
+
+    return test

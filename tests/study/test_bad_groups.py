@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from faultless import DATA, STUDY, WEIGHTED
-from refusals import Check, edited
+from refusals import Check, edited, refuses
 
 WEIGHT = "[[weighted]] 1 ('mine') weights shapes: expected a weight above 0, found "
 
@@ -53,13 +53,7 @@ CONTRADICTIONS = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "says"), CONTRADICTIONS)
-def test_contradictions_of_groups_and_weights(
-    old: str, new: str, says: str, folder: Path, refused: Check
-) -> None:
-    study = folder / "wrong.toml"
-    study.write_text(edited(STUDY, (old, new)))
-    refused(study, says)
+test_contradictions_of_groups_and_weights = refuses(*CONTRADICTIONS)
 
 
 def more_groups(*lines: str) -> str:

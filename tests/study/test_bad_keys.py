@@ -339,10 +339,3 @@ def test_a_misspelt_key_is_answered_with_the_known_one(
     if key.required:
         says.append(fault_text(key.place, key.expected, "nothing"))
     refused(study, *says)
-
-
-@pytest.mark.parametrize("key", [key for key in KEYS if key.required], ids=lambda key: key.place)
-def test_a_missing_key_is_asked_for(key: Key, folder: Path, refused: Check) -> None:
-    study = folder / "wrong.toml"
-    study.write_text(edited(STUDY, (key.line + "\n", "")))
-    refused(study, fault_text(key.place, key.expected, "nothing"))

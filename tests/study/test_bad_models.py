@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-import pytest
 from faultless import STUDY
-from refusals import Check, edited
+from refusals import Check, edited, refuses
 
 SENSOR = "expected a degree of freedom from 0, or a list [[degree of freedom, weight], ...], found "
 
@@ -72,10 +71,4 @@ def test_an_unknown_key_hides_no_other_fault(folder: Path, refused: Check) -> No
     refused(study, known, "[model] sensors low: expected degrees of freedom from 0 to 1")
 
 
-@pytest.mark.parametrize(("old", "new", "says"), CONTRADICTIONS)
-def test_contradictions_of_models(
-    old: str, new: str, says: str, folder: Path, refused: Check
-) -> None:
-    study = folder / "wrong.toml"
-    study.write_text(edited(STUDY, (old, new)))
-    refused(study, says)
+test_contradictions_of_models = refuses(*CONTRADICTIONS)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from faultless import DATA, PREDICTIONS, STUDY
-from refusals import Check, edited
+from refusals import Check, edited, refuses
 
 from modefront.front import methods
 
@@ -21,13 +21,7 @@ CONTRADICTIONS = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "says"), CONTRADICTIONS)
-def test_contradictions_of_options(
-    old: str, new: str, says: str, folder: Path, refused: Check
-) -> None:
-    study = folder / "wrong.toml"
-    study.write_text(edited(STUDY, (old, new)))
-    refused(study, says)
+test_contradictions_of_options = refuses(*CONTRADICTIONS)
 
 
 def test_a_method_whose_package_is_missing(

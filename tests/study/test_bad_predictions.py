@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from faultless import DATA, STUDY
-from refusals import Check, edited
+from refusals import Check, edited, refuses
 
 CONTRADICTIONS = [
     ("[[predict.frf]]", "[[predict.fft]]", "[predict]: ... found 'fft' (did you mean 'frf'?)"),
@@ -67,13 +67,7 @@ CONTRADICTIONS = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "says"), CONTRADICTIONS)
-def test_contradictions_of_predictions(
-    old: str, new: str, says: str, folder: Path, refused: Check
-) -> None:
-    study = folder / "wrong.toml"
-    study.write_text(edited(STUDY, (old, new)))
-    refused(study, says)
+test_contradictions_of_predictions = refuses(*CONTRADICTIONS)
 
 
 APART = [

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from faultless import DATA, GROUPS, PARAMETERS, STUDY, WEIGHTED
-from refusals import Check, command, edited
+from refusals import Check, command, edited, refuses
 
 CONTRADICTIONS = [
     # tables
@@ -46,13 +46,7 @@ CONTRADICTIONS = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "says"), CONTRADICTIONS)
-def test_contradictions_of_tables_and_files(
-    old: str, new: str, says: str, folder: Path, refused: Check
-) -> None:
-    study = folder / "wrong.toml"
-    study.write_text(edited(STUDY, (old, new)))
-    refused(study, says)
+test_contradictions_of_tables_and_files = refuses(*CONTRADICTIONS)
 
 
 @pytest.mark.parametrize(

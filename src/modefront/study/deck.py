@@ -27,6 +27,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import cycle
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -79,15 +80,8 @@ class Line:
     row: int = 0
 
 
-@dataclass(frozen=True)
-class Target:
-    """What a parameter multiplies.
-
-    Attributes
-    ----------
-    kind : material, density, spring, mass or section
-    name : of the material or the set of elements
-    """
+class Target(NamedTuple):
+    """What a parameter multiplies: a kind of `KEYWORDS`, and the material or set of elements."""
 
     kind: str
     name: str

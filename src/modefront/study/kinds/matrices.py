@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 import scipy.sparse
 
-from modefront.errors import InputError, suggestion
+from modefront.errors import suggestion
 from modefront.fem.structure import DIRECTIONS
 from modefront.json_schema import any_of, array, closed, file_name, table_of
 from modefront.models.base import Model
@@ -115,23 +115,17 @@ def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy
     for name, value in table.values.items():
         if exponents_of(name, parameters) is None:
             table.fault(name, form_of(name), suggestion(name, [BASE, *parameters]))
-        elif isinstance(value, dict):
-            if (inner := table.table(name)) and (known := inner.read(OF_SEVERAL)):
-                out |= _matrix(table, name, known["file"], known.get("name"))
+            continue
+        known: dict[str, Any] | None = {}
+        if isinstance(value, dict):
+            inner = table.table(name)
+            known = inner.read(OF_SEVERAL) if inner else None
         elif file := table.value(name, FILE):
-            out |= _matrix(table, name, file)
+            known = {"file": file}
+        if known:
+            with table.noting(name):  # of files in which there may be several
+                out[name] = read_matrix(table.path(known["file"]), known.get("name"))
     return out
-
-
-def _matrix(
-    table: Table, term: str, file: str, name: str | None = None
-) -> dict[str, scipy.sparse.coo_array]:
-    """Return the matrix of a term by its name; none where it cannot be read."""
-    try:
-        return {term: read_matrix(table.path(file), name)}
-    except InputError as error:  # the file, in which there may be several, under its key
-        table.faults += [replace(x, place=f"{table.place} {term}, {x.place}") for x in error.faults]
-        return {}
 
 
 def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_array) -> Geometry:
