@@ -138,7 +138,10 @@ def run(
     from modefront.results.results import Results
     from modefront.study.file import load
 
-    carrier = backend(workers, scheduler) if isinstance(workers, int) else workers
+    if isinstance(workers, AbstractContextManager):
+        carrier = workers
+    else:
+        carrier = backend(workers, scheduler)
     study = load(study) if isinstance(study, Path | str) else study
     study = Study(study) if isinstance(study, UpdatingProblem) else study
     if refined is not None:
