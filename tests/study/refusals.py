@@ -35,12 +35,12 @@ def edited(text: str, *edits: tuple[str, str]) -> str:
     return text
 
 
-def refuses(*rows: tuple[str, str, str]) -> Callable[..., None]:
-    """Return a test that the study with a new part for an old one is refused, and what is said."""
+def refuses(*rows: tuple[str, str, str], study: str = STUDY) -> Callable[..., None]:
+    """Return a test that a study with a new part for an old one is refused, and what is said."""
 
     @pytest.mark.parametrize(("old", "new", "says"), rows)
     def test(old: str, new: str, says: str, folder: Path, refused: Check) -> None:
-        (folder / "wrong.toml").write_text(edited(STUDY, (old, new)))
+        (folder / "wrong.toml").write_text(edited(study, (old, new)))
         refused(folder / "wrong.toml", says)
 
     return test

@@ -9,7 +9,7 @@ import pytest
 import scipy.io
 import scipy.sparse
 from faultless import CHAIN, K2, MATRICES, STUDY
-from refusals import Check, edited
+from refusals import Check, edited, refuses
 
 MTX = "%%MatrixMarket matrix"
 
@@ -217,10 +217,6 @@ MATRIX_KEYS = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "says"), MATRIX_KEYS)
-def test_contradictions_of_a_study_of_matrices(
-    old: str, new: str, says: str, folder: Path, refused: Check
-) -> None:
-    study = folder / "wrong.toml"
-    study.write_text(edited(STUDY, (CHAIN, MATRICES), (old, new)))
-    refused(study, says)
+test_contradictions_of_a_study_of_matrices = refuses(
+    *MATRIX_KEYS, study=edited(STUDY, (CHAIN, MATRICES))
+)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from refusals import Check, command, edited
+from refusals import Check, command, edited, refuses
 
 from modefront import fem
 
@@ -269,12 +269,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "says"), WRONG)
-def test_a_study_of_a_mesh_with_something_wrong(
-    old: str, new: str, says: str, folder: Path, refused: Check
-) -> None:
-    (folder / "wrong.toml").write_text(edited(STUDY, (old, new)))
-    refused(folder / "wrong.toml", says)
+test_a_study_of_a_mesh_with_something_wrong = refuses(*WRONG, study=STUDY)
 
 
 def test_a_structure_that_can_move_is_refused_with_its_motion(folder: Path, refused: Check) -> None:
