@@ -32,6 +32,7 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 from study_tables import PUSHED, uncertainty
+from threadpoolctl import threadpool_limits
 
 import modefront as mf
 import modefront.__main__
@@ -136,7 +137,7 @@ def done(make: Callable[[], mf.Study], workers: int) -> tuple[Any, dict[str, flo
     """
     before = set(multiprocessing.active_children())
     started, first = time.perf_counter(), time.process_time()
-    with backend(workers) as carrier:
+    with backend(workers) as carrier, threadpool_limits(1, user_api="blas"):
         work = Timed(backend=carrier)
         data = session.worked(make().completed(), work)
         others = set(multiprocessing.active_children()) - before

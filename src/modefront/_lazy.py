@@ -28,7 +28,4 @@ def lazy(
         module = import_module(f"{package}.{name}" if home == package else home)
         return module if home == package else getattr(module, name)
 
-    def names() -> list[str]:
-        return sorted(homes)
-
-    return load, names, sorted(homes)
+    return load, lambda: sorted(homes), sorted(homes)

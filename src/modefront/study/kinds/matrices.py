@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
@@ -155,16 +156,15 @@ def _size(model: Table, terms: Mapping[str, dict[str, scipy.sparse.coo_array]]) 
 
     So do a mass that is zero, and degrees of freedom with neither stiffness nor mass.
     """
-    counts = [A.shape[0] for known in terms.values() for A in known.values()]
+    counts = Counter(A.shape[0] for known in terms.values() for A in known.values())
     if not counts:
         return None
-    common = max(set(counts), key=lambda size: (counts.count(size), size))
+    common = max(counts, key=lambda size: (counts[size], size))
+    expected = f"{common} x {common}, as the other matrices"
     for key, known in terms.items():
-        for name, A in list(known.items()):
-            if A.shape[0] != common:
-                others, size = f"{common} x {common}, as the other matrices", A.shape[0]
-                model.fault(f"{key} {name}", others, f"{size} x {size}")
-                del known[name]
+        for name in [name for name, A in known.items() if A.shape[0] != common]:
+            size = known.pop(name).shape[0]
+            model.fault(f"{key} {name}", expected, f"{size} x {size}")
     mass = terms["mass"]
     if mass and not any(A.nnz for A in mass.values()):
         model.fault("mass", "a mass matrix that is not zero", "only zeros")

@@ -204,8 +204,9 @@ TOLERANCE = number("a distance above 0", above=0)
 PLACED = {"node": whole(0, 10**9), "at": numbers("3 coordinates", VECTOR)}
 """Keys of which one says where a sensor is."""
 
-NAME = keys(["name"], name=text("the name of a group of cells"))
-MATERIAL = keys(["material"], material=text("a material"))
+OF_GROUP = keys(
+    ["name", "material"], name=text("the name of a group of cells"), material=text("a material")
+)
 SCALE = keys(
     ["quantity", "of"],
     quantity=one_of(*get_args(Quantity)),
@@ -222,7 +223,7 @@ MATERIALS = entries(
     "a table of materials, name = { E, nu, rho }",
     table_of(any_of(of_options(ISOTROPIC[1]), of_options(ORTHOTROPIC[1])), 1),
 )
-GROUPS = {kind: of_options([*NAME, *MATERIAL, *known]) for kind, (_, known) in ELEMENTS.items()}
+GROUPS = {kind: of_options([*OF_GROUP, *known]) for kind, (_, known) in ELEMENTS.items()}
 PLACES = any_of(
     *(
         closed(
@@ -371,13 +372,13 @@ def _groups(model: Table, mesh: Mesh) -> list[Group]:
         for name, entry in model.entries("material", "a table E, nu, rho", "material")
     }
     declared = model.values.get("material")  # those with faults too, which are said there
-    known = [*MATERIAL]
+    name_of, material_of = OF_GROUP
     if isinstance(declared, dict) and declared:
-        known = [replace(MATERIAL[0], requirement=one_of(*declared))]
+        material_of = replace(material_of, requirement=one_of(*declared))
     for group in model.tables("group", required=True):
         kind: Kind | None = group.choice("elements", tuple(ELEMENTS))
         make, own = ELEMENTS[kind] if kind else (None, ())
-        values, name = group.read([*NAME, *known, *own]), group.values.get("name")
+        values, name = group.read([name_of, material_of, *own]), group.values.get("name")
         if kind is None or make is None or not is_name(name):
             continue
         with _noted(group, "name", "a group of the mesh"):
