@@ -21,9 +21,9 @@ import xarray as xr
 import modefront as mf
 from front import problem_of
 from modefront._typing import Floats
-from modefront.findings.selection import front_points
 from modefront.front.dominance import nondominated
 from modefront.front.indicators import REFERENCE, hypervolume, igd_plus, largest_gap
+from modefront.front.point import front_points
 
 FEW = mf.Search(doubt=0.5)
 """Longer chains have very many local minima; the fronts are compared, not the search for edges."""

@@ -103,7 +103,7 @@ def main() -> None:
         J = data["objective"].values[:20]
         scale = J.max(axis=0)
         target = volume(J, scale)
-        total, along = data.attrs["model_evaluations"], data.attrs["nbi_evaluations"]
+        total, along = data.attrs["model_evaluations"], data.attrs["front_evaluations"]
         print(f"{model}: NBI {along} eigenproblems for 20 points, {along / 20:.1f} a point;")
         print(f"    with global edges and weighted models {total} in {seconds:.2f} s")
         for name, method in (("NSGA-II", NSGA2), ("SPEA2", SPEA2)):

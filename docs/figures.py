@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 
 import modefront as mf
 from modefront._typing import Bools, Floats
-from modefront.findings.selection import front_points
 from modefront.front.dominance import nondominated
+from modefront.front.point import front_points
 from modefront.study.examples import write_example
 
 HERE = Path(__file__).parent

@@ -31,10 +31,10 @@ def of_results() -> dict[str, str]:
         sections.setdefault(variable.section, []).append(variable)
     out = {name: variable_table(variables) for name, variables in sections.items()}
     dimensions = [[f"`{name}`", meaning] for name, meaning in DIMENSIONS.items()]
-    attributes = [[f"`{x.name}`", x.values, str(x.since), x.meaning] for x in ATTRIBUTES.values()]
+    attributes = [[f"`{x.name}`", x.values, x.meaning] for x in ATTRIBUTES.values()]
     return out | {
         "Dimensions": "".join(rows(["dimension", "meaning"], dimensions)),
-        "Attributes": "".join(rows(["attribute", "type", "since", "meaning"], attributes)),
+        "Attributes": "".join(rows(["attribute", "type", "meaning"], attributes)),
     }
 
 
@@ -104,12 +104,11 @@ def variable_table(variables: Sequence[Variable]) -> str:
             f"`{x.name}`" + (" *" if x.required else ""),
             ", ".join(x.dimensions) or "–",
             x.unit or "–",
-            str(x.since),
             x.meaning,
         ]
         for x in variables
     ]
-    return "".join(rows(["variable", "dimensions", "unit", "since", "meaning"], cells))
+    return "".join(rows(["variable", "dimensions", "unit", "meaning"], cells))
 
 
 def rows(header: Sequence[str], cells: Iterable[Sequence[str]]) -> Iterator[str]:

@@ -237,7 +237,7 @@ function summary(state: State): HTMLElement {
     );
   }
   view.append(
-    h("p", { class: "note" }, "What each sentence means, and what to do: docs/findings.md of modefront."),
+    h("p", { class: "note" }, "What each sentence means, and what to do: modefront show RESULTS --findings."),
   );
   return view;
 }

@@ -14,8 +14,7 @@ class Variable:
     """A variable of the results.
 
     The unit is empty where there is none, or where it is that of the model; ``section`` is a
-    heading of the documentation, ``since`` the first format that has it, ``together`` a name of
-    variables of which a file has all or none.
+    heading of the documentation, ``together`` a name of variables of which a file has all or none.
     """
 
     name: str
@@ -25,7 +24,6 @@ class Variable:
     unit: str = ""
     section: str = ""
     required: bool = False
-    since: int = 1
     together: str = ""
 
     @property

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
+from importlib.resources import files
 
 import pytest
 
 from modefront.findings.catalogue import CATALOGUE, Severity
-from modefront.findings.record import NUMBER, PAGE, as_text, found, from_text, in_order
+from modefront.findings.record import NUMBER, as_text, found, from_text, in_order
 
-TEXT = (Path(__file__).parents[2] / PAGE).read_text(encoding="utf-8")
+TEXT = (files("modefront.findings") / "findings.md").read_text(encoding="utf-8")
 EXAMPLES = dict(re.findall(r"^### (\S+)\n> (.+)$", TEXT, re.MULTILINE))
 
 
@@ -32,6 +32,13 @@ def test_the_example_on_the_page_is_what_the_kind_says(kind: str) -> None:
     assert CATALOGUE[kind][0] is Severity.DETAIL or not re.search(
         rf"^### {kind}\n> .*\n\n#", TEXT, re.MULTILINE
     ), "what it means, and what to do"
+
+
+def test_a_finding_says_what_it_means_without_marks_of_a_page() -> None:
+    (text,) = found("group-data", "shapes").meaning
+    assert text.startswith("What one group alone determines.")
+    for kind in CATALOGUE:
+        assert not any(x in text for text in found(kind).meaning for x in ("](", "#"))
 
 
 def test_a_record_is_kept_whole_and_one_that_is_not_known_as_its_sentence() -> None:

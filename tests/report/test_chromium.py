@@ -12,7 +12,7 @@ import pytest
 from pages import HOSTILE, ROOT, chain, hostile, many_modes, mesh, three_groups, written
 from playwright.sync_api import Browser, FloatRect, Locator, Page, Playwright, sync_playwright
 
-from modefront.findings.selection import front_points
+from modefront.front.point import front_points
 
 CHROMIUM = Path("/usr/bin/chromium")
 AXE = ROOT / "report" / "node_modules" / "axe-core" / "axe.min.js"

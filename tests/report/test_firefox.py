@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 from pages import HOSTILE, chain, hostile, written
 
-from modefront.findings.selection import front_points
+from modefront.front.point import front_points
 
 websocket = pytest.importorskip("tornado.websocket")
 

@@ -16,12 +16,12 @@ from pages import HOSTILE, ROOT, chain, content, hostile, mesh, plate, three_gro
 
 import modefront as mf
 from modefront.cli.main import main
-from modefront.findings.selection import front_points
+from modefront.front.point import front_points
 from modefront.models.base import geometry_of
 from modefront.reports.page import page
 from modefront.reports.payload import payload, topics
 from modefront.results.files import FILE, write
-from modefront.results.mode_shapes import drawing, mode_shapes
+from modefront.results.shapes import drawing, mode_shapes
 from modefront.results.soundness import faults
 
 MEGABYTE = 1e6

@@ -84,7 +84,7 @@ def test_variables_that_belong_together(whole: xr.Dataset) -> None:
     ("change", "says"),
     [
         (lambda data: data.assign_attrs(format=FORMAT + 1), f"results of format {FORMAT}, found"),
-        (lambda data: data.isel(point=slice(0)), "'point' and 'mode': expected at least one"),
+        (lambda data: data.isel(point=slice(0)), "dimension 'point': expected at least one"),
         (lambda data: data.drop_vars("theta"), "variable 'theta': expected"),
     ],
 )

@@ -11,7 +11,7 @@ from modefront.predictions import Passage
 from modefront.predictions.registry import as_text
 from modefront.results.compare import compare
 from modefront.results.files import FILE
-from modefront.results.schema import ATTRIBUTES, FORMAT
+from modefront.results.schema import ATTRIBUTES, FORMAT, variables_of
 
 
 def results(
@@ -53,10 +53,20 @@ def results(
         "minimum_theta": (("minimum", "parameter"), t[:1]),
         "minimum_objective": (("minimum", "group"), e[:1]),
         "failure_probability": (("point", "failure"), np.column_stack([t[:, 0], 2 * t[:, 0]])),
+        "frequency_range": (("range", "mode"), np.zeros((3, 1))),
         "finding": (("finding",), np.array([], dtype=str)),
     }
     if piece:
         variables["piece"] = (("point",), [*piece, piece[-1]])
+    sizes = {"point": count + 1, "parameter": len(parameters), "group": len(groups), "failure": 2}
+    sizes |= {"range": 3, "set": 1, "end": 0}
+    known = variables_of([Passage.kind])
+    together = {known[name].together for name in variables} - {""}
+    for name, x in known.items():
+        if x.together in together and name not in variables:
+            of: type = {"text": str, "truth": bool}.get(x.values, float)
+            shape = [sizes.get(each, 2) for each in x.dimensions]
+            variables[name] = (x.dimensions, np.zeros(shape, of))
     data = xr.Dataset(
         variables,
         coords={
@@ -64,6 +74,7 @@ def results(
             "group": list(groups),
             "mode": [1],
             "failure": ["drift: 0.1", "drift: 0.2"],
+            "range": ["minimum", "maximum", "spread"],
         },
     )
     data.attrs |= {

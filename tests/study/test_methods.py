@@ -12,8 +12,8 @@ from interruptions import interrupt_at
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.findings.selection import front_points
 from modefront.front.dominance import nondominated
+from modefront.front.point import front_points
 from modefront.study.examples import write_example
 from modefront.work.costs import counted
 

@@ -121,7 +121,7 @@ def test_the_optimal_weights_of_M0_are_regular_and_confirmed() -> None:
 def test_a_search_costs_less_where_more_doubt_is_allowed() -> None:
     for model in ("M0", "M1"):
         data = results(model)
-        assert data.attrs["nbi_evaluations"] < data.attrs["model_evaluations"] < 5000
+        assert data.attrs["front_evaluations"] < data.attrs["model_evaluations"] < 5000
         quick = mf.solve(problem_of(model), points=20, seed=1, search=mf.Search(doubt=0.5)).dataset
         assert quick.attrs["model_evaluations"] < data.attrs["model_evaluations"]
 

@@ -39,7 +39,7 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         for name, (a, J) in zip(problem.objectives, values, strict=True)
     ]
     screen.table("groups", ["group", "a", "J nominal", "error nominal"], rows)
-    screen.blank()
+    screen.say("")
     screen.say(findings.derivatives)
     sentences = [f"warning: {text}" for text in findings.warnings]
     if findings.spoilt:
@@ -76,7 +76,7 @@ def _print_sensors(screen: Screen, beside: Comparison, most: int | None) -> None
     order = np.argsort(np.where(np.isnan(values), 2.0, values), kind="stable").tolist()
     parts = [f"{beside.data.sensors[s]} {number(values[s], '.4f', 'unknown')}" for s in order]
     rest = [f"{len(parts[most:])} more with --all"] * (most is not None and len(parts) > most)
-    screen.blank()
+    screen.say("")
     screen.say(f"COMAC by sensor, the least first: {', '.join([*parts[:most], *rest])}")
 
 

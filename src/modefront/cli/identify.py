@@ -45,12 +45,11 @@ def run_identify(
         written.append(write_identification(test, report))
     if test.modes is not None:
         _print_modes(screen, test, test.modes)
-    findings = test.warnings
-    more = len(findings) > MOST_FINDINGS
-    for text in findings[: MOST_FINDINGS - more]:
+    more = len(test.warnings) > MOST_FINDINGS
+    for text in test.warnings[: MOST_FINDINGS - more]:
         say(f"warning: {text}", err=True)
     if more:
-        rest = len(findings) - MOST_FINDINGS + 1
+        rest = len(test.warnings) - MOST_FINDINGS + 1
         say(f'and {rest} more warnings: "warnings" in …-identification.json', err=True)
     for file in written:
         say(f"wrote {file}")
@@ -70,20 +69,15 @@ def _print_modes(screen: Screen, test: IdentifiedTest, modes: CombinedModes) -> 
                 rows.append([name, str(r + 1), "not found", *[""] * 7])
                 continue
             mode = test.identified[k].modes[number]
-            evidence = mode.evidence
-            rows.append(
-                [
-                    name,
-                    str(r + 1) + " !" * bool(evidence.flags),
-                    f"{modes.frequency[k, r]:.6g}",
-                    f"{modes.frequency_std[k, r]:.2g}",
-                    f"{100 * modes.damping[k, r]:.4g}",
-                    f"{100 * modes.damping_std[k, r]:.2g}",
-                    f"{evidence.gain:.1f}" if evidence.gain < 10 else f"{evidence.gain:.0f}",
-                    f"{evidence.support:.0%}",
-                    f"{evidence.visibility:.0%}",
-                    f"{mode.shape.collinearity:.2f}",
-                ]
+            of = mode.evidence
+            cells = (
+                f"{modes.frequency[k, r]:.6g}",
+                f"{modes.frequency_std[k, r]:.2g}",
+                f"{100 * modes.damping[k, r]:.4g}",
+                f"{100 * modes.damping_std[k, r]:.2g}",
+                f"{of.gain:.1f}" if of.gain < 10 else f"{of.gain:.0f}",
+                *(f"{of.support:.0%}", f"{of.visibility:.0%}", f"{mode.shape.collinearity:.2f}"),
             )
+            rows.append([name, str(r + 1) + " !" * bool(of.flags), *cells])
     columns = ["frequency Hz", "std", "damping %", "std", "evidence", "orders", "seen", "MPC"]
     screen.table("modes", ["set", "mode", *columns], rows, keys=2)

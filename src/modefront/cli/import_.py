@@ -14,13 +14,28 @@ from modefront.study.importing import Imported, describe, import_model
 
 
 def run_import(program: str, base: Path, options: JobOptions, output: Path, **given: Any) -> None:
-    """Read the jobs of a program, write a study, and print what was found.
+    """Read the jobs of a program, or make and run those of a deck; write a study, and print it.
 
-    The options that may be repeated are given as they are written: ``parameters`` as NAME=RUN,
-    ``factors`` as NAME=2.0, ``functions`` as NAME=TERM,TERM, ``checks`` as RUN:NAME=VALUE,….
+    The options that may be repeated are given as they are written: ``parameters`` as NAME=RUN, or
+    NAME=WHAT:NAME of a deck, ``factors`` as NAME=2.0, ``functions`` as NAME=TERM,TERM, ``checks``
+    as RUN:NAME=VALUE,….
     """
+    terms = [_pair("--function", x, "NAME=TERM,TERM, such as t=t,t^3") for x in given["functions"]]
+    common: dict[str, Any] = {
+        "functions": {name: [term.strip() for term in x.split(",")] for name, x in terms},
+        "modes": given["modes"],
+        "progress": lambda text: say(text, err=True),
+    }
     if given["run"] is not None:
-        _run_deck(program, base, output, **given)
+        if program != "calculix":
+            raise InputError(Fault("", "--run", "calculix", f"'{program}', whose jobs you make"))
+        for option in ("factors", "checks"):
+            if given[option]:
+                expected = "no such option beside --run, which makes the jobs itself"
+                raise InputError(Fault("", f"--{option[:-1]}", expected, given[option][0]))
+        whats = [_pair("--parameter", text, "NAME=WHAT:NAME") for text in given["parameters"]]
+        imported = import_deck(base, dict(whats), run=given["run"], **common)
+        _print(imported, imported.write(output), 1)
         return
     runs: dict[str, list[Path]] = {}
     for text in given["parameters"]:
@@ -31,44 +46,9 @@ def run_import(program: str, base: Path, options: JobOptions, output: Path, **gi
         name, factor = _pair("--factor", text, "NAME=FACTOR")
         factors.setdefault(name, []).append(_number("--factor", factor))
     checks = [_check(text) for text in given["checks"]]
-    imported = import_model(
-        program,
-        base,
-        runs,
-        factors=factors,
-        functions=_functions(given["functions"]),
-        checks=checks,
-        options=options,
-        modes=given["modes"],
-        progress=lambda text: say(text, err=True),
-    )
+    more: dict[str, Any] = {"factors": factors, "checks": checks, "options": options}
+    imported = import_model(program, base, runs, **more, **common)
     _print(imported, imported.write(output), len(checks))
-
-
-def _run_deck(program: str, deck: Path, output: Path, **given: Any) -> None:
-    """Make and run the jobs of a deck, write a study, and print what was found."""
-    if program != "calculix":
-        raise InputError(Fault("", "--run", "calculix", f"'{program}', whose jobs you make"))
-    for option in ("factors", "checks"):
-        if given[option]:
-            expected = "no such option beside --run, which makes the jobs itself"
-            raise InputError(Fault("", f"--{option[:-1]}", expected, given[option][0]))
-    pairs = [_pair("--parameter", text, "NAME=WHAT:NAME") for text in given["parameters"]]
-    imported = import_deck(
-        deck,
-        dict(pairs),
-        run=given["run"],
-        functions=_functions(given["functions"]),
-        modes=given["modes"],
-        progress=lambda text: say(text, err=True),
-    )
-    _print(imported, imported.write(output), 1)
-
-
-def _functions(texts: Sequence[str]) -> dict[str, list[str]]:
-    """Return the terms of parameters, given as NAME=TERM,TERM."""
-    pairs = [_pair("--function", text, "NAME=TERM,TERM, such as t=t,t^3") for text in texts]
-    return {name: [term.strip() for term in terms.split(",")] for name, terms in pairs}
 
 
 def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 
@@ -69,9 +69,8 @@ class Screen:
 
     def shown(self, text: object) -> str:
         """Return a text as the terminal can show it."""
-        out = clean(text)
         encoding = self.console.encoding
-        return out.encode(encoding, errors=SPELL).decode(encoding)
+        return clean(text).encode(encoding, errors=SPELL).decode(encoding)
 
     def say(self, text: object, start: str = "", style: str = "") -> None:
         """Print a sentence, wrapped at words; further lines are indented as far as its start."""
@@ -86,21 +85,11 @@ class Screen:
         indent = " " * cell_len(start)
         return [(f"{indent if i else start}{line}", style) for i, line in enumerate(lines)]
 
-    def blank(self) -> None:
-        """Print an empty line."""
-        self.show([BLANK])
-
     def table(self, title: str, columns: Row, rows: Sequence[Row], keys: int = 1) -> None:
         """Print a table after an empty line, as `grid` returns it; none without rows."""
         self.show([BLANK, *self.grid(title, columns, rows, keys)] if rows else [])
 
-    def grid(
-        self,
-        title: str,
-        columns: Row,
-        rows: Sequence[Row],
-        keys: int = 1,
-    ) -> list[Line]:
+    def grid(self, title: str, columns: Row, rows: Sequence[Row], keys: int = 1) -> list[Line]:
         """Return the lines of a table, in blocks where it is too wide; none without rows.
 
         The first ``keys`` columns are names of the rows, which every block repeats, within a
@@ -108,11 +97,34 @@ class Screen:
         """
         if not rows:
             return []
+        titles, *cells = [[self.shown(x) for x in row] for row in (columns, *rows)]
+        widths = [max([1, *map(cell_len, PART.findall(title))]) for title in titles]
+        for row in (row for row in cells if len(row) > 1):
+            widths = [max(width, cell_len(x)) for width, x in zip(widths, row, strict=True)]
+        most = max(int(KEY * self.width) // keys, LEAST)
+        widths[:keys] = [min(width, most) for width in widths[:keys]]
+        room = self.width - sum(widths[:keys]) - GAP * keys
+        widths[keys:] = [min(width, room) for width in widths[keys:]]
+        blocks: list[list[int]] = [[]]
+        for j in range(keys, len(titles)):
+            used = sum(widths[i] + GAP for i in blocks[-1])
+            if used and used + widths[j] > room:
+                blocks.append([])
+            blocks[-1].append(j)
         out = self.sentence(title, style="bold") if title else []
-        cells = [[self.shown(x) for x in row] for row in rows]
-        grid = _Grid([self.shown(x) for x in columns], cells, keys)
-        for number, block in enumerate(grid.blocks(self.width)):
-            out += [BLANK] * (number > 0) + block
+        for k, block in enumerate(blocks):
+            chosen = [*range(keys), *block]
+            of = [widths[j] for j in chosen]
+            heads = [_wrapped(titles[j], widths[j], parts=True)[::-1] for j in chosen]
+            lines = [_joined(x, of, keys) for x in zip_longest(*heads, fillvalue="")][::-1]
+            out += [BLANK] * (k > 0) + [(line, "bold") for line in lines if line.strip()]
+            out.append((_joined(["─" * width for width in of], of, keys), "dim"))
+            for row in cells:
+                if len(row) == 1:
+                    out += [(line, "italic") for line in _broken(row[0], self.width)]
+                    continue
+                parts = [_broken(row[j], widths[j]) for j in chosen]
+                out += [(_joined(x, of, keys), "") for x in zip_longest(*parts, fillvalue="")]
         return out
 
     def show(self, lines: Iterable[Line]) -> None:
@@ -122,56 +134,13 @@ class Screen:
             self.console.print(Text(self.shown(text.rstrip()), style=style), soft_wrap=True)
 
 
-@dataclass(frozen=True)
-class _Grid:
-    columns: list[str]
-    rows: list[list[str]]
-    keys: int
-
-    def blocks(self, width: int) -> Iterator[list[Line]]:
-        """Yield the lines of each block, with their styles."""
-        most = max(int(KEY * width) // self.keys, LEAST)
-        keys = [min(self._width(j), most) for j in range(self.keys)]
-        room = width - sum(keys) - GAP * self.keys
-        widths = {j: min(self._width(j), room) for j in range(self.keys, len(self.columns))}
-        block: list[int] = []
-        for j, needed in widths.items():
-            if block and sum(widths[i] + GAP for i in block) + needed > room:
-                yield self._block([*keys, *(widths[i] for i in block)], block, width)
-                block = []
-            block.append(j)
-        yield self._block([*keys, *(widths[i] for i in block)], block, width)
-
-    def _width(self, j: int) -> int:
-        """Return the width of a column: that of its cells and of the words of its title."""
-        cells = [cell_len(row[j]) for row in self.rows if len(row) > 1]
-        return max([*cells, *map(cell_len, PART.findall(self.columns[j])), 1])
-
-    def _block(self, widths: list[int], chosen: list[int], whole: int) -> list[Line]:
-        """Return the lines of the chosen columns, with their styles."""
-        order = [*range(self.keys), *chosen]
-        titles = [
-            _broken(self.columns[j], width, parts=True)[::-1]
-            for j, width in zip(order, widths, strict=True)
-        ]
-        rows = [self._joined(parts, widths) for parts in zip_longest(*titles, fillvalue="")]
-        out = [(row, "bold") for row in rows[::-1] if row.strip()]
-        out.append((self._joined(["─" * width for width in widths], widths), "dim"))
-        for row in self.rows:
-            if len(row) == 1:
-                out += [(line, "italic") for line in _broken(row[0], whole)]
-                continue
-            cells = [_broken(row[j], width) for j, width in zip(order, widths, strict=True)]
-            out += [(self._joined(x, widths), "") for x in zip_longest(*cells, fillvalue="")]
-        return out
-
-    def _joined(self, cells: Sequence[str], widths: Sequence[int]) -> str:
-        """Return a line; names of rows are at the left of their columns, numbers at the right."""
-        parts = []
-        for j, (cell, width) in enumerate(zip(cells, widths, strict=True)):
-            space = " " * (width - cell_len(cell))
-            parts.append(cell + space if j < self.keys else space + cell)
-        return (" " * GAP).join(parts)
+def _joined(cells: Sequence[str], widths: Sequence[int], keys: int) -> str:
+    """Return a line; names of rows are at the left of their columns, numbers at the right."""
+    spaces = [" " * (width - cell_len(x)) for x, width in zip(cells, widths, strict=True)]
+    parts = [
+        x + y if j < keys else y + x for j, (x, y) in enumerate(zip(cells, spaces, strict=True))
+    ]
+    return (" " * GAP).join(parts)
 
 
 def _wrapped(text: str, width: int, *, whole: bool = False, parts: bool = False) -> list[str]:
@@ -193,6 +162,6 @@ def _wrapped(text: str, width: int, *, whole: bool = False, parts: bool = False)
     return lines
 
 
-def _broken(text: str, width: int, *, parts: bool = False) -> list[str]:
+def _broken(text: str, width: int) -> list[str]:
     """Return a text as it is where it fits, else over lines."""
-    return [text] if cell_len(text) <= width else _wrapped(text, width, parts=parts)
+    return [text] if cell_len(text) <= width else _wrapped(text, width)

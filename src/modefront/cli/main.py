@@ -22,7 +22,6 @@ from modefront.errors import InputError, UnfinishedError, reason
 from modefront.text import one_line
 
 if TYPE_CHECKING:
-    from modefront.study.definition import Study
     from modefront.work.task import Backend
 
 PATH = click.Path(path_type=Path)
@@ -37,7 +36,7 @@ OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; 130 is that of shells for an interrupt."""
 
 
-def _numbers(kind: type[int] | type[float]) -> Callable[[str], tuple[float, ...]]:
+def _numbers(kind: type[float]) -> Callable[[str], tuple[float, ...]]:
     """Return the type of numbers with commas between them."""
 
     def numbers(text: str) -> tuple[float, ...]:
@@ -48,6 +47,14 @@ def _numbers(kind: type[int] | type[float]) -> Callable[[str], tuple[float, ...]
             raise click.BadParameter(f"{expected}, found {text!r}") from None
 
     return numbers
+
+
+def _repeated(
+    flag: str, metavar: str, text: str, *, required: bool = False
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Return an option that may be repeated, of a form and with its help."""
+    more: dict[str, Any] = {"multiple": True, "metavar": metavar, "required": required}
+    return click.option(flag, f"{flag.removeprefix('--')}s", help=text, **more)
 
 
 LISTS: Mapping[str, str] = {
@@ -163,12 +170,18 @@ def run(
             carrier = nullcontext(early.enter_context(carrier))
         from modefront.cli.progress import progress_bar
         from modefront.cli.show import print_summary, say_estimate
-        from modefront.findings.selection import not_converged, uncertified
+        from modefront.results.remarks import not_converged, uncertified
         from modefront.study.estimate import SHORT, estimate
         from modefront.study.file import load
         from modefront.study.session import run as run_study
 
-        loaded = _refined(load(study), refine)
+        loaded = load(study)
+        if refine is not None:
+            try:
+                loaded = replace(loaded, pareto=replace(loaded.pareto, refined=refine))
+            except InputError as error:
+                named = {"file": str(study), "place": "--refine"}
+                raise InputError(replace(fault, **named) for fault in error.faults) from None
         expected = estimate(loaded, time.process_time())
         if expected is not None and expected.range[1] > SHORT:
             say_estimate(expected, err=True)
@@ -186,7 +199,7 @@ def run(
     if failed:
         raise UnfinishedError(f"not converged, kept and marked as such: {', '.join(failed)}")
     unsure = uncertified(data)
-    if unsure.size:
+    if unsure:
         raise UnfinishedError(f"errors above the tolerance, kept and marked: {', '.join(unsure)}")
 
 
@@ -327,38 +340,30 @@ def identify(
     "program", type=click.Choice(["calculix", "abaqus", "nastran", "ansys", "opensees"])
 )
 @click.argument("base", type=PATH)
-@click.option(
+@_repeated(
     "--parameter",
-    "parameters",
-    metavar="NAME=RUN",
-    multiple=True,
-    required=True,
-    help="A parameter, and the job with it at a factor of its nominal value; with --run, what it "
+    "NAME=RUN",
+    "A parameter, and the job with it at a factor of its nominal value; with --run, what it "
     "multiplies: material:NAME, density:NAME, section:ELSET, spring:ELSET, mass:ELSET.",
+    required=True,
 )
 @click.option(
     "--run", metavar="ccx", help="CalculiX, which runs jobs that are made from the deck BASE."
 )
-@click.option(
+@_repeated(
     "--factor",
-    "factors",
-    metavar="NAME=FACTOR",
-    multiple=True,
-    help="This factor, one for each run of the parameter in their order  [default: 2]",
+    "NAME=FACTOR",
+    "This factor, one for each run of the parameter in their order  [default: 2]",
 )
-@click.option(
+@_repeated(
     "--function",
-    "functions",
-    metavar="NAME=TERM,…",
-    multiple=True,
-    help="How the matrices depend on a parameter where not linearly: t=t,t^3 or L=1/L.",
+    "NAME=TERM,…",
+    "How the matrices depend on a parameter where not linearly: t=t,t^3 or L=1/L.",
 )
-@click.option(
+@_repeated(
     "--check",
-    "checks",
-    metavar="RUN:NAME=VALUE,…",
-    multiple=True,
-    help="A job with parameters at other factors, which is compared with the terms.",
+    "RUN:NAME=VALUE,…",
+    "A job with parameters at other factors, which is compared with the terms.",
 )
 @click.option(
     "--dofs",
@@ -405,17 +410,6 @@ def export(
     for what in exported.missing:
         say(f"not written: {what}")
     say_next("show", directory, "--points")
-
-
-def _refined(study: Study, size: float | None) -> Study:
-    """Return a study whose front is refined; errors name the option."""
-    if size is None:
-        return study
-    try:
-        return replace(study, pareto=replace(study.pareto, refined=size))
-    except InputError as error:
-        named = {"file": str(study.file), "place": "--refine"}
-        raise InputError(replace(fault, **named) for fault in error.faults) from None
 
 
 @contextmanager

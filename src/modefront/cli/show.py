@@ -1,11 +1,10 @@
-"""Results and findings in the terminal, and as JSON."""
+"""Results and comparisons in the terminal, and as JSON."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +16,8 @@ from modefront.cli.layout import BLANK, Line, Screen, number
 from modefront.cli.lists import LISTS, models_in, predictions_in_short
 from modefront.cli.terminal import command, say_next
 from modefront.findings.catalogue import Severity
-from modefront.findings.record import PAGE
-from modefront.findings.selection import verdict
 from modefront.results.compare import Comparison, Spread, short_names
-from modefront.results.remarks import digest, findings_of, headlines
+from modefront.results.remarks import digest, findings_of, headlines, verdict
 from modefront.study.estimate import Estimate
 from modefront.work.costs import Costs
 
@@ -61,31 +58,26 @@ def print_results(
     data: xr.Dataset, lists: Sequence[str] = (), folder: Path | str = "DIRECTORY"
 ) -> None:
     """Print the first screen of the results in a folder, or the full lists of these names."""
-    screen, attrs = Screen.of_output(), data.attrs
-    title = screen.sentence(attrs.get("study") or "results", style="bold")
+    screen, attrs, show = Screen.of_output(), data.attrs, command("show", folder)
+    lines = screen.sentence(attrs.get("study") or "results", style="bold")
     if lists:
         by = f"modefront {attrs['version']}, method {attrs['method']}, seed {attrs['seed']}"
-        screen.show([*title, *screen.sentence(by)])
+        screen.show([*lines, *screen.sentence(by)])
         for name in (name for name in LISTS if name in lists):
             LISTS[name](screen, data)
-        screen.blank()
-        _say_further(screen, folder)
-        return
-    show, predicted = command("show", folder), "range" in data.sizes
-    said = [line for text in verdict(data) for line in screen.sentence(text)]
-    if predicted:
-        full = f"{show} --predictions"
-        said += [BLANK, *predictions_in_short(screen, data, PREDICTIONS, full)]
-    most = max(HEIGHT - len(title) - len(said) - LEAST - 6, TABLE)
-    lines = [*title, *said, BLANK, *models_in(screen, data, most, f"{show} --models")]
-    room = max(HEIGHT - len(lines) - 5, LEAST)
-    screen.show([*lines, BLANK, *_findings(screen, data, room, f"{show} --findings"), BLANK])
-    _say_further(screen, folder)
-
-
-def _say_further(screen: Screen, folder: Path | str) -> None:
-    screen.say(f"what a finding means: {PAGE}")
-    screen.say(f"all: {command('show', folder, '--all')}")
+        screen.say("")
+    else:
+        lines += [line for text in verdict(data) for line in screen.sentence(text)]
+        if "range" in data.sizes:
+            full = f"{show} --predictions"
+            lines += [BLANK, *predictions_in_short(screen, data, PREDICTIONS, full)]
+        most = max(HEIGHT - len(lines) - LEAST - 6, TABLE)
+        lines += [BLANK, *models_in(screen, data, most, f"{show} --models"), BLANK]
+        room = max(HEIGHT - len(lines) - 4, LEAST)
+        screen.show([*lines, *_findings(screen, data, room, f"{show} --findings"), BLANK])
+    if "findings" not in lists:
+        screen.say(f"what each finding means: {show} --findings")
+    screen.say(f"all: {show} --all")
     screen.say(f"next: {command('report', folder)}")
 
 
@@ -93,15 +85,12 @@ def _findings(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Li
     """Return the first findings, in ``most`` lines or in those of the first one where more."""
     sentences = headlines(data)
     blocks = [screen.sentence(text, start="- ") for text in sentences]
-    if sum(map(len, blocks)) <= most:
-        return [line for block in blocks for line in block]
-    out: list[Line] = []
-    count = 0
-    while count < len(blocks) and (count < 1 or len(out) + len(blocks[count]) < most):
-        out += blocks[count]
-        count += 1
-    *_, more = digest(sentences, full, count)
-    return [*out, *screen.sentence(more, start="- ")]
+    ends = np.cumsum([len(block) for block in blocks])
+    if ends.size and ends[-1] > most:
+        count = max(int(np.searchsorted(ends, most)), 1)
+        blocks = blocks[:count]
+        blocks.append(screen.sentence(digest(sentences, full, count)[-1], start="- "))
+    return [line for block in blocks for line in block]
 
 
 def as_json(data: xr.Dataset) -> str:
@@ -137,8 +126,6 @@ SHOWN = 6
 OF_MODES = ("frequency ", "mac ")
 """Prefixes of the predictions of modes, which are listed after those of the studies."""
 
-_number = partial(number, form=".4g", none="")
-
 
 def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
     """Print a comparison as tables, one column a study, and say which models are meant.
@@ -147,39 +134,34 @@ def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
     """
     screen = Screen.of_output()
     fronts, folders = comparison.fronts, [summary.name for summary in comparison.fronts]
-    names = dict(zip(folders, short_names(folders), strict=True))
-    columns, most = ["", *names.values()], None if every else SHOWN
+    short = short_names(folders)
+    names, columns = dict(zip(folders, short, strict=True)), ["", *short]
+    most = None if every else SHOWN
     screen.say("Studies side by side", style="bold")
     screen.say(
         "Errors are root mean squares, which mean the same in all studies. Ranges are those of all "
         "Pareto-optimal models, edges and weighted ones included."
     )
-    rows = {
-        name: [_number(x) if isinstance(x, float) else str(x) for x in row]
-        for name, row in comparison.rows.items()
-    }
-    screen.table("", columns, [[name, *row] for name, row in rows.items()])
+    rows = [[name, *map(_cell, row)] for name, row in comparison.rows.items()]
+    screen.table("", columns, rows)
     for title, ranges in (
         ("parameters", [x.parameters for x in fronts]),
         ("predictions", [x.predictions for x in fronts]),
     ):
-        known = [{x.name: _range(x) for x in row} for row in ranges]
+        known = [{x.name: _cell(x) for x in row} for row in ranges]
         order = list(dict.fromkeys(name for row in known for name in row))
         order.sort(key=lambda name: name.startswith(OF_MODES))
         cells = [[name, *(row.get(name, "") for row in known)] for name in order]
         screen.table(f"{title}: reference model, and least to greatest", columns, cells[:most])
         if cells[SHOWN:] and most:
-            screen.say(
-                f"and {len(cells) - SHOWN} more {title}: {command('compare', '--all', *folders)}"
-            )
-    pairs = [
-        [
-            f"{names[pair.first]} and {names[pair.second]}",
-            _common(pair.common, most),
-            *map(_number, (pair.least, pair.greatest, pair.reference)),
-        ]
-        for pair in comparison.pairs
-    ]
+            whole = command("compare", "--all", *folders)
+            screen.say(f"and {len(cells) - SHOWN} more {title}: {whole}")
+    pairs = []
+    for x in comparison.pairs:
+        many = most is not None and len(x.common) > most
+        common = f"{len(x.common)} parameters" if many else ", ".join(x.common) or "none"
+        distances = map(_cell, (x.least, x.greatest, x.reference))
+        pairs.append([f"{names[x.first]} and {names[x.second]}", common, *distances])
     title = (
         "distances in the common parameters, over their bounds in the first: of the two nearest "
         "models, of the farthest one from the other study, and of the reference models"
@@ -188,17 +170,12 @@ def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
     say_next("report", *folders)
 
 
-def _common(names: Sequence[str], most: int | None) -> str:
-    """Return the names of common parameters, of many only how many there are."""
-    if most is not None and len(names) > most:
-        return f"{len(names)} parameters"
-    return ", ".join(names) or "none"
-
-
-def _range(spread: Spread) -> str:
-    """Return the value of the reference, with least and greatest."""
-    ends = f"{_number(spread.least)} to {_number(spread.greatest)}"
-    return f"{_number(spread.reference)} ({ends})"
+def _cell(value: object) -> str:
+    """Return a value of a comparison: of a range that of the reference, and its ends."""
+    if isinstance(value, Spread):
+        ends = f"{_cell(value.least)} to {_cell(value.greatest)}"
+        return f"{_cell(value.reference)} ({ends})"
+    return number(value, ".4g", "") if isinstance(value, float) else str(value)
 
 
 def comparison_as_json(comparison: Comparison) -> str:

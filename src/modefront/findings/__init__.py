@@ -1,1 +1,1 @@
-"""Findings as records, and the one place in which records become sentences (docs/findings.md)."""
+"""Findings as records, and the one place in which records become sentences (findings.md)."""

@@ -6,12 +6,13 @@ import json
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from importlib.resources import files
 from typing import Any
 
 from modefront.findings.catalogue import CATALOGUE, Severity
 
-PAGE = "docs/findings.md"
-"""Page that says of each kind what it means and what to do."""
+LINK = re.compile(r"\[([^]]*)\]\([^)]*\)")
+"""A link on the page of findings."""
 
 NUMBER = re.compile(r"\{([^{}|]*)\|([^{}|]*)\}")
 """Words of a sentence on one subject, and on several."""
@@ -60,6 +61,14 @@ class Finding:
         wrong, _, remedy = text.partition("; ")
         values = {"subject": self.subject, **self.numbers}
         return wrong.format(**values), remedy.format(**values)
+
+    @property
+    def meaning(self) -> list[str]:
+        """What it means and what to do, in paragraphs; none of a kind that says so itself."""
+        page = (files("modefront.findings") / "findings.md").read_text(encoding="utf-8")
+        _, _, part = page.partition(f"\n### {self.kind}\n")
+        _, _, text = part.partition("\n## ")[0].partition("\n### ")[0].partition("\n\n")
+        return [LINK.sub(r"\1", " ".join(x.split())) for x in text.split("\n\n") if x.strip()]
 
     def as_plain(self) -> dict[str, Any]:
         """Return the finding as JSON has it."""

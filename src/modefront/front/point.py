@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from modefront._typing import Ints
 from modefront.optim.sqp import Solution
 from modefront.work.codec import record
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @record
@@ -93,3 +99,21 @@ def reference(points: Sequence[Point]) -> Point:
 def preferred(attributes: Mapping[Any, Any]) -> str:
     """Return the label of the reference of results, of the most probable model without one."""
     return str(attributes["reference"]) or label(Kind.MOST_PROBABLE)
+
+
+def front_points(data: xr.Dataset) -> Ints:
+    """Return the positions in results of the points of the front, in their order along it."""
+    return np.flatnonzero(data["kind"].values == Kind.FRONT.value)
+
+
+def position(data: xr.Dataset, point: str | int | None = None) -> int:
+    """Return the position in results of a point, given by its label or position, or the reference.
+
+    Raises KeyError for an unknown label.
+    """
+    if not isinstance(point, str | None):
+        return point
+    labels, name = data["label"].values.tolist(), preferred(data.attrs) if point is None else point
+    if name not in labels:
+        raise KeyError(f"expected one of {', '.join(labels)}, found {name!r}")
+    return labels.index(name)

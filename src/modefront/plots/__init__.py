@@ -21,17 +21,22 @@ if TYPE_CHECKING:
     from modefront.identification.record import Identification
     from modefront.plots.canvas import Picture
 
-PLOTS: Mapping[str, str] = {
-    "front": "front",
-    "parameters": "quantities",
-    "frequencies": "quantities",
-    "mac": "quantities",
-    "modes": "modes",
-    "predictions": "predictions",
-    "uncertainty": "quantities",
-    "minima": "quantities",
+PLOTS: Mapping[str, tuple[str, tuple[str, ...], str]] = {
+    "front": ("front", (), ""),
+    "parameters": ("quantities", (), ""),
+    "frequencies": ("quantities", (), ""),
+    "mac": ("quantities", (), ""),
+    "modes": ("modes", ("shape",), "mode shapes"),
+    "predictions": ("predictions", ("range",), "predictions"),
+    "uncertainty": (
+        "quantities",
+        ("theta_std", "posterior_std"),
+        "errors of the data or a posterior",
+    ),
+    "minima": ("quantities", (), ""),
 }
-"""Pictures in the order of their files, each a function of this name in a module of the package."""
+"""Pictures in the order of their files: the module of the package with a function of this name,
+variables or dimensions, one of which it shows, and what results without any lack."""
 
 
 @contextmanager
@@ -98,41 +103,26 @@ class Plots:
         return self._draw("minima")
 
     def _draw(self, name: str, **options: Any) -> Picture:
+        module, _, expected = PLOTS[name]
         with _drawing():
-            if missing := _missing(self.data, name):
-                raise InputError(Fault("", f"plot of {name}", *missing))
-            module = import_module(f"modefront.plots.{PLOTS[name]}")
-            return getattr(module, name)(self.data, **options)
+            if not _is_held(self.data, name):
+                raise InputError(Fault("", f"plot of {name}", f"results with {expected}", "none"))
+            return getattr(import_module(f"modefront.plots.{module}"), name)(self.data, **options)
 
 
-NEEDED: Mapping[str, tuple[tuple[str, ...], str, str]] = {
-    "predictions": (("range",), "results with predictions", "none"),
-    "uncertainty": (
-        ("theta_std", "posterior_std"),
-        "results with errors of the data or a posterior",
-        "none",
-    ),
-    "modes": (("shape",), "results with mode shapes", "none: run the study again"),
-}
-"""Variables or dimensions, one of which a picture shows, and what is expected and found without."""
-
-
-def _missing(data: xr.Dataset, name: str) -> tuple[str, str] | None:
-    """Return what is expected and found where results lack what a picture shows."""
-    if name not in NEEDED:
-        return None
-    variables, expected, found = NEEDED[name]
-    known = any(each in data.variables or each in data.sizes for each in variables)
-    return None if known else (expected, found)
+def _is_held(data: xr.Dataset, name: str) -> bool:
+    """Return whether results hold what a picture shows."""
+    _, needed, _ = PLOTS[name]
+    return not needed or any(each in data.variables or each in data.sizes for each in needed)
 
 
 def pictures(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
     """Yield name and figure of everything that the results hold, each prediction by itself."""
     for name in PLOTS:
-        if _missing(data, name) is None:
+        if _is_held(data, name):
             yield name, getattr(Plots(data), name)()
-        if name == "predictions" and "range" in data.sizes:
-            yield from _figures("predictions", data)
+            if name == "predictions":
+                yield from _figures(name, data)
 
 
 def _figures(module: str, *arguments: object) -> Iterator[tuple[str, Picture]]:
@@ -142,7 +132,7 @@ def _figures(module: str, *arguments: object) -> Iterator[tuple[str, Picture]]:
 
 
 def write_figures(data: xr.Dataset, folder: Path, form: str = "svg") -> list[Path]:
-    """Write all pictures into a folder and return their paths.
+    """Write all pictures of results into a folder and return their paths.
 
     Raises InputError where matplotlib is missing or the folder cannot be written to.
     """

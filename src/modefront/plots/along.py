@@ -13,8 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from modefront._typing import Floats
-from modefront.findings.selection import front_points, reference
-from modefront.front.point import INTERNAL, Kind
+from modefront.front.point import INTERNAL, Kind, front_points, position
 from modefront.plots.canvas import (
     COLOURS,
     COLUMNS,
@@ -35,7 +34,7 @@ class Along:
         self.front = front_points(data)
         edge = Kind.EDGE.value if self.front.size else ""
         self.others = np.flatnonzero(~np.isin(kinds, [Kind.FRONT.value, edge, *INTERNAL]))
-        self.best = reference(data)
+        self.best = position(data)
         self.pareto = np.asarray(data["pareto"].values, dtype=np.bool_)
         step = max(1.6, 0.08 * self.front.size)
         self.beside = self.front.size + step * (1 + np.arange(self.others.size))
@@ -130,10 +129,10 @@ def panels_along(
     return figure
 
 
-def at_reference(data: xr.Dataset, values: Floats, std: xr.DataArray | None) -> Bars:
-    """Return one standard deviation (quantities,) to either side of the reference alone."""
-    if std is None:
+def at_reference(data: xr.Dataset, values: Floats, std: Any) -> Bars:
+    """Return one standard deviation (quantities,) to either side of the reference alone, if any."""
+    if not len(std):
         return None
     out = np.full(values.shape, np.nan)
-    out[reference(data)] = std.values
+    out[position(data)] = std
     return values - out, values + out

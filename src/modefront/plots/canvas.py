@@ -13,8 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.findings.selection import front_points
-from modefront.front.point import REFERENCES, WEIGHTED, Kind, preferred
+from modefront.front.point import REFERENCES, WEIGHTED, Kind, front_points, preferred
 from modefront.text import NAME, clean
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")

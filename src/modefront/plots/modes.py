@@ -12,7 +12,7 @@ from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from modefront._typing import Floats, Ints
-from modefront.findings.selection import position, reference
+from modefront.front.point import position
 from modefront.plots.canvas import COLOURS, COLUMNS, Picture, panels, picture, plain, short
 
 REACH, NAMES = 0.15, 14
@@ -26,7 +26,7 @@ displacements (nodes, 3), None without geometry."""
 
 def modes(data: xr.Dataset, *, point: str | int | None = None) -> Picture:
     """Return a panel a mode of one model, the reference unless a point is given."""
-    i = reference(data) if point is None else position(data, point)
+    i = position(data, point)
     shapes = [_shape(data, i, r) for r in range(data.sizes["mode"])]
     in_space = "node" in data and data.attrs.get("geometry") != "chain"
     if in_space:
@@ -91,25 +91,28 @@ def _rings(axes: Axes, sets: Iterable[tuple[Any, Any]], **size: Any) -> None:
 
 
 def _in_space(data: xr.Dataset, shapes: list[_Shape]) -> Picture:
-    nodes = data["node"].values
-    lines, faces = data["line_nodes"].values, data["face_nodes"].values
-    diagonal = float(np.linalg.norm(np.ptp(nodes, axis=0))) or 1.0
+    nodes, directions = data["node"].values, data["sensor_direction"].values
+    places = nodes[data["sensor_node"].values]
+    cells = data["line_nodes"].values, data["face_nodes"].values
+    reach = REACH * (float(np.linalg.norm(np.ptp(nodes, axis=0))) or 1.0)
     columns = min(COLUMNS, len(shapes))
     rows = -(-len(shapes) // columns)
     figure = picture(3.1 * columns, 3.3 * rows + 0.4)
-    sensor_nodes, directions = data["sensor_node"].values, data["sensor_direction"].values
     for k, (title, computed, measured, moved) in enumerate(shapes):
         axes = figure.add_subplot(rows, columns, k + 1, projection="3d")
         assert isinstance(axes, Axes3D)
-        u = np.zeros(nodes.shape) if moved is None else moved
-        deformed = nodes + REACH * diagonal * u
-        _mesh(axes, nodes, lines, faces, "0.75", 0.0)
-        _mesh(axes, deformed, lines, faces, COLOURS[0], 0.25)
+        deformed = nodes if moved is None else nodes + reach * moved
+        _mesh(axes, nodes, *cells, "0.75", 0.0)
+        _mesh(axes, deformed, *cells, COLOURS[0], 0.25)
         for values, colour in ((computed[None], COLOURS[0]), (measured, COLOURS[1])):
             for row in values:
-                length = REACH * diagonal * np.nan_to_num(row)[:, None] * directions
-                axes.quiver(*nodes[sensor_nodes].T, *length.T, color=colour, lw=1.4)
-        _same_scale(axes, np.vstack([nodes, deformed]))
+                length = reach * np.nan_to_num(row)[:, None] * directions
+                axes.quiver(*places.T, *length.T, color=colour, lw=1.4)
+        low, high = (of(np.vstack([nodes, deformed]), axis=0) for of in (np.min, np.max))
+        span = np.maximum(high - low, 0.15 * (high - low).max() or 1.0)  # one scale along all axes
+        for name, middle, size in zip("xyz", (low + high) / 2, span, strict=True):
+            axes.set(**{f"{name}lim": (middle - size / 2, middle + size / 2)})
+        axes.set_box_aspect(tuple(span.tolist()))
         axes.set_title(title, loc="left")
         axes.set_axis_off()
     for colour, name in ((COLOURS[0], "model"), (COLOURS[1], "measured, at the sensors")):
@@ -126,12 +129,3 @@ def _mesh(axes: Axes3D, X: Floats, lines: Ints, faces: Ints, colour: str, alpha:
         corners = [X[face[face >= 0]] for face in faces]
         marks = {"facecolors": (colour, alpha), "edgecolors": colour, "linewidths": 0.3}
         axes.add_collection3d(Poly3DCollection(corners, **marks))
-
-
-def _same_scale(axes: Axes3D, X: Floats) -> None:
-    low, high = X.min(axis=0), X.max(axis=0)
-    span = np.maximum(high - low, 0.15 * (high - low).max() or 1.0)
-    middle = (low + high) / 2
-    for k, name in enumerate("xyz"):
-        axes.set(**{f"{name}lim": (middle[k] - span[k] / 2, middle[k] + span[k] / 2)})
-    axes.set_box_aspect(tuple(span.tolist()))

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse
-from modefront.findings.selection import front_points
+from modefront.front.point import front_points
 from modefront.plots.canvas import (
     COLOURS,
     COLUMNS,
@@ -59,13 +59,14 @@ def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
     refuse(faults)
     yield "figure-2", _fronts(studies)
     yield "figure-3", _planes(studies)
-    numbered = list(enumerate(data for _, data in studies))
     names = names_of(studies[0][1], "parameter")
-    curves = [[(k, x["theta"].values[:, j]) for k, x in numbered] for j in range(count)]
+    curves = [
+        [(k, x["theta"].values[:, j]) for k, (_, x) in enumerate(studies)] for j in range(count)
+    ]
     yield "figure-4", _along(studies, names, curves)
     numbers = studies[0][1]["mode"].values
     curves = [
-        [(k, of(x)[:, r]) for k, x in numbered if r < x.sizes["mode"]]
+        [(k, of(x)[:, r]) for k, (_, x) in enumerate(studies) if r < x.sizes["mode"]]
         for of in (_errors, lambda data: data["mac"].values)
         for r in range(len(numbers))
     ]
@@ -78,15 +79,16 @@ def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
     yield "figure-5", figure
     for number, dimension in ((6, "frf"), (7, "failure")):
         of_places: dict[str, Curves] = {}
-        for k, data in numbered:
+        for k, (_, data) in enumerate(studies):
             for each in predictions_in(data):
                 if each.kind.dimension != dimension:
                     continue
                 variable = each.kind.ranged[0]
-                for i, place in zip(each.positions, each.places, strict=True):
-                    values = data[variable.name].values[:, i]
-                    shown = np.where(values > 0, values, np.nan) if variable.logarithmic else values
-                    of_places.setdefault(place, []).append((k, shown))
+                for x in each.quantities:
+                    if x.variable == variable:
+                        is_drawn = (x.values > 0) | (not variable.logarithmic)
+                        shown = np.where(is_drawn, x.values, np.nan)
+                        of_places.setdefault(x.place, []).append((k, shown))
         if of_places:
             figure = _along(studies, list(of_places), list(of_places.values()))
             for axes in figure.axes:
@@ -110,12 +112,8 @@ def _fronts(studies: Studies) -> Picture:
         _points(axes, data, error, k, name)
         for number, i in enumerate(front_points(data).tolist(), start=1):
             if number == 1 or number % 5 == 0:
-                marks: dict[str, Any] = {
-                    "fontsize": 6.5,
-                    "color": _colour(k),
-                    "textcoords": "offset points",
-                }
-                axes.annotate(str(number), error[i].tolist(), xytext=(4, 3), **marks)
+                marks: dict[str, Any] = {"color": _colour(k), "textcoords": "offset points"}
+                axes.annotate(str(number), error[i].tolist(), (4, 3), fontsize=6.5, **marks)
     first, second = names_of(studies[0][1], "group")
     axes.set(xlabel=f"error of {first}, $e_1$", ylabel=f"error of {second}, $e_2$")
     for sign, size, name in ((EQUAL, 8, "equal weights"), (OPTIMAL, 12, "optimal weights")):

@@ -11,8 +11,7 @@ from matplotlib.patches import Ellipse
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from modefront._typing import Floats
-from modefront.findings.selection import front_points, reference
-from modefront.front.point import preferred
+from modefront.front.point import front_points, position, preferred
 from modefront.plots.along import at_reference, panels_along
 from modefront.plots.canvas import (
     COLOURS,
@@ -48,14 +47,14 @@ def frequencies(data: xr.Dataset) -> Picture:
         if np.isfinite(measured[r]):
             axes.axhline(measured[r], color="k", ls="--", lw=1, label="measured")
 
-    bars = at_reference(data, f, data.get("posterior_frequency_std"))
+    bars = at_reference(data, f, data.get("posterior_frequency_std", ()))
     return panels_along(data, f, _modes(data), "frequency, Hz", bars, mark)
 
 
 def mac(data: xr.Dataset) -> Picture:
     """Return a panel a mode with MAC values."""
     values = data["mac"].values
-    bars = at_reference(data, values, data.get("posterior_mac_std"))
+    bars = at_reference(data, values, data.get("posterior_mac_std", ()))
     bars = bars and (bars[0], np.minimum(bars[1], 1.0))
     return panels_along(data, values, _modes(data), "MAC", bars)
 
@@ -86,20 +85,17 @@ def minima(data: xr.Dataset) -> Picture:
     """Return a line a minimum across the parameters; thin lines are equivalent models."""
     names, (unit, title) = names_of(data, "parameter", 18), unit_of(data)
     figure, axes = single(max(5.6, 0.45 * len(names)), 3.6)
-    x = np.arange(len(names))
-    of = [str(each) for each in data["minimum_of"].values]
+    x, of = np.arange(len(names)), list(map(str, data["minimum_of"].values))
     colours = {name: COLOURS[k % len(COLOURS)] for k, name in enumerate(dict.fromkeys(of))}
     if "equal_of" in data:
         for name, theta in zip(data["equal_of"].values, data["equal_theta"].values, strict=True):
             axes.plot(x, theta / unit, "-", color=colours.get(str(name), "0.6"), lw=0.5, alpha=0.35)
-    known: set[str] = set()
-    for name, theta in zip(of, data["minimum_theta"].values, strict=True):
-        label = "" if name in known else plain(name)
-        known.add(name)
-        axes.plot(x, theta / unit, "-o", color=colours[name], lw=1.4, ms=4.5, label=label or None)
+    for k, (name, theta) in enumerate(zip(of, data["minimum_theta"].values, strict=True)):
+        label = plain(name) if name not in of[:k] else None
+        axes.plot(x, theta / unit, "-o", color=colours[name], lw=1.4, ms=4.5, label=label)
     bounds = data["bounds"].values / unit[:, None]
-    axes.plot(x, bounds[:, 0], "_", color="k", ms=10)
-    axes.plot(x, bounds[:, 1], "_", color="k", ms=10, label="bounds")
+    for ends, label in zip(bounds.T, (None, "bounds"), strict=True):
+        axes.plot(x, ends, "_", color="k", ms=10, label=label)
     if (bounds > 0).all():
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -111,7 +107,7 @@ def minima(data: xr.Dataset) -> Picture:
     return figure
 
 
-HOW_MANY = 20
+HOW_MANY = 10
 """Parameters up to which the correlations are written as numbers."""
 
 
@@ -121,7 +117,7 @@ def uncertainty(data: xr.Dataset) -> Picture:
     if "posterior_covariance" in data:
         covariance = np.asarray(data["posterior_covariance"].values)
     elif "theta_covariance" in data:
-        covariance = np.asarray(data["theta_covariance"].values[reference(data)])
+        covariance = np.asarray(data["theta_covariance"].values[position(data)])
         covariance = covariance if np.isfinite(covariance).all() else None
     scattered = data.sizes["group"] == 2 and "objective_covariance" in data
     parts = 1 + (covariance is not None) + scattered
@@ -139,7 +135,7 @@ def uncertainty(data: xr.Dataset) -> Picture:
 def _parameters(axes: Axes, data: xr.Dataset) -> None:
     unit, title = unit_of(data)
     std, theta = parameter_std(data) / unit, data["theta"].values / unit
-    kinds, best = data["kind"].values, reference(data)
+    kinds, best = data["kind"].values, position(data)
     rows = [best, *np.flatnonzero(kinds == "edge").tolist()]
     names = names_of(data, "parameter", 18)
     y = np.arange(len(names))
@@ -167,10 +163,9 @@ def _correlation(axes: Axes, data: xr.Dataset, covariance: Floats) -> None:
     axes.grid(False)
     axes.set_xticks(range(len(names)), names, rotation=90)
     axes.set_yticks(range(len(names)), names)
-    if len(names) <= HOW_MANY // 2:
-        for (i, j), value in np.ndenumerate(r):
-            shade = "w" if abs(value) > 0.6 else "k"
-            axes.text(j, i, f"{value:.2f}", ha="center", va="center", fontsize=6.5, color=shade)
+    for (i, j), value in np.ndenumerate(r) if len(names) <= HOW_MANY else ():
+        shade = "w" if abs(value) > 0.6 else "k"
+        axes.text(j, i, f"{value:.2f}", ha="center", va="center", fontsize=6.5, color=shade)
     axes.set_title(f"correlation at {plain(preferred(data.attrs))}", loc="left")
 
 

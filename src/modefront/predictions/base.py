@@ -198,7 +198,7 @@ class PredictionKind:
             yield Variable(f"{x.name}_range", ("range", *dimension), over, unit=x.unit)
         yield Variable(f"{self.dimension}_name", dimension, "name of the prediction", "text")
         heading = "its options in a sentence"
-        yield Variable(f"{self.dimension}_heading", dimension, heading, "text", since=3)
+        yield Variable(f"{self.dimension}_heading", dimension, heading, "text")
         for setting in self.settings:
             dimensions = (*dimension, *setting.dimensions)
             yield Variable(

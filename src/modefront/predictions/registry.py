@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, is_dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from modefront._typing import Floats
 from modefront.errors import Fault, InputError, refuse
 from modefront.families import Family
 from modefront.options import each_once
@@ -92,6 +95,53 @@ def kinds_in(data: xr.Dataset) -> tuple[PredictionKind, ...]:
 
 
 @dataclass(frozen=True)
+class Quantity:
+    """A number that models predict, as results hold it: one variable at one place.
+
+    Attributes
+    ----------
+    variable : what it is
+    place : where, without the name of the prediction
+    label : of the place, with that name
+    values : (points,) of all models
+    extent : least, greatest and their ratio over the Pareto-optimal models; NaN for none
+    std : standard deviation by the posterior, of the logarithm where that is linearised, as a
+        factor then; None where it is not known to the results
+    drawn : statistics over the models drawn from the posterior, by name; none without draws
+    """
+
+    variable: ResultVariable
+    place: str
+    label: str
+    values: Floats
+    extent: Floats
+    std: float | None
+    drawn: Mapping[str, float]
+
+
+def quantity(
+    data: xr.Dataset, variable: ResultVariable, i: int, of: str = "", log_std: str = ""
+) -> Quantity:
+    """Return the quantity that is the i-th column of a variable of results.
+
+    ``of`` is the name of its prediction, ``log_std`` names the variable with the standard deviation
+    of its logarithm.
+    """
+    name, values = variable.name, data[variable.name]
+    label = str(values[values.dims[1]].values[i])
+    extent, std, drawn = np.full(3, np.nan), None, {}
+    if variable.ranged:
+        extent = data[f"{name}_range"].values[:, i]
+        if (deviations := data.get(log_std or f"posterior_{name}_std")) is not None:
+            std = float(deviations.values[i])
+        if (statistics := data.get(f"posterior_{name}")) is not None:
+            of_draws = zip(statistics["statistic"].values, statistics.values[:, i], strict=True)
+            drawn = {str(statistic): float(value) for statistic, value in of_draws}
+    place = label.removeprefix(f"{of}: ")
+    return Quantity(variable, place, label, values.values[:, i], extent, std, drawn)
+
+
+@dataclass(frozen=True)
 class RecordedPrediction:
     """A prediction in results.
 
@@ -100,28 +150,39 @@ class RecordedPrediction:
     kind : what it is
     name : of the prediction
     heading : its load case and options
+    load : its load; empty where the kind has no such setting
     positions : of its values along the dimension of the kind
     places : names of these values, without that of the prediction
+    quantities : of each place in turn, one a variable
     """
 
     kind: PredictionKind
     name: str
     heading: str
+    load: str
     positions: tuple[int, ...]
     places: tuple[str, ...]
+    quantities: tuple[Quantity, ...]
 
 
 def predictions_in(data: xr.Dataset) -> Iterator[RecordedPrediction]:
     """Yield the predictions of sound results."""
     for kind in kinds_in(data):
         start = kind.dimension
-        names, places = data[f"{start}_name"].values.tolist(), data[start].values.tolist()
+        names, load = data[f"{start}_name"].values.tolist(), data.get(f"{start}_load")
         for name in dict.fromkeys(names):
-            chosen = tuple(i for i, each in enumerate(names) if each == name)
+            positions = tuple(i for i, each in enumerate(names) if each == name)
+            quantities = tuple(
+                quantity(data, x, i, name, f"posterior_{start}_log_std" * x.logarithmic)
+                for i in positions
+                for x in kind.variables
+            )
             yield RecordedPrediction(
                 kind,
                 str(name),
-                str(data[f"{start}_heading"].values[chosen[0]]),
-                chosen,
-                tuple(str(places[i]).removeprefix(f"{name}: ") for i in chosen),
+                str(data[f"{start}_heading"].values[positions[0]]),
+                "" if load is None else str(load.values[positions[0]]),
+                positions,
+                tuple(dict.fromkeys(x.place for x in quantities)),
+                quantities,
             )

@@ -47,14 +47,17 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
     if test.modes is not None:
         given = _numbers(test)
         numbers = {index: given[r] for r, index in enumerate(test.modes.index[k]) if index >= 0}
-    data = each.functions.data
-    kept = _lines(each)
-    diagram = each.diagram
+    data, diagram = each.functions.data, each.diagram
+    # Lines evenly over the band, and those at modes.
+    even = np.linspace(0, len(data.frequency) - 1, min(len(data.frequency), MOST_LINES)).astype(int)
+    nearest = [int(np.abs(data.frequency - mode.frequency).argmin()) for mode in each.modes]
+    kept = np.unique([*even, *nearest])
     inside = (diagram.frequency >= each.band[0]) & (diagram.frequency <= each.band[1])
-    indicators = [_logarithms(row[kept]) for row in complex_indicators(data)]
     has_phase = bool(np.any(np.nan_to_num(data.H).imag))
     multivariate = multivariate_indicators(data)[:, kept] if has_phase else np.zeros((0, 0))
     positions, directions = _places(test, each)
+    shapes = np.array([mode.shape.complex_shape for mode in each.modes])
+    mac: list[Floats] = list(auto_mac(shapes)) if each.modes else []
     return {
         "band": list(each.band),
         "quantity": data.quantity,
@@ -81,15 +84,10 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
             "stable": diagram.stable[inside].astype(int).tolist(),
         },
         "lines": _rounded(data.frequency[kept], 7),
-        "complexIndicators": indicators,
+        "complexIndicators": [_logarithms(row[kept]) for row in complex_indicators(data)],
         "multivariateIndicators": [_rounded(row) for row in multivariate],
         "functions": _functions(each, kept),
-        "mac": [
-            _rounded(row, 3)
-            for row in auto_mac(np.array([mode.shape.complex_shape for mode in each.modes]))
-        ]
-        if each.modes
-        else [],
+        "mac": [_rounded(row, 3) for row in mac],
         "sensors": list(each.responses),
         "positions": positions.tolist(),
         "directions": directions.tolist(),
@@ -101,14 +99,6 @@ def _numbers(test: IdentifiedTest) -> list[int]:
     chosen, count = test.test.chosen, 0 if test.modes is None else len(test.modes.index[0])
     numbers = sorted(chosen.keep) or range(1, count + len(set(chosen.drop)) + 1)
     return [number for number in dict.fromkeys(numbers) if number not in chosen.drop]
-
-
-def _lines(each: Identification) -> Any:
-    """Return positions of lines evenly over the band, and those at modes."""
-    f = each.functions.data.frequency
-    even = np.linspace(0, len(f) - 1, min(len(f), MOST_LINES)).astype(int)
-    nearest = [int(np.abs(f - mode.frequency).argmin()) for mode in each.modes]
-    return np.unique(np.concatenate([even, np.array(nearest, int)]))
 
 
 def _functions(each: Identification, kept: Any) -> list[dict[str, Any]]:

@@ -10,9 +10,8 @@ from __future__ import annotations
 import base64
 import gzip
 import json
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -20,13 +19,11 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront._version import __version__
 from modefront.findings.catalogue import Severity
-from modefront.findings.selection import front_points, verdict
 from modefront.front.methods import METHODS
-from modefront.front.point import preferred
-from modefront.predictions import ResultVariable
-from modefront.predictions.registry import RecordedPrediction, predictions_in
+from modefront.front.point import front_points, position
+from modefront.predictions.registry import Quantity, RecordedPrediction, predictions_in
 from modefront.results.compare import short_names
-from modefront.results.remarks import findings_of
+from modefront.results.remarks import findings_of, verdict
 
 INFINITE = 10**400
 """An integer that JavaScript reads as Infinity, for which JSON has no word."""
@@ -93,57 +90,6 @@ class _Arrays:
         return out
 
 
-def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
-    """Return all that the page shows of one study."""
-    labels, kinds = texts(data["label"].values), texts(data["kind"].values)
-    front = front_points(data).tolist()
-    posterior = {
-        "theta": "posterior_std",
-        "frequency": "posterior_frequency_std",
-        "mac": "posterior_mac_std",
-    }
-    return {
-        "name": name,
-        "study": str(data.attrs.get("study", "")),
-        "inputs": str(data.attrs.get("inputs", "")),
-        "version": str(data.attrs["version"]),
-        "method": str(data.attrs["method"]),
-        "reference": labels.index(preferred(data.attrs)),
-        "nominal": kinds.index("nominal") if "nominal" in kinds else None,
-        "groups": _texts(data, "group"),
-        "parameters": _texts(data, "parameter"),
-        "modes": [int(mode) for mode in data["mode"].values],
-        "sensors": _texts(data, "sensor"),
-        "sets": _texts(data, "set"),
-        "label": labels,
-        "kind": kinds,
-        "pareto": data["pareto"].values.astype(bool).tolist(),
-        "converged": data["converged"].values.astype(bool).tolist(),
-        "piece": (
-            [int(x) for x in data["piece"].values] if "piece" in data else [1] * data.sizes["point"]
-        ),
-        "order": front or [i for i, kind in enumerate(kinds) if kind != "nominal"] or [0],
-        **{name: plain(data[name].values) for name in POINTS},
-        **{key: _optional(data, name) for key, name in OPTIONAL.items()},
-        "posterior": (
-            {key: plain(data[name].values) for key, name in posterior.items()}
-            if all(name in data for name in posterior.values())
-            else None
-        ),
-        "bounds": plain(data["bounds"].values),
-        "interval": plain(data["interval"].values[:, [0, -1]]) if "interval" in data else None,
-        "noise": plain(_noise(data)),
-        "measured": plain(data["measured_frequency"].values),
-        "measuredStd": plain(_measured_std(data)),
-        "ends": _optional(data, "end_objective") or [],
-        "geometry": _geometry(data, arrays),
-        "predictions": list(_predictions(data)),
-        "words": [
-            {"heading": topic.heading, "sentences": list(topic.sentences)} for topic in topics(data)
-        ],
-    }
-
-
 POINTS = ("theta", "objective", "error", "frequency", "mac")
 """Variables that every point has."""
 
@@ -159,22 +105,70 @@ OPTIONAL: Mapping[str, str] = {
 }
 """Further variables, by their names on the page."""
 
+POSTERIOR: Mapping[str, str] = {
+    "theta": "posterior_std",
+    "frequency": "posterior_frequency_std",
+    "mac": "posterior_mac_std",
+}
+"""Variables of the posterior likewise: all or none."""
 
-def _texts(data: xr.Dataset, name: str) -> list[str]:
-    return texts(data[name].values) if name in data.coords else []
 
+def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
+    """Return all that the page shows of one study."""
 
-def _optional(data: xr.Dataset, name: str) -> Any:
-    return plain(data[name].values) if name in data else None
+    def names(of: str) -> list[str]:
+        return data[of].values.tolist() if of in data.variables else []
+
+    def known(of: str) -> Any:
+        return plain(data[of].values) if of in data else None
+
+    kinds, interval = names("kind"), data.get("interval")
+    posterior = {key: known(of) for key, of in POSTERIOR.items()}
+    reported = [i for i, kind in enumerate(kinds) if kind != "nominal"]
+    return {
+        "name": name,
+        "study": str(data.attrs.get("study", "")),
+        "inputs": str(data.attrs.get("inputs", "")),
+        "version": str(data.attrs["version"]),
+        "method": str(data.attrs["method"]),
+        "reference": position(data),
+        "nominal": kinds.index("nominal") if "nominal" in kinds else None,
+        "groups": names("group"),
+        "parameters": names("parameter"),
+        "modes": [int(mode) for mode in data["mode"].values],
+        "sensors": names("sensor"),
+        "sets": names("set"),
+        "label": names("label"),
+        "kind": kinds,
+        "pareto": data["pareto"].values.astype(bool).tolist(),
+        "converged": data["converged"].values.astype(bool).tolist(),
+        "piece": list(map(int, data["piece"].values)) if "piece" in data else [1] * len(kinds),
+        "order": front_points(data).tolist() or reported or [0],
+        **{name: plain(data[name].values) for name in POINTS},
+        **{key: known(of) for key, of in OPTIONAL.items()},
+        "posterior": None if None in posterior.values() else posterior,
+        "bounds": plain(data["bounds"].values),
+        "interval": None if interval is None else plain(interval.values[:, [0, -1]]),
+        "noise": plain(_noise(data)),
+        "measured": plain(data["measured_frequency"].values),
+        "measuredStd": plain(_measured_std(data)),
+        "ends": known("end_objective") or [],
+        "geometry": _geometry(data, arrays),
+        "predictions": [
+            _prediction(each, x)
+            for each in predictions_in(data)
+            for x in each.quantities
+            if x.variable.ranged
+        ],
+        "words": [topic._asdict() for topic in topics(data)],
+    }
 
 
 def _noise(data: xr.Dataset) -> Floats:
     """Return the error that is expected of each group at the reference; NaN where unknown."""
-    chosen = data["label"].values == preferred(data.attrs)
-    if "misfit" not in data or not chosen.any():
+    if "misfit" not in data:
         return np.full(data.sizes["group"], np.nan)
-    misfit = data["misfit"].values
-    error = data["error"].values[chosen][0]
+    misfit, error = data["misfit"].values, data["error"].values[position(data)]
     return np.divide(error, misfit, out=np.full(error.shape, np.nan), where=misfit > 0)
 
 
@@ -209,38 +203,19 @@ def _geometry(data: xr.Dataset, arrays: _Arrays) -> dict[str, Any] | None:
     }
 
 
-def _predictions(data: xr.Dataset) -> Iterator[dict[str, Any]]:
-    """Yield every quantity that all models predict, one a place."""
-    for prediction in predictions_in(data):
-        for k in prediction.positions:
-            for variable in prediction.kind.ranged:
-                yield _prediction(data, prediction, variable, k)
-
-
-def _prediction(
-    data: xr.Dataset, prediction: RecordedPrediction, variable: ResultVariable, k: int
-) -> dict[str, Any]:
-    name, dimension = variable.name, prediction.kind.dimension
-    start = f"posterior_{dimension}_log" if variable.logarithmic else f"posterior_{name}"
-    std = data.get(f"{start}_std")
-    drawn = data.get(f"posterior_{name}")
-    load = data.get(f"{dimension}_load")
-    ends = None
-    if drawn is not None:
-        statistic = texts(data["statistic"].values)
-        if "5 %" in statistic and "95 %" in statistic:
-            ends = drawn.values[[statistic.index("5 %"), statistic.index("95 %")], k]
+def _prediction(of: RecordedPrediction, x: Quantity) -> dict[str, Any]:
+    """Return a quantity that all models predict."""
     return {
-        "title": prediction.name,
-        "place": str(data[dimension].values[k]),
-        "quantity": variable.key,
-        "unit": variable.unit,
-        "log": variable.logarithmic,
-        "values": plain(data[name].values[:, k]),
-        "range": plain(data[f"{name}_range"].values[:, k]),
-        "std": None if std is None else plain(std.values[k]),
-        "drawn": None if ends is None else plain(ends),
-        "note": f"Load: {load.values[k]}." if load is not None else "",
+        "title": of.name,
+        "place": x.label,
+        "quantity": x.variable.key,
+        "unit": x.variable.unit,
+        "log": x.variable.logarithmic,
+        "values": plain(x.values),
+        "range": plain(x.extent),
+        "std": None if x.std is None else plain(x.std),
+        "drawn": [plain(x.drawn[end]) for end in ("5 %", "95 %")] if x.drawn else None,
+        "note": f"Load: {of.load}." if of.load else "",
     }
 
 
@@ -260,17 +235,11 @@ def plain(values: Any) -> Any:
     return value
 
 
-@dataclass(frozen=True)
-class Topic:
+class Topic(NamedTuple):
     """Sentences on one question; those of the first answer have no heading."""
 
     heading: str
     sentences: tuple[str, ...]
-
-
-def texts(values: Any) -> list[str]:
-    """Return the texts of an array."""
-    return [str(x) for x in values.tolist()]
 
 
 def topics(data: xr.Dataset) -> list[Topic]:
@@ -295,15 +264,12 @@ def topics(data: xr.Dataset) -> list[Topic]:
 
 
 def _study(data: xr.Dataset) -> str:
-    groups, method = texts(data["group"].values), str(data.attrs["method"])
+    groups, method = data["group"].values.tolist(), str(data.attrs["method"])
     title = METHODS[method].title if method in METHODS else method
-    sizes = {
-        "parameter": data.sizes["parameter"],
-        "measured mode": data.sizes["mode"],
-        "group": len(groups),
-        "eigenproblem": int(data.attrs["model_evaluations"]),
-    }
-    counts = [f"{count} {noun}{'s' * (count != 1)}" for noun, count in sizes.items()]
+    nouns = ("parameter", "measured mode", "group", "eigenproblem")
+    sizes = [data.sizes[x] for x in ("parameter", "mode", "group")]
+    sizes.append(int(data.attrs["model_evaluations"]))
+    counts = [f"{n} {noun}{'s' * (n != 1)}" for n, noun in zip(sizes, nouns, strict=True)]
     remark = f" {data.attrs['remark']}." if data.attrs.get("remark") else ""
     return (
         f"A model with {counts[0]} is compared with {counts[1]} in {counts[2]} of measured "

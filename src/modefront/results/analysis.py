@@ -86,7 +86,7 @@ def analysis_values(
         "front_part": [parts.get(point.kind, "") for point in front.points],
         "flat": part.flat if part else np.zeros(len(problem.objectives), dtype=int),
         **_identifiability(determined),
-        **_equivalent(problem, analysis),
+        **_equivalent(analysis),
         **_scatter(problem, front, analysis),
         **_posterior(front, analysis),
         **_replicates(problem, front, analysis),
@@ -115,52 +115,43 @@ def _identifiability(determined: Sequence[Determination]) -> Values:
     }
 
 
-def _equivalent(problem: UpdatingProblem, analysis: FrontAnalysis) -> Values:
+def _equivalent(analysis: FrontAnalysis) -> Values:
     rows = [
         (name, number, manifold, model)
         for name, manifolds in analysis.manifolds
         for number, manifold in enumerate(manifolds, start=1)
         for model in manifold.models
     ]
-    p, n = len(problem.model.parameters), len(problem.objectives)
     return {
         "equal_of": [name for name, *_ in rows],
-        "equal_manifold": np.array([number for _, number, *_ in rows], dtype=int),
-        "equal_dimension": np.array([x.dimension for _, _, x, _ in rows], dtype=int),
+        "equal_manifold": [number for _, number, *_ in rows],
+        "equal_dimension": [x.dimension for _, _, x, _ in rows],
         "equal_extent": [x.extent.name.lower() for _, _, x, _ in rows],
-        "equal_theta": np.array([model.theta for *_, model in rows]).reshape(-1, p),
-        "equal_objective": np.array([model.J for *_, model in rows]).reshape(-1, n),
+        "equal_theta": [model.theta for *_, model in rows],
+        "equal_objective": [model.J for *_, model in rows],
     }
 
 
 def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:
     if analysis.source is None:
         return {}
-    labels = [point.label for point in front.points]
-    m, n, p = len(labels), len(problem.objectives), len(problem.model.parameters)
-    theta, J = np.full((m, p, p), np.nan), np.full((m, n, n), np.nan)
-    theta_std = np.full((m, p), np.nan)
-    predicted = {x: np.full((m, len(problem.data.modes)), np.nan) for x in ("frequency", "mac")}
-    warned = [""] * m
-    for i, name in enumerate(labels):
-        scatter = analysis.scatter.get(name)
-        if scatter is None:
-            continue
-        theta[i], J[i] = scatter.covariance, scatter.J.T @ scatter.J
-        theta_std[i] = _std(scatter.covariance, scatter.free)
-        warned[i] = ", ".join(warning.name.lower() for warning in scatter.warnings)
-        slopes = analysis.slopes.get(name)
-        if slopes is not None:
-            for quantity, values in predicted.items():
-                values[i] = std(scatter.theta @ slopes[quantity].T)
-    return {
-        "theta_std": theta_std,
-        "theta_covariance": theta,
-        "objective_std": np.sqrt(np.einsum("mii->mi", J)),
-        "objective_covariance": J,
-        **{f"{name}_std": values for name, values in predicted.items()},
-        "scatter_doubt": warned,
-    }
+    n, p, modes = len(problem.objectives), len(problem.model.parameters), len(problem.data.modes)
+    sizes = {"theta_std": (p,), "theta_covariance": (p, p), "objective_std": (n,)}
+    sizes |= {"objective_covariance": (n, n), "frequency_std": (modes,), "mac_std": (modes,)}
+    unknown = {name: np.full(size, np.nan) for name, size in sizes.items()}
+    rows: list[Values] = []
+    for label in (point.label for point in front.points):
+        row: Values = {**unknown, "scatter_doubt": ""}
+        if (scatter := analysis.scatter.get(label)) is not None:
+            J = scatter.J.T @ scatter.J
+            row |= {"theta_covariance": scatter.covariance, "objective_covariance": J}
+            row["theta_std"] = _std(scatter.covariance, scatter.free)
+            row["objective_std"] = np.sqrt(np.diag(J))
+            row["scatter_doubt"] = ", ".join(x.name.lower() for x in scatter.warnings)
+            for quantity, slopes in analysis.slopes.get(label, {}).items():
+                row[f"{quantity}_std"] = std(scatter.theta @ slopes.T)
+        rows.append(row)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 def _std(covariance: Floats, free: Floats) -> Floats:

@@ -20,9 +20,8 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 from scipy.spatial.distance import cdist, pdist, squareform
 
 from modefront._typing import Floats
-from modefront.errors import Fault, InputError
-from modefront.findings.selection import front_points
-from modefront.front.point import Kind, preferred
+from modefront.errors import Fault, InputError, refuse
+from modefront.front.point import Kind, front_points, position, preferred
 from modefront.predictions.registry import kinds_in
 from modefront.results.files import read_dataset
 
@@ -155,9 +154,9 @@ def compare(folders: Path | str | Sequence[Path | str]) -> Comparison:
     InputError
         Where there are no results, or their groups are not the same, or no model is Pareto optimal.
     """
-    results = read_together(folders, whole=False)
+    results = read_together(folders)
     for folder, data in results:
-        if not _best(data).sizes["point"]:
+        if not data["pareto"].values.any():
             expected = "at least one Pareto-optimal model"
             raise InputError(Fault(folder, "variable 'pareto'", expected, "none"))
     groups = tuple(map(str, results[0][1]["group"].values))
@@ -173,12 +172,11 @@ def short_names(folders: Sequence[str]) -> list[str]:
 
 
 def read_together(
-    folders: Path | str | Sequence[Path | str], *, whole: bool = True
+    folders: Path | str | Sequence[Path | str],
 ) -> list[tuple[str, xr.Dataset]]:
     """Return the results in a folder or several, each with the name of its folder.
 
-    A ``whole`` file has all variables that belong together. Raises InputError where there are none,
-    or where their groups are not the same.
+    Raises InputError where there are none, or where their groups are not the same.
     """
     listed = [Path(each) for each in ([folders] if isinstance(folders, Path | str) else folders)]
     if not listed:
@@ -187,20 +185,18 @@ def read_together(
     results: list[tuple[str, xr.Dataset]] = []
     for folder in listed:
         try:
-            results.append((str(folder), read_dataset(folder, whole=whole)))
+            results.append((str(folder), read_dataset(folder)))
         except InputError as error:
             faults.extend(error.faults)
-    groups = [tuple(map(str, data["group"].values)) for _, data in results]
+    groups = [", ".join(map(str, data["group"].values)) for _, data in results]
     for (name, _), other in zip(results, groups, strict=True):
         if other != groups[0]:
-            expected = f"those of {results[0][0]}: {', '.join(groups[0])}"
-            faults.append(Fault(name, "groups", expected, ", ".join(other)))
-    if faults:
-        raise InputError(faults)
+            faults.append(Fault(name, "groups", f"those of {results[0][0]}: {groups[0]}", other))
+    refuse(faults)
     return results
 
 
-def _optimal(data: xr.Dataset) -> xr.Dataset:
+def _of_front(data: xr.Dataset) -> xr.Dataset:
     """Return the Pareto-optimal points of the front; its one point where it is no more."""
     front = front_points(data)
     if front.size == 0:
@@ -208,20 +204,8 @@ def _optimal(data: xr.Dataset) -> xr.Dataset:
     return data.isel(point=front[data["pareto"].values[front]] if front.size > 1 else front)
 
 
-def _best(data: xr.Dataset) -> xr.Dataset:
-    """Return all Pareto-optimal models of any kind; those of the front where there is none."""
-    best = data["pareto"].values
-    return data.isel(point=np.flatnonzero(best)) if best.any() else _optimal(data)
-
-
-def _reference(data: xr.Dataset) -> xr.Dataset:
-    """Return the model that the data prefer; the first one of results that do not name it."""
-    labels, name = data["label"].values.tolist(), preferred(data.attrs)
-    return data.isel(point=labels.index(name) if name in labels else 0)
-
-
 def _length(data: xr.Dataset) -> float:
-    front = _optimal(data)
+    front = _of_front(data)
     lengths = squareform(pdist(front["error"].values))
     if "piece" in front:
         piece = front["piece"].values
@@ -229,36 +213,45 @@ def _length(data: xr.Dataset) -> float:
     return float(minimum_spanning_tree(lengths).sum()) if len(lengths) else 0.0
 
 
+def _models(data: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
+    """Return all Pareto-optimal models, the reference, and the optimally weighted ones."""
+    best, optimal = data["pareto"].values, data["kind"].values == Kind.OPTIMAL.value
+    return data.isel(point=best), data.isel(point=position(data)), data.isel(point=optimal)
+
+
 def _summary(name: str, data: xr.Dataset, first: float) -> Summary:
-    models, length, reference = _best(data), _length(data), _reference(data)
-    weighted = data["error"].values[data["kind"].values == Kind.OPTIMAL.value]
+    length, (models, chosen, optimal) = _length(data), _models(data)
+    e = models["error"].values
     quantities = [("frequency ", "mode", "frequency"), ("mac ", "mode", "mac")]
-    for kind in kinds_in(models):
-        names = [x.name for x in kind.ranged if x.name in models]
-        quantities += [(f"{each} ", kind.dimension, each) for each in names]
+    for kind in kinds_in(data):
+        quantities += [(f"{x.name} ", kind.dimension, x.name) for x in kind.ranged]
     return Summary(
         name,
         str(data.attrs.get("study", "")),
         str(data.attrs["method"]),
-        int(_optimal(data).sizes["point"]),
+        int(_of_front(data).sizes["point"]),
         int(data.attrs["model_evaluations"]),
         length,
-        length / first if first > 0 else float("nan"),
-        tuple(np.ptp(models["error"].values, axis=0).tolist()),
-        float(np.linalg.norm(models["error"].values, axis=1).min()),
-        float(np.linalg.norm(weighted[0])) if len(weighted) else float("nan"),
+        length / first if first > 0 else np.nan,
+        tuple(np.ptp(e, axis=0).tolist()),
+        float(np.linalg.norm(e, axis=1).min()),
+        _first(np.linalg.norm(optimal["error"].values, axis=1)),
         preferred(data.attrs),
-        float(np.linalg.norm(reference["error"].values)),
-        tuple(_spreads("", "parameter", "theta", models, reference)),
-        tuple(x for each in quantities for x in _spreads(*each, models, reference)),
+        float(np.linalg.norm(chosen["error"].values)),
+        tuple(_spreads("", "parameter", "theta", models, chosen)),
+        tuple(x for each in quantities for x in _spreads(*each, models, chosen)),
     )
 
 
+def _first(values: Floats) -> float:
+    return float(values[0]) if values.size else np.nan
+
+
 def _spreads(
-    prefix: str, dimension: str, variable: str, models: xr.Dataset, reference: xr.Dataset
+    prefix: str, dimension: str, variable: str, models: xr.Dataset, chosen: xr.Dataset
 ) -> Iterator[Spread]:
     names, values = models[dimension].values, models[variable].values
-    for name, column, value in zip(names, values.T, reference[variable].values, strict=True):
+    for name, column, value in zip(names, values.T, chosen[variable].values, strict=True):
         known = column[np.isfinite(column)]
         least, greatest = (known.min(), known.max()) if known.size else (np.nan, np.nan)
         yield Spread(f"{prefix}{name}", float(least), float(greatest), float(value))
@@ -266,20 +259,17 @@ def _spreads(
 
 def _apart(first_results: tuple[str, xr.Dataset], second_results: tuple[str, xr.Dataset]) -> Apart:
     (first, a), (second, b) = first_results, second_results
-    known, nan = b["parameter"].values.tolist(), float("nan")
+    known = b["parameter"].values.tolist()
     common = [name for name in a["parameter"].values.tolist() if name in known]
     if not common:
-        return Apart(first, second, (), nan, nan, nan, nan)
+        return Apart(first, second, (), *[np.nan] * 4)
     span = np.diff(a["bounds"].sel(parameter=common).values, axis=1)[:, 0]
-
-    def scaled(data: xr.Dataset) -> Floats:
-        theta: Floats = data["theta"].sel(parameter=common).values / span
-        return theta
-
-    away = cdist(scaled(_best(a)), scaled(_best(b)))
+    # (models, p) of each kind in turn, of both results.
+    best, chosen, optimal = (
+        [np.atleast_2d(x["theta"].sel(parameter=common).values / span) for x in each]
+        for each in zip(_models(a), _models(b), strict=True)
+    )
+    away = cdist(*best)
     greatest = max(away.min(axis=0).max(), away.min(axis=1).max())
-    weighted = [scaled(x)[x["kind"].values == Kind.OPTIMAL.value] for x in (a, b)]
-    optimal = np.linalg.norm(weighted[0][0] - weighted[1][0]) if all(map(len, weighted)) else nan
-    reference = np.linalg.norm(scaled(_reference(a)) - scaled(_reference(b)))
-    distances = map(float, (away.min(), greatest, optimal, reference))
-    return Apart(first, second, tuple(common), *distances)
+    apart = [_first(cdist(*each)[:, :1].ravel()) for each in (optimal, chosen)]
+    return Apart(first, second, tuple(common), float(away.min()), float(greatest), *apart)

@@ -10,13 +10,14 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from modefront.errors import Fault, InputError, reason
+from modefront.errors import Fault, InputError, reason, refuse
 from modefront.inputs import available_memory, file_size
 from modefront.isolated import isolated
 from modefront.outputs import output
@@ -44,12 +45,11 @@ def write(data: xr.Dataset, path: Path) -> None:
         data.assign_attrs({CHECKSUM: checksum(data)}).dump_to_store(H5NetCDFStore(file))
 
 
-def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
+def read_dataset(folder: Path) -> xr.Dataset:
     """Return the results in a folder.
 
-    A ``whole`` file has all variables that belong together. An attribute `CHANGED` says where the
-    checksum does not fit. Raises InputError where there are no results, where they are not those of
-    modefront, and where they are of another format.
+    An attribute `CHANGED` says where the checksum does not fit. Raises InputError where there are
+    no results, where they are not those of modefront, and where they are of another format.
     """
     path = folder / FILE
     file_size(path, "results of a finished run")
@@ -60,13 +60,9 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
     version = data.attrs.get("format", 1 if "label" in data else None)
     if version is not None and not np.array_equal(version, FORMAT):
         expected = f"results of format {FORMAT}"
-        text = (
-            f"format {clean(version, NAME)}, of another version of modefront: run the study again"
-        )
+        text = f"format {clean(version, NAME)}, of another version of modefront: run it again"
         raise InputError(Fault(str(path), "attribute 'format'", expected, text))
-    wrong = [Fault(str(path), *parts) for parts in faults(data, whole=whole)]
-    if wrong:
-        raise InputError(wrong)
+    refuse(Fault(str(path), *parts) for parts in faults(data))
     kept = data.attrs.pop(CHECKSUM, "")
     if kept != checksum(data):
         has = "values that do not fit its" if kept else "no"
@@ -76,11 +72,9 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
 
 def written_for(path: Path) -> str | None:
     """Return the hash of the inputs of results; None where the file cannot be read."""
-    try:
-        inputs = _read(path).attrs.get("inputs")
-    except Exception:  # what is raised for a damaged file is not documented
-        return None
-    return inputs if isinstance(inputs, str) else None
+    with suppress(Exception):  # what is raised for a damaged file is not documented
+        return _read(path).attrs.get("inputs")
+    return None
 
 
 def checksum(data: xr.Dataset) -> str:
@@ -130,16 +124,16 @@ def _read(path: Path) -> xr.Dataset:
 def _plain(data: xr.Dataset) -> xr.Dataset:
     """Return results in which truth is true or false, and no text holds orders to a terminal."""
     changed: dict[str, xr.Variable] = {}
-    variables = variables_in(data)
-    for name, variable in data.variables.items():
-        known = variables.get(str(name))
-        if known is not None and known.values == "truth":
-            changed[str(name)] = variable.astype(bool)
+    known = variables_in(data)
+    for key, variable in data.variables.items():
+        name = str(key)
+        if name in known and known[name].values == "truth":
+            changed[name] = variable.astype(bool)
         if variable.dtype.kind in "UOT":
             texts = np.array(list(map(clean, variable.values.ravel().tolist())), dtype=object)
             if (texts != variable.values.ravel()).any():
                 values = texts.reshape(variable.shape)
-                changed[str(name)] = xr.Variable(variable.dims, values, variable.attrs)
+                changed[name] = xr.Variable(variable.dims, values, variable.attrs)
     out = data.assign(changed)
     out.attrs = {
         key: "\n".join(map(clean, value.split("\n"))) if isinstance(value, str) else value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import compress
 from typing import Any
 
 import numpy as np
@@ -63,7 +64,7 @@ def as_values(findings: Sequence[Finding]) -> Values:
 def _search(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
     if front.open:
         yield found("budget", enumeration(front.open))
-    exact = [name for name, fits in zip(problem.objectives, front.exact, strict=True) if fits]
+    exact = list(compress(problem.objectives, front.exact))
     if not front.optimal:
         why, probable = "no regular minimum of sum a ln J was found", label(Kind.MOST_PROBABLE)
         if exact:
@@ -145,16 +146,19 @@ KINDS = {1: "curve", 2: "surface"}
 
 def _extent(problem: UpdatingProblem, of: str, manifolds: Sequence[Manifold]) -> Finding:
     """Return how far manifolds of one dimension go, of several the greatest."""
-    greatest = max(manifolds, key=lambda greatest: len(greatest.models))
+    greatest, many = max(manifolds, key=lambda x: len(x.models)), len(manifolds) > 1
     kind = KINDS.get(greatest.dimension, "manifold")
-    spent = f"{greatest.evaluations} eigenproblem{'s' * (greatest.evaluations != 1)}"
-    count = f"{len(greatest.models)} models, by {spent}, {greatest.extent.value}"
     more = "" if greatest.dimension in KINDS else f" of dimension {greatest.dimension}"
-    far = _far(problem, np.array([model.theta for model in greatest.models]))
-    many = len(manifolds) > 1
-    named = f"{len(manifolds)} separate {kind}s{more}" if many else f"a {kind}{more}"
-    where = "; on the greatest" if many else ":"
-    return found("manifold", of, many=many, manifolds=named, where=where, reach=far, count=count)
+    spent = f"{greatest.evaluations} eigenproblem{'s' * (greatest.evaluations != 1)}"
+    return found(
+        "manifold",
+        of,
+        many=many,
+        manifolds=f"{len(manifolds)} separate {kind}s{more}" if many else f"a {kind}{more}",
+        where="; on the greatest" if many else ":",
+        reach=_far(problem, np.array([model.theta for model in greatest.models])),
+        count=f"{len(greatest.models)} models, by {spent}, {greatest.extent.value}",
+    )
 
 
 def _far(problem: UpdatingProblem, theta: Floats) -> str:
@@ -178,32 +182,30 @@ def _far(problem: UpdatingProblem, theta: Floats) -> str:
 
 def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Iterator[Finding]:
     """Yield where the uncertainty of the data is taken from, and where it is not valid."""
-    data, names = problem.data, problem.model.parameters
-    values, deviations = (
-        np.concatenate([x.ravel() for x in of])
-        for of in ((data.frequency, data.shape), (data.frequency_std, data.shape_std))
-    )
+    data = problem.data
+    values = np.concatenate([data.frequency.ravel(), data.shape.ravel()])
+    known = np.concatenate([data.frequency_std.ravel(), data.shape_std.ravel()])
     if analysis.source is None:
-        if np.isfinite(deviations).any() and not (deviations > 0).any():
+        if np.isfinite(known).any() and not (known > 0).any():
             yield found("no-deviations")
     else:
         why = {"std": "their standard deviations", "sets": "the scatter of the data sets"}
         yield found("source", why[analysis.source])
-        exact = int((np.isfinite(values) & ~(deviations > 0)).sum())
+        exact = int((np.isfinite(values) & ~(known > 0)).sum())
         if analysis.source == "std" and exact:
             yield found("exact-data", values=exact)
         labels = [point.label for point in front.points if point.kind is not Kind.NOMINAL]
         missing = [name for name in labels if name not in analysis.scatter]
         if missing:
             yield found("no-scatter", _places(missing, len(labels)))
+        of_points = [(x, analysis.scatter[x].warnings) for x in labels if x in analysis.scatter]
         for warning in LinearisationWarning:
-            scatter = {name: analysis.scatter.get(name) for name in labels}
-            warned = [name for name, each in scatter.items() if each and warning in each.warnings]
+            warned = [name for name, warnings in of_points if warning in warnings]
             if warned:
                 yield found("approximate", _places(warned, len(labels)), why=warning.value)
     if analysis.posterior is not None and any(analysis.posterior.held):
-        held = [x for x, is_held in zip(names, analysis.posterior.held, strict=True) if is_held]
-        yield found("held", enumeration(held))
+        held = compress(problem.model.parameters, analysis.posterior.held)
+        yield found("held", enumeration(list(held)))
     solutions = [solution for each in analysis.replicates for solution in each.values()]
     failed = sum(not solution.converged for solution in solutions)
     if failed:

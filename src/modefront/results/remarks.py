@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 
 import numpy as np
 import xarray as xr
@@ -11,10 +13,9 @@ import xarray as xr
 from modefront._typing import Bools
 from modefront.findings.catalogue import Severity
 from modefront.findings.record import Finding, found, from_text, in_order
-from modefront.findings.selection import front_points, not_converged, uncertified
-from modefront.front.point import Kind, preferred
+from modefront.front.point import Kind, front_points, preferred
 from modefront.optim.problem import at_bounds
-from modefront.predictions.registry import kinds_in
+from modefront.predictions.registry import predictions_in
 from modefront.rounding import ACCUMULATED
 
 CHANGED = "changed"
@@ -39,6 +40,24 @@ WIDE = 1.02
 """Ratio of greatest to least prediction from which a spread is worth a sentence."""
 
 
+def verdict(data: xr.Dataset) -> list[str]:
+    """Return the sentences of the first answer."""
+    return str(data.attrs.get("verdict", "")).splitlines()
+
+
+def not_converged(data: xr.Dataset) -> list[str]:
+    """Return the labels of points that should have converged and did not."""
+    solved = ~np.isin(data["status"].values, ["sampled", "jump"])
+    return data["label"].values[~data["converged"].values & solved].tolist()
+
+
+def uncertified(data: xr.Dataset) -> list[str]:
+    """Return the labels of models whose eigenvalues do not meet the tolerance."""
+    if "certified" not in data:
+        return []
+    return data["label"].values[~data["certified"].values].tolist()
+
+
 def digest(sentences: Sequence[str], where: str, most: int | None = MOST) -> list[str]:
     """Return the first of some sentences, with how many more and the option that prints them.
 
@@ -56,15 +75,16 @@ def findings_of(data: xr.Dataset, *, full: bool = False) -> list[Finding]:
 
     ``full`` has details of branches, numerics and coverage too, and names all models and modes.
     """
-    most = None if full else FEW
+    most = sys.maxsize if full else FEW
+    analysed = data["finding"].values.tolist()
+    kept = data["finding_record"].values.tolist() if "finding_record" in data else analysed
     out = [
         *_failures(data),
         *_front(data),
         *_misfit(data),
-        *_poor_pairs(data, most),
         *_pairs(data, most),
         *_at_bounds(data, most),
-        *_analysed(data),
+        *(from_text(str(record), str(text)) for text, record in zip(analysed, kept, strict=True)),
         *_ranges(data),
     ]
     if full:
@@ -80,13 +100,6 @@ def remarks(data: xr.Dataset) -> list[str]:
 def headlines(data: xr.Dataset) -> list[str]:
     """Return the sentences of the first findings: without details, and with few names."""
     return [str(finding) for finding in findings_of(data)]
-
-
-def _analysed(data: xr.Dataset) -> Iterator[Finding]:
-    sentences = data["finding"].values.tolist()
-    kept = data["finding_record"].values.tolist() if "finding_record" in data else sentences
-    for sentence, record in zip(sentences, kept, strict=True):
-        yield from_text(str(record), str(sentence))
 
 
 def _failures(data: xr.Dataset) -> Iterator[Finding]:
@@ -141,18 +154,17 @@ def places(data: xr.Dataset, chosen: Bools) -> str:
 
     Neighbours on a front of two objectives are named by the first and the last one.
     """
-    labels = [str(x) for x in data["label"].values]
+    labels = data["label"].values.tolist()
     front = front_points(data).tolist() if data.sizes["group"] == 2 else []
     along = {i: k for k, i in enumerate(front)}
-    runs: list[list[str]] = []
-    before = -1
-    for i in np.flatnonzero(chosen).tolist():
-        if runs and i in along and along.get(before) == along[i] - 1:
-            runs[-1].append(labels[i])
-        else:
-            runs.append([labels[i]])
-        before = i
-    parts = [x for run in runs for x in ([f"{run[0]} to {run[-1]}"] if run[2:] else run)]
+    at = enumerate(np.flatnonzero(chosen).tolist())
+    # Neighbours have the same distance of their places along the front and among those chosen.
+    parts: list[str] = []
+    for _, neighbours in groupby(
+        at, lambda x: along[x[1]] - x[0] if x[1] in along else labels[x[1]]
+    ):
+        run = [labels[i] for _, i in neighbours]
+        parts += [f"{run[0]} to {run[-1]}"] if run[2:] else run
     if len(parts) > NAMED:
         return f"{int(chosen.sum())} of {len(labels)} models"
     return ", ".join(parts)
@@ -164,19 +176,18 @@ def _misfit(data: xr.Dataset) -> Iterator[Finding]:
     Pareto-optimal are edges and weighted models too: the best models are never left out.
     """
     chosen, best = data["pareto"].values, preferred(data.attrs)
-    if not chosen.any():
-        return
     nominal, beside = data["kind"].values == Kind.NOMINAL.value, ""
-    if nominal.any() and np.isfinite(data["frequency"].values[nominal]).any():
+    if np.isfinite(data["frequency"].values[nominal]).any():
         beside = f"; the nominal model has {fit_of(data, nominal)}"
-    yield found(
-        "misfit",
-        best,
-        models=int(chosen.sum()),
-        whole=fit_of(data, chosen, whole=True),
-        reference=fit_of(data, data["label"].values == best),
-        nominal=beside,
-    )
+    if chosen.any():
+        yield found(
+            "misfit",
+            best,
+            models=int(chosen.sum()),
+            whole=fit_of(data, chosen, whole=True),
+            reference=fit_of(data, data["label"].values == best),
+            nominal=beside,
+        )
 
 
 def fit_of(data: xr.Dataset, chosen: Bools, *, whole: bool = False) -> str:
@@ -217,8 +228,8 @@ def _mac(value: float) -> str:
 
 
 def _weights(data: xr.Dataset) -> Iterator[Finding]:
-    optimal = data["kind"].values == Kind.OPTIMAL.value
-    if not optimal.any():
+    optimal = data["theta"].values[data["kind"].values == Kind.OPTIMAL.value]
+    if not optimal.size:
         return
     exact = data["group"].values[data["exact"].values.astype(bool)].tolist()
     if exact:
@@ -227,27 +238,24 @@ def _weights(data: xr.Dataset) -> Iterator[Finding]:
     if not len(iterated):
         yield found("iteration-ends")
         return
-    span = np.diff(data["bounds"].values, axis=1)[:, 0]
-    away = np.abs((iterated[0] - data["theta"].values[optimal][0]) / span).max(initial=0.0)
-    yield found("iteration-agrees" if away < ARRIVED else "iteration-differs")
+    away = np.abs(iterated[0] - optimal[0]) / np.ptp(data["bounds"].values, axis=1)
+    agree = away.max(initial=0.0) < ARRIVED
+    yield found("iteration-agrees" if agree else "iteration-differs")
 
 
-def _poor_pairs(data: xr.Dataset, most: int | None) -> Iterator[Finding]:
-    """Yield which measured modes resemble their model modes poorly; of many, without the places."""
+def _pairs(data: xr.Dataset, most: int) -> Iterator[Finding]:
+    """Yield which measured modes resemble model modes poorly, or change their model mode.
+
+    Of more than ``most``, it is said in one record without the places. Where modes change places is
+    said of a front of two objectives, on which points have neighbours.
+    """
     poor = data["mac"].values < POOR
     modes = data["mode"].values[poor.any(axis=0)]
-    if most is not None and modes.size > most:
+    if modes.size > most:
         yield found("poor-pair", ", ".join(map(str, modes)), many=True, poor=POOR, places="")
-        return
-    for r, column in zip(modes, poor.T[poor.any(axis=0)], strict=True):
-        yield found("poor-pair", str(r), poor=POOR, places=f" at {places(data, column)}")
-
-
-def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
-    """Return which measured modes are paired with different model modes, of many in one record.
-
-    Where they change places is said of a front of two objectives, on which points have neighbours.
-    """
+    else:
+        for r, column in zip(modes, poor.T[poor.any(axis=0)], strict=True):
+            yield found("poor-pair", str(r), poor=POOR, places=f" at {places(data, column)}")
     front = front_points(data)
     labels, paired = data["label"].values[front], data["paired_mode"].values[front]
     out, changed = [], []
@@ -265,21 +273,21 @@ def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
             continue
         each = ", ".join(f"{number:.0f} at {count}" for number, count in counts)
         out.append(found("changed-pairs", str(r), counts=f": {each} of {front.size} points"))
-    if most is not None and len(out) > most:
-        return [found("changed-pairs", ", ".join(changed), many=True, counts="")]
-    return out
+    if len(out) > most:
+        out = [found("changed-pairs", ", ".join(changed), many=True, counts="")]
+    yield from out
 
 
-def _at_bounds(data: xr.Dataset, most: int | None) -> Iterator[Finding]:
+def _at_bounds(data: xr.Dataset, most: int) -> Iterator[Finding]:
     """Yield which parameters are at a bound and where, of more than ``most`` only how many."""
     at_bound = at_bounds(data["theta"].values, *data["bounds"].values.T) != 0
     held = np.flatnonzero(at_bound.any(axis=0))
     names = data["parameter"].values[held]
-    if most is not None and held.size > most:
+    if held.size > most:
         yield found("many-at-bounds", ", ".join(names[:most]), parameters=int(held.size))
     elif held.size:
-        where = [places(data, at_bound[:, j]) for j in held]
-        named = [f"{name} ({at})" for name, at in zip(names, where, strict=True)]
+        at = zip(names, held, strict=True)
+        named = [f"{name} ({places(data, at_bound[:, j])})" for name, j in at]
         yield found("at-bounds", "; ".join(named))
 
 
@@ -295,17 +303,16 @@ def _ranges(data: xr.Dataset) -> Iterator[Finding]:
         rest = len(order) - len(first)
         less = f" ({rest} parameter{'s' * (rest > 1)} more var{'y' if rest > 1 else 'ies'} less)"
         yield found("ranges", said + less * (rest > 0), models=int(best.size))
-    widest = [
-        (ratio, f"{variable.key} of {place} {_times(ratio)}")
-        for kind in kinds_in(data)
-        for variable in kind.ranged
-        for ratio, place in zip(
-            data[f"{variable.name}_range"].values[2], data[kind.dimension].values, strict=True
-        )
-        if np.isfinite(ratio) and ratio > WIDE
-    ]
+    widest = sorted(
+        (
+            (-x.extent[2], f"{x.variable.key} of {x.label} {_times(x.extent[2])}")
+            for each in predictions_in(data)
+            for x in each.quantities
+            if np.isfinite(x.extent[2]) and x.extent[2] > WIDE
+        ),
+        key=lambda each: each[0],
+    )
     if widest:
-        widest.sort(key=lambda each: -each[0])
         yield found("spread", "; ".join(text for _, text in widest[:3]))
 
 
@@ -343,7 +350,7 @@ def _numerics(data: xr.Dataset) -> Iterator[Finding]:
         if predicted:
             yield found("not-reduced", full=predicted)
         failed = uncertified(data)
-        if failed.size:
+        if failed:
             yield found("above-tolerance", ", ".join(failed))
             held = data["label"].values[data["certified"].values]
             yield found("within-tolerance", ", ".join(held) if held.size else "none")

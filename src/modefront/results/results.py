@@ -17,14 +17,13 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.brief import as_html, brief
 from modefront.errors import ModelError
-from modefront.findings.selection import front_points, position, verdict
-from modefront.front.point import Kind, preferred
+from modefront.front.point import Kind, front_points, position, preferred
 from modefront.models.base import matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
-from modefront.results.remarks import CHANGED, headlines
+from modefront.results.remarks import CHANGED, headlines, verdict
 from modefront.results.shapes import PairedShapes, paired_shapes, write_vtu
 
 if TYPE_CHECKING:
@@ -244,38 +243,35 @@ class Results:
         return frame.loc[list(points)] if points else frame
 
     def _of(self, kind: Kind) -> xr.Dataset:
-        return self.dataset.isel(point=np.flatnonzero(self["kind"].values == kind.value))
+        return self.dataset.isel(point=self["kind"].values == kind.value)
 
-    @property
-    def _said(self) -> list[str]:
-        """The verdict, or the first findings of results that have none."""
-        front = self.front["pareto"].values
-        name = str(self.attrs.get("study", "")) or "results"
-        optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
-        return [f"{name}: {optimal}", *(self.verdict or headlines(self.dataset))[:SENTENCES]]
-
-    @property
-    def _short(self) -> pd.DataFrame:
+    def _shown(self) -> tuple[list[str], pd.DataFrame]:
+        """Return the verdict, or the first findings without one, and errors of the first models."""
         import pandas as pd
 
+        front, name = self.front["pareto"].values, str(self.attrs.get("study", "")) or "results"
+        optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
+        said = [f"{name}: {optimal}", *(self.verdict or headlines(self.dataset))[:SENTENCES]]
         kinds = self["kind"].values
         order = [i for kind in SHOWN for i in np.flatnonzero(kinds == kind.value)][:ROWS]
         index = pd.Index(self["label"].values[order], name="model")
         groups = [f"error {group}" for group in self["group"].values[:COLUMNS]]
-        return pd.DataFrame(self["error"].values[order, :COLUMNS], index=index, columns=groups)
+        return said, pd.DataFrame(self["error"].values[order, :COLUMNS], index, groups)
 
     def __repr__(self) -> str:
         """Return the verdict, and the errors of the first models."""
-        said: list[str] = []
-        for lines in (textwrap.wrap(text, WIDTH) for text in self._said):
-            if len(said) + len(lines) > LINES:
+        said, table = self._shown()
+        lines: list[str] = []
+        for wrapped in (textwrap.wrap(text, WIDTH) for text in said):
+            if len(lines) + len(wrapped) > LINES:
                 break
-            said += lines
-        return "\n".join([*said, "", self._short.to_string(float_format="{:.4g}".format)])
+            lines += wrapped
+        return "\n".join([*lines, "", table.to_string(float_format="{:.4g}".format)])
 
     def _repr_html_(self) -> str:
-        said = "".join(f"<p>{html.escape(text)}</p>" for text in self._said)
-        return said + self._short.to_html(float_format="{:.4g}".format, escape=True)
+        said, table = self._shown()
+        text = "".join(f"<p>{html.escape(each)}</p>" for each in said)
+        return text + table.to_html(float_format="{:.4g}".format, escape=True)
 
 
 def read_results(folder: Path | str, problem: UpdatingProblem | None = None) -> Results:

@@ -1,15 +1,15 @@
 """The schema of results: every variable and attribute with dimensions, unit and meaning.
 
 The attributes in ``results.nc``, checks of files and docs/results.md are made from these tables. A
-row has a name, with ``*`` where every file has it and ``@`` before the first format that has it;
-dimensions; what it holds, where that is not numbers, and its unit; and its meaning. Headings name
-the section of the documentation, and variables of which a file has all or none.
+row has a name, with ``*`` where every file has it; dimensions; what it holds, where that is not
+numbers, and its unit; and its meaning. Headings name the section of the documentation, and
+variables of which a file has all or none.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, get_args
 
@@ -63,7 +63,7 @@ statistic | `mean`, `standard deviation`, `5 %`, `50 %`, `95 %`
 _VARIABLES = """\
 # Models
 label* | point | text | name of the point
-kind*@2 | point | text | why the model is reported: front, edge, given-weights, equal-weights,
+kind* | point | text | why the model is reported: front, edge, given-weights, equal-weights,
     optimal-weights, most-probable, identifiable-part, identifiable-edge or nominal
 pareto* | point | truth | no model that is known to the run dominates this one, equation (4)
 dominated_among_front* | point | truth | another point of the front dominates this one, whatever
@@ -204,52 +204,51 @@ bootstrap_objective_std | point group | 1 | standard deviation of J over the dat
 frequency_range | range mode | Hz | of the frequencies over the Pareto-optimal models
 draw_theta | draw parameter | | parameters of models drawn from the posterior, within the bounds
 # Modes / modes of points
-set_frequency@2 | set mode | Hz | measured frequency of each data set; NaN where it was not
+set_frequency | set mode | Hz | measured frequency of each data set; NaN where it was not
     measured
-set_frequency_std@2 | set mode | Hz | its standard deviation; NaN where none is given
-measured_shape@2 | set mode sensor | | measured mode shape, in the scale of the data; NaN where it
+set_frequency_std | set mode | Hz | its standard deviation; NaN where none is given
+measured_shape | set mode sensor | | measured mode shape, in the scale of the data; NaN where it
     was not measured
-model_frequency@2 | point model_mode | Hz | frequency of the model mode
-mac_matrix@2 | point mode model_mode | 1 | MAC of the measured mode with the model mode, mean over
+model_frequency | point model_mode | Hz | frequency of the model mode
+mac_matrix | point mode model_mode | 1 | MAC of the measured mode with the model mode, mean over
     the data sets
-shape@2 | point mode sensor | | shape of the paired model mode at the sensors, with the sign of
+shape | point mode sensor | | shape of the paired model mode at the sensors, with the sign of
     the measured one; its greatest displacement at a node, or at a sensor where there is no
     geometry, is 1
 # Modes / geometry
-node@2 | drawn_node axis | | coordinates of the nodes
-line_nodes@2 | line line_end | count | nodes of each line, counted from 0
-face_nodes@2 | face corner | count | nodes round each face, counted from 0; the fourth one of a
+node | drawn_node axis | | coordinates of the nodes
+line_nodes | line line_end | count | nodes of each line, counted from 0
+face_nodes | face corner | count | nodes round each face, counted from 0; the fourth one of a
     triangle is -1
-sensor_node@2 | sensor | count | node of each sensor, counted from 0
-sensor_direction@2 | sensor axis | 1 | unit vector that the sensor measures; zero for a rotation
-shape_basis@2 | basis drawn_node axis | | displacements of the nodes of which all mode shapes are
+sensor_node | sensor | count | node of each sensor, counted from 0
+sensor_direction | sensor axis | 1 | unit vector that the sensor measures; zero for a rotation
+shape_basis | basis drawn_node axis | | displacements of the nodes of which all mode shapes are
     sums, to 0.1 % of their length
-shape_coefficient@2 | point mode basis | | how much of each the paired model mode has, in the
+shape_coefficient | point mode basis | | how much of each the paired model mode has, in the
     scale of `shape`
 """
 
 _ATTRIBUTES = """\
-format*@2 | count | version of this schema
+format* | count | version of this schema
 version* | text | version of modefront
 study | text | name of the study
 inputs | text | hash of the study file and of all files that it names
-checksum@2 | text | BLAKE2b hash of all variables and attributes, in hexadecimal digits
+checksum | text | BLAKE2b hash of all variables and attributes, in hexadecimal digits
 assumed | text | which errors of the data are assumed, and how great
-settled@3 | number | 1 where the chains that draw from the posterior agree
+settled | number | 1 where the chains that draw from the posterior agree
 verdict | text | sentences of the first screen, one a line
 remark | text | why a requested option is not in use
 seed* | count | seed of all random numbers
 method* | text | method by which the front was found
 reference* | text | label of the model to use, around which the posterior lies; empty where none is
-prediction_kinds@3 | text | kinds of the predictions, in JSON
+prediction_kinds | text | kinds of the predictions, in JSON
 front_is_a_point* | count | 1 where one model is the best in every group
 model_evaluations* | count | eigenproblems solved
 full_eigensolutions | count | those solved in full
 reduced_solutions | count | those solved in a reduced basis
-shape_eigensolutions@2 | count | those for mode shapes at all nodes, besides `model_evaluations`
-geometry@2 | text | chain or mesh: what the nodes are of
+shape_eigensolutions | count | those for mode shapes at all nodes, besides `model_evaluations`
+geometry | text | chain or mesh: what the nodes are of
 front_evaluations* | count | those for points of the front
-nbi_evaluations | count | likewise; 0 for other methods
 prediction_eigensolutions | count | those for predictions, which are always full
 corrected_eigensolutions | count | those of a reduced basis without a factor of their own
 factorisations | count | factorisations of sparse matrices
@@ -263,54 +262,32 @@ largest_gap* | number | greatest distance of neighbours on a branch, in the same
 """
 
 
-KINDS: tuple[Values, ...] = get_args(Values)
+def _rows(table: str) -> list[str]:
+    return re.sub(r"\n {4}", " ", table).splitlines()
 
 
-def _rows(table: str) -> Iterator[list[str]]:
-    """Yield the cells of each row, those of a heading with an empty name."""
-    for row in re.sub(r"\n {4}", " ", table).splitlines():
-        cells = [cell.strip() for cell in row.split("|")]
-        yield ["", *row[2:].split(" / ")] if row.startswith("# ") else cells
+def _variables(table: str) -> dict[str, Variable]:
+    """Return the variables of a table by name; attributes have no column of dimensions."""
+    out, section, together = {}, "", ""
+    for row in _rows(table):
+        if row.startswith("# "):
+            section, _, together = row[2:].partition(" / ")
+            continue
+        name, *dimensions, holds, meaning = (cell.strip() for cell in row.split("|"))
+        values: Values = next((x for x in get_args(Values) if x in holds.split()), "number")
+        unit, key = holds.replace(values, "").strip(), name.rstrip("*")
+        of = tuple(" ".join(dimensions).split())
+        out[key] = Variable(key, of, meaning, values, unit, section, key != name, together)
+    return out
 
 
-def _variable(
-    name: str, dimensions: str, holds: str, meaning: str, section: str = "", together: str = ""
-) -> Variable:
-    name, _, since = name.partition("@")
-    values: Values = next((x for x in KINDS if x in holds.split()), "number")
-    unit = holds.replace(values, "").strip()
-    required = name.endswith("*")
-    return Variable(
-        name.rstrip("*"),
-        tuple(dimensions.split()),
-        meaning,
-        values,
-        unit,
-        section,
-        required,
-        int(since or 1),
-        together,
-    )
-
-
-def _variables() -> Iterator[Variable]:
-    heading: list[str] = []
-    for name, *cells in _rows(_VARIABLES):
-        if name:
-            yield _variable(name, *cells, *heading)
-        else:
-            heading = cells
-
-
-DIMENSIONS: Mapping[str, str] = {row[0]: row[1] for row in _rows(_DIMENSIONS)}
+DIMENSIONS: Mapping[str, str] = dict(row.split(" | ") for row in _rows(_DIMENSIONS))
 """Meanings of the dimensions, by name."""
 
-VARIABLES: Mapping[str, Variable] = {x.name: x for x in _variables()}
+VARIABLES: Mapping[str, Variable] = _variables(_VARIABLES)
 """Variables by name, without those of predictions."""
 
-ATTRIBUTES: Mapping[str, Variable] = {
-    x.name: x for x in (_variable(name, "", *cells) for name, *cells in _rows(_ATTRIBUTES))
-}
+ATTRIBUTES: Mapping[str, Variable] = _variables(_ATTRIBUTES)
 """Attributes by name, numbers or texts."""
 
 
@@ -319,18 +296,19 @@ def variables_of(kinds: Iterable[PredictionKind]) -> dict[str, Variable]:
 
     Raises InputError where a kind has a variable or dimension that others have.
     """
-    out, dimensions = dict(VARIABLES), set(DIMENSIONS)
+    out, dimensions = dict(VARIABLES), list(DIMENSIONS)
     for kind in kinds:
-        place = f"predictions of the kind '{kind.table}'"
-        if kind.dimension in dimensions:
-            expected = "a dimension that nothing else of the results has"
-            raise InputError(Fault("", place, expected, f"'{kind.dimension}'"))
-        dimensions.add(kind.dimension)
-        for variable in kind.schema:
-            if variable.name in out:
-                expected = "variables that nothing else of the results has"
-                raise InputError(Fault("", place, expected, f"'{variable.name}'"))
-            out[variable.name] = replace(variable, section="Predictions")
+        own = {x.name: replace(x, section="Predictions") for x in kind.schema}
+        taken = [("a dimension", x) for x in dimensions if x == kind.dimension]
+        taken += [("variables", x) for x in own if x in out]
+        for what, name in taken:
+            place, expected = (
+                f"predictions of the kind '{kind.table}'",
+                "that nothing else of the results has",
+            )
+            raise InputError(Fault("", place, f"{what} {expected}", f"'{name}'"))
+        dimensions.append(kind.dimension)
+        out |= own
     return out
 
 
@@ -339,17 +317,27 @@ def variables_in(data: xr.Dataset) -> dict[str, Variable]:
     return variables_of(kinds_in(data))
 
 
+EMPTY = {"text": str, "truth": bool, "count": int, "number": float}
+"""Types of variables without values."""
+
+
 def described(
-    values: Mapping[str, object], kinds: Iterable[PredictionKind] = ()
+    values: Mapping[str, object],
+    kinds: Iterable[PredictionKind] = (),
+    sizes: Mapping[Hashable, int] | None = None,
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
     """Return values as variables of a dataset, with the attributes of the schema.
 
-    Variables of predictions are those of their ``kinds``. Raises KeyError for a variable that the
-    schema does not know.
+    Variables of predictions are those of their ``kinds``; of an empty list ``sizes`` gives the
+    sizes of its dimensions, 0 unless given. Raises KeyError for a variable that the schema
+    does not know.
     """
     out, known = {}, variables_of(kinds)
     for name, value in values.items():
         variable = known[name]
-        kind = str if variable.values == "text" else None
-        out[name] = (variable.dimensions, np.asarray(value, dtype=kind), variable.attributes)
+        array = np.asarray(value, dtype=str if variable.values == "text" else None)
+        if isinstance(value, list) and not value:
+            shape = [(sizes or {}).get(x, 0) for x in variable.dimensions]
+            array = np.zeros(shape, EMPTY[variable.values])
+        out[name] = (variable.dimensions, array, variable.attributes)
     return out

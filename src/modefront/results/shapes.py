@@ -1,8 +1,13 @@
-r"""Mode shapes of one model at all its degrees of freedom, beside the measured ones.
+r"""Mode shapes of models: at nodes and at sensors, beside the measured ones, and for ParaView.
 
 Model shapes have a greatest displacement of 1 at the nodes; the measured shape follows by the modal
 scale factor :math:`\hat\varphi^T \varphi / (\hat\varphi^T \hat\varphi)` at the sensors (Allemang,
 Sound and Vibration 37 (8), 2003).
+
+Results hold those of all points in a common basis: the displacements u_r of the drawn nodes in mode
+r of a point are :math:`u_r = \sum_b c_{rb} B_b`, with the few columns B that the shapes of all
+points need up to `TOLERANCE`, and coefficients c between -1 and 1. Drawn are the nodes of lines and
+faces, of solids those of the surface. Q and C are an orthonormal basis, and the coefficients in it.
 """
 
 from __future__ import annotations
@@ -18,12 +23,34 @@ import xarray as xr
 
 from modefront._typing import Floats, Ints
 from modefront.brief import as_html, brief
-from modefront.data.modal import ModalData
 from modefront.errors import Fault, InputError, ModelError, writing
 from modefront.models.base import full_of, geometry_of, shapes_at
 from modefront.models.geometry import Cells, Geometry
 from modefront.outputs import output_by_name
+from modefront.pairing.match import mean_mac, modes_needed
 from modefront.residuals.problem import UpdatingProblem
+from modefront.results.analysis import Values
+from modefront.results.schema import described
+from modefront.rounding import TINY
+from modefront.work.codec import record
+
+TOLERANCE = 1e-3
+"""Error of a shape in the basis, over its length, at most."""
+
+AXES = ("x", "y", "z")
+
+FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
+    "triangle": ((0, 1, 2),),
+    "quad": ((0, 1, 2, 3),),
+    "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
+    "wedge": ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+    "pyramid": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+    "hexahedron": (
+        *((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4)),
+        *((1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+    ),
+}
+"""Corners of the faces of cells, in the order of VTK; nodes between corners follow them there."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -62,67 +89,54 @@ def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:
 
     Raises ModelError for a point whose model has no such modes.
     """
-    theta = row["theta"].values
-    paired = row["paired_mode"].values
+    paired, data = row["paired_mode"].values, problem.data
     if not np.isfinite(paired).all():
         raise ModelError(f"{row['label'].values!s} has no modes: its model cannot be solved")
     index = paired.astype(int) - 1
-    _, phi, Phi = shapes_at(full_of(problem.model), theta, int(index.max()) + 1)
+    _, phi, Phi = shapes_at(full_of(problem.model), row["theta"].values, int(index.max()) + 1)
     Phi = None if Phi is None else Phi[:, index]
-    computed, displacement = scaled_shapes(problem, Phi, phi[:, index])
+    computed, displacement = _scaled(problem, Phi, phi[:, index])
+    product = np.nansum(data.shape * computed, axis=2)
+    square = np.nansum(data.shape**2, axis=2)
+    factor = np.divide(product, square, out=np.zeros(square.shape), where=square > 0)
     return PairedShapes(
-        problem.data.modes,
+        data.modes,
         row["frequency"].values,
-        problem.data.mean_frequency,
+        data.mean_frequency,
         row["mac"].values,
         displacement,
         computed,
-        _fitted(problem.data, computed),
-        problem.data.sensors,
+        data.shape * factor[:, :, None],
+        data.sensors,
         geometry_of(problem.model),
     )
 
 
-def scaled_shapes(
+def _scaled(
     problem: UpdatingProblem, Phi: Floats | None, phi: Floats, nodes: Ints | None = None
 ) -> tuple[Floats, Floats | None]:
     """Return modes at the sensors (modes, sensors) and at nodes (modes, nodes, 3) in one scale.
 
-    ``Phi`` (N, modes) and ``phi`` (sensors, modes) are the modes of the model; there are none at
-    nodes of a model without geometry.
+    ``Phi`` (N, modes) and ``phi`` (sensors, modes) are the modes of the model. The greatest length
+    at the nodes is 1, with the sign of the first measured shape. A model without geometry has
+    nothing at nodes, and a greatest component of 1.
     """
-    geometry, computed, displacement = geometry_of(problem.model), phi.T, None
+    geometry, computed, displacement, measured = (
+        geometry_of(problem.model),
+        phi.T,
+        None,
+        problem.data.shape,
+    )
+    size = np.abs(computed).max(axis=1)
     if geometry is not None and Phi is not None:
         displacement = geometry.displacement(Phi)
         displacement = displacement if nodes is None else displacement[:, nodes]
-    scale = unit_scale(problem.data, computed, displacement)[:, None]
-    return computed * scale, None if displacement is None else displacement * scale[..., None]
-
-
-def unit_scale(data: ModalData, computed: Floats, displacement: Floats | None) -> Floats:
-    """Return factors (modes,) to a greatest length of 1 and the sign of the first measured shape.
-
-    Without displacements (modes, nodes, 3) the greatest component of the ``computed`` shapes
-    (modes, sensors) is 1.
-    """
-    if displacement is None:
-        size = np.abs(computed).max(axis=1)
-    else:
         size = np.sqrt((displacement**2).sum(axis=2)).max(axis=1)
-    product = np.nansum(data.shape * computed, axis=2)
-    first = np.argmax(product != 0, axis=0)
-    sign = np.where(product[first, np.arange(len(size))] < 0, -1.0, 1.0)
-    out: Floats = sign / np.where(size > 0, size, 1.0)
-    return out
-
-
-def _fitted(data: ModalData, computed: Floats) -> Floats:
-    """Return measured shapes (sets, modes, sensors) times their modal scale factors."""
-    product = np.nansum(data.shape * computed, axis=2)
-    square = np.nansum(data.shape**2, axis=2)
-    factor = np.divide(product, square, out=np.zeros(square.shape), where=square > 0)
-    out: Floats = data.shape * factor[:, :, None]
-    return out
+    product = np.nansum(measured * computed, axis=2)
+    first = product[np.argmax(product != 0, axis=0), np.arange(len(size))]
+    scale = np.where(first < 0, -1.0, 1.0) / np.where(size > 0, size, 1.0)
+    moved = None if displacement is None else displacement * scale[:, None, None]
+    return computed * scale[:, None], moved
 
 
 def write_vtu(path: Path, shapes: PairedShapes) -> None:
@@ -141,7 +155,12 @@ def write_vtu(path: Path, shapes: PairedShapes) -> None:
         for r, (mode, frequency) in enumerate(zip(shapes.modes, shapes.frequency, strict=True))
     }
     for r, mode in enumerate(shapes.modes):
-        vectors[f"mode {mode} measured"] = _at_sensors(geometry, shapes.measured[:, r])
+        known = np.isfinite(shapes.measured[:, r])
+        total = np.where(known, shapes.measured[:, r], 0.0).sum(axis=0)  # over the data sets
+        mean = total / np.maximum(known.sum(axis=0), 1)
+        vectors[f"mode {mode} measured"] = np.zeros(geometry.nodes.shape)
+        moved = mean[:, None] * geometry.sensor_directions
+        np.add.at(vectors[f"mode {mode} measured"], geometry.sensor_nodes, moved)
     write_grid(path, geometry.nodes, geometry.cells, vectors)
 
 
@@ -173,11 +192,162 @@ def write_grid(
         meshio.write(copy, mesh, file_format="vtu")
 
 
-def _at_sensors(geometry: Geometry, measured: Floats) -> Floats:
-    """Return displacements (nodes, 3) of shapes (sets, sensors), the mean over the data sets."""
-    known = np.isfinite(measured)
-    count = np.maximum(known.sum(axis=0), 1)
-    mean = np.where(known, measured, 0.0).sum(axis=0) / count
-    out = np.zeros(geometry.nodes.shape)
-    np.add.at(out, geometry.sensor_nodes, mean[:, None] * geometry.sensor_directions)
+@record
+@dataclass(frozen=True, eq=False)
+class ModeShapes:
+    """Modes of all points.
+
+    Attributes
+    ----------
+    frequency : (points, model modes) in Hz; NaN where a point has no modes
+    mac : (points, modes, model modes) MAC of each measured with each model mode
+    sensed : (points, modes, sensors) paired model modes at the sensors
+    basis : (n, drawn nodes, 3) columns of the common basis; None for a model without geometry
+    coefficient : (points, modes, n) of the paired model modes; None likewise
+    """
+
+    frequency: Floats
+    mac: Floats
+    sensed: Floats
+    basis: Floats | None
+    coefficient: Floats | None
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """Nodes of a geometry that pictures show (ascending), lines (n, 2) and faces (n, 4) of these.
+
+    A triangle has -1 in the last column.
+    """
+
+    nodes: Ints
+    lines: Ints
+    faces: Ints
+
+
+def drawing(geometry: Geometry) -> Drawing:
+    """Return lines and faces of the cells of a geometry, and the nodes that these have."""
+    flat = ("line", "triangle", "quad")
+    lines = [cells.nodes[:, :2] for cells in geometry.cells if cells.type.startswith("line")]
+    shells = [_faces(cells) for cells in geometry.cells if cells.type.startswith(flat[1:])]
+    solids = [_faces(cells) for cells in geometry.cells if not cells.type.startswith(flat)]
+    none = np.empty((0, 4), dtype=np.int64)
+    all_lines = np.vstack([none[:, :2], *lines])
+    all_faces = np.vstack([none, *shells, _surface(np.vstack([none, *solids]))])
+    # Sensors are drawn as well, at nodes between cells too.
+    used = [all_lines.ravel(), all_faces[all_faces >= 0], geometry.sensor_nodes]
+    nodes = np.unique(np.concatenate(used)).astype(np.int64)
+    number = np.full(len(geometry.nodes) + 1, -1, dtype=np.int64)  # the last one stands for none
+    number[nodes] = np.arange(len(nodes))
+    return Drawing(nodes, number[all_lines], number[all_faces])
+
+
+def _faces(cells: Cells) -> Ints:
+    """Return the faces of cells of one type, (faces, 4), -1 for no fourth corner."""
+    nodes = np.asarray(cells.nodes, dtype=np.int64)
+    corners = FACES.get(cells.type.rstrip("0123456789"), ())
+    if not corners:
+        return np.empty((0, 4), dtype=np.int64)
+    rows = [nodes[:, list(face)] for face in corners]
+    return np.vstack([np.pad(x, ((0, 0), (0, 4 - x.shape[1])), constant_values=-1) for x in rows])
+
+
+def _surface(faces: Ints) -> Ints:
+    """Return the faces of solids that no other one has the nodes of: those within are shared."""
+    if not len(faces):
+        return faces
+    _, first, count = np.unique(
+        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    return faces[np.sort(first[count == 1])]
+
+
+def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> ModeShapes:
+    """Return the modes of models with parameters (points, p).
+
+    ``paired`` (points, modes) are numbers of the model modes, from 1; NaN where there are none.
+    """
+    data, model = problem.data, problem.model
+    count = modes_needed(problem.pairing, data, model.size)
+    geometry = geometry_of(model)
+    drawn = drawing(geometry).nodes if geometry else np.empty(0, dtype=np.int64)
+    points, modes = paired.shape
+    frequency = np.full((points, count), np.nan)
+    mac = np.full((points, modes, count), np.nan)
+    sensed = np.full((points, modes, len(data.sensors)), np.nan)
+    Q = np.empty((3 * len(drawn), 0))
+    rows: dict[int, Floats] = {}
+    for i, theta in enumerate(thetas):
+        if not np.isfinite(paired[i]).all():
+            continue
+        index = paired[i].astype(int) - 1
+        try:
+            lam, phi, Phi = shapes_at(model, theta, max(count, int(index.max()) + 1))
+        except ModelError:
+            continue
+        frequency[i] = np.sqrt(np.maximum(lam[:count], 0)) / (2 * np.pi)
+        mac[i] = mean_mac(data, phi[:, :count])
+        Phi = Phi[:, index] if drawn.size and Phi is not None else None
+        sensed[i], u = _scaled(problem, Phi, phi[:, index], drawn)
+        U = np.zeros((0, modes)) if u is None else u.reshape(modes, -1).T
+        Q = _extended(Q, U)
+        rows[i] = Q.T @ U
+    if geometry is None or not rows:
+        return ModeShapes(frequency, mac, sensed, None, None)
+    n = Q.shape[1]
+    C = np.hstack([np.pad(row, ((0, n - len(row)), (0, 0))) for row in rows.values()])
+    W, sigma, V = np.linalg.svd(C, full_matrices=False)
+    lacking = np.cumsum((sigma[:, None] * V)[::-1] ** 2, axis=0)[::-1]
+    needed = (lacking > TOLERANCE**2 * np.maximum(lacking[0], TINY)).any(axis=1)
+    kept = max(1, int(needed.sum()))
+    c = sigma[:kept, None] * V[:kept]
+    most = np.maximum(np.abs(c).max(axis=1), TINY)
+    B = (Q @ W[:, :kept]) * most
+    coefficient = np.full((points, modes, kept), np.nan)
+    coefficient[list(rows)] = (c / most[:, None]).T.reshape(len(rows), modes, kept)
+    return ModeShapes(frequency, mac, sensed, B.T.reshape(-1, len(drawn), 3), coefficient)
+
+
+def _extended(Q: Floats, U: Floats) -> Floats:
+    """Return an orthonormal basis (size, n), with further columns where shapes U need them."""
+    length = np.linalg.norm(U, axis=0)
+    missing = np.linalg.norm(U - Q @ (Q.T @ U), axis=0)
+    for r in np.flatnonzero(missing > TOLERANCE / 10 * length).tolist():
+        q = U[:, r]
+        for _ in range(2):  # twice is enough for orthogonality to rounding
+            q = q - Q @ (Q.T @ q)
+        if np.linalg.norm(q) > TOLERANCE / 10 * length[r]:
+            Q = np.column_stack([Q, q / np.linalg.norm(q)])
+    return Q
+
+
+def with_mode_shapes(data: xr.Dataset, problem: UpdatingProblem, shapes: ModeShapes) -> xr.Dataset:
+    """Return results with the measured modes, and the modes of all points."""
+    measured = problem.data
+    values: Values = {
+        "set_frequency": measured.frequency,
+        "set_frequency_std": measured.frequency_std,
+        "measured_shape": measured.shape,
+        "model_frequency": shapes.frequency,
+        "mac_matrix": shapes.mac,
+        "shape": shapes.sensed,
+    }
+    coordinates: dict[str, object] = {"set": list(measured.sets), "sensor": list(measured.sensors)}
+    geometry = geometry_of(problem.model)
+    if geometry is not None and shapes.basis is not None:
+        drawn = drawing(geometry)
+        values |= {
+            "node": geometry.nodes[drawn.nodes],
+            "line_nodes": drawn.lines,
+            "face_nodes": drawn.faces,
+            "sensor_node": np.searchsorted(drawn.nodes, geometry.sensor_nodes),
+            "sensor_direction": geometry.sensor_directions,
+            "shape_basis": shapes.basis.astype(np.float32),
+            "shape_coefficient": shapes.coefficient,
+        }
+        coordinates["axis"] = list(AXES)
+    out = data.assign(described(values)).assign_coords(coordinates)
+    if geometry is not None and "node" in values:
+        groups = [cells.group for cells in geometry.cells]
+        out.attrs["geometry"] = "chain" if groups == ["chain"] else "mesh"
     return out

@@ -8,16 +8,22 @@ import numpy as np
 import xarray as xr
 
 from modefront.front.point import REFERENCES, Kind, preferred
-from modefront.predictions.registry import ATTRIBUTE, kinds_from, kinds_in
-from modefront.results.schema import ATTRIBUTES, DIMENSIONS, variables_in, variables_of
+from modefront.predictions.registry import ATTRIBUTE, kinds_from
+from modefront.results.schema import ATTRIBUTES, DIMENSIONS, VARIABLES, variables_in, variables_of
 from modefront.text import NAME, clean
-from modefront.variables import Values
+from modefront.variables import Values, Variable
 
 DTYPES: Mapping[Values, str] = {"number": "fiu", "count": "iuf", "truth": "biu", "text": "UOST"}
 """Kinds of NumPy types that each of these may have in a file."""
 
-COORDINATES: Mapping[str, str] = {"parameter": "UOST", "group": "UOST", "mode": "fiu"}
-"""Coordinates that all results have, with their types."""
+COORDINATES: Mapping[str, Variable] = {
+    "parameter": Variable(
+        "parameter", ("parameter",), DIMENSIONS["parameter"], "text", required=True
+    ),
+    "group": Variable("group", ("group",), DIMENSIONS["group"], "text", required=True),
+    "mode": Variable("mode", ("mode",), DIMENSIONS["mode"], "count", required=True),
+}
+"""Coordinates that all results have."""
 
 FINITE = (
     *("theta", "objective", "error", "frequency", "bounds", "properties"),
@@ -43,78 +49,52 @@ Wrong = tuple[str, str, str]
 """Place, expected, found."""
 
 
-def faults(data: xr.Dataset, *, whole: bool = True) -> list[Wrong]:
+def faults(data: xr.Dataset) -> list[Wrong]:
     """Return place, expected and found of what is wrong with a dataset.
 
-    Values are looked at where all variables are there, of their types and dimensions. A ``whole``
-    dataset has all variables that belong together.
+    Values are looked at where all variables are there, of their types and dimensions.
     """
-    out = list(_structure(data)) or list(_together(data) if whole else ())
-    return out or [*_sizes(data), *_texts(data), *_numbers(data), *_geometry(data), *_of_file(data)]
+    return list(_structure(data)) or [*_texts(data), *_numbers(data), *_of_file(data)]
 
 
 def _structure(data: xr.Dataset) -> Iterator[Wrong]:
-    """Yield what is missing, or of another type or other dimensions."""
+    """Yield what is missing, also beside what is there, or of another type, dimensions or size."""
     for name, attribute in ATTRIBUTES.items():
         place = f"attribute '{name}'"
         if name not in data.attrs:
             yield from [(place, attribute.meaning, "nothing")] * attribute.required
         elif isinstance(data.attrs[name], str) != (attribute.values == "text"):
             yield place, f"a {attribute.values}", repr(data.attrs[name])
-    for name, kinds in COORDINATES.items():
-        place, known = f"coordinate '{name}'", data.coords.get(name)
-        if known is None:
-            yield place, DIMENSIONS[name], "nothing"
-        elif known.dims != (name,) or known.dtype.kind not in kinds:
-            found = f"{known.dtype} of the dimensions {', '.join(map(str, known.dims))}"
-            yield place, DIMENSIONS[name], found
     try:
-        variables = variables_of(kinds_from(str(data.attrs.get(ATTRIBUTE, ""))))
+        kinds = kinds_from(str(data.attrs.get(ATTRIBUTE, "")))
+        variables = {**COORDINATES, **variables_of(kinds)}
     except ValueError as error:
         yield f"attribute '{ATTRIBUTE}'", "kinds of predictions in JSON", str(error)
         return
+    there = {variables[name].together: name for name in variables if name in data.variables}
     for name, variable in variables.items():
-        place = f"variable '{name}'"
-        if name not in data:
-            yield from [(place, variable.meaning, "nothing")] * variable.required
-        elif (dims := data[name].dims) != variable.dimensions:
-            expected, found = (
-                ", ".join(map(str, x)) or "none" for x in (variable.dimensions, dims)
-            )
-            yield place, f"dimensions {expected}", found
-        elif data[name].dtype.kind not in DTYPES[variable.values]:
-            yield place, f"values of type {variable.values}", str(data[name].dtype)
-    if not data.sizes.get("point") or not data.sizes.get("mode"):
-        yield "dimensions 'point' and 'mode'", "at least one each", "none"
-
-
-def _together(data: xr.Dataset) -> Iterator[Wrong]:
-    """Yield variables and coordinates without which others cannot be shown."""
-    first: dict[str, str] = {}
-    variables = [(x.together, name) for name, x in variables_in(data).items() if x.together]
-    for together, name in variables:
-        if name in data:
-            first.setdefault(together, name)
-    for together, name in variables:
-        if together in first and name not in data:
-            yield f"variable '{name}'", f"it, as there is '{first[together]}'", "nothing"
-    kinds = [kind.dimension for kind in kinds_in(data)]
-    for name in kinds:
-        if name not in data.dims:
-            yield f"dimension '{name}'", f"it, as '{ATTRIBUTE}' has it", "nothing"
-    for name in ("range", "statistic", "quantile", "set", "sensor", *kinds):
-        if name in data.dims and name not in data.coords:
+        beside, known = there.get(variable.together), data.variables.get(name)
+        if known is None:
+            expected = f"it, as there is '{beside}'" if variable.together else variable.meaning
+            is_missing = variable.required or (beside and variable.together)
+            yield from [(_place(name), expected, "nothing")] * bool(is_missing)
+        elif known.dims != variable.dimensions:
+            dimensions = (", ".join(map(str, x)) for x in (variable.dimensions, known.dims))
+            expected, found = (x or "none" for x in dimensions)
+            yield _place(name), f"dimensions {expected}", found
+        elif known.dtype.kind not in DTYPES[variable.values]:
+            yield _place(name), f"values of type {variable.values}", str(known.dtype)
+    predicted = [kind.dimension for kind in kinds] + ["range"] * bool(kinds)
+    shown = [x for x in ("range", "statistic", "quantile", "set", "sensor") if x in data.dims]
+    for name in dict.fromkeys([*shown, *predicted]):
+        if name not in data.coords:
             yield f"coordinate '{name}'", DIMENSIONS.get(name, "names of its places"), "nothing"
-    for name in ("range", "frequency_range"):
-        if name not in data and any(kind in data.dims for kind in kinds):
-            yield f"variable '{name}'", "it, as there are predictions", "nothing"
-
-
-def _sizes(data: xr.Dataset) -> Iterator[Wrong]:
+    if kinds and "frequency_range" not in data:
+        yield "variable 'frequency_range'", "it, as there are predictions", "nothing"
     for name in ("point", "parameter", "group", "mode"):
         if not data.sizes.get(name):
             yield f"dimension '{name}'", f"at least one: {DIMENSIONS[name]}", "none"
-    others = {f"{name}_other": data.sizes[name] for name in ("parameter", "group")}
+    others = {f"{name}_other": data.sizes.get(name, 0) for name in ("parameter", "group")}
     for name, size in {**SIZES, **others}.items():
         if data.sizes.get(name, size) != size:
             yield f"dimension '{name}'", f"{size}: {DIMENSIONS[name]}", str(data.sizes[name])
@@ -126,13 +106,13 @@ def _texts(data: xr.Dataset) -> Iterator[Wrong]:
     for name, variable in data.variables.items():
         wrong = [x for x in variable.values.ravel() if not isinstance(x, str)]
         if variable.dtype.kind in "OST" and wrong:
-            yield _place(data, name), "texts", repr(wrong[0])
+            yield _place(name), "texts", repr(wrong[0])
             return
     for name in UNIQUE:
         values = data[name].values.tolist()
         if len(set(values)) < len(values):
             repeated = next(value for value in values if values.count(value) > 1)
-            yield _place(data, name), "each value once", f"{clean(repeated, NAME)!r} again"
+            yield _place(name), "each value once", f"{clean(repeated, NAME)!r} again"
     kinds, known = data["kind"].values.tolist(), [kind.value for kind in Kind]
     for kind in [str(kind) for kind in kinds if kind not in known][:1]:
         yield "variable 'kind'", f"any of {', '.join(known)}", clean(repr(kind), NAME)
@@ -142,37 +122,34 @@ def _texts(data: xr.Dataset) -> Iterator[Wrong]:
 
 
 def _numbers(data: xr.Dataset) -> Iterator[Wrong]:
-    variables = variables_in(data)
-    for name in ("mode", *variables):
-        if name not in data or data[name].dtype.kind not in "fiub":
+    """Yield the first value of each variable that is none that it can have."""
+    for name, variable in {**COORDINATES, **variables_in(data)}.items():
+        if name not in data or variable.values == "text":
             continue
-        values = data[name].values
-        kind = variables[name].values if name in variables else "count"
-        if kind == "truth":
-            yield from _all(data, name, "truth values, 0 or 1", np.isin(values, (0, 1)))
-        elif kind == "count":
-            whole = (np.abs(values) <= LARGEST) & (values == np.round(values))
-            yield from _all(data, name, "whole numbers", whole)
+        x = data[name].values
+        if variable.values == "truth":
+            yield from _first(name, "truth values, 0 or 1", x, np.isin(x, (0, 1)))
+        elif variable.values == "count":
+            whole = (np.abs(x) <= LARGEST) & (x == np.round(x))
+            yield from _first(name, "whole numbers", x, whole)
         elif name in FINITE:
-            yield from _all(data, name, "finite numbers", np.isfinite(values))
+            yield from _first(name, "finite numbers", x, np.isfinite(x))
     for name in ("objective", "error", "minimum_objective"):
-        yield from _all(data, name, "numbers of 0 or more", ~(data[name].values < 0))
-    bounds = data["bounds"].values
-    if bounds.shape[1] == 2 and not (bounds[:, 0] < bounds[:, 1]).all():
-        yield "variable 'bounds'", "lower bounds below upper ones", str(bounds[0].tolist())
+        yield from _first(name, "numbers of 0 or more", x := data[name].values, ~(x < 0))
+    lower, upper = data["bounds"].values.T
+    yield from _first("bounds", "lower bounds below upper ones", lower, lower < upper)
     f = data["measured_frequency"].values
     known = np.isnan(f) | ((f > 0) & np.isfinite(f))
-    yield from _all(data, "measured_frequency", "frequencies above 0", known)
-
-
-def _geometry(data: xr.Dataset) -> Iterator[Wrong]:
+    yield from _first("measured_frequency", "frequencies above 0", f, known)
     count = data.sizes.get("drawn_node", 0)
     for name, least in (("line_nodes", 0), ("face_nodes", -1), ("sensor_node", 0)):
         if name in data:
-            right = (data[name].values >= least) & (data[name].values < count)
-            yield from _all(data, name, f"nodes from {least} to {count - 1}", right)
-    if "face_nodes" in data and (data["face_nodes"].values[:, :3] < 0).any():
-        yield "variable 'face_nodes'", "three corners at least", "-1 among the first three"
+            x = data[name].values
+            expected = f"nodes from {least} to {count - 1}"
+            yield from _first(name, expected, x, (x >= least) & (x < count))
+    if "face_nodes" in data:
+        corners = data["face_nodes"].values[:, :3]
+        yield from _first("face_nodes", "three corners at least", corners, corners >= 0)
 
 
 def _of_file(data: xr.Dataset) -> Iterator[Wrong]:
@@ -191,11 +168,12 @@ def _of_file(data: xr.Dataset) -> Iterator[Wrong]:
         yield "attribute 'reference'", "the label of a point", found
 
 
-def _place(data: xr.Dataset, name: object) -> str:
-    return f"{'coordinate' if name in data.coords else 'variable'} '{name}'"
+def _place(name: object) -> str:
+    is_label = name in DIMENSIONS and name not in VARIABLES
+    return f"{'coordinate' if is_label else 'variable'} '{name}'"
 
 
-def _all(data: xr.Dataset, name: str, expected: str, right: np.ndarray) -> Iterator[Wrong]:
-    """Yield the first value of a variable that is not ``right``."""
+def _first(name: str, expected: str, values: np.ndarray, right: np.ndarray) -> Iterator[Wrong]:
+    """Yield the first value of a variable that is not ``right``, if there is one."""
     if not right.all():
-        yield _place(data, name), expected, str(data[name].values[~np.asarray(right)].ravel()[0])
+        yield _place(name), expected, str(values[~np.asarray(right)].ravel()[0])

@@ -17,8 +17,7 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.findings.catalogue import VERDICT
 from modefront.findings.knowledge import enumeration
-from modefront.findings.selection import front_points
-from modefront.front.point import Kind, preferred
+from modefront.front.point import Kind, front_points, preferred
 from modefront.predictions.registry import predictions_in
 from modefront.results.posterior import TRUST
 from modefront.results.remarks import fit_of
@@ -62,7 +61,9 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
         return data.assign_attrs(verdict="\n".join(_unjudged(data)))
     groups = list(map(str, data["group"].values))
     refused = refusals(groups, data["misfit"].values, data["nominal_misfit"].values)
-    said = [*_at_bounds(data), *_assumed(data), *_pairs(data)]
+    assumed = data.attrs.get("assumed")
+    said = [*_at_bounds(data), *([_say("assumed", assumed=assumed)] if assumed else [])]
+    said += _pairs(data)
     if not data.attrs.get("settled", 1):
         said.insert(0, _say("unsettled"))
     if refused:
@@ -76,12 +77,11 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
 
 def _unjudged(data: xr.Dataset) -> Iterator[str]:
     """Yield how well the reference fits, where nothing is expected of the errors."""
-    labels, reference = data["label"].values, preferred(data.attrs)
-    is_nominal = data["kind"].values == Kind.NOMINAL.value
-    fit = fit_of(data, labels == reference, whole=True)
-    nominal = fit_of(data, is_nominal)
-    yield _say("unjudged", reference=reference, fit=fit, nominal=nominal)
-    error, before = (data["error"].values[x][0] for x in (labels == reference, is_nominal))
+    reference = preferred(data.attrs)
+    chosen, nominal = data["label"].values == reference, data["kind"].values == Kind.NOMINAL.value
+    fit = {"fit": fit_of(data, chosen, whole=True), "nominal": fit_of(data, nominal)}
+    yield _say("unjudged", reference=reference, **fit)
+    error, before = (data["error"].values[x][0] for x in (chosen, nominal))
     worse = [_say("worse", group=x) for x in data["group"].values[error > WORSE * before]]
     if worse:
         yield _say("bought", why=enumeration(worse, NAMED))
@@ -121,41 +121,32 @@ def _use(data: xr.Dataset) -> str:
 
 
 def _at_bounds(data: xr.Dataset) -> Iterator[str]:
-    best = _row(data, Kind.MOST_PROBABLE)
+    best, names = _row(data, Kind.MOST_PROBABLE), data["parameter"].values
     sides, values = best["at_bound"].values, best["theta"].values
-    names = data["parameter"].values
-    at = [
-        f"{name} is at its {'upper' if side > 0 else 'lower'} bound {value:.4g}"
-        for name, side, value in zip(names, sides, values, strict=True)
-    ]
-    held = np.flatnonzero(sides)
-    if not held.size:
+    held = np.flatnonzero(sides).tolist()
+    if not held:
         return
-    said = enumeration([at[j] for j in held], NAMED)
+    which = {1: "upper", -1: "lower"}
+    said = [f"{names[j]} is at its {which[int(sides[j])]} bound {values[j]:.4g}" for j in held]
+    at = enumeration(said, NAMED)
     if "freed_theta" not in data:
-        yield _say("at-bound", at=said, it="it" if held.size == 1 else "them")
+        yield _say("at-bound", at=at, it="it" if len(held) == 1 else "them")
         return
     free, before, after = (data[name].values for name in ("freed_theta", "misfit", "freed_misfit"))
     beyond = [j for j in held if sides[j] * (free[j] - values[j]) > 0]
     i = int(np.argmax(before - after))
     if not beyond or before[i] - after[i] < GAIN * before[i]:
-        yield _say("at-harmless-bound", at=said, gain=100 * GAIN)
+        yield _say("at-harmless-bound", at=at, gain=100 * GAIN)
         return
-    where = enumeration([f"{names[j]} = {free[j]:.3g}" for j in beyond], NAMED)
     yield _say(
         "at-wrong-bound",
-        at=said,
-        where=where,
+        at=at,
+        where=enumeration([f"{names[j]} = {free[j]:.3g}" for j in beyond], NAMED),
         group=data["group"].values[i],
         after=after[i],
         before=before[i],
         its="its" if len(beyond) == 1 else "their",
     )
-
-
-def _assumed(data: xr.Dataset) -> Iterator[str]:
-    if data.attrs.get("assumed"):
-        yield _say("assumed", assumed=data.attrs["assumed"])
 
 
 def _pairs(data: xr.Dataset) -> Iterator[str]:
@@ -208,22 +199,13 @@ def _front(data: xr.Dataset) -> Iterator[str]:
 def _predictions(data: xr.Dataset) -> Iterator[str]:
     """Yield the posterior and the range of the first quantity of the first predictions."""
     for each in list(predictions_in(data))[:FORETOLD]:
-        variable, place = each.kind.ranged[0], each.positions[0]
-        least, greatest, _ = data[f"{variable.name}_range"].values[:, place]
-        interval = data.get(f"posterior_{variable.name}")
-        if interval is None or not np.isfinite([least, greatest]).all():
-            continue
-        low, high = interval.sel(statistic=["5 %", "95 %"]).values[:, place]
-        yield _say(
-            "prediction",
-            name=each.name,
-            place=each.places[0],
-            quantity=variable.key,
-            low=low,
-            high=high,
-            least=least,
-            greatest=greatest,
-        )
+        for x in [x for x in each.quantities if x.variable.ranged and x.drawn][:1]:
+            least, greatest, _ = x.extent
+            if np.isfinite([least, greatest]).all():
+                ends = {"least": least, "greatest": greatest}
+                ends |= {"low": x.drawn["5 %"], "high": x.drawn["95 %"]}
+                names = {"name": each.name, "place": x.place, "quantity": x.variable.key}
+                yield _say("prediction", **names, **ends)
 
 
 def _next(data: xr.Dataset) -> Iterator[str]:

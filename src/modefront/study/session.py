@@ -190,9 +190,14 @@ def worked(study: Study, work: Run) -> xr.Dataset:
     Raises InputError where no parameter changes a group.
     """
     from modefront.results.assemble import dataset
-    from modefront.results.mode_shapes import mode_shapes, with_mode_shapes
-    from modefront.results.posterior import posterior_models, with_intervals, with_posterior
-    from modefront.results.predictions import extent, with_predictions
+    from modefront.results.posterior import with_intervals
+    from modefront.results.predictions import (
+        extent,
+        posterior_models,
+        with_posterior,
+        with_predictions,
+    )
+    from modefront.results.shapes import mode_shapes, with_mode_shapes
     from modefront.results.verdict import with_verdict
 
     problem, seed, file = study.problem, study.seed, str(study.file)
@@ -254,7 +259,6 @@ def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | 
         "model_evaluations": total.model_evaluations,
         "method": front.method,
         "front_evaluations": along.model_evaluations,
-        "nbi_evaluations": along.model_evaluations if front.method == "nbi" else 0,
         "full_eigensolutions": total.eigenproblems,
         "prediction_eigensolutions": predictions.eigenproblems,
         "shape_eigensolutions": shapes.model_evaluations,
