@@ -37,7 +37,7 @@ from modefront._typing import Floats
 from modefront.front.weights import accepted, optimal_minimum
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import begin
-from modefront.results.posterior import DETERMINED
+from modefront.results.analysis import DETERMINED
 from modefront.results.verdict import refusals
 from modefront.uncertainty.laplace import laplace
 from modefront.uncertainty.most_probable import most_probable

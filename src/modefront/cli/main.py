@@ -195,12 +195,12 @@ def run(
     except BrokenPipeError:  # as by `| head`: the status is that of the run all the same
         _abandon_output()
         complain(f"modefront: nobody reads the summary; the results are in {directory}")
-    failed = not_converged(data)
-    if failed:
-        raise UnfinishedError(f"not converged, kept and marked as such: {', '.join(failed)}")
-    unsure = uncertified(data)
-    if unsure:
-        raise UnfinishedError(f"errors above the tolerance, kept and marked: {', '.join(unsure)}")
+    for marked, what in (
+        (not_converged(data), "not converged, kept and marked as such"),
+        (uncertified(data), "errors above the tolerance, kept and marked"),
+    ):
+        if marked.any():
+            raise UnfinishedError(f"{what}: {', '.join(data['label'].values[marked])}")
 
 
 @cli.command()

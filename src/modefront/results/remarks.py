@@ -45,17 +45,16 @@ def verdict(data: xr.Dataset) -> list[str]:
     return str(data.attrs.get("verdict", "")).splitlines()
 
 
-def not_converged(data: xr.Dataset) -> list[str]:
-    """Return the labels of points that should have converged and did not."""
+def not_converged(data: xr.Dataset) -> Bools:
+    """Return which points should have converged and did not."""
     solved = ~np.isin(data["status"].values, ["sampled", "jump"])
-    return data["label"].values[~data["converged"].values & solved].tolist()
+    out: Bools = ~data["converged"].values & solved
+    return out
 
 
-def uncertified(data: xr.Dataset) -> list[str]:
-    """Return the labels of models whose eigenvalues do not meet the tolerance."""
-    if "certified" not in data:
-        return []
-    return data["label"].values[~data["certified"].values].tolist()
+def uncertified(data: xr.Dataset) -> Bools:
+    """Return which models have eigenvalues that do not meet the tolerance."""
+    return ~data["certified"].values if "certified" in data else np.zeros(data.sizes["point"], bool)
 
 
 def digest(sentences: Sequence[str], where: str, most: int | None = MOST) -> list[str]:
@@ -103,20 +102,27 @@ def headlines(data: xr.Dataset) -> list[str]:
 
 
 def _failures(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield that results were changed; which models did not converge, or are not accurate."""
+    """Yield that results were changed, and which models are not what they should be."""
     if CHANGED in data.attrs:
         yield found("changed", str(data.attrs[CHANGED]))
-    labels = data["label"].values
-    for kind, names in (("not-converged", not_converged(data)), ("inaccurate", uncertified(data))):
-        if len(names):
-            yield found(kind, places(data, np.isin(labels, names)))
-    if (data["status"].values == "sampled").any():
+    status, pareto = data["status"].values, data["pareto"].values
+    if (status == "sampled").any():
         spent = int(data.attrs["front_evaluations"])
         yield found("no-test", str(data.attrs["method"]), evaluations=spent)
+    marked = {"not-converged": not_converged(data), "inaccurate": uncertified(data)}
+    marked["jump"] = status == "jump"
+    if "piece" in data:
+        on_front = data["kind"].values == Kind.FRONT.value
+        marked["between-branches"] = on_front & ~pareto & ~data["dominated_among_front"].values
+    if "stationary_weight" in data:
+        weight = data["stationary_weight"].values
+        negative = (weight < -NEGATIVE).any(axis=1)
+        marked["not-optimal"] = negative & ~np.isnan(weight).any(axis=1)
+    yield from (found(kind, places(data, x)) for kind, x in marked.items() if x.any())
 
 
 def _front(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield how many points and branches the front has, and which points are no local optima."""
+    """Yield how many points and branches the front has, and where these end."""
     front, pareto = front_points(data), data["pareto"].values
     optimal = int(pareto[front].sum())
     if data.attrs["front_is_a_point"]:
@@ -131,22 +137,9 @@ def _front(data: xr.Dataset) -> Iterator[Finding]:
         if np.isfinite(ends).all():
             end, start = ("(" + ", ".join(f"{x:.5g}" for x in J) + ")" for J in ends)
             yield found("branch-ends", str(k + 1), other=k + 2, end=end, start=start)
-    if "piece" in data:
-        inside = ~pareto & ~data["dominated_among_front"].values
-        inside &= data["kind"].values == Kind.FRONT.value
-        if inside.any():
-            yield found("between-branches", places(data, inside))
     gap, requested = data.attrs.get("largest_gap", 0.0), data.attrs.get("refined", np.inf)
     if gap > requested:
         yield found("spacing", gap=float(gap), requested=float(requested))
-    if "stationary_weight" in data:
-        weight = data["stationary_weight"].values
-        negative = (weight < -NEGATIVE).any(axis=1) & ~np.isnan(weight).any(axis=1)
-        if negative.any():
-            yield found("not-optimal", places(data, negative))
-    jump = data["status"].values == "jump"
-    if jump.any():
-        yield found("jump", places(data, jump))
 
 
 def places(data: xr.Dataset, chosen: Bools) -> str:
@@ -349,11 +342,10 @@ def _numerics(data: xr.Dataset) -> Iterator[Finding]:
         )
         if predicted:
             yield found("not-reduced", full=predicted)
-        failed = uncertified(data)
-        if failed:
-            yield found("above-tolerance", ", ".join(failed))
-            held = data["label"].values[data["certified"].values]
-            yield found("within-tolerance", ", ".join(held) if held.size else "none")
+        labels, failed = data["label"].values, uncertified(data)
+        if failed.any():
+            yield found("above-tolerance", ", ".join(labels[failed]))
+            yield found("within-tolerance", ", ".join(labels[~failed]) or "none")
     gap, volume, igd = (float(attrs[x]) for x in ("largest_gap", "hypervolume", "igd_plus"))
     if not (np.isnan(gap) and np.isnan(volume)):
         missing = "; for the hypervolume: pip install modefront[metrics]" * bool(np.isnan(volume))

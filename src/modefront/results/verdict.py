@@ -19,7 +19,7 @@ from modefront.findings.catalogue import VERDICT
 from modefront.findings.knowledge import enumeration
 from modefront.front.point import Kind, front_points, preferred
 from modefront.predictions.registry import predictions_in
-from modefront.results.posterior import TRUST
+from modefront.results.analysis import TRUST
 from modefront.results.remarks import fit_of
 
 FAR = 10.0

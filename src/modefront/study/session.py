@@ -189,8 +189,8 @@ def worked(study: Study, work: Run) -> xr.Dataset:
 
     Raises InputError where no parameter changes a group.
     """
+    from modefront.results.analysis import with_intervals
     from modefront.results.assemble import dataset
-    from modefront.results.posterior import with_intervals
     from modefront.results.predictions import (
         extent,
         posterior_models,
