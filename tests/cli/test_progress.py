@@ -48,7 +48,7 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     lines.take(State("front", 3, 0, 27, (50.0, np.inf)))
     now = 40.0
     assert drawn(lines, 80)[1] == "front, 143 models solved, 40 s or more"
-    lines.end()
+    lines.is_done = True
     assert drawn(lines, 80)[0].rstrip().endswith(" 3 tasks  0:00:40")
 
 

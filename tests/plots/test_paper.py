@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import modefront as mf
-from modefront.plots import paper_figures
+from modefront.plots import write_figures
 from modefront.plots.paper import figures
 from modefront.results.results import Results
 from modefront.study.examples import write_example
@@ -47,7 +47,7 @@ def test_figures_show_all_studies(building: Results, tmp_path: Path) -> None:
     assert {"M0", "again", "equal weights", "optimal weights"} <= set(lines)
     assert len(drawn["figure-3"].axes) == len(drawn["figure-4"].axes) == 3
     assert len(drawn["figure-5"].axes) == 6
-    paths = paper_figures(studies, tmp_path / "paper")
+    paths = write_figures(figures(studies), tmp_path / "paper")
     assert [path.name for path in paths] == [f"{name}.svg" for name in drawn]
 
 
@@ -66,15 +66,13 @@ def test_results_that_are_no_front_of_two_groups_are_refused(
     building: Results, tmp_path: Path
 ) -> None:
     data = building.dataset
+    studies = [
+        ("M0", data),
+        ("M1", data.isel(parameter=[0, 1])),
+        ("none", data.isel(point=data["kind"].values != "front")),
+    ]
     with pytest.raises(mf.InputError) as wrong:
-        paper_figures(
-            [
-                ("M0", data),
-                ("M1", data.isel(parameter=[0, 1])),
-                ("none", data.isel(point=data["kind"].values != "front")),
-            ],
-            tmp_path,
-        )
+        write_figures(figures(studies), tmp_path)
     parameters, front = map(str, wrong.value.faults)
     assert parameters == (
         "M1: --figures: expected as many parameters as in the first study, 3, found 2"

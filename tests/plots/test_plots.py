@@ -13,7 +13,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import modefront as mf
-from modefront.plots import PLOTS, Plots, pictures, write_figures, write_pictures
+from modefront.plots import PLOTS, Plots, pictures, write_figures
 from modefront.results.results import Results
 
 SEARCH = mf.Search(doubt=0.5)
@@ -126,7 +126,7 @@ def test_what_results_do_not_hold_is_said(three: Results) -> None:
 
 
 def test_all_pictures_are_written(two: Results, tmp_path: Path) -> None:
-    paths = write_figures(two.dataset, tmp_path)
+    paths = write_figures(pictures(two.dataset), tmp_path)
     assert {path.stem for path in paths} >= {*PLOTS, "frf-push"} - {"modes"}
     assert all(path.read_bytes().startswith(b"<?xml") for path in paths)
 
@@ -138,7 +138,7 @@ def test_the_file_of_a_picture_is_the_same_again(
     form: str, start: bytes, two: Results, tmp_path: Path
 ) -> None:
     first, again = (
-        write_pictures(iter([("front", two.plot.front())]), tmp_path / name, form)[0].read_bytes()
+        write_figures(iter([("front", two.plot.front())]), tmp_path / name, form)[0].read_bytes()
         for name in "ab"
     )
     assert first.startswith(start)

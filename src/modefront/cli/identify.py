@@ -36,9 +36,11 @@ def run_identify(
     screen = Screen.of_output()
     written = [] if test.modes is None else test.write(output)
     if figures is not None:
-        from modefront.plots import identification_figures
+        from modefront.plots import figures as figures_of
+        from modefront.plots import write_figures
 
-        written += identification_figures(test.names, test.identified, figures)
+        named = figures_of("identification", test.names, test.identified)
+        written += write_figures(named, figures)
     if report is not None:
         from modefront.reports.identification import write_identification
 

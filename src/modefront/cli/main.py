@@ -231,9 +231,9 @@ def show(
 
     data = read_dataset(directory)
     if figures:
-        from modefront.plots import write_figures
+        from modefront.plots import pictures, write_figures
 
-        for path in write_figures(data, directory / "figures", picture):
+        for path in write_figures(pictures(data), directory / "figures", picture):
             say(f"wrote {path}")
         say_next("report", directory)
         return
@@ -276,11 +276,12 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
         say(f"wrote {path} ({path.stat().st_size / 1e6:.2f} MB): open it in a browser")
         say_next("export", directories[0])
         return
-    from modefront.plots import paper_figures
+    from modefront.plots import figures as figures_of
+    from modefront.plots import write_figures
     from modefront.results.compare import read_together
 
     studies = [(data.attrs.get("study") or name, data) for name, data in read_together(directories)]
-    paths = paper_figures(studies, figures)
+    paths = write_figures(figures_of("paper", studies), figures)
     for path in paths:
         say(f"wrote {path}")
     for number, what in ((6, "peaks of the frequency response"), (7, "probabilities of failure")):

@@ -12,7 +12,7 @@ from datetime import timedelta
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.live import Live
 from rich.progress_bar import ProgressBar
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from modefront.study.estimate import duration
@@ -61,7 +61,7 @@ def progress_bar(title: str, plan: Plan | None) -> Iterator[Progress]:
         progress = Progress(lines.take, plan=plan)
         with Live(lines, console=screen, refresh_per_second=PER_SECOND), listening(lines.hear):
             yield progress
-            lines.end()
+            lines.is_done = True
 
 
 @dataclass
@@ -88,30 +88,28 @@ class _Lines:
         before = self.steps if text.startswith(ITERATION) else ()
         self.steps = (*(x for x in before if not x.startswith(ITERATION)), text)
 
-    def end(self) -> None:
-        """Take note that the run is done."""
-        self.is_done = True
-
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         now, done = self.clock(), self.state.done if self.state else 0
         count = f"{done} tasks  {timedelta(seconds=int(now - self.began))}"
         if options.max_width < len(self.title) + len(count) + LEAST:
             yield Text(f"{self.title}  {count}", overflow="fold")
-            yield Text(self.words, overflow="fold")
-            return
-        grid = Table.grid(padding=(0, 1), expand=True)
-        grid.add_column(no_wrap=True)
-        grid.add_column(ratio=1)
-        grid.add_column(no_wrap=True)
-        bar = ProgressBar(total=1.0, completed=1.0 if self.is_done else self.share(now))
-        grid.add_row(Text(self.title), bar, Text(count))
-        yield grid
+        else:
+            grid = Table.grid(
+                Column(no_wrap=True),
+                Column(ratio=1),
+                Column(no_wrap=True),
+                padding=(0, 1),
+                expand=True,
+            )
+            bar = ProgressBar(total=1.0, completed=self.share(now))
+            grid.add_row(Text(self.title), bar, Text(count))
+            yield grid
         yield Text(self.words, overflow="fold")
 
     def share(self, now: float) -> float:
         """Return the share of the time that has passed, by the middle of what is left."""
-        if self.state is None or self.state.left is None:
-            return 0.0
+        if self.is_done or self.state is None or self.state.left is None:
+            return float(self.is_done)
         least, most = self.state.left
         left = least if most == math.inf else (least + most) / 2
         return (now - self.began) / max(self.taken - self.began + left, now - self.began, 1e-9)
@@ -123,7 +121,9 @@ class _Lines:
             return f"done, {self.costs.model_evaluations} models solved"
         if self.state is None or not self.state.stage:
             return "starting"
-        parts = [_stage(self.state), *self.steps]
+        done, expected = self.state.of_stage
+        count = f" {done} of {expected}" if self.state.stage in COUNTED else f" {done}"
+        parts = [_title(self.state.stage) + count * (expected > 1), *self.steps]
         if self.costs.model_evaluations:
             parts.append(f"{self.costs.model_evaluations} models solved")
         parts.append(_left(self.state, self.clock() - self.taken))
@@ -146,15 +146,6 @@ class _Log:
 
 def _title(stage: str) -> str:
     return TITLES.get(stage, stage.replace("-", " "))
-
-
-def _stage(state: State) -> str:
-    """Return the stage, and how many of its tasks are done: of how many, where that is known."""
-    done, expected = state.of_stage
-    title = _title(state.stage)
-    if expected < 2:
-        return title
-    return f"{title} {done} of {expected}" if state.stage in COUNTED else f"{title} {done}"
 
 
 def _left(state: State, since: float = 0.0) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
@@ -18,7 +18,6 @@ from modefront.text import file_name
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from modefront.identification.record import Identification
     from modefront.plots.canvas import Picture
 
 PLOTS: Mapping[str, tuple[str, tuple[str, ...], str]] = {
@@ -122,39 +121,22 @@ def pictures(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
         if _is_held(data, name):
             yield name, getattr(Plots(data), name)()
             if name == "predictions":
-                yield from _figures(name, data)
+                yield from figures(name, data)
 
 
-def _figures(module: str, *arguments: object) -> Iterator[tuple[str, Picture]]:
-    """Yield what ``figures`` of a module yields."""
+def figures(module: str, *arguments: object) -> Iterator[tuple[str, Picture]]:
+    """Yield names and figures of a module: ``predictions``, ``paper`` or ``identification``."""
     with _drawing():
         yield from import_module(f"modefront.plots.{module}").figures(*arguments)
 
 
-def write_figures(data: xr.Dataset, folder: Path, form: str = "svg") -> list[Path]:
-    """Write all pictures of results into a folder and return their paths.
+def write_figures(
+    named: Iterator[tuple[str, Figure]], folder: Path, form: str = "svg"
+) -> list[Path]:
+    """Write named figures into a folder and return their paths.
 
     Raises InputError where matplotlib is missing or the folder cannot be written to.
     """
-    return write_pictures(pictures(data), folder, form)
-
-
-def paper_figures(studies: Sequence[tuple[str, xr.Dataset]], folder: Path) -> list[Path]:
-    """Write figures 2 to 7 of the paper for named results; see `modefront.plots.paper`."""
-    return write_pictures(_figures("paper", studies), folder)
-
-
-def identification_figures(
-    names: Sequence[str], identified: Sequence[Identification], folder: Path
-) -> list[Path]:
-    """Write four pictures for every data set of an identification and return their paths."""
-    return write_pictures(_figures("identification", names, identified), folder)
-
-
-def write_pictures(
-    named: Iterator[tuple[str, Figure]], folder: Path, form: str = "svg"
-) -> list[Path]:
-    """Write named figures into a folder; raises what `write_figures` raises."""
     written: list[Path] = []
     metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form)
     with writing(folder), _drawing():

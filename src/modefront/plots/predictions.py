@@ -23,8 +23,9 @@ def predictions(data: xr.Dataset) -> Picture:
     rows = [
         (each.name, x)
         for each in predictions_in(data)
+        for variable in each.kind.ranged
         for x in each.quantities
-        if x.variable.ranged
+        if x.variable == variable
     ]
     figure, axes = single(6.4, 1.0 + 0.24 * max(len(rows), 1))
     labels, widely = [], False

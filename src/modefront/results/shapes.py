@@ -227,39 +227,28 @@ class Drawing:
 
 def drawing(geometry: Geometry) -> Drawing:
     """Return lines and faces of the cells of a geometry, and the nodes that these have."""
-    flat = ("line", "triangle", "quad")
-    lines = [cells.nodes[:, :2] for cells in geometry.cells if cells.type.startswith("line")]
-    shells = [_faces(cells) for cells in geometry.cells if cells.type.startswith(flat[1:])]
-    solids = [_faces(cells) for cells in geometry.cells if not cells.type.startswith(flat)]
     none = np.empty((0, 4), dtype=np.int64)
-    all_lines = np.vstack([none[:, :2], *lines])
-    all_faces = np.vstack([none, *shells, _surface(np.vstack([none, *solids]))])
+    lines, shells, solids = [none[:, :2]], [none], [none]
+    for cells in geometry.cells:
+        nodes, kind = np.asarray(cells.nodes, dtype=np.int64), cells.type.rstrip("0123456789")
+        if kind == "line":
+            lines.append(nodes[:, :2])
+        for face in FACES.get(kind, ()):
+            corners = np.pad(nodes[:, list(face)], ((0, 0), (0, 4 - len(face))), constant_values=-1)
+            (shells if kind in ("triangle", "quad") else solids).append(corners)
+    faces = np.vstack(solids)
+    # Of solids those that no other one has the nodes of: those within are shared.
+    _, first, count = np.unique(
+        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    all_lines = np.vstack(lines)
+    all_faces = np.vstack([*shells, faces[np.sort(first[count == 1])]])
     # Sensors are drawn as well, at nodes between cells too.
     used = [all_lines.ravel(), all_faces[all_faces >= 0], geometry.sensor_nodes]
     nodes = np.unique(np.concatenate(used)).astype(np.int64)
     number = np.full(len(geometry.nodes) + 1, -1, dtype=np.int64)  # the last one stands for none
     number[nodes] = np.arange(len(nodes))
     return Drawing(nodes, number[all_lines], number[all_faces])
-
-
-def _faces(cells: Cells) -> Ints:
-    """Return the faces of cells of one type, (faces, 4), -1 for no fourth corner."""
-    nodes = np.asarray(cells.nodes, dtype=np.int64)
-    corners = FACES.get(cells.type.rstrip("0123456789"), ())
-    if not corners:
-        return np.empty((0, 4), dtype=np.int64)
-    rows = [nodes[:, list(face)] for face in corners]
-    return np.vstack([np.pad(x, ((0, 0), (0, 4 - x.shape[1])), constant_values=-1) for x in rows])
-
-
-def _surface(faces: Ints) -> Ints:
-    """Return the faces of solids that no other one has the nodes of: those within are shared."""
-    if not len(faces):
-        return faces
-    _, first, count = np.unique(
-        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
-    )
-    return faces[np.sort(first[count == 1])]
 
 
 def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> ModeShapes:
