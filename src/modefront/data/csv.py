@@ -13,22 +13,27 @@ import math
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from itertools import islice
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TextIO
 
 import numpy as np
 
 from modefront._typing import Complexes, Floats
-from modefront.data.impact import TIME, Contents, blow_of_columns
+from modefront.data.impact import TIME, Blow, Contents
 from modefront.data.modal import ModalData
 from modefront.data.responses import Channel
 from modefront.errors import Fault, InputError, reason, refuse, suggestion
-from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, refuse_holes
+from modefront.inputs import (
+    MOST_DATA,
+    available_memory,
+    ended_column,
+    file_size,
+    refuse_holes,
+    wrong,
+)
 from modefront.outputs import write_table
 from modefront.rounding import LARGEST
-from modefront.rounding import LARGEST as LARGEST_NUMBER
 from modefront.text import NAME, clean
 
 KEYS = ("set", "mode")
@@ -47,6 +52,9 @@ DECIMAL_COMMA = re.compile(r"^(\s*[+-]?[0-9]*),([0-9]*(?:e[+-]?[0-9]+)?\s*)$", r
 
 MOST_FAULTS = 100
 """Faults of rows after which the rest is not looked at."""
+
+Key = tuple[str, int]
+"""Data set and mode of a row."""
 
 
 def is_reserved(name: str, sensors: Collection[str]) -> bool:
@@ -67,11 +75,10 @@ def renamed(
     """
     out, used = [], set()
     for name in header:
-        ends = ("", *(end for end in endings if name.endswith(end)))
-        end = next((end for end in ends if name[: len(name) - len(end)] in columns), None)
-        base = name if end is None else name[: len(name) - len(end)]
-        used |= set() if end is None else {base}
-        out.append(name if end is None else columns[base] + end)
+        bases = [name, *(name.removesuffix(end) for end in endings if name.endswith(end))]
+        known = [base for base in bases if base in columns][:1]
+        used.update(known)
+        out.append(columns[known[0]] + name[len(known[0]) :] if known else name)
     return out, used
 
 
@@ -100,56 +107,56 @@ def read_csv(
         With every row and column in which something is wrong.
     """
     path, file = Path(path), str(path)
+    values: dict[Key, dict[str, float]] = {}
+    lines: dict[Key, int] = {}
+    last: list[str] = []
     with _reader(path) as rows:
         first, fields = next(rows, (1, []))
-        header = "\0".join(map(str.strip, fields)).rstrip("\0").split("\0") if fields else []
-        own = header
+        if not fields:
+            raise wrong(path, "a header of column names", "an empty file", "line 1")
+        own = "\0".join(map(str.strip, fields)).rstrip("\0").split("\0")
         header, used = renamed(own, columns or {}, (STD,))
         refuse(
             Fault(file, f"columns {clean(name, NAME)!r}", "a column of it", suggestion(name, own))
             for name in columns or {}
             if name not in used
         )
-        width = len(header)  # fields without a name behind the last one may be empty
-        rows = ((k, row if any(map(str.strip, row[width:])) else row[:width]) for k, row in rows)
-        if not header:
-            raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
-        if len(header) > 20_000:
-            expected = "up to 20000 columns"
-            raise InputError(Fault(file, f"line {first}", expected, str(len(header))))
+        width = len(header)
+        if width > 20_000:
+            raise wrong(path, "up to 20000 columns", str(width), f"line {first}")
         if sensors is None:
-            sensors = [
-                name
-                for name in dict.fromkeys(header)
-                if name.isprintable() and name and not is_reserved(name, set(header))
-            ]
-        refuse(_fault(file, first, *found) for found in _header_faults(header, sensors))
-        faults: list[Fault] = []
-        keys: list[tuple[int, str, int]] = []
-        table: list[list[float]] = []
-        last: list[str] = []
-        for number, fields in rows:
+            named = [name for name in dict.fromkeys(header) if name.isprintable() and name]
+            sensors = [name for name in named if not is_reserved(name, set(header))]
+        said = _header_faults(header, sensors)
+        refuse(Fault(file, _place(first, name), *each) for name, *each in said)
+        faults = list[Fault]()
+        for line, fields in rows:
             if len(faults) > MOST_FAULTS:
                 break
+            if not any(map(str.strip, fields[width:])):  # fields without a name may be empty
+                fields = fields[:width]
             last.append(fields[-1])
-            if len(fields) != len(header):
-                expected = f"{len(header)} fields, as in the header"
-                faults.append(_fault(file, number, None, expected, str(len(fields))))
+            if len(fields) != width:
+                expected = f"{width} fields, as in the header"
+                faults.append(Fault(file, f"line {line}", expected, str(len(fields))))
                 continue
-            texts = map(str.strip, fields)
-            key, values, found = _row(dict(zip(header, texts, strict=True)), sensors)
-            if key is not None:
-                keys.append((number, *key))
-                table.append(list(values.values()))
-            faults += [_fault(file, number, *each) for each in found]
+            texts = dict(zip(header, map(str.strip, fields), strict=True))
+            key, row, found = _row(texts, sensors)
+            faults += [Fault(file, _place(line, name), *each) for name, *each in found]
+            if key in values:
+                expected, place = "each mode of a data set once", "columns 'set' and 'mode'"
+                if "set" not in header:
+                    expected = "each mode once, or a column 'set' that tells data sets apart"
+                    place = "column 'mode'"
+                faults.append(Fault(file, f"line {line}, {place}", expected, f"{key} again"))
+            elif key is not None:
+                values[key], lines[key] = row, line
     if not last:
-        raise InputError(Fault(file, "line 2", "a row for each measured mode", "the end"))
-    repeated = _repeated(file, keys, has_sets="set" in header)
-    faults += [] if len(faults) > MOST_FAULTS else list(islice(repeated, MOST_FAULTS))
+        raise wrong(path, "a row for each measured mode", "the end", "line 2")
     refuse(faults)
     ended_column(path, last)
-    values_of = dict(zip((x for x in header if x not in KEYS), np.array(table).T, strict=True))
-    return _assemble(path, keys, values_of, tuple(sensors))
+    paired = PAIR in header and PAIR not in sensors
+    return _assembled(path, values, tuple(sensors), _pairs(path, values, lines) if paired else ())
 
 
 def write_csv(
@@ -160,27 +167,23 @@ def write_csv(
     Modes of which a data set has neither frequency nor shape are left out.
     """
     columns = (*QUANTITIES, *data.sensors)
-    header = [*KEYS, *columns, *(name + STD for name in columns)]
-    header += [PAIR] * bool(data.pairs)
+    rows = [[*KEYS, *columns, *(name + STD for name in columns), *[PAIR] * bool(data.pairs)]]
     other = {a: b for pair in data.pairs for a, b in (pair, pair[::-1])}
     unknown = np.full(data.frequency.shape, np.nan) if damping_std is None else damping_std
-    rows = []
     for k, name in enumerate(data.sets):
         values = np.column_stack([data.frequency[k], data.damping[k], data.shape[k]])
         stds = np.column_stack([data.frequency_std[k], unknown[k], data.shape_std[k]])
-        known = np.isfinite(values).any(axis=1)
-        here = {mode for mode, any_known in zip(data.modes, known, strict=True) if any_known}
+        here = [data.modes[r] for r in np.flatnonzero(np.isfinite(values).any(axis=1))]
         for mode, row in zip(data.modes, np.hstack([values, stds]), strict=True):
             if mode in here:
                 texts = ["" if math.isnan(value) else f"{value:.{digits}g}" for value in row]
                 partner = str(other[mode]) if other.get(mode) in here else ""
                 rows.append([name, str(mode), *texts, *[partner] * bool(data.pairs)])
-    write_table(path, [header, *rows])
+    write_table(path, rows)
 
 
-def _fault(file: str, line: int, column: str | None, expected: str, found: str) -> Fault:
-    place = f"line {line}, column {clean(column, NAME)!r}" if column is not None else f"line {line}"
-    return Fault(file, place, expected, found)
+def _place(line: int, column: str) -> str:
+    return f"line {line}, column {clean(column, NAME)!r}"
 
 
 @contextmanager
@@ -194,8 +197,7 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
                 rows = ((k, [DECIMAL_COMMA.sub(r"\1.\2", x) for x in row]) for k, row in rows)
             yield rows
         except csv.Error as error:
-            place = f"line {before + reader.line_num}"
-            raise InputError(Fault(str(path), place, "CSV", reason(error))) from None
+            raise wrong(path, "CSV", reason(error), f"line {before + reader.line_num}") from None
 
 
 @contextmanager
@@ -220,28 +222,17 @@ def opened(path: Path, what: str) -> Iterator[tuple[TextIO, str, int]]:
     except InputError:
         raise
     except (OSError, ValueError, csv.Error) as error:
-        raise InputError(Fault(str(path), "file", "CSV in UTF-8", reason(error))) from None
+        raise wrong(path, "CSV in UTF-8", reason(error)) from None
 
 
-def _repeated(
-    file: str, keys: Sequence[tuple[int, str, int]], *, has_sets: bool
-) -> Iterator[Fault]:
-    place, expected = "columns 'set' and 'mode'", "each mode of a data set once"
-    if not has_sets:
-        place = "column 'mode'"
-        expected = "each mode once, or a column 'set' that tells data sets apart"
-    seen: set[tuple[str, int]] = set()
-    for line, name, mode in keys:
-        if (name, mode) in seen:
-            yield Fault(file, f"line {line}, {place}", expected, f"{(name, mode)} again")
-        seen.add((name, mode))
+Said = tuple[str, str, str]
+"""A column, what is expected in it, and what was found."""
 
 
-def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[str, str, str]]:
-    """Return (column, expected, found) for everything that is wrong with the header."""
+def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[Said]:
     required = (*KEYS, *QUANTITIES, *sensors)
     known = dict.fromkeys((*required, PAIR, *(name + STD for name in (*QUANTITIES, *sensors))))
-    counts, faults = Counter(header), []
+    counts, faults = Counter(header), list[Said]()
     for k, name in enumerate(name for name in counts if name not in known):
         found = suggestion(name, known) if k < 20 else repr(clean(name, NAME))  # takes time
         faults.append((name, "the name of a quantity or of a sensor of the model", found))
@@ -251,13 +242,11 @@ def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[
     return faults + [(name, "each column once", f"{n} of this name") for name, n in several]
 
 
-_Row = tuple[tuple[str, int] | None, dict[str, float], list[tuple[str, str, str]]]
-"""The key (set, mode) of a row, None for a wrong one, its values, and its faults."""
-
-
-def _row(texts: dict[str, str], sensors: Sequence[str]) -> _Row:
-    faults: list[tuple[str, str, str]] = []
-    values: dict[str, float] = {}
+def _row(
+    texts: Mapping[str, str], sensors: Sequence[str]
+) -> tuple[Key | None, dict[str, float], list[Said]]:
+    """Return the key of a row, None for a wrong one, its values, and its faults."""
+    faults, values = list[Said](), dict[str, float]()
     name, mode = texts.get("set", "1"), texts["mode"]
     if not name or not name.isprintable():
         faults.append(("set", "the name of a data set", repr(name)))
@@ -270,15 +259,14 @@ def _row(texts: dict[str, str], sensors: Sequence[str]) -> _Row:
             values[column] = float(text) if is_number else math.nan
             if text and (expected := _range(column, values[column])):
                 faults.append((column, expected, text if is_number else repr(text)))
-    if key is None or faults:
-        return key, values, faults
     shape = [values[name] for name in sensors if not math.isnan(values[name])]
     greatest = max(map(abs, shape), default=1.0)
-    if not greatest:
+    if faults:
+        pass
+    elif not greatest:
         faults.append((sensors[0], "a mode shape that is not zero at all sensors", "only zeros"))
-    elif not 1 / LARGEST_NUMBER <= greatest <= LARGEST_NUMBER:  # squares have to be numbers
-        ends = f"from {1 / LARGEST_NUMBER:g} to {LARGEST_NUMBER:g}"
-        expected = f"a mode shape with its greatest component {ends}"
+    elif not 1 / LARGEST <= greatest <= LARGEST:  # squares have to be numbers
+        expected = f"a mode shape with its greatest component from {1 / LARGEST:g} to {LARGEST:g}"
         faults.append((sensors[0], expected, f"{greatest:g}"))
     elif not shape and math.isnan(values["frequency"]):
         faults.append(("frequency", "a frequency or a mode shape", "neither"))
@@ -297,70 +285,57 @@ def _range(column: str, value: float) -> str:
     return "a standard deviation of 0 or more" if column.endswith(STD) and value < 0 else ""
 
 
-def _assemble(
+def _assembled(
     path: Path,
-    keys: Sequence[tuple[int, str, int]],
-    columns: Mapping[str, Floats],
+    values: Mapping[Key, Mapping[str, float]],
     sensors: tuple[str, ...],
+    pairs: tuple[tuple[int, int], ...],
 ) -> ModalData:
     """Return the data of all rows; raises InputError where they are spread over too many sets."""
-    pairs = _pairs(path, keys, columns[PAIR]) if PAIR in columns and PAIR not in sensors else ()
-    sets = tuple(dict.fromkeys(name for _, name, _ in keys))
-    modes = tuple(sorted({mode for _, _, mode in keys}))
-    size = 8 * len(sets) * len(modes) * len(columns)
-    if size > available_memory() // 2:
-        found = f"{len(keys)} rows of {len(sets)} sets and {len(modes)} modes"
-        raise InputError(Fault(str(path), "rows", "most modes in every data set", found))
+    sets = tuple(dict.fromkeys(name for name, _ in values))
+    modes = tuple(sorted({mode for _, mode in values}))
+    if 16 * len(sets) * len(modes) * (2 + len(sensors)) > available_memory() // 2:
+        found = f"{len(values)} rows of {len(sets)} sets and {len(modes)} modes"
+        raise wrong(path, "most modes in every data set", found, "rows")
     places = {name: k for k, name in enumerate(sets)}
-    row = [places[name] for _, name, _ in keys]
-    column = np.searchsorted(modes, [mode for _, _, mode in keys])
+    row = [places[name] for name, _ in values]
+    column = np.searchsorted(modes, [mode for _, mode in values])
 
     def collect(*names: str) -> Floats:
         out = np.full((len(sets), len(modes), len(names)), np.nan)
-        for k, name in enumerate(names):
-            if name in columns:
-                out[row, column, k] = columns[name]
+        known = [[each.get(name, np.nan) for name in names] for each in values.values()]
+        out[row, column] = np.array(known).reshape(len(row), len(names))
         return out
 
-    return ModalData(
-        sets,
-        modes,
-        sensors,
-        collect("frequency")[..., 0],
-        collect("damping")[..., 0],
-        collect(*sensors),
-        collect("frequency" + STD)[..., 0],
-        collect(*(name + STD for name in sensors)),
-        pairs,
-    )
+    f, zeta, f_std = (collect(name)[..., 0] for name in (*QUANTITIES, "frequency" + STD))
+    phi, phi_std = collect(*sensors), collect(*(name + STD for name in sensors))
+    return ModalData(sets, modes, sensors, f, zeta, phi, f_std, phi_std, pairs)
 
 
 def _pairs(
-    path: Path, keys: Sequence[tuple[int, str, int]], other: Floats
+    path: Path, values: Mapping[Key, Mapping[str, float]], lines: Mapping[Key, int]
 ) -> tuple[tuple[int, int], ...]:
-    named = {(name, mode): x for (_, name, mode), x in zip(keys, other, strict=True) if x == x}
-    lines = {(name, mode): line for line, name, mode in keys}
-    faults = [
-        _fault(str(path), lines[name, mode], PAIR, "the other mode of a pair of this set", f"{x:g}")
-        for (name, mode), x in named.items()
-        if x in (mode, math.inf) or x % 1 or named.get((name, int(x))) != mode
-    ]
-    pairs = {tuple(sorted((mode, int(x)))) for (_, mode), x in named.items()}
-    members = [mode for pair in pairs for mode in pair]
-    if not faults and len(members) > len(set(members)):
-        twice = next(mode for mode in members if members.count(mode) > 1)
+    other = {key: x for key, row in values.items() if not math.isnan(x := row[PAIR])}
+    refuse(
+        Fault(
+            *(str(path), _place(lines[name, mode], PAIR)),
+            *("the other mode of a pair of this set", f"{x:g}"),
+        )
+        for (name, mode), x in other.items()
+        if x == mode or x % 1 or other.get((name, int(x))) != mode
+    )
+    pairs = {(mode, int(x)) for (_, mode), x in other.items() if mode < x}
+    count = Counter(mode for pair in pairs for mode in pair)
+    if twice := [mode for mode, number in count.items() if number > 1]:
         expected = "each mode in one pair, the same in all sets"
-        faults.append(Fault(str(path), f"column {PAIR!r}", expected, f"mode {twice} in two"))
-    refuse(faults)
-    return tuple(sorted((a, b) for a, b in pairs))
+        raise wrong(path, expected, f"mode {twice[0]} in two", f"column {PAIR!r}")
+    return tuple(sorted(pairs))
 
 
-FREQUENCY, COHERENCE = "frequency", "_coherence"
+FREQUENCY, FORCE, COHERENCE = "frequency", "force", "_coherence"
 
 PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))
 """Endings of the two columns of a function, in each of its forms."""
-
-ENDINGS = ("_re", "_im", "_magnitude", "_rad", "_deg", COHERENCE)
 
 LISTED = 5
 """Faults that are listed of one file."""
@@ -373,27 +348,44 @@ def read_test_csv(path: Path, reference: str, columns: Mapping[str, str] | None 
     endings of its columns. Raises InputError with what is wrong.
     """
     own, values = read_numbers(path, "a file of frequency response functions or records")
-    header, used = renamed(own, columns or {}, ENDINGS)
+    endings = (*dict.fromkeys(end for pair in PAIRS for end in pair), COHERENCE)
+    header, used = renamed(own, columns or {}, endings)
     unused = frozenset((columns or {}).keys() - used)
+    column, file = dict(zip(header, values.T, strict=True)), str(path)
     if TIME in header and FREQUENCY not in header:
-        blow = blow_of_columns(str(path), header, values, reference)
+        faults = [*_twice(file, header)]
+        if FORCE not in header:
+            place = f"line 1, column {FORCE!r}"
+            faults.append(Fault(file, place, "the record of the force", "no such column"))
+        names = [name for name in header if name not in (TIME, FORCE)]
+        if not names:
+            expected = "columns of at least one response"
+            faults.append(Fault(file, "line 1", expected, ", ".join(header)))
+        refuse(faults)
+        records = {name: np.nan_to_num(column[name], nan=0.0) for name in names}  # empty columns
+        blow = Blow(file, "columns", reference, column[TIME], column[FORCE], records)
         return Contents(blows=(blow,), unused=unused)
-    forms = _forms(path, header)
-    column = dict(zip(header, values.T, strict=True))
-    given = {name for name, x in column.items() if np.isfinite(x).all()}
-    channels = (
-        Channel(
-            str(path),
-            f"columns {name + pair[0]!r} and {name + pair[1]!r}",
-            reference,
-            name,
-            column[FREQUENCY],
-            _function(path, name, pair, (column[name + pair[0]], column[name + pair[1]])),
-            coherence=column[name + COHERENCE] if name + COHERENCE in given else None,
+    channels = []
+    for name, pair in _forms(file, header).items():
+        coherence = column.get(name + COHERENCE)
+        channels.append(
+            Channel(
+                file,
+                f"columns {name + pair[0]!r} and {name + pair[1]!r}",
+                reference,
+                name,
+                column[FREQUENCY],
+                _function(path, name, pair, (column[name + pair[0]], column[name + pair[1]])),
+                coherence=None if coherence is None or np.isnan(coherence).any() else coherence,
+            )
         )
-        for name, pair in forms.items()
-    )
     return Contents(tuple(channels), unused=unused)
+
+
+def _twice(file: str, header: Sequence[str]) -> Iterator[Fault]:
+    for name, count in Counter(header).items():
+        if count > 1:
+            yield Fault(file, f"line 1, column {name!r}", "each column once", "another")
 
 
 def _function(
@@ -406,33 +398,27 @@ def _function(
         return np.zeros(first.shape, complex)
     if any(empty):
         place = f"column {name + pair[empty.index(True)]!r}"
-        raise InputError(Fault(str(path), place, "numbers, as in the other column", "an empty one"))
+        raise wrong(path, "numbers, as in the other column", "an empty one", place)
     if pair == PAIRS[0]:
         return np.asarray(first + 1j * second)
-    most = float(np.abs(second).max())
-    faults = []
+    most, degrees = float(np.abs(second).max()), pair[1] == "_deg"
     if first.min() < 0:
         found = f"{first.min():g}: are these dB?"
-        place = f"column {name + pair[0]!r}"
-        faults.append(Fault(str(path), place, "magnitudes of 0 or more", found))
-    degrees = pair[1] == "_deg"
+        raise wrong(path, "magnitudes of 0 or more", found, f"column {name + pair[0]!r}")
     if (1 < most <= 3.15) if degrees else most > 100:  # half a turn in radians, or many of them
         unit = "degrees" if degrees else "radians"
         expected = f"a phase in {unit} (NAME_deg is in degrees, NAME_rad in radians)"
-        found = f"{most:g} at most"
-        faults.append(Fault(str(path), f"column {name + pair[1]!r}", expected, found))
-    refuse(faults)
+        raise wrong(path, expected, f"{most:g} at most", f"column {name + pair[1]!r}")
     phase = np.radians(second) if degrees else second
     return np.asarray(first * np.exp(1j * phase))
 
 
-def _forms(path: Path, header: Sequence[str]) -> dict[str, tuple[str, str]]:
+def _forms(file: str, header: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Return the endings of the two columns of every response, in the order of the columns."""
-    file = str(path)
     faults = []
     if FREQUENCY not in header:
-        found = "no such column"
-        faults.append(Fault(file, f"line 1, column {FREQUENCY!r}", "this column", found))
+        place = f"line 1, column {FREQUENCY!r}"
+        faults.append(Fault(file, place, "this column", "no such column"))
     forms: dict[str, tuple[str, str]] = {}
     for first in dict.fromkeys(pair[0] for pair in PAIRS):
         for name in (x.removesuffix(first) for x in header if x.endswith(first)):
@@ -443,14 +429,12 @@ def _forms(path: Path, header: Sequence[str]) -> dict[str, tuple[str, str]]:
                 faults.append(Fault(file, f"line 1, column {wanted}", "this column", has))
             forms[name] = whole[0] if whole else (first, first)
     known = {FREQUENCY, *(n + end for n, pair in forms.items() for end in (*pair, COHERENCE))}
-    for name in dict.fromkeys(header):
-        if header.count(name) > 1:
-            faults.append(Fault(file, f"line 1, column {name!r}", "each column once", "another"))
-        if name not in known:
-            expected = "frequency, or NAME_re and NAME_im, NAME_magnitude and NAME_rad or NAME_deg,"
-            expected += " or NAME_coherence of a response; 'columns' in [[set]] renames others"
-            found = suggestion(name, known)
-            faults.append(Fault(file, f"line 1, column {name!r}", expected, found))
+    faults += _twice(file, header)
+    for name in dict.fromkeys(name for name in header if name not in known):
+        expected = "frequency, or NAME_re and NAME_im, NAME_magnitude and NAME_rad or NAME_deg,"
+        expected += " or NAME_coherence of a response; 'columns' in [[set]] renames others"
+        found = suggestion(name, known)
+        faults.append(Fault(file, f"line 1, column {name!r}", expected, found))
     if not forms:
         expected = "columns NAME_re and NAME_im of at least one response"
         faults.append(Fault(file, "line 1", expected, ", ".join(header[:6])))
@@ -463,41 +447,39 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
 
     Raises InputError.
     """
-    file = str(path)
     with opened(path, what) as (stream, separator, before):
         header = [field.strip() for field in next(csv.reader(stream, delimiter=separator), [])]
         rows = stream.read().splitlines()
     if separator != ",":
         rows = [row.replace(",", ".") for row in rows]
-    start = before + 2
-    numbered = [(k, row) for k, row in enumerate(rows, start) if row.strip(SEPARATORS + " ")]
+    numbered = [(k, row) for k, row in enumerate(rows, before + 2) if row.strip(SEPARATORS + " ")]
     if not any(header):
-        raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
+        raise wrong(path, "a header of column names", "an empty file", "line 1")
     if not numbered:
-        raise InputError(Fault(file, "line 2", "a row for each line of frequency", "the end"))
+        raise wrong(path, "a row for each line of frequency", "the end", "line 2")
     texts = [row for _, row in numbered]
-    try:
+    with suppress(ValueError):
         values = np.loadtxt(texts, delimiter=separator, comments=None, ndmin=2)
         if values.shape == (len(numbered), len(header)) and (np.abs(values) <= LARGEST).all():
             ended_column(path, (row.rpartition(separator)[2] for row in texts))
             return header, values
-    except ValueError:
-        pass
     fields = [(number, [x.strip() for x in row.split(separator)]) for number, row in numbered]
     whole = [row for _, row in fields if len(row) == len(header)]
     full = [k for k in range(len(header)) if any(row[k] for row in whole)]
     values, faults = np.full((len(fields), len(header)), np.nan), list[Fault]()
     for position, (number, row) in enumerate(fields):
+        place = f"line {number}"
         if len(row) != len(header):
             expected = f"{len(header)} fields, as in the header"
-            faults.append(Fault(file, f"line {number}", expected, str(len(row))))
+            faults.append(Fault(str(path), place, expected, str(len(row))))
             continue
         for k in full:
             if NUMBER.fullmatch(row[k]) and abs(float(row[k])) <= LARGEST:
                 values[position, k] = float(row[k])
             else:
-                place, expected = f"column {header[k]!r}", f"a finite number up to {LARGEST:g}"
-                faults.append(Fault(file, f"line {number}, {place}", expected, repr(row[k])))
+                expected = f"a finite number up to {LARGEST:g}"
+                column = f"{place}, column {header[k]!r}"
+                faults.append(Fault(str(path), column, expected, repr(row[k])))
         if len(faults) >= LISTED:
             break
     refuse(faults[:LISTED])

@@ -245,8 +245,8 @@ def _clipped(x: Floats) -> bool:
     return False
 
 
-TIME, FORCE = "time", "force"
-"""Columns of a CSV file with the records of a blow."""
+TIME = "time"
+"""Column of a CSV file with records."""
 
 EVEN = 1e-3
 """Relative difference within which steps of time are even: files hold few digits."""
@@ -290,45 +290,13 @@ class Contents:
     unused: frozenset[str] = frozenset()
 
 
-def blow_of_columns(file: str, header: Sequence[str], values: Floats, reference: str) -> Blow:
-    """Return the blow in the columns of a CSV file: time, force, and one for every response."""
-    faults = [
-        Fault(file, f"line 1, column {name!r}", "each column once", "another")
-        for name in dict.fromkeys(header)
-        if list(header).count(name) > 1
-    ]
-    if FORCE not in header:
-        found = "no such column"
-        faults.append(Fault(file, f"line 1, column {FORCE!r}", "the record of the force", found))
-    names = [name for name in header if name not in (TIME, FORCE)]
-    if not names:
-        expected = "columns of at least one response"
-        faults.append(Fault(file, "line 1", expected, ", ".join(header)))
-    refuse(faults)
-    column = dict(zip(header, values.T, strict=True))
-    responses = {name: np.nan_to_num(column[name], nan=0.0) for name in names}  # empty columns
-    return Blow(file, "columns", reference, column[TIME], column[FORCE], responses)
+Functions = tuple[Sequence[Channel], list[str], float, Mapping[str, ForceNoise | None]]
+"""Functions; which blows are left out and why, and what has not died out; the decay of the
+exponential window in 1/s; and the noise of each reference, None where it was hit for several
+measurements."""
 
 
-@dataclass(frozen=True)
-class Averaged:
-    """Functions of all blows of a data set.
-
-    Attributes
-    ----------
-    channels : the functions
-    warnings : which blows are left out and why, and what has not died out
-    decay : that of the exponential window in 1/s
-    force_noise : that of each reference; None where a reference was hit for several measurements
-    """
-
-    channels: tuple[Channel, ...]
-    warnings: tuple[str, ...]
-    decay: float
-    force_noise: Mapping[str, ForceNoise | None]
-
-
-def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Averaged:
+def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Functions:
     """Return the functions of all references.
 
     ``quantity`` is that of the test file, or empty. Raises InputError where records do not fit, or
@@ -366,7 +334,7 @@ def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Av
                 "the record: expect errors of leakage; [impact] exponential takes a shorter time "
                 "constant"
             )
-    return Averaged(tuple(channels), tuple(warnings), result.data.decay, noise)
+    return channels, warnings, result.data.decay, noise
 
 
 def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:

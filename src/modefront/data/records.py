@@ -8,14 +8,14 @@ a two-dimensional array whose longer side is time, with rate and names from the 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.csv import read_numbers, renamed
-from modefront.data.impact import EVEN, TIME
+from modefront.data.impact import EVEN, TIME, Windows
 from modefront.data.responses import EXPECTED
 from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import read_functions
@@ -80,19 +80,29 @@ class SetFiles:
     sensors : names of the channels of arrays
     references : one a file of functions, empty where it says its own
     decay : what an exponential window added to the decay of the functions, in 1/s
+    quantity : of functions or records; empty where the test file does not say
+    windows : of records of blows; None where the test file has none
     """
 
     name: str
     files: tuple[Path, ...]
-    columns: Mapping[str, str]
-    channels: Mapping[str, str]
+    columns: Mapping[str, str] = field(default_factory=dict)
+    channels: Mapping[str, str] = field(default_factory=dict)
     rate: float | None = None
     sensors: tuple[str, ...] = ()
     references: tuple[str, ...] = ()
     decay: float = 0.0
+    quantity: str = ""
+    windows: Windows | None = None
 
 
-def read_records(setup: SetFiles, quantity: str) -> Records:
+def channel_name(channel: str, names: Mapping[str, str]) -> tuple[str, int]:
+    """Return the name of a channel, such as 1Z, and the sign of its direction, as 1-Z has it."""
+    label = next((known for known in names if known.replace("-", "") == channel), channel)
+    return names.get(label, channel), -1 if "-" in label else 1
+
+
+def read_records(setup: SetFiles) -> Records:
     """Return the records of a setup; raises InputError with what is wrong."""
     names: list[str] = []
     rows: list[Floats] = []
@@ -110,17 +120,12 @@ def read_records(setup: SetFiles, quantity: str) -> Records:
                 raise wrong(path, EXPECTED, "others", f"sensor {name!r}")
             names.append(name)
             rows.append(row)
-    moving = [bool(np.ptp(row) > 0) for row in rows]
-    if not any(moving):
+    moving = {name: row for name, row in zip(names, rows, strict=True) if np.ptp(row) > 0}
+    if not moving:
         raise wrong(setup.files[0], "a sensor that moves", "none", "records")
-    return Records(
-        setup.name,
-        tuple(name for name, moves in zip(names, moving, strict=True) if moves),
-        rates[0],
-        np.array([row for row, moves in zip(rows, moving, strict=True) if moves]),
-        quantity,
-        tuple(name for name, moves in zip(names, moving, strict=True) if not moves),
-    )
+    still = tuple(name for name in names if name not in moving)
+    quantity, values = setup.quantity or "acceleration", np.array([*moving.values()])
+    return Records(setup.name, tuple(moving), rates[0], values, quantity, still)
 
 
 def _of_file(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]:
@@ -145,14 +150,10 @@ def _of_file(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]
     if len(lengths := {len(x.data) for x in functions}) > 1:
         found = ", ".join(map(str, sorted(lengths)))
         raise wrong(path, "records of one length", found, "dataset 58")
-    signs = [(x.response[0], x.response[1] * np.asarray(x.data, float)) for x in functions]
-    names = []
-    for k, (name, row) in enumerate(signs):
-        label = next((key for key in setup.channels if key.replace("-", "") == name), name)
-        names.append(setup.channels.get(label, name))
-        if "-" in label:
-            signs[k] = name, -row
-    return names, np.array([row for _, row in signs]), _rate(path, functions[0].x)
+    named = [channel_name(x.response, setup.channels) for x in functions]
+    signs = np.array([[sign] for _, sign in named])
+    values = signs * np.array([np.asarray(x.data, float) for x in functions])
+    return [name for name, _ in named], values, _rate(path, functions[0].x)
 
 
 def read_arrays(path: Path) -> Read:

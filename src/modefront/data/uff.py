@@ -16,12 +16,12 @@ Formats*, datasets 15, 55, 58, 58b, 2411 and 2420.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,10 +34,11 @@ from modefront.inputs import MOST_DATA, counted, fortran, once, read_text_bytes,
 from modefront.outputs import write_text
 from modefront.rounding import LARGEST
 
-T = TypeVar("T")
-
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
+
+FORCES = (9, 13)
+"""Ordinates of the record of a hammer: a reaction force, and an excitation force."""
 
 CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 
@@ -82,46 +83,56 @@ class Block:
         """Place in the file, for messages."""
         return f"line {self.line}, dataset {self.number}"
 
-
-def datasets(path: Path, what: str, number: int) -> list[Block]:
-    """Return all datasets of a universal file; raises InputError where none has a number."""
-    out = blocks(read_text_bytes(path, what, MOST_DATA), path)
-    if not any(block.number == number for block in out):
-        numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in out))
-        raise wrong(path, what, f"datasets {numbers} only", "datasets")
-    return out
+    @property
+    def lines(self) -> list[str]:
+        """Lines of what it holds, without blank ones at its end."""
+        return self.body.decode("utf-8", "replace").rstrip().splitlines()
 
 
-def decoded(datasets: Iterable[Block], read: Callable[[Block], T], *numbers: int) -> list[T]:
-    """Return what is read of the datasets with some numbers; raises InputError for broken ones."""
-    out = []
-    for block in (block for block in datasets if block.number in numbers):
-        try:
-            out.append(read(block))
-        except InputError:
-            raise
-        except (ValueError, IndexError, KeyError, OverflowError) as error:
-            expected = f"a dataset {block.number}"
-            raise wrong(block.file, expected, reason(error), block.place) from None
+Reader = Callable[[Block], Sequence[Any]]
+"""What decodes a dataset; a ValueError or the like is a fault of it."""
+
+
+def _decoded(path: Path, what: str, needed: int, readers: Mapping[int, Reader]) -> list[list[Any]]:
+    """Return what each reader returns for the datasets of its number.
+
+    Raises InputError where there is none of the number that is needed, and for broken ones.
+    """
+    known = blocks(read_text_bytes(path, what, MOST_DATA), path)
+    numbers = list(dict.fromkeys(block.number for block in known))
+    if needed not in numbers:
+        raise wrong(path, what, f"datasets {', '.join(map(str, numbers))} only", "datasets")
+    out: list[list[Any]] = [[] for _ in readers]
+    for found, (number, read) in zip(out, readers.items(), strict=True):
+        for block in (block for block in known if block.number == number):
+            try:
+                found += read(block)
+            except InputError:
+                raise
+            except (ValueError, IndexError, KeyError, OverflowError) as error:
+                raise wrong(path, f"a dataset {number}", reason(error), block.place) from None
     return out
 
 
 @dataclass(frozen=True, eq=False)
 class Function:
-    """A dataset 58: its type, what it is of, its degrees of freedom, abscissae and values."""
+    """A dataset 58: type, quantity of the numerator, degrees of freedom, abscissae and values.
+
+    Values have the signs of the directions: functions that of both, others that of the response.
+    """
 
     block: Block
     kind: int
     ordinate: int
-    response: tuple[str, int]
-    reference: tuple[str, int]
+    response: str
+    reference: str
     x: Floats
     data: Floats | Complexes
 
 
 def read_functions(path: Path) -> list[Function]:
     """Return all datasets 58 of a universal file; raises InputError where it has none."""
-    return decoded(datasets(path, WHAT, 58), _function, 58)
+    return _decoded(path, WHAT, 58, {58: _function})[0]
 
 
 def read_uff(path: Path) -> Contents:
@@ -133,20 +144,30 @@ def read_uff(path: Path) -> Contents:
     functions = read_functions(path)
     kinds = {each.kind for each in functions}
     if FRF in kinds:
-        coherence = {}
-        for channel in (_channel(each) for each in functions if each.kind == COHERENCE):
-            coherence[channel.reference, channel.response] = np.abs(channel.H)
-        channels = [_channel(each) for each in functions if each.kind == FRF]
-        of_channels = [coherence.get((x.reference, x.response)) for x in channels]
-        pairs = zip(channels, of_channels, strict=True)
-        return Contents(tuple(replace(channel, coherence=each) for channel, each in pairs))
+        coherence = {
+            (x.reference, x.response): np.abs(x.data) for x in functions if x.kind == COHERENCE
+        }
+        return Contents(
+            tuple(
+                Channel(
+                    str(path),
+                    f"{x.block.place} of {x.reference} to {x.response}",
+                    x.reference,
+                    x.response,
+                    x.x,
+                    np.asarray(x.data, complex),
+                    QUANTITIES.get(x.ordinate, ""),
+                    coherence.get((x.reference, x.response)),
+                )
+                for x in functions
+                if x.kind == FRF
+            )
+        )
     # A blow ends where one of its channels comes again, or another force.
     groups: list[dict[str, Function]] = [{}]
     for record in (each for each in functions if each.kind == TIME):
-        # The ordinates of a hammer are a reaction force, and an excitation force.
-        key = "" if record.ordinate in (9, 13) else record.response[0]
-        if key in groups[-1]:
-            groups.append({})
+        key = "" if record.ordinate in FORCES else record.response
+        groups += [{}] if key in groups[-1] else []
         groups[-1][key] = record
     if blows := [_blow(group) for group in groups if "" in group and len(group) > 1]:
         return Contents(blows=tuple(blows))
@@ -160,20 +181,17 @@ def read_uff(path: Path) -> Contents:
 
 
 def _blow(group: Mapping[str, Function]) -> Blow:
-    force, records, quantities = group[""], {}, set()
-    block = force.block
-    for name, record in group.items():
-        records[name] = record.response[1] * np.asarray(record.data, float)
-        if len(records[name]) != len(force.data):
-            expected = f"{len(force.data)} samples, as the force of line {block.line}"
-            raise wrong(block.file, expected, str(len(records[name])), record.block.place)
-        if name:
-            quantities.add(QUANTITIES.get(record.ordinate, ""))
-    if len(quantities) > 1:
-        found = ", ".join(sorted(quantity or "others" for quantity in quantities))
+    block, x, where, count = (force := group[""]).block, force.x, force.response, len(force.data)
+    for record in group.values():
+        if len(record.data) != count:
+            expected = f"{count} samples, as the force of line {block.line}"
+            raise wrong(block.file, expected, str(len(record.data)), record.block.place)
+    quantity, *others = {QUANTITIES.get(group[name].ordinate, "") for name in group if name}
+    if others:
+        found = ", ".join(sorted(each or "others" for each in (quantity, *others)))
         raise wrong(block.file, "responses of one quantity", found, block.place)
-    where, x, name = force.response[0], force.x, quantities.pop()
-    return Blow(str(block.file), block.place, where, x, records.pop(""), records, name)
+    records = {name: np.asarray(record.data, float) for name, record in group.items()}
+    return Blow(str(block.file), block.place, where, x, records.pop(""), records, quantity)
 
 
 def blocks(content: bytes, file: Path) -> list[Block]:
@@ -248,7 +266,7 @@ def reals(text: str) -> list[float]:
     return [fortran(word) for word in re.sub(r"(?<=[0-9.])(?=[+-][0-9]*\.)", " ", text).split()]
 
 
-def _function(block: Block) -> Function:
+def _function(block: Block) -> list[Function]:
     *lines, body = block.body.split(b"\n", HEADER)
     head = [line.decode("utf-8", "replace") for line in lines]
     columns = (0, 5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
@@ -258,15 +276,11 @@ def _function(block: Block) -> Function:
     if even not in (0, 1):
         raise ValueError(f"abscissae of the kind {even}")
     x, data = _values(block, body, (form, count, even))
-    return Function(
-        block,
-        int(six[0]),
-        int(head[8][:10]),
-        _degree_of_freedom(six[5], six[6]),
-        _degree_of_freedom(six[8], six[9]),
-        np.asarray(first + np.arange(count) * step) if even else x,
-        data,
-    )
+    x = np.asarray(first + np.arange(count) * step) if even else x
+    kind, ordinate = int(six[0]), int(head[8][:10])
+    (response, sign), (reference, other) = (_dof(six[k], six[k + 1]) for k in (5, 8))
+    sign *= other if kind == FRF else 1
+    return [Function(block, kind, ordinate, response, reference, x, sign * data)]
 
 
 def _values(
@@ -301,15 +315,7 @@ def _values(
     return rows[0], of_y[0] + 1j * of_y[1] if is_complex else of_y[0]
 
 
-def _channel(function: Function) -> Channel:
-    (response, sign), (reference, other) = function.response, function.reference
-    place = f"{function.block.place} of {reference} to {response}"
-    H, quantity = np.asarray(function.data, complex), QUANTITIES.get(function.ordinate, "")
-    file = str(function.block.file)
-    return Channel(file, place, reference, response, function.x, sign * other * H, quantity)
-
-
-def _degree_of_freedom(node: str, direction: str) -> tuple[str, int]:
+def _dof(node: str, direction: str) -> tuple[str, int]:
     """Return the name of a degree of freedom, such as ``1Z``, and the sign of its direction."""
     if bool(node) != bool(direction):
         raise ValueError(f"a node {node!r} with the direction {direction!r}")
@@ -382,8 +388,8 @@ CARTESIAN, CYLINDRICAL = 0, 1
 
 MODES = "a universal file with modes (dataset 55)"
 
-REAL, COMPONENTS = {2: 1, 5: 2}, (3, 6)
-"""Numbers of a value by the type of data, and values a node: three translations, or all six."""
+REAL = {2: 1, 5: 2}
+"""Numbers of a value by the type of data."""
 
 HEAD = 8
 """Lines of dataset 55 before those of its nodes."""
@@ -463,15 +469,12 @@ class NodalModes:
         None for other names and nodes that there are not.
         """
         matched = re.fullmatch(r"([+-]?)([0-9]{1,9}) ?([+-]?)(R?[XYZ])", name.upper())
-        if not matched:
-            return None
-        positions = np.flatnonzero(self.nodes == int(matched[2]))
-        if not positions.size:
+        if not matched or int(matched[2]) not in self.nodes:
             return None
         direction = np.zeros(6)
         sign = -1.0 if (matched[1] == "-") != (matched[3] == "-") else 1.0
         direction[NAMES.index(matched[4])] = sign
-        return int(positions[0]), direction
+        return int(np.flatnonzero(self.nodes == int(matched[2]))[0]), direction
 
 
 def is_universal(file: Path | str) -> bool:
@@ -491,16 +494,10 @@ def read_uff55(path: Path) -> NodalModes:
 
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
-    known = datasets(path, MODES, 55)
-    points = [point for part in decoded(known, _nodes, 15, 2411) for point in part]
-    once(path, "nodes", "each node", (node for node, _, _ in points))
-    systems = dict(pair for part in decoded(known, _systems, 2420) for pair in part)
-    return _assembled(path, decoded(known, _mode, 55), points, systems)
-
-
-def _lines(block: Block) -> list[str]:
-    """Return the lines of a dataset, without blank ones at its end."""
-    return block.body.decode("utf-8", "replace").rstrip().splitlines()
+    readers: dict[int, Reader] = {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode}
+    old, new, systems, modes = _decoded(path, MODES, 55, readers)
+    once(path, "nodes", "each node", (node for node, *_ in old + new))
+    return _assembled(path, modes, old + new, dict(systems))
 
 
 def _integers(line: str, count: int) -> list[int]:
@@ -511,8 +508,7 @@ def _integers(line: str, count: int) -> list[int]:
     return numbers
 
 
-@dataclass(frozen=True, eq=False)
-class _Mode:
+class _Mode(NamedTuple):
     """One dataset 55: its data set (empty if not given), number, values, and place in the file.
 
     ``other`` is the number of the other mode of a pair, 0 for none.
@@ -528,9 +524,9 @@ class _Mode:
     other: int
 
 
-def _mode(block: Block) -> _Mode:
+def _mode(block: Block) -> list[_Mode]:
     """Return the mode of a dataset 55, whose values are as many a node as its header says."""
-    file, place, lines = block.file, block.place, _lines(block)
+    file, place, lines = block.file, block.place, block.lines
     _, kind, _, _, data, size = _integers(lines[5], 6)
     integers, real, _, number = (int(word) for word in lines[6].split()[:4])
     counted(file, place, "whole numbers in record 7", integers, len(lines[6].split()) - 2)
@@ -545,13 +541,21 @@ def _mode(block: Block) -> _Mode:
     else:
         expected = "normal modes (analysis type 2) or complex ones (3 or 7)"
         raise wrong(file, expected, f"type {kind}", place)
-    if size not in COMPONENTS or data not in REAL:
+    if size not in (3, 6) or data not in REAL:
         expected = "3 or 6 values a node, of the type 2 (real) or 5 (complex)"
         raise wrong(file, expected, f"{size} values of the type {data}", place)
-    nodes, parts = _rows(block, lines[HEAD:], size * REAL[data])
-    phi = parts[:, 0::2] + 1j * parts[:, 1::2] if REAL[data] == 2 else parts.astype(complex)
-    shape = np.zeros((nodes.size, 6))
-    shape[:, :size] = real_shape(phi)
+    nodes, values = list[int](), list[list[float]]()
+    count = size * REAL[data]
+    step = 1 + -(-count // 6)
+    for k in range(HEAD, len(lines), step):
+        nodes += _integers(lines[k], 1)
+        values.append(reals(" ".join(lines[k + 1 : k + step])))
+        of_node = f"line {block.line + 2 + k}, dataset 55, node {nodes[-1]}"
+        counted(file, of_node, "numbers", count, len(values[-1]))
+    once(file, place, "each node", nodes)
+    phi = np.array(values).reshape(-1, size, REAL[data]).astype(complex)
+    shape = np.zeros((len(nodes), 6))
+    shape[:, :size] = real_shape(phi @ [1, 1j][: REAL[data]])
     checks = [
         (not frequency > 0, "a frequency above 0 Hz", f"{frequency:g}"),
         (not 0 <= damping < 1, "a damping ratio from 0 to below 1", f"{damping:g}"),
@@ -563,20 +567,7 @@ def _mode(block: Block) -> _Mode:
     name = re.search(r"^\s*set (\S.*?)\s*$", text, re.MULTILINE)
     other = re.search(r"pair with mode (\d{1,9})\s*$", text, re.MULTILINE)
     known = name[1] if name else "", number, frequency, damping
-    return _Mode(*known, nodes, shape, place, int(other[1]) if other else 0)
-
-
-def _rows(block: Block, lines: list[str], size: int) -> tuple[Ints, Floats]:
-    nodes: list[int] = []
-    values: list[list[float]] = []
-    step = 1 + -(-size // 6)
-    for k in range(0, len(lines), step):
-        nodes += _integers(lines[k], 1)
-        values.append(reals(" ".join(lines[k + 1 : k + step])))
-        place = f"line {block.line + 2 + HEAD + k}, dataset 55, node {nodes[-1]}"
-        counted(block.file, place, "numbers", size, len(values[-1]))
-    once(block.file, block.place, "each node", nodes)
-    return np.array(nodes, dtype=np.int64), np.array(values).reshape(-1, size)
+    return [_Mode(*known, np.array(nodes), shape, place, int(other[1]) if other else 0)]
 
 
 def real_shape(phi: Complexes) -> Floats:
@@ -592,13 +583,14 @@ def real_shape(phi: Complexes) -> Floats:
 Point = tuple[int, int, Floats]
 """A node: its number, its displacement system, and its coordinates (3,)."""
 
+System = tuple[int, Floats]
+"""A system of coordinates: its type, its axes in rows and its origin (4, 3)."""
+
 
 def _nodes(block: Block) -> list[Point]:
-    lines = _lines(block)
-    step = 1 if block.number == 15 else 2
+    lines, step, out = block.lines, 1 if block.number == 15 else 2, list[Point]()
     if not lines or len(lines) % step:
         raise ValueError(f"{len(lines)} lines of nodes, {step} each")
-    out = []
     for k in range(0, len(lines), step):
         words = lines[k].split()
         node, _, system, _ = _integers(" ".join(words[:4]), 4)
@@ -608,11 +600,10 @@ def _nodes(block: Block) -> list[Point]:
     return out
 
 
-def _systems(block: Block) -> list[tuple[int, tuple[int, Floats]]]:
-    lines = _lines(block)
+def _systems(block: Block) -> list[tuple[int, System]]:
+    lines, out = block.lines, list[tuple[int, System]]()
     if len(lines) % 6 != 2:
         raise ValueError(f"{len(lines)} lines: two, and six a system")
-    out = []
     for k in range(2, len(lines), 6):
         label, kind, _ = _integers(lines[k], 3)
         rows = [reals(line) for line in lines[k + 2 : k + 6]]
@@ -621,13 +612,12 @@ def _systems(block: Block) -> list[tuple[int, tuple[int, Floats]]]:
     return out
 
 
-def _axes_at(point: Floats, system: tuple[int, Floats] | None) -> Floats:
+def _axes_at(point: Floats, system: System | None) -> Floats:
     """Return the axes (3, 3) of a coordinate system at a point; NaN where they are not known."""
-    if system is None or system[0] not in (CARTESIAN, CYLINDRICAL):
+    kind, (*given, origin) = system or (None, np.zeros((4, 3)))
+    if kind not in (CARTESIAN, CYLINDRICAL):
         return np.full((3, 3), np.nan)
-    kind, matrix = system
-    axes, origin = matrix[:3], matrix[3]
-    axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
+    axes = np.array(given) / np.linalg.norm(given, axis=1, keepdims=True)
     if kind == CARTESIAN:
         return np.asarray(axes)
     x, y, _ = axes @ (point - origin)
@@ -640,7 +630,7 @@ def _assembled(
     file: Path,
     rows: Sequence[_Mode],
     points: Sequence[Point],
-    systems: Mapping[int, tuple[int, Floats]],
+    systems: Mapping[int, System],
 ) -> NodalModes:
     """Return all modes as arrays; modes of the same number are those of a further data set."""
     placed: dict[tuple[str, int], _Mode] = {}
