@@ -353,6 +353,22 @@ def test_no_file_raises_anything_else(tmp_path: Path, program: str, content: byt
             read(program, tmp_path / name)
 
 
+@pytest.mark.parametrize("default", [False, True])
+def test_a_node_of_nastran_says_what_holds_it_and_its_directions(
+    tmp_path: Path, default: bool
+) -> None:
+    write_op4(tmp_path / "a.op4", {"KAA": K[:1, :1], "MAA": M[:1, :1]}, "sparse")
+    lines = ["GRDSET,,,,,,7,23456", "GRID,2,,1.,0.,0."] if default else []
+    lines = lines or ["GRID,2,,1.,0.,0.,7,23456"]
+    rod = "\n".join(
+        ["BEGIN BULK", *lines, "GRID,1,,0.,0.,0.,,123456", "CROD,1,1,1,2", "ENDDATA", ""]
+    )
+    (tmp_path / "a.bdf").write_text(rod)
+    job = read("nastran", tmp_path / "a.op4")
+    assert [job.dofs.label(k) for k in range(job.size)] == ["node 2 x"]
+    assert any("nodes' own systems at node " in note and "2" in note for note in job.notes)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [

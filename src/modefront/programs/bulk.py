@@ -40,7 +40,7 @@ EMPTY = [""] * 8
 Dof = tuple[int, int]
 
 
-# 13 fields: one for each kind of entry of a deck.
+# 12 fields: one for each kind of entry of a deck.
 @dataclass
 class Bulk:
     """Nodes, elements and constraints of a deck, as they are collected while it is read.
@@ -53,7 +53,7 @@ class Bulk:
     springs : nodes and components that springs hold
     links : nodes that a spring or a constraint joins
     held : supports that the case control chooses, node and component
-    supports, constraints, added : sets of SPC and MPC by number, and the sets of which others are
+    sets, added : sets of SPC and MPC by kind and number, and the sets of which others are
     followers : dependent degrees of freedom
     omitted : OMIT; kept : ASET, empty for all
     turned : nodes whose directions are those of a system of their own
@@ -65,9 +65,8 @@ class Bulk:
     springs: list[Dof] = field(default_factory=list)
     links: list[tuple[int, ...]] = field(default_factory=list)
     held: set[Dof] = field(default_factory=set)
-    supports: dict[int, set[Dof]] = field(default_factory=dict)
-    constraints: dict[int, set[Dof]] = field(default_factory=dict)
-    added: dict[int, list[int]] = field(default_factory=dict)
+    sets: dict[tuple[str, int], set[Dof]] = field(default_factory=dict)
+    added: dict[tuple[str, int], list[int]] = field(default_factory=dict)
     followers: set[Dof] = field(default_factory=set)
     omitted: set[Dof] = field(default_factory=set)
     kept: set[Dof] = field(default_factory=set)
@@ -100,6 +99,14 @@ class Bulk:
         gone = self.held | self.followers | self.omitted
         gone |= set() if singular else self._singular()
         return [dof for dof in every if dof not in gone and (not self.kept or dof in self.kept)]
+
+    def chosen(self, kind: str, control: str) -> set[Dof]:
+        """Return the set of a kind that the case control chooses; else the only one, if any."""
+        known = {number: dofs for (name, number), dofs in self.sets.items() if name == kind}
+        match = re.search(rf"^\s*{kind}\s*=\s*(\d+)", control, re.MULTILINE | re.IGNORECASE)
+        number = int(match[1]) if match else next(iter(known), 0) if len(known) == 1 else 0
+        numbers = (number, *self.added.get((kind, number), []))
+        return set().union(*(known.get(each, set()) for each in numbers))
 
     def _singular(self) -> set[Dof]:
         """Return the components that no element makes stiff, as AUTOSPC finds them."""
@@ -152,14 +159,11 @@ def read_bulk(path: Path) -> Bulk:
     parted = re.search(r"^\s*BEGIN\s+(BULK|SUPER).*$", text, re.MULTILINE | re.IGNORECASE)
     control, bulk = (text[: parted.start()], text[parted.end() :]) if parted else ("", text)
     content = Bulk()
-    default = ["", "", "", ""]
     if bulk != text and not re.search(r"^\s*ENDDATA", bulk, re.MULTILINE | re.IGNORECASE):
         raise wrong(path, "a line ENDDATA at the end", "none: is the file cut off?")
     first = text.count("\n", 0, len(text) - len(bulk)) + 1
     cards = list(_cards(bulk, first))
-    for _, card in cards:
-        if card[0] == "GRDSET":
-            default = [card[2], card[6], card[7], card[8]]
+    default = next((card for _, card in cards if card[0] == "GRDSET"), 2 * EMPTY)
     for line, card in cards:
         try:
             _take(content, card, default)
@@ -172,14 +176,9 @@ def read_bulk(path: Path) -> Bulk:
         known = content.nodes.keys() | content.scalar
         used = (node for _, nodes in content.elements.values() for node in nodes)
         refuse_unknown_nodes(path, known, used)
-    content.held |= _sets(content.supports, content.added, _chosen(control, "SPC"))
-    content.followers |= _sets(content.constraints, content.added, _chosen(control, "MPC"))
+    content.held |= content.chosen("SPC", control)
+    content.followers |= content.chosen("MPC", control)
     return content
-
-
-def _chosen(control: str, key: str) -> int | None:
-    match = re.search(rf"^\s*{key}\s*=\s*(\d+)", control, re.MULTILINE | re.IGNORECASE)
-    return int(match[1]) if match else None
 
 
 def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
@@ -269,14 +268,13 @@ def _take(content: Bulk, card: list[str], default: list[str]) -> None:
     elif name in ("RBE2", "RBE3", "RBAR"):
         _rigid(content, card)
     elif name in ("SPCADD", "MPCADD"):
-        content.added.setdefault(int(card[1]), []).extend(_listed(card[2:]))
-    elif name in ("SPC", "SPC1"):
+        content.added.setdefault((name[:3], int(card[1])), []).extend(_listed(card[2:]))
+    elif name in ("SPC", "SPC1", "MPC"):
         held = _all_of(card[2], card[3:]) if name == "SPC1" else _pairs(card[:8], 2, 3)
-        content.supports.setdefault(int(card[1]), set()).update(held)
-    elif name == "MPC":
-        content.constraints.setdefault(int(card[1]), set()).add((int(card[2]), _whole(card[3])))
-        nodes = [int(card[k]) for k in range(2, len(card), 3) if card[k].isdigit()]
-        content.links.append(tuple(nodes))
+        if name == "MPC":
+            held = {(int(card[2]), _whole(card[3]))}
+            content.links.append(tuple(int(x) for x in card[2::3] if x.isdigit()))
+        content.sets.setdefault((name[:3], int(card[1])), set()).update(held)
     elif name in ("ASET1", "OMIT1", "ASET", "OMIT"):
         target = content.kept if name.startswith("ASET") else content.omitted
         target |= _all_of(card[1], card[2:]) if name.endswith("1") else _pairs(card, 1, 2)
@@ -286,13 +284,13 @@ def _grid(content: Bulk, card: list[str], default: list[str]) -> None:
     number = int(card[1])
     if number in content.nodes:
         raise ValueError(f"node {number} again")
-    content.held.update((number, c) for c in _components(card[8] or default[2]))
-    if _whole(card[7] or default[1]):
+    content.held.update((number, c) for c in _components(card[7] or default[7]))
+    if _whole(card[6] or default[6]):
         content.turned.add(number)
     point = [fortran(x) if x else 0.0 for x in (card[3], card[4], card[5])]
     if not np.isfinite(point).all():
         raise ValueError(f"coordinates {', '.join(card[3:6])}")
-    system = _whole(card[2] or default[0])
+    system = _whole(card[2] or default[2])
     content.nodes[number] = np.array(point if system == 0 else [np.nan] * 3)
 
 
@@ -313,11 +311,3 @@ def _rigid(content: Bulk, card: list[str]) -> None:
             dependent = [[c for c in range(1, 7) if c not in some] for some in independent]
         for node, some in zip(ends, dependent, strict=True):
             content.followers.update((node, c) for c in some)
-
-
-def _sets(table: dict[int, set[Dof]], added: dict[int, list[int]], chosen: int | None) -> set[Dof]:
-    """Return the members of a chosen set; of all, where there is only one and none is chosen."""
-    if chosen is None:
-        return set().union(*table.values()) if len(table) == 1 else set()
-    names = [chosen, *added.get(chosen, [])]
-    return set().union(*(table.get(name, set()) for name in names))
