@@ -82,6 +82,11 @@ ERRORS = [
         id="lines",
     ),
     pytest.param(uff58(accelerances()[0, 0], 1, 1, kind=2), "functions of type 2", id="spectra"),
+    pytest.param(
+        uff58(np.zeros(0, complex), 1, 1, F[:2]).replace(f"5{2:10d}", f"5{0:10d}"),
+        "expected a dataset 58, found 0 values",
+        id="no-values",
+    ),
 ]
 
 WARNINGS = [

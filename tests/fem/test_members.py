@@ -664,7 +664,7 @@ def test_hinges_that_make_a_mechanism_are_found() -> None:
     ("change", "message"),
     [
         ({"releases": (("rx",), ("rx",))}, "group 'beam': expected releases that leave the beam"),
-        ({"releases": (("w",), ())}, "group 'beam', releases: direction must be one of"),
+        ({"releases": (("w",), ())}, "group 'beam': releases: direction must be one of"),
         ({"offsets": 1.0}, "expected offsets"),
     ],
 )

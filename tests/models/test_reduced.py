@@ -177,10 +177,10 @@ def test_costs_are_counted_once(costs: Costs) -> None:
     assert cost() == (1, 4, 9, 3), "the first factor is enough where modes may be missing"
     model.modes(np.ones(3), 11)
     assert cost() == (2, 6, 9, 3)
-    model.resume([SnapshotRequest(np.ones(3), 10)])
+    model.snapshots = (SnapshotRequest(np.ones(3), 10),)
     model.modes(np.ones(3), 8)
     assert cost() == (2, 6, 9, 4)
-    model.restart()
+    model.snapshots = ()
     assert cost() == (2, 6, 9, 4)
     model.modes(np.ones(3), 8)
     assert cost() == (3, 8, 15, 5), "what the basis of the first snapshot has cost is counted again"
@@ -270,7 +270,7 @@ def test_the_order_of_computing_snapshots_changes_no_digit(costs: Costs) -> None
     with uncounted():
         for theta in thetas:
             first.take(SnapshotRequest(theta, 10))
-    other.resume([SnapshotRequest(theta, 10) for theta in thetas])
+    other.snapshots = tuple(SnapshotRequest(theta, 10) for theta in thetas)
     point = np.array([0.9, 0.6, 1.4])
     assert first.modes(point, 8).lam.tolist() == other.modes(point, 8).lam.tolist()
     assert costs.eigenproblems == 0, "what was counted before is not counted again"

@@ -83,7 +83,7 @@ def certified_front(
     model = _reduced(problem)
     if model is None:
         return search(work=work, known=None)
-    model.restart()
+    model.snapshots = ()
     first = _take(model, "first", 1, model.first, work)
     if first is None or not first.added:
         raise UnfinishedError("the model cannot be solved at the nominal parameters")
@@ -185,7 +185,7 @@ def _take(
     task = Task(("snapshot", name, number), _taken, (model, request), in_process=True)
     (taken,) = work.run([task])
     if taken is not None:
-        model.resume([*before, replace(request, modes=taken.modes)])
+        model.snapshots = (*before, replace(request, modes=taken.modes))
     return taken
 
 

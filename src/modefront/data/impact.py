@@ -149,17 +149,14 @@ def impact_responses(
 
 
 def _estimates(X: Complexes, Y: Complexes, estimator: Estimator) -> tuple[Complexes, Floats]:
-    S_xx = np.sum(np.abs(X) ** 2, axis=0)
+    S_xx, S_yy = (np.sum(np.abs(x) ** 2, axis=0) for x in (X, Y))
     S_yx = np.sum(Y * X[:, None].conj(), axis=0)
-    S_yy = np.sum(np.abs(Y) ** 2, axis=0)
-    if estimator == "H1":
-        H = _over(S_yx, S_xx)
-    elif estimator == "H2":
-        H = _over(S_yy, S_yx.conj())
-    else:
-        H = _over(S_yx, np.abs(S_yx)) * np.sqrt(_over(S_yy, S_xx).real)
     coherence: Floats = _over(np.abs(S_yx), S_xx).real * _over(np.abs(S_yx), S_yy).real
-    return H, coherence
+    if estimator == "H1":
+        return _over(S_yx, S_xx), coherence
+    if estimator == "H2":
+        return _over(S_yy, S_yx.conj()), coherence
+    return _over(S_yx, np.abs(S_yx)) * np.sqrt(_over(S_yy, S_xx).real), coherence
 
 
 def _variance(H: Complexes, X: Complexes, Y: Complexes) -> Floats:
@@ -174,8 +171,7 @@ def _variance(H: Complexes, X: Complexes, Y: Complexes) -> Floats:
     share = _over(power, np.sum(power, axis=0)).real[:, None]
     e = np.abs(Y - H * X[:, None]) ** 2
     left = np.maximum(1 - share, np.finfo(float).eps)
-    out: Floats = _over(np.sum(share * e / left, axis=0), np.sum(power, axis=0)).real
-    return out
+    return np.asarray(_over(np.sum(share * e / left, axis=0), np.sum(power, axis=0)).real)
 
 
 def _force_noise(force: Floats, window: Floats, X: Complexes, t: Floats) -> ForceNoise:
@@ -198,8 +194,7 @@ def _force_noise(force: Floats, window: Floats, X: Complexes, t: Floats) -> Forc
 def _over(a: Complexes | Floats, b: Complexes | Floats) -> Complexes:
     """Return a / b, NaN where the power b is no more than rounding of its greatest value."""
     good = np.abs(b) > ACCUMULATED**2 * np.abs(b).max(initial=0.0)
-    out: Complexes = np.where(good, a / np.where(good, b, 1.0), np.nan).astype(complex)
-    return out
+    return np.asarray(np.where(good, a / np.where(good, b, 1.0), np.nan).astype(complex))
 
 
 def _reason(x: Floats, y: Floats, rate: float, force_window: float | None) -> str:
@@ -230,19 +225,14 @@ def _clipped(x: Floats) -> bool:
 
     Digits of a coarse converter stay at the top of a smooth wave too, one step above the next.
     """
-    if not np.any(x):
-        return False
     size = np.abs(x)
-    top = size >= size.max() * (1 - SAME)
-    steps = np.abs(np.diff(x))
+    top = (size >= size.max() * (1 - SAME)) & np.any(x)
+    steps = np.pad(np.abs(np.diff(x)), 1)  # to each sample, and away from it
     least = steps[steps > SAME * size.max()].min(initial=np.inf)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], top, [False]]).astype(int)))
-    for start, end in zip(edges[::2], edges[1::2], strict=True):
-        leaps = [steps[start - 1]] if start else []
-        leaps += [steps[end - 1]] if end < len(x) else []
-        if end - start >= 3 and max(leaps, default=0.0) > 2 * least:
-            return True
-    return False
+    start, end = edges[::2], edges[1::2]
+    leaps = np.maximum(steps[start], steps[end])
+    return bool(((end - start >= 3) & (leaps > 2 * least)).any())
 
 
 TIME = "time"
@@ -318,30 +308,29 @@ def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Fu
     groups: dict[tuple[str, tuple[str, ...]], list[Blow]] = {}
     for blow in blows:
         groups.setdefault((blow.reference, tuple(blow.responses)), []).append(blow)
-    channels: list[Channel] = []
-    warnings = []
+    channels, warnings = list[Channel](), list[str]()
     noise: dict[str, ForceNoise | None] = {}
     for (reference, _), group in groups.items():
         result = _averaged(group, windows)
         channels += _channels(group[0], result, quantity)
         noise[reference] = None if reference in noise else result.data.force_noise
-        for blow, why in zip(group, result.left_out, strict=True):
-            if why:
-                warnings.append(f"{blow.file}: {blow.place}: the blow is left out: {why}")
+        warnings += [
+            f"{blow.file}: {blow.place}: the blow is left out: {why}"
+            for blow, why in zip(group, result.left_out, strict=True)
+            if why
+        ]
         if (worst := result.remaining.max()) > 0.05:  # more leaks
-            warnings.append(
-                f"{group[0].file}: responses still have {worst:.0%} of their size at the end of "
-                "the record: expect errors of leakage; [impact] exponential takes a shorter time "
-                "constant"
-            )
+            left = f"responses still have {worst:.0%} of their size at the end of the record"
+            advice = "[impact] exponential takes a shorter time constant"
+            warnings.append(f"{group[0].file}: {left}: expect errors of leakage; {advice}")
     return channels, warnings, result.data.decay, noise
 
 
 def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
     first = blows[0]
     names = tuple(x for x in first.responses if any(np.ptp(blow.responses[x]) for blow in blows))
+    place = f"blows at {first.reference!r}"
     if not names:
-        place = f"blows at {first.reference!r}"
         raise InputError(Fault(first.file, place, "a response that moves", "none"))
     try:
         return impact_responses(
@@ -352,9 +341,7 @@ def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
             responses=names,
         )
     except ValueError as error:
-        expected, _, found = str(error).partition(", found none: ")
-        place = f"blows at {first.reference!r}"
-        expected = expected.removeprefix("expected ")
+        expected, _, found = str(error).removeprefix("expected ").partition(", found none: ")
         raise InputError(Fault(first.file, place, expected, found)) from None
 
 

@@ -91,12 +91,9 @@ class ModalData:
         places = [sensors.index(name) for name in self.sensors]
         if len(set(places)) < len(places):
             raise ValueError(f"expected data at each sensor once, found {', '.join(self.sensors)}")
-        shapes = []
-        for values in (self.shape, self.shape_std):
-            out = np.full((*values.shape[:2], len(sensors)), np.nan)
-            out[:, :, places] = values
-            shapes.append(out)
-        return replace(self, sensors=sensors, shape=shapes[0], shape_std=shapes[1])
+        phi, phi_std = np.full((2, *self.shape.shape[:2], len(sensors)), np.nan)
+        phi[:, :, places], phi_std[:, :, places] = self.shape, self.shape_std
+        return replace(self, sensors=sensors, shape=phi, shape_std=phi_std)
 
     @cached_property
     def measured_shapes(self) -> MeasuredShapes:
@@ -160,13 +157,5 @@ def modal_data(
         return np.asarray(value, float).reshape(reference.shape)
 
     names = sets if sets is not None else tuple(str(k + 1) for k in range(len(f)))
-    return ModalData(
-        names,
-        tuple(range(1, f.shape[1] + 1)),
-        tuple(sensors),
-        f,
-        like(damping, f),
-        phi,
-        like(frequency_std, f),
-        like(shape_std, phi),
-    )
+    modes, stds = tuple(range(1, f.shape[1] + 1)), (like(frequency_std, f), like(shape_std, phi))
+    return ModalData(names, modes, tuple(sensors), f, like(damping, f), phi, *stds)

@@ -143,17 +143,17 @@ def _of_file(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]
         names = [name for name in header if name != TIME]
         rows = np.nan_to_num(np.delete(values, column, axis=1).T, nan=0.0)  # empty columns
         return names, rows, _rate(path, values[:, column])
-    functions = [x for x in read_functions(path) if x.kind == OF_TIME]
+    functions = [x.channel for x in read_functions(path) if x.kind == OF_TIME]
     if not functions:
         expected = "records in time (functions of type 1) in dataset 58"
         raise wrong(path, expected, "none", "dataset 58")
-    if len(lengths := {len(x.data) for x in functions}) > 1:
+    if len(lengths := {len(x.H) for x in functions}) > 1:
         found = ", ".join(map(str, sorted(lengths)))
         raise wrong(path, "records of one length", found, "dataset 58")
     named = [channel_name(x.response, setup.channels) for x in functions]
     signs = np.array([[sign] for _, sign in named])
-    values = signs * np.array([np.asarray(x.data, float) for x in functions])
-    return [name for name, _ in named], values, _rate(path, functions[0].x)
+    values = signs * np.array([np.asarray(x.H, float) for x in functions])
+    return [name for name, _ in named], values, _rate(path, functions[0].frequency)
 
 
 def read_arrays(path: Path) -> Read:

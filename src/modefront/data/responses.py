@@ -150,10 +150,8 @@ def frequency_responses(
 
     Raises ValueError where the arrays do not fit.
     """
-    H = np.asarray(H, complex)
-    if H.ndim == 2:
-        H = H[None]
-    scaled = False
+    H, scaled = np.asarray(H, complex), False
+    H = H[None] if H.ndim == 2 else H
     if H.ndim == 4:
         count = np.isfinite(H).sum(axis=0)
         several = np.maximum(count, 1)
@@ -249,14 +247,15 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     blows = max(map(len, groups.values()))
     frequency = channels[0].frequency
     H = np.full((blows, len(references), len(responses), len(frequency)), np.nan, complex)
-    coherence, variance = np.full(H.shape[1:], np.nan), np.full(H.shape[1:], np.nan)
+    known = np.full((2, *H.shape[1:]), np.nan)  # coherence, and variance
     for (j, i), group in groups.items():
         for b, channel in enumerate(group):
             H[b, j, i] = channel.H
-            if channel.coherence is not None:
-                coherence[j, i] = channel.coherence
-            if channel.variance is not None:
-                variance[j, i] = channel.variance
+            for part, values in zip(known, (channel.coherence, channel.variance), strict=True):
+                part[j, i] = part[j, i] if values is None else values
+    coherence, variance = (
+        part if blows == 1 and np.isfinite(part).any() else None for part in known
+    )
     dead = (np.nan_to_num(H) == np.nan_to_num(H[..., :1])).all(axis=(0, 3))
     H[:, dead] = np.nan
     data = frequency_responses(
@@ -265,12 +264,12 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
         quantity,
         references=references,
         responses=responses,
-        coherence=coherence if blows == 1 and np.isfinite(coherence).any() else None,
-        variance=variance if blows == 1 and np.isfinite(variance).any() else None,
+        coherence=coherence,
+        variance=variance,
     )
     warnings = [
         *_units(name, frequency, data.H, groups, dead),
-        *_reciprocity(name, data.H, references, responses, turned),
+        *_reciprocity(name, data, turned),
         *_driving_points(H, frequency, quantity, groups),
     ]
     return DataSet(name, data, tuple(warnings))
@@ -324,15 +323,13 @@ def _units(
     middle = float(np.median(living)) if len(living) else 0.0
     stray = []
     for (j, i), (first, *_) in groups.items():
-        ratio = size[j, i] / middle if middle else 1.0
+        ratio, place = size[j, i] / middle if middle else 1.0, f"{first.file}: {first.place}"
         if dead[j, i]:
             what = "one number at all lines" if first.H.any() else "empty or only zeros"
-            yield f"{first.file}: {first.place}: {what}; the channel is left out"
+            yield f"{place}: {what}; the channel is left out"
         elif size[j, i] > 0 and not 1 / STRAY < ratio < STRAY:
-            stray.append(
-                f"{first.file}: {first.place}: {ratio:.3g} times as great as the other "
-                "functions are: check its unit"
-            )
+            great = f"{ratio:.3g} times as great as the other functions are"
+            stray.append(f"{place}: {great}: check its unit")
     yield from stray
 
 
@@ -352,15 +349,13 @@ def _driving_points(
             )
 
 
-def _reciprocity(
-    name: str, H: Complexes, references: tuple[str, ...], responses: tuple[str, ...], turned: bool
-) -> Iterator[str]:
+def _reciprocity(name: str, data: FrequencyResponses, turned: bool) -> Iterator[str]:
     """Yield where H_ji and H_ij differ by a sign, and which sensors differ by a factor."""
     factors: dict[str, dict[str, float]] = {}
-    for (j, first), (k, second) in combinations(enumerate(references), 2):
-        if first not in responses or second not in responses:
-            continue
-        a, b = H[j, responses.index(second)], H[k, responses.index(first)]
+    places = {response: i for i, response in enumerate(data.responses)}
+    points = [(j, x) for j, x in enumerate(data.references) if x in places]
+    for (j, first), (k, second) in combinations(points, 2):
+        a, b = data.H[j, places[second]], data.H[k, places[first]]
         if not (np.isfinite(a).all() and np.isfinite(b).all() and np.any(a) and np.any(b)):
             continue
         ratio = float(np.linalg.norm(a) / np.linalg.norm(b))

@@ -18,7 +18,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -116,7 +116,7 @@ def _decoded(path: Path, what: str, needed: int, readers: Mapping[int, Reader]) 
 
 @dataclass(frozen=True, eq=False)
 class Function:
-    """A dataset 58: type, quantity of the numerator, degrees of freedom, abscissae and values.
+    """A dataset 58: its type, quantity of the numerator, and what it holds as a channel.
 
     Values have the signs of the directions: functions that of both, others that of the response.
     """
@@ -124,10 +124,7 @@ class Function:
     block: Block
     kind: int
     ordinate: int
-    response: str
-    reference: str
-    x: Floats
-    data: Floats | Complexes
+    channel: Channel
 
 
 def read_functions(path: Path) -> list[Function]:
@@ -144,29 +141,15 @@ def read_uff(path: Path) -> Contents:
     functions = read_functions(path)
     kinds = {each.kind for each in functions}
     if FRF in kinds:
-        coherence = {
-            (x.reference, x.response): np.abs(x.data) for x in functions if x.kind == COHERENCE
-        }
-        return Contents(
-            tuple(
-                Channel(
-                    str(path),
-                    f"{x.block.place} of {x.reference} to {x.response}",
-                    x.reference,
-                    x.response,
-                    x.x,
-                    np.asarray(x.data, complex),
-                    QUANTITIES.get(x.ordinate, ""),
-                    coherence.get((x.reference, x.response)),
-                )
-                for x in functions
-                if x.kind == FRF
-            )
-        )
+        of_kind = [[x.channel for x in functions if x.kind == kind] for kind in (FRF, COHERENCE)]
+        coherence = {(x.reference, x.response): np.abs(x.H) for x in of_kind[1]}
+        pairs = ((x, coherence.get((x.reference, x.response))) for x in of_kind[0])
+        made = (replace(x, H=np.asarray(x.H, complex), coherence=known) for x, known in pairs)
+        return Contents(tuple(made))
     # A blow ends where one of its channels comes again, or another force.
     groups: list[dict[str, Function]] = [{}]
     for record in (each for each in functions if each.kind == TIME):
-        key = "" if record.ordinate in FORCES else record.response
+        key = "" if record.ordinate in FORCES else record.channel.response
         groups += [{}] if key in groups[-1] else []
         groups[-1][key] = record
     if blows := [_blow(group) for group in groups if "" in group and len(group) > 1]:
@@ -181,17 +164,18 @@ def read_uff(path: Path) -> Contents:
 
 
 def _blow(group: Mapping[str, Function]) -> Blow:
-    block, x, where, count = (force := group[""]).block, force.x, force.response, len(force.data)
+    block, force = group[""].block, group[""].channel
     for record in group.values():
-        if len(record.data) != count:
-            expected = f"{count} samples, as the force of line {block.line}"
-            raise wrong(block.file, expected, str(len(record.data)), record.block.place)
-    quantity, *others = {QUANTITIES.get(group[name].ordinate, "") for name in group if name}
+        if (count := len(record.channel.H)) != len(force.H):
+            expected = f"{len(force.H)} samples, as the force of line {block.line}"
+            raise wrong(block.file, expected, str(count), record.block.place)
+    quantity, *others = {group[name].channel.quantity for name in group if name}
     if others:
         found = ", ".join(sorted(each or "others" for each in (quantity, *others)))
         raise wrong(block.file, "responses of one quantity", found, block.place)
-    records = {name: np.asarray(record.data, float) for name, record in group.items()}
-    return Blow(str(block.file), block.place, where, x, records.pop(""), records, quantity)
+    records = {name: np.asarray(record.channel.H, float) for name, record in group.items()}
+    place = force.file, block.place, force.response, force.frequency
+    return Blow(*place, records.pop(""), records, quantity)
 
 
 def blocks(content: bytes, file: Path) -> list[Block]:
@@ -273,19 +257,19 @@ def _function(block: Block) -> list[Function]:
     six = [head[5][a:b].strip() for a, b in pairwise(columns)]
     form, count, even = (int(head[RECORD_7][k : k + 10]) for k in (0, 10, 20))
     first, step = (reals(head[RECORD_7][k : k + 13])[0] for k in (30, 43))
-    if even not in (0, 1):
-        raise ValueError(f"abscissae of the kind {even}")
+    if even not in (0, 1) or count < 1:
+        raise ValueError(f"{count} values, with abscissae of the kind {even}")
     x, data = _values(block, body, (form, count, even))
     x = np.asarray(first + np.arange(count) * step) if even else x
     kind, ordinate = int(six[0]), int(head[8][:10])
     (response, sign), (reference, other) = (_dof(six[k], six[k + 1]) for k in (5, 8))
     sign *= other if kind == FRF else 1
-    return [Function(block, kind, ordinate, response, reference, x, sign * data)]
+    place = str(block.file), f"{block.place} of {reference} to {response}", reference, response
+    channel = Channel(*place, x, sign * data, QUANTITIES.get(ordinate, ""))
+    return [Function(block, kind, ordinate, channel)]
 
 
-def _values(
-    block: Block, body: bytes, record: tuple[int, int, int]
-) -> tuple[Floats, Floats | Complexes]:
+def _values(block: Block, body: bytes, record: tuple[int, int, int]) -> tuple[Floats, Any]:
     """Return abscissae, none where these are even, and values, of the form, number and spacing."""
     form, count, even = record
     is_complex = form in (5, 6)
@@ -646,30 +630,25 @@ def _assembled(
     sets = tuple(dict.fromkeys(name for name, _ in placed))
     modes = tuple(sorted({number for _, number in placed}))
     nodes = np.unique(np.concatenate([row.nodes for row in rows]))
-    frequency = np.full((len(sets), len(modes)), np.nan)
-    damping = frequency.copy()
+    frequency, damping = np.full((2, len(sets), len(modes)), np.nan)
     shape = np.full((*frequency.shape, nodes.size, 6), np.nan)
     for (name, number), row in placed.items():
         k, r = sets.index(name), modes.index(number)
-        frequency[k, r] = row.frequency
-        damping[k, r] = row.damping if row.damping > 0 else np.nan
+        frequency[k, r], damping[k, r] = row.frequency, row.damping or np.nan
         shape[k, r, np.searchsorted(nodes, row.nodes)] = row.shape
     for values in shape:
         values[:, ~(np.nan_to_num(values) != 0).any(axis=0)] = np.nan
-    positions = {node: point for node, _, point in points}
-    axes = {  # without a dataset 2420 that says what the systems are, they are those of the file
-        node: _axes_at(point, systems.get(label))
-        for node, label, point in points
-        if systems and label != 0
-    }
-    if positions:
-        for row in rows:
-            _check_nodes(file, row, np.intersect1d(row.nodes, list(positions)))
-    places = np.array([positions.get(int(node), np.full(3, np.nan)) for node in nodes])
-    of_nodes = np.array([axes.get(int(node), np.eye(3)) for node in nodes])
+    places, axes = np.full((nodes.size, 3), np.nan), np.tile(np.eye(3), (nodes.size, 1, 1))
+    known, row_of = [node for node, *_ in points], {n: k for k, n in enumerate(nodes.tolist())}
+    for node, label, point in (each for each in points if each[0] in row_of):
+        places[row_of[node]] = point
+        if systems and label != 0:  # else, where no dataset 2420 says more, those of the file
+            axes[row_of[node]] = _axes_at(point, systems.get(label))
+    for row in rows if known else ():
+        _check_nodes(file, row, np.intersect1d(row.nodes, known))
     pairs = {(number, row.other) for (_, number), row in placed.items() if number < row.other}
     return NodalModes(
-        *(str(file), sets, modes, nodes, places, of_nodes, frequency, damping, shape),
+        *(str(file), sets, modes, nodes, places, axes, frequency, damping, shape),
         tuple(sorted(pair for pair in pairs if pair[1] in modes)),
     )
 

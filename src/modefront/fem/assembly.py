@@ -26,6 +26,9 @@ from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Parameter, Sensor, Structure
 from modefront.linalg.affine import Monomials, SparseAffine, sparse_affine, sparse_rows
 
+SensorPlaces = tuple[Ints, Floats]
+"""Nodes (sensors,) of sensors, and their directions (sensors, 6), weights of the DOFs of a node."""
+
 
 @dataclass(frozen=True)
 class StructureMatrices:
@@ -63,7 +66,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     floating : whether the structure as a whole may move as a rigid body (as if hung in soft cords)
     """
     X, checks = check_points(structure.nodes), Checks()
-    checks.attempt(check_names, structure)
+    checks.attempt("", check_names, structure)
     blocks = blocks_of(X, structure, checks)
     following = following_rows(X, structure, checks)
     exists = _existing(X, blocks, following)
@@ -71,12 +74,12 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     following += hold(X, structure.supports, held, exists, checks)
     places = sensor_places(X, structure.sensors, np.flatnonzero(exists.any(1)), checks)
     forces = load_forces(structure.loads, blocks, exists, checks)
-    dofs = checks.attempt(number_dofs, exists, held, following)
+    dofs = checks.attempt("", number_dofs, exists, held, following)
     checks.close()
     if dofs is None or places is None:
         raise FemError("structure: expected one that can be numbered")
-    checks.attempt(check_mechanisms, X, blocks, following, held, exists, floating)
-    selection = checks.attempt(selection_matrix, structure.sensors, places, dofs)
+    checks.attempt("", check_mechanisms, X, blocks, following, held, exists, floating)
+    selection = checks.attempt("", selection_matrix, structure.sensors, places, dofs)
     checks.close()
     if selection is None or len(dofs.free) == 0:
         raise FemError("structure: no degree of freedom is free; expected at least one")
@@ -86,26 +89,19 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
         M.add(block, block.name, block.matrices.mass, ("density", "mass"))
         if block.prestress is not None:
             K.add(block, block.name, {0: block.prestress}, ("prestress",))
-    if forces:
-        for load, u in zip(
-            structure.loads, static_state(K.total(), dofs.T, forces, floating), strict=True
-        ):
-            for block in blocks:
-                if block.internal is not None:
-                    strain = load.strains.get(block.name, 0.0)
-                    made = block.internal().stiffness(u[block.dofs()], strain)
-                    K.add(block, load.name, {0: made}, ("prestress",))
+    states = static_state(K.total(), dofs.T, forces, floating) if forces else ()
+    for load, u in zip(structure.loads, states, strict=True):
+        for block in blocks:
+            if block.internal is not None:
+                strain = load.strains.get(block.name, 0.0)
+                made = block.internal().stiffness(u[block.dofs()], strain)
+                K.add(block, load.name, {0: made}, ("prestress",))
     if not floating and (forces or any(block.prestress is not None for block in blocks)):
         check_stability(K.total())
-    return StructureMatrices(
-        stiffness=K.affine(),
-        mass=M.affine(),
-        parameters=tuple(p.name for p in structure.parameters),
-        sensors=tuple(s.name for s in structure.sensors),
-        selection=selection,
-        dofs=dofs,
-        places=places,
+    parameters, sensors = (
+        tuple(each.name for each in named) for named in (structure.parameters, structure.sensors)
     )
+    return StructureMatrices(K.affine(), M.affine(), parameters, sensors, selection, places, dofs)
 
 
 def _existing(X: Floats, blocks: list[Block], following: list[Followers]) -> Bools:
@@ -137,16 +133,12 @@ class _Terms:
         """
         moved = self.T[block.dofs().ravel()]
         for power, matrices in parts.items():
-            exponents = tuple(
-                (1 if p.quantity in linear else power if p.quantity == "thickness" else 0)
-                * (name in p.of)
-                for p in self.parameters
-            )
+            powers = {"thickness": power, **dict.fromkeys(linear, 1)}
+            exponents = tuple(powers.get(p.quantity, 0) * (name in p.of) for p in self.parameters)
             count, size = matrices.shape[:2]
             columns = np.repeat(np.arange(count * size).reshape(count, size), size, axis=0)
-            each = sparse.csr_array(
-                (matrices.ravel(), columns.ravel(), np.arange(count * size + 1) * size)
-            )
+            starts = np.arange(count * size + 1) * size
+            each = sparse.csr_array((matrices.ravel(), columns.ravel(), starts))
             term = moved.T @ (each @ moved)
             known = self.terms.get(exponents)
             self.terms[exponents] = term if known is None else known + term
@@ -166,20 +158,6 @@ class _Terms:
         return sparse_affine(terms, Monomials(exponents), self.T.shape[1])
 
 
-@dataclass(frozen=True)
-class SensorPlaces:
-    """Places and directions of sensors.
-
-    Attributes
-    ----------
-    nodes : (sensors,) nodes
-    directions : (sensors, 6) weights of x, y, z, rx, ry, rz
-    """
-
-    nodes: Ints
-    directions: Floats
-
-
 def sensor_places(
     X: Floats, sensors: Sequence[Sensor], used: Ints, checks: Checks
 ) -> SensorPlaces | None:
@@ -192,11 +170,11 @@ def sensor_places(
     before = len(checks.messages)
     for n, sensor in enumerate(sensors):
         place = f"sensor {sensor.name!r}"
-        vector = checks.attempt(unit_vector, sensor.direction, place)
-        node = checks.attempt(_node, X, sensor, place, used, tree)
+        vector = checks.attempt(place, unit_vector, sensor.direction)
+        node = checks.attempt(place, _node, X, sensor, used, tree)
         if vector is not None and node is not None:
             rows[n], nodes[n] = vector, node
-    return SensorPlaces(nodes, rows) if len(checks.messages) == before else None
+    return (nodes, rows) if len(checks.messages) == before else None
 
 
 def selection_matrix(
@@ -209,11 +187,12 @@ def selection_matrix(
 
     Raises FemError with all sensors that measure what cannot move.
     """
-    columns = 6 * places.nodes[:, None] + np.arange(6)
-    selection = sparse_rows(places.directions, columns, dofs.T.shape[0]) @ dofs.T
+    nodes, directions = places
+    columns = 6 * nodes[:, None] + np.arange(6)
+    selection = sparse_rows(directions, columns, dofs.T.shape[0]) @ dofs.T
     still = [
         f"sensor {sensors[n].name!r}: expected a direction that can move, but at node"
-        f" {places.nodes[n]} direction {sensors[n].direction!r} is held or has no stiffness"
+        f" {nodes[n]} direction {sensors[n].direction!r} is held or has no stiffness"
         for n in np.flatnonzero(abs(selection).sum(1) == 0).tolist()
     ]
     if still:
@@ -221,21 +200,20 @@ def selection_matrix(
     return selection
 
 
-def _node(X: Floats, sensor: Sensor, place: str, used: Ints, tree: KDTree | None) -> int:
+def _node(X: Floats, sensor: Sensor, used: Ints, tree: KDTree | None) -> int:
     if isinstance(sensor.at, int | np.integer):
-        return int(node_list(sensor.at, len(X), place)[0])
+        return int(node_list(sensor.at, len(X))[0])
     point = np.asarray(sensor.at, dtype=float)
     if point.shape != (3,) or not np.isfinite(point).all():
-        raise FemError(f"{place}: expected a node or coordinates (3,), found {sensor.at!r}")
+        raise FemError(f"expected a node or coordinates (3,), found {sensor.at!r}")
     if tree is None:
-        raise FemError(f"{place}: expected a node of an element, found none at all")
+        raise FemError("expected a node of an element, found none at all")
     distance, nearest = tree.query(point)
     node = int(used[nearest])
     diagonal = float(np.linalg.norm(tree.maxes - tree.mins))
     tolerance = SAME_PLACE * diagonal if sensor.tolerance is None else sensor.tolerance
     if distance > tolerance:
-        raise FemError(
-            f"{place}: no node within {tolerance:.3g} of {tuple(point.tolist())}; the nearest is"
-            f" node {node} at {tuple(X[node].tolist())}, {distance:.3g} away"
-        )
+        near = f"node {node} at {tuple(X[node].tolist())}, {distance:.3g} away"
+        there = tuple(point.tolist())
+        raise FemError(f"no node within {tolerance:.3g} of {there}; the nearest is {near}")
     return node

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Set
+from collections.abc import Callable, Mapping, Set
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from modefront._typing import Floats, Ints
 from modefront.fem.check import (
@@ -35,7 +35,7 @@ from modefront.fem.elements.common import (
 from modefront.fem.elements.internal import Stresses, centre_axes, shell_stresses, solid_stresses
 from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import SOLIDS, solid
-from modefront.fem.section import Checks, FemError, Material
+from modefront.fem.section import Checks, FemError, Material, at
 from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring, Structure, Trusses
 from modefront.rounding import TINY
 
@@ -79,93 +79,74 @@ class Block:
 def blocks_of(X: Floats, structure: Structure, checks: Checks) -> list[Block]:
     """Return a block for each group, and set of springs or masses, in which nothing is wrong."""
     shells = [each for each in structure.groups if isinstance(each, Shells)]
-    cells = [checks.attempt(_shell_cells, X, each) for each in shells]
+    cells = [checks.attempt(f"group {each.name!r}", _shell_cells, X, each) for each in shells]
     sound = [each for each in cells if each is not None]
     shared = iter(zip(directors(X, sound), narrowness(X, sound), strict=True) if sound else ())
-    blocks: list[Block | None] = [
-        checks.attempt(_shells, X, group, each, *next(shared), structure.varied_thickness)
-        for group, each in zip(shells, cells, strict=True)
-        if each is not None
-    ]
-    for group in structure.groups:
-        if isinstance(group, Beams):
-            blocks.append(checks.attempt(_beams, X, group))
-        elif isinstance(group, Trusses):
-            blocks.append(checks.attempt(_trusses, X, group))
-        elif isinstance(group, Solids):
-            blocks.append(checks.attempt(_solids, X, group))
-    blocks += [checks.attempt(_springs, X, each) for each in structure.springs]
-    blocks += [checks.attempt(_masses, X, each) for each in structure.masses]
+    blocks: list[Block | None] = []
+    for group, each in zip(shells, cells, strict=True):
+        if each is not None:
+            parts = X, group, each, *next(shared), structure.varied_thickness
+            blocks.append(checks.attempt(f"group {group.name!r}", _shells, *parts))
+    for member in (*structure.groups, *structure.springs, *structure.masses):
+        kind, make = MADE.get(type(member), ("", None))
+        if make:
+            blocks.append(checks.attempt(f"{kind} {member.name!r}", make, X, member))
     return [block for block in blocks if block is not None]
 
 
 def _beams(X: Floats, group: Beams) -> Block:
-    place = f"group {group.name!r}"
     r = np.asarray(group.offsets, dtype=float)
     if r.shape != (2, 3):
-        raise FemError(f"{place}: expected offsets of the shape (2, 3), found {r.shape}")
-    cells, axis = _lines(X, group.cells, r, place)
+        raise FemError(f"expected offsets of the shape (2, 3), found {r.shape}")
+    cells, axis = _lines(X, group, r)
     section = group.section
     if group.orientation is None:
         if section.I_y != section.I_z or section.kappa_y != section.kappa_z:
-            raise FemError(
-                f"{place}: the section is not the same in y and z, so orientation is needed:"
-                " a vector in the plane of the beam's axis and its local y"
-            )
+            why = "the section is not the same in y and z, so orientation is needed: a vector in "
+            raise FemError(why + "the plane of the beam's axis and its local y")
         upright = np.abs(axis[:, 2:]) > 0.9
         orientation = np.where(upright, np.eye(3)[0], np.eye(3)[2])
     else:
-        v = unit_vector(tuple(group.orientation), f"{place}, orientation")[:3]
+        with at("orientation"):
+            v = unit_vector(tuple(group.orientation))[:3]
         orientation = np.broadcast_to(v, axis.shape)
         parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < ALONG)
         if len(parallel):
-            raise FemError(
-                f"{place}: orientation {tuple(group.orientation)} must not be parallel to the"
-                f" axis, but it is at element {parallel[0]}"
-                f" (nodes {', '.join(map(str, cells[parallel[0]].tolist()))})"
-            )
-    if not isinstance(group.material, Material):
-        raise FemError(f"{place}: expected an isotropic material, found {group.material!r}")
-    released = [
-        6 * end + d
-        for end, names in enumerate(group.releases)
-        if len(names)
-        for d in direction_indices(names, f"{place}, releases")
-    ]
-    try:
-        made, axial = beam(X[cells], group.material, section, orientation, r, released)
-    except FemError as error:
-        raise FemError(f"{place}: {error}") from None
+            what = f"orientation {tuple(group.orientation)} must not be parallel to the axis, but"
+            nodes = ", ".join(map(str, cells[parallel[0]].tolist()))
+            raise FemError(f"{what} it is at element {parallel[0]} (nodes {nodes})")
+    with at("releases"):
+        ends = [direction_indices(names) if len(names) else [] for names in group.releases]
+    released = [6 * end + d for end, directions in enumerate(ends) for d in directions]
+    made, axial = beam(X[cells], group.material, section, orientation, r, released)
     given = group.force * axial.unit if group.force else None
     return Block(group.name, cells, SIX, made, not released, given, lambda: axial)
 
 
 def _trusses(X: Floats, group: Trusses) -> Block:
-    place = f"group {group.name!r}"
-    check_positive(group.area, "area", place)
-    if not isinstance(group.material, Material):
-        raise FemError(f"{place}: expected an isotropic material, found {group.material!r}")
-    cells, _ = _lines(X, group.cells, np.zeros((2, 3)), place)
+    check_positive(group.area, "area")
+    cells, _ = _lines(X, group, np.zeros((2, 3)))
     made, axial = truss(X[cells], group.material, group.area)
     given = group.force * axial.unit if group.force else None
     return Block(group.name, cells, TRANSLATIONS, made, False, given, lambda: axial)
 
 
-def _lines(X: Floats, given: npt.ArrayLike, r: Floats, place: str) -> tuple[Ints, Floats]:
+def _lines(X: Floats, group: Beams | Trusses, r: Floats) -> tuple[Ints, Floats]:
     """Return cells (elements, 2) and the unit vectors along them, with offsets r of the ends."""
-    cells = cell_array(given, (2,), len(X), place)
+    if not isinstance(group.material, Material):
+        raise FemError(f"expected an isotropic material, found {group.material!r}")
+    cells = cell_array(group.cells, (2,), len(X))
     ends = X[cells] + r
     axis = ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(axis, axis=1)
-    check_sizes(length / np.ptp(X, axis=0).max(initial=TINY), cells, "length", place)
+    check_sizes(length / np.ptp(X, axis=0).max(initial=TINY), cells, "length")
     return cells, axis / length[:, None]
 
 
 def _shell_cells(X: Floats, group: Shells) -> Ints:
-    place = f"group {group.name!r}"
-    cells = cell_array(group.cells, (3, 4), len(X), place)
-    check_positive(group.thickness, "thickness", place)
-    check_sizes(shell_sizes(X[cells]), cells, "area", place)
+    cells = cell_array(group.cells, (3, 4), len(X))
+    check_positive(group.thickness, "thickness")
+    check_sizes(shell_sizes(X[cells]), cells, "area")
     return cells
 
 
@@ -184,31 +165,26 @@ def _grain(x: Floats, group: Shells) -> Floats:
     """Return vectors (elements, 3) in the planes of shells along axis 1 of the material."""
     if isinstance(group.material, Material):
         return x[:, 1] - x[:, 0]
-    place = f"group {group.name!r}"
     if group.direction is None:
-        raise FemError(f"{place}: a direction is needed, along which axis 1 of the material is")
-    v = unit_vector(tuple(group.direction), f"{place}, direction")[:3]
+        raise FemError("a direction is needed, along which axis 1 of the material is")
+    with at("direction"):
+        v = unit_vector(tuple(group.direction))[:3]
     R = centre_axes(x)[:, :2]
     m = (R @ v)[:, None] @ R
     across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < ALONG)
     if len(across):
-        raise FemError(
-            f"{place}: direction {tuple(group.direction)} must not be normal to the shell, but it"
-            f" is at element {across[0]}"
-        )
+        what = f"direction {tuple(group.direction)} must not be normal to the shell, but it is"
+        raise FemError(f"{what} at element {across[0]}")
     return np.asarray(m[:, 0])
 
 
 def _solids(X: Floats, group: Solids) -> Block:
-    place = f"group {group.name!r}"
     if np.ndim(group.cells) == 2 and np.shape(group.cells)[1] == 4:
-        raise FemError(
-            f"{place}: tetrahedra of 4 nodes are far too stiff in bending; mesh with second-order"
-            " elements (10 nodes)"
-        )
-    cells = cell_array(group.cells, tuple(SOLIDS), len(X), place)
-    check_sizes(solid_sizes(X[cells]), cells, "volume", place)
-    C = elasticity(group.material, axes_of(group.axes, place))
+        why = "tetrahedra of 4 nodes are far too stiff in bending"
+        raise FemError(f"{why}; mesh with second-order elements (10 nodes)")
+    cells = cell_array(group.cells, tuple(SOLIDS), len(X))
+    check_sizes(solid_sizes(X[cells]), cells, "volume")
+    C = elasticity(group.material, axes_of(group.axes))
     made, internal = solid(X[cells], group.material.rho, C), partial(solid_stresses, X[cells], C)
     return Block(group.name, cells, TRANSLATIONS, made, rigid=True, internal=internal)
 
@@ -219,50 +195,47 @@ def _springs(X: Floats, member: Spring) -> Block:
     With a unit vector a on displacements or rotations of the nodes, s is (a, -a), or (a) to the
     ground.
     """
-    place = f"spring {member.name!r}"
-    nodes = node_list(member.nodes, len(X), place)[:, None]
+    nodes = node_list(member.nodes, len(X))[:, None]
     if member.to is not None:
-        to = node_list(member.to, len(X), place)
+        to = node_list(member.to, len(X))
         if len(to) != len(nodes):
-            raise FemError(f"{place}: expected {len(nodes)} partners, found {len(to)}")
+            raise FemError(f"expected {len(nodes)} partners, found {len(to)}")
         nodes = np.stack([nodes[:, 0], to], 1)
     gap = X[nodes[:, -1]] - X[nodes[:, 0]]
     if np.ndim(member.stiffness):
         k = np.asarray(member.stiffness, dtype=float)
         if k.shape != (6,) or not (k >= 0).all() or not k.any() or member.direction is not None:
-            raise FemError(
-                f"{place}: expected 6 stiffnesses of 0 or more without a direction, found"
-                f" {member.stiffness!r} and direction {member.direction!r}"
-            )
-        R = np.broadcast_to(axes_of(member.axes, place), (len(nodes), 3, 3))
+            found = f"{member.stiffness!r} and direction {member.direction!r}"
+            raise FemError(f"expected 6 stiffnesses >= 0 without a direction, found {found}")
+        R = np.broadcast_to(axes_of(member.axes), (len(nodes), 3, 3))
         arms = np.stack([gap / 2, -gap / 2], 1)[:, : nodes.shape[1]]
         A = attachment(R, arms).reshape(len(nodes), -1, 6, 6 * nodes.shape[1])
         rows = A[:, 0] - A[:, 1] if nodes.shape[1] == 2 else A[:, 0]
     else:
         k = np.array([member.stiffness], dtype=float)
-        check_positive(k[0], "stiffness", place)
-        axis = _spring_axis(X, member, nodes, gap, place)
+        check_positive(k[0], "stiffness")
+        axis = _spring_axis(X, member, nodes, gap)
         rows = np.concatenate([axis, -axis][: nodes.shape[1]], 1)[:, None]
     K = symmetric(np.swapaxes(rows, 1, 2) @ (k[:, None] * rows))
     return Block(member.name, nodes, SIX, ElementMatrices({0: K}, {}))
 
 
-def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats, place: str) -> Floats:
+def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats) -> Floats:
     """Return the unit vectors (springs, 6) along which springs of one stiffness act."""
     length = np.linalg.norm(gap, axis=1, keepdims=True)
     size = np.ptp(X, axis=0).max()
     if member.axes is not None:
-        raise FemError(f"{place}: axes are for 6 stiffnesses; expected a vector as direction")
+        raise FemError("axes are for 6 stiffnesses; expected a vector as direction")
     if member.direction is None:
         if member.to is None or (length <= COINCIDENT * size).any():
-            raise FemError(f"{place}: a direction is needed unless it joins two distant nodes")
+            raise FemError("a direction is needed unless it joins two distant nodes")
         return np.pad(gap / length, ((0, 0), (0, 3)))
-    axis = np.tile(unit_vector(member.direction, place), (len(nodes), 1))
+    axis = np.tile(unit_vector(member.direction), (len(nodes), 1))
     slant = np.linalg.norm(np.cross(gap, axis[:, :3]), axis=1)
     skew = np.flatnonzero(slant > ALONG * length[:, 0] + COINCIDENT * size)
     if axis[0, :3].any() and len(skew):
         raise FemError(
-            f"{place}: between distant nodes it must act along their line, else it resists a"
+            f"between distant nodes it must act along their line, else it resists a"
             f" rotation of the whole; nodes {nodes[skew[0], 0]} and {nodes[skew[0], 1]} do not"
             f" lie along {member.direction!r}. Give six stiffnesses, which act by rigid arms"
         )
@@ -274,31 +247,32 @@ def _masses(X: Floats, member: Mass) -> Block:
 
     Their energy is 1/2 m |u + omega x c|^2 + 1/2 omega^T I omega, with an m for each direction.
     """
-    place = f"mass {member.name!r}"
-    nodes = node_list(member.nodes, len(X), place)[:, None]
+    nodes = node_list(member.nodes, len(X))[:, None]
     inertia, c = np.asarray(member.inertia, dtype=float), np.asarray(member.offset, dtype=float)
     m = np.asarray(member.mass, dtype=float)
-    if m.shape == ():
-        m = np.repeat(m, 3)
-    if inertia.shape == (3,):
-        inertia = np.diag(inertia)
+    m = np.repeat(m, 3) if m.shape == () else m
+    inertia = np.diag(inertia) if inertia.shape == (3,) else inertia
     if m.shape != (3,) or inertia.shape != (3, 3) or c.shape != (3,):
-        raise FemError(
-            f"{place}: expected mass () or (3,), inertia (3,) or (3, 3) and offset (3,), found"
-            f" {m.shape}, {inertia.shape} and {c.shape}"
-        )
+        expected = "mass () or (3,), inertia (3,) or (3, 3) and offset (3,)"
+        raise FemError(f"expected {expected}, found {m.shape}, {inertia.shape} and {c.shape}")
     even = np.allclose(inertia, inertia.T, rtol=SYMMETRIC, atol=0)
-    if (
-        not (m >= 0).all()
-        or not even
-        or np.linalg.eigvalsh(inertia)[0] < -SYMMETRIC * inertia.max()
-    ):
-        raise FemError(
-            f"{place}: expected mass >= 0 and inertia symmetric and not negative, found"
-            f" {member.mass!r} and {inertia.tolist()}"
-        )
+    least = np.linalg.eigvalsh(inertia)[0] if even else -np.inf
+    if not (m >= 0).all() or least < -SYMMETRIC * inertia.max():
+        expected = "mass >= 0 and inertia symmetric and not negative"
+        raise FemError(f"expected {expected}, found {member.mass!r} and {inertia.tolist()}")
     centre = np.concatenate([np.eye(3), -cross_matrix(c)], 1)
     M = centre.T @ (m[:, None] * centre)
     M[3:, 3:] += inertia
     matrices = ElementMatrices({}, {0: np.tile(symmetric(M), (len(nodes), 1, 1))})
     return Block(member.name, nodes, SIX, matrices)
+
+
+MADE: Mapping[type, tuple[str, Callable[[Floats, Any], Block]]] = {
+    Beams: ("group", _beams),
+    Trusses: ("group", _trusses),
+    Solids: ("group", _solids),
+    Spring: ("spring", _springs),
+    Mass: ("mass", _masses),
+}
+"""What messages call the members of each class, and what makes blocks of them; shells, of which
+neighbours share directors, are made before these."""

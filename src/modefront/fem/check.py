@@ -8,7 +8,7 @@ on an engineer should not trust a mesh; ``benchmarks/elements.py`` measures the 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
 
 import numpy as np
@@ -55,80 +55,77 @@ def check_points(nodes: npt.ArrayLike) -> Floats:
     return X
 
 
-def check_range(nodes: Ints, count: int, place: str) -> None:
-    """All of `nodes` are nodes of a model of `count`."""
+def _within(nodes: npt.NDArray[np.integer], count: int) -> Ints:
+    """Return nodes, which have to be those of a model of `count`."""
     wrong = nodes[(nodes < 0) | (nodes >= count)]
     if wrong.size:
-        raise FemError(f"{place}: expected nodes from 0 to {count - 1}, found {wrong[0]}")
+        raise FemError(f"expected nodes from 0 to {count - 1}, found {wrong[0]}")
+    return nodes.astype(np.int64)
 
 
-def node_list(nodes: npt.ArrayLike, count: int, place: str) -> Ints:
+def node_list(nodes: npt.ArrayLike, count: int) -> Ints:
     """One node or a list of nodes as an array."""
     array = np.atleast_1d(np.asarray(nodes))
     if array.ndim != 1 or array.size == 0 or not np.issubdtype(array.dtype, np.integer):
-        raise FemError(f"{place}: expected a list of nodes, found {nodes!r}")
-    check_range(array, count, place)
-    return array.astype(np.int64)
+        raise FemError(f"expected a list of nodes, found {nodes!r}")
+    return _within(array, count)
 
 
-def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int, place: str) -> Ints:
+def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int) -> Ints:
     """Cells as integers (elements, k) with k one of `sizes` and nodes below `count`."""
     array = np.asarray(cells)
     integer = np.issubdtype(array.dtype, np.integer)
     if array.ndim != 2 or array.shape[1] not in sizes or len(array) == 0 or not integer:
-        raise FemError(
-            f"{place}: expected cells, integers (elements, {' or '.join(map(str, sizes))}),"
-            f" found {array.dtype} of shape {array.shape}"
-        )
-    check_range(array, count, place)
-    return array.astype(np.int64)
+        expected = f"cells, integers (elements, {' or '.join(map(str, sizes))})"
+        raise FemError(f"expected {expected}, found {array.dtype} of shape {array.shape}")
+    return _within(array, count)
 
 
-def direction_indices(directions: Sequence[str], place: str) -> list[int]:
+def direction_indices(directions: Sequence[str]) -> list[int]:
     """Columns of `directions`, of which there is one at least, in (x, y, z, rx, ry, rz)."""
     for name in directions:
         if name not in DIRECTIONS:
-            raise FemError(f"{place}: direction must be one of {DIRECTIONS}, found {name!r}")
+            raise FemError(f"direction must be one of {DIRECTIONS}, found {name!r}")
     if not directions:
-        raise FemError(f"{place}: no direction is given, expected some of {DIRECTIONS}")
+        raise FemError(f"no direction is given, expected some of {DIRECTIONS}")
     return [DIRECTIONS.index(name) for name in directions]
 
 
-def unit_vector(direction: Direction, place: str) -> Floats:
+def unit_vector(direction: Direction) -> Floats:
     """Unit vector (6,) in (u, r) of a named direction or a vector of displacement."""
     vector = np.zeros(6)
     if isinstance(direction, str):
         name = direction.removeprefix("-")
-        vector[direction_indices((name,), place)] = -1.0 if direction != name else 1.0
+        vector[direction_indices((name,))] = -1.0 if direction != name else 1.0
         return vector
     components = np.asarray(direction, dtype=float)
     length = np.linalg.norm(components)
     if components.shape != (3,) or not 0 < length < np.inf:
-        raise FemError(f"{place}: expected a direction or vector (3,), found {direction!r}")
+        raise FemError(f"expected a direction or vector (3,), found {direction!r}")
     vector[:3] = components / length
     return vector
 
 
-def axes_of(axes: Axes | None, place: str) -> Floats:
+def axes_of(axes: Axes | None) -> Floats:
     """Local axes (3, 3), x, y and z in rows; those of the model without any."""
     if axes is None:
         return np.eye(3)
     given = np.asarray(axes, dtype=float)
     if given.shape != (2, 3) or not np.isfinite(given).all():
-        raise FemError(f"{place}: expected axes of the shape (2, 3), found {axes!r}")
+        raise FemError(f"expected axes of the shape (2, 3), found {axes!r}")
     x, z = given[0], np.cross(*given)
     if not np.linalg.norm(z) > ALONG * np.prod(np.linalg.norm(given, axis=1)):
-        raise FemError(f"{place}: expected axes of two directions, found {axes!r}")
+        raise FemError(f"expected axes of two directions, found {axes!r}")
     return np.stack([v / np.linalg.norm(v) for v in (x, np.cross(z, x), z)])
 
 
-def check_positive(value: float, what: str, place: str) -> None:
+def check_positive(value: float, what: str) -> None:
     """A stiffness, thickness or mass is positive and finite."""
     if not 0 < value < np.inf:
-        raise FemError(f"{place}: {what} must be > 0, found {value!r}")
+        raise FemError(f"{what} must be > 0, found {value!r}")
 
 
-def check_sizes(relative: Floats, cells: Ints, what: str, place: str) -> None:
+def check_sizes(relative: Floats, cells: Ints, what: str) -> None:
     """No element has a relative length, area or volume of zero or less.
 
     That is (elements,) the smallest det J over the power of the element's extent.
@@ -137,10 +134,9 @@ def check_sizes(relative: Floats, cells: Ints, what: str, place: str) -> None:
     if len(wrong):
         e = wrong[0]
         sign = "zero" if abs(relative[e]) <= FLAT else "negative"
-        raise FemError(
-            f"{place}: element {e} (nodes {', '.join(map(str, cells[e].tolist()))}) has {sign}"
-            f" {what}; expected > 0 at every corner. Such elements: {len(wrong)} of {len(cells)}"
-        )
+        where = f"element {e} (nodes {', '.join(map(str, cells[e].tolist()))})"
+        count = f"Such elements: {len(wrong)} of {len(cells)}"
+        raise FemError(f"{where} has {sign} {what}; expected > 0 at every corner. {count}")
 
 
 def shell_sizes(X: Floats) -> Floats:
@@ -200,14 +196,10 @@ def check_names(structure: Structure) -> None:
             wrong.append(f"{place}: expected a list of names, found {parameter.of!r}")
         else:
             known = sorted(has[quantity])
-            for name in parameter.of:
-                if name not in known:
-                    close = get_close_matches(name, known, 1)
-                    wrong.append(
-                        f"{place}: nothing named {name!r} has a {quantity}; those that do:"
-                        f" {', '.join(known) or 'none'}"
-                        + "".join(f"; did you mean {each!r}?" for each in close)
-                    )
+            for name in (name for name in parameter.of if name not in known):
+                hint = "".join(f"; did you mean {x!r}?" for x in get_close_matches(name, known, 1))
+                those = f"those that do: {', '.join(known) or 'none'}{hint}"
+                wrong.append(f"{place}: nothing named {name!r} has a {quantity}; {those}")
     if wrong:
         raise FemError(*wrong)
 
@@ -232,61 +224,61 @@ CORNERS = np.array(
 
 def limits_of(structure: Structure, nodes: Floats) -> tuple[str, ...]:
     """Return warnings on the elements of a structure; its nodes (nodes, 3) are checked."""
-    out = []
+    return tuple(_limits(structure, nodes))
+
+
+def _limits(structure: Structure, nodes: Floats) -> Iterator[str]:
     for group in structure.groups:
         cells = np.asarray(group.cells)
         if isinstance(group, Shells):
             normal = corner_normals(nodes[cells]).mean(axis=1)
             area = np.linalg.norm(normal, axis=1)
             size = np.sqrt(area if cells.shape[1] == 4 else area / 2)
-            out += _curved(group, cells, normal / area[:, None], size)
+            yield from _curved(group, cells, normal / area[:, None], size)
             if cells.shape[1] == 3:
-                out += _obtuse(group, nodes[cells])
+                yield from _obtuse(group, nodes[cells])
             if group.name in structure.varied_thickness and size.min() < SMALL * group.thickness:
                 ratio = size.min() / group.thickness
-                out.append(
+                yield (
                     f"shells of group '{group.name}' are as small as {ratio:.2g} of their "
                     "thickness, which is a parameter: at twice the nominal one, frequencies differ "
                     "by up to 11 % from those of a model with that thickness; begin near it"
                 )
         elif isinstance(group, Solids) and cells.shape[1] == 8:
-            out += _distorted(group, nodes[cells])
-    return tuple(out)
+            yield from _distorted(group, nodes[cells])
 
 
-def _obtuse(group: Shells, X: Floats) -> list[str]:
-    """Return a warning where triangles X (elements, 3, 3) have great angles."""
+def _obtuse(group: Shells, X: Floats) -> Iterator[str]:
+    """Yield a warning where triangles X (elements, 3, 3) have great angles."""
     sides = np.roll(X, -1, axis=1) - X
     sides /= np.linalg.norm(sides, axis=2, keepdims=True)
     turns = np.arccos((sides * np.roll(sides, 1, axis=1)).sum(2).clip(-1, 1))
     angle = 180 - float(np.degrees(np.median(turns.min(axis=1))))
-    if angle < OBTUSE:
-        return []
-    return [
-        f"half of the triangles of group '{group.name}' have angles of {angle:.0f}° and more: "
-        "expect bending frequencies off by 3 % at 120° and 13 % at 150° where a span has 16; "
-        "divide along the shorter diagonals, or take quadrilaterals"
-    ]
+    if angle >= OBTUSE:
+        yield (
+            f"half of the triangles of group '{group.name}' have angles of {angle:.0f}° and more: "
+            "expect bending frequencies off by 3 % at 120° and 13 % at 150° where a span has 16; "
+            "divide along the shorter diagonals, or take quadrilaterals"
+        )
 
 
-def _distorted(group: Solids, X: Floats) -> list[str]:
-    """Return a warning where bricks X (elements, 8, 3) are distorted."""
+def _distorted(group: Solids, X: Floats) -> Iterator[str]:
+    """Yield a warning where bricks X (elements, 8, 3) are distorted."""
     edges = X[:, CORNERS] - X[:, :, None]
     volume = np.abs(np.linalg.det(edges))
     distortion = 1 - volume.min(axis=1) / volume.max(axis=1)
-    if distortion.max() < DISTORTED:
-        return []
-    return [
-        f"{int((distortion >= DISTORTED).sum())} of {len(distortion)} bricks of group "
-        f"'{group.name}' are distorted, by up to {100 * distortion.max():.0f} % of the volume at "
-        f"their corners (element {int(np.argmax(distortion))}): expect bending frequencies "
-        "too great by some 20 % at a third and 30 % at a half where a span has 5 bricks, by 3 to "
-        "6 % where it has 10; refine, or take bricks of 20 nodes"
-    ]
+    if count := int((distortion >= DISTORTED).sum()):
+        yield (
+            f"{count} of {len(distortion)} bricks of group '{group.name}' are distorted, by up to "
+            f"{100 * distortion.max():.0f} % of the volume at their corners (element "
+            f"{int(np.argmax(distortion))}): expect bending frequencies too great by some 20 % at "
+            "a third and 30 % at a half where a span has 5 bricks, by 3 to 6 % where it has 10; "
+            "refine, or take bricks of 20 nodes"
+        )
 
 
-def _curved(group: Shells, cells: Ints, normal: Floats, size: Floats) -> list[str]:
-    """Return a warning where elements are large beside radius and thickness of the shell."""
+def _curved(group: Shells, cells: Ints, normal: Floats, size: Floats) -> Iterator[str]:
+    """Yield a warning where elements are large beside radius and thickness of the shell."""
     edges = np.sort(np.stack([cells, np.roll(cells, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     owner = np.repeat(np.arange(len(cells)), cells.shape[1])
     order = np.lexsort(edges.T)
@@ -295,10 +287,9 @@ def _curved(group: Shells, cells: Ints, normal: Floats, size: Floats) -> list[st
     angle = np.arccos(np.abs(np.einsum("ei,ei->e", normal[a], normal[b])).clip(0, 1))
     coarse = angle * np.maximum(size[a], size[b]) / group.thickness
     worst = float(coarse[angle < np.radians(FOLD)].max(initial=0.0))
-    if worst < CURVED:
-        return []
-    return [
-        f"elements of group '{group.name}' are up to {worst:.2g} times as large as radius and "
-        "thickness of the curved shell allow (size² / radius / thickness): expect errors of the "
-        "frequencies of up to 10 % where it is curved in two directions; refine"
-    ]
+    if worst >= CURVED:
+        yield (
+            f"elements of group '{group.name}' are up to {worst:.2g} times as large as radius and "
+            "thickness of the curved shell allow (size² / radius / thickness): expect errors of "
+            "the frequencies of up to 10 % where it is curved in two directions; refine"
+        )

@@ -63,37 +63,35 @@ class Followers:
 
 def following_rows(X: Floats, structure: Structure, checks: Checks) -> list[Followers]:
     """Return the rows of links and couplings in which nothing is wrong."""
-    rows = [checks.attempt(_link, X, x, f"link {n}") for n, x in enumerate(structure.links)]
-    rows += [
-        checks.attempt(_coupling, X, x, f"coupling {n}") for n, x in enumerate(structure.couplings)
-    ]
+    rows = [checks.attempt(f"link {n}", _link, X, x) for n, x in enumerate(structure.links)]
+    for n, each in enumerate(structure.couplings):
+        rows.append(checks.attempt(f"coupling {n}", _coupling, X, each))
     return [row for row in rows if row is not None]
 
 
-def _link(X: Floats, link: Link, place: str) -> Followers:
-    master = node_list(link.master, len(X), place)
-    slaves = node_list(link.slaves, len(X), place)
+def _link(X: Floats, link: Link) -> Followers:
+    master = node_list(link.master, len(X))
+    slaves = node_list(link.slaves, len(X))
     slaves = slaves[slaves != master[0]]
     motion = rigid_motion(X[slaves] - X[master])
-    directions = direction_indices(link.directions, place)
+    directions = direction_indices(link.directions)
     return _followers(X, slaves, np.tile(master, (len(slaves), 1)), motion[:, :, None], directions)
 
 
-def _coupling(X: Floats, coupling: Coupling, place: str) -> Followers:
+def _coupling(X: Floats, coupling: Coupling) -> Followers:
     """Return the rows of a node with the mean motion of others.
 
     With the displacement P_i q of node i in the rigid motion q of `node`, least squares of
     sum_i w_i |u_i - P_i q|^2 are q = (sum_i w_i P_i^T P_i)^-1 sum_i w_i P_i^T u_i.
     """
-    node = node_list(coupling.node, len(X), place)
-    of = node_list(coupling.of, len(X), place)
+    node = node_list(coupling.node, len(X))
+    of = node_list(coupling.of, len(X))
     weights = np.asarray(coupling.weights, dtype=float)
     if weights.shape not in ((), of.shape) or not (weights > 0).all() or node[0] in of:
-        raise FemError(
-            f"{place}: expected other nodes than {node[0]}, with a weight above 0 for each or for"
-            f" all, found nodes {of.tolist()} and weights {weights.tolist()}"
-        )
-    directions = direction_indices(coupling.directions, place)
+        expected = f"other nodes than {node[0]}, with a weight above 0 for each or for all"
+        found = f"nodes {of.tolist()} and weights {weights.tolist()}"
+        raise FemError(f"expected {expected}, found {found}")
+    directions = direction_indices(coupling.directions)
     size = np.ptp(X[of], axis=0).max() or 1.0
     P = rigid_motion(X[of] - X[node])[:, :3] * np.repeat([1, 1 / size], 3)
     weighted = np.broadcast_to(weights, of.shape)[:, None, None] * P
@@ -101,10 +99,9 @@ def _coupling(X: Floats, coupling: Coupling, place: str) -> Followers:
     inverse = np.linalg.pinv(normal, rcond=UNDETERMINED, hermitian=True)
     lost = [d for d in directions if abs(inverse[d] @ normal - np.eye(6)[d]).max() > UNDETERMINED]
     if lost:
-        raise FemError(
-            f"{place}: the nodes do not determine {', '.join(DIRECTIONS[d] for d in lost)} of node"
-            f" {node[0]}; expected nodes that are not on one line, or fewer directions"
-        )
+        names = ", ".join(DIRECTIONS[d] for d in lost)
+        expected = "expected nodes that are not on one line, or fewer directions"
+        raise FemError(f"the nodes do not determine {names} of node {node[0]}; {expected}")
     factors = np.zeros((1, 6, len(of), 6))
     factors[0, :, :, :3] = np.einsum("ij,ndj->ind", inverse, weighted)
     factors[0, 3:] /= size
@@ -147,10 +144,10 @@ def hold(
     """
     skew: dict[int, list[Floats]] = {}
 
-    def support(each: Support, place: str) -> None:
-        nodes = node_list(each.nodes, len(X), place)
-        directions = direction_indices(each.directions, place)
-        R = axes_of(each.axes, place)
+    def support(each: Support) -> None:
+        nodes = node_list(each.nodes, len(X))
+        directions = direction_indices(each.directions)
+        R = axes_of(each.axes)
         if each.axes is None:
             held[nodes[:, None], directions] = True
             return
@@ -158,20 +155,17 @@ def hold(
             skew.setdefault(node, []).append(block_diag(R, R)[directions])
 
     for n, each in enumerate(supports):
-        checks.attempt(support, each, f"support {n}")
-    slaves, weights = [], []
+        checks.attempt(f"support {n}", support, each)
+    out = []
     for node, several in skew.items():
         C = np.concatenate([np.eye(6)[held[node]], *several]) * exists[node]
         for pivot, row in _solved(C):
             if row.any():
-                slaves.append([node, pivot])
-                weights.append(np.outer(np.eye(6)[pivot], row))
+                weight = np.outer(np.eye(6)[pivot], row)[None, :, None]
+                out.append(_followers(X, np.array([node]), np.array([[node]]), weight, [pivot]))
             else:
                 held[node, pivot] = True
-    return [
-        _followers(X, np.array([node]), np.array([[node]]), weight[None, :, None], [pivot])
-        for (node, pivot), weight in zip(slaves, weights, strict=True)
-    ]
+    return out
 
 
 def _solved(C: Floats) -> list[tuple[int, Floats]]:

@@ -65,21 +65,18 @@ def rigid_bodies(X: Floats, elements: Sequence[Block], exists: Bools) -> Bodies:
     incidence = _incidence(len(X), elements, exists)
     bodies, compact = np.unique(incidence[:, 1], return_inverse=True)
     incidence = np.stack([incidence[:, 0], compact], 1)
-    home = np.full(len(X), -1)
-    home_nodes, earliest = np.unique(incidence[:, 0], return_index=True)
-    home[home_nodes] = incidence[earliest, 1]
-    shared = incidence[incidence[:, 1] != home[incidence[:, 0]]]
-
     n, b = incidence.T
+    home = np.full(len(X), -1)
+    home_nodes, earliest = np.unique(n, return_index=True)
+    home[home_nodes] = b[earliest]
+    shared = incidence[b != home[n]]
     members = np.bincount(b, minlength=len(bodies))
-    centre = np.stack(
-        [np.bincount(b, weights=X[n, d], minlength=len(bodies)) / members for d in range(3)], 1
-    )
+    sums = [np.bincount(b, weights=X[n, d], minlength=len(bodies)) for d in range(3)]
+    centre = np.stack(sums, 1) / members[:, None]
     extent = np.zeros(len(bodies))
     np.maximum.at(extent, b, np.linalg.norm(X[n] - centre[b], axis=1))
-    moves = np.ones((len(bodies), 6), dtype=bool)
     alone = members == 1
-    moves[alone] = False
+    moves = np.repeat(~alone[:, None], 6, axis=1)
     np.logical_or.at(moves, b, exists[n])
     extent[alone] = float(np.ptp(X, axis=0).max()) or 1.0
     return Bodies(home, shared, centre, extent, moves)
@@ -244,15 +241,12 @@ def _describe(X: Floats, bodies: Bodies, columns: Ints, N: Floats, parts: int) -
         f" {ways} ({N.shape[1]} independent motions); expected every part to be held by"
         " supports, springs or links"
     )
-    if parts > 1:
-        message += f". The structure falls into {parts} parts that nothing connects"
+    message += f". The structure falls into {parts} parts that nothing connects" * (parts > 1)
     others = np.flatnonzero((bodies.home >= 0) & ~np.isin(bodies.home, moving))
     if len(others):
         distance, first = KDTree(X[others]).query(X[nodes])
         near = np.flatnonzero(distance <= SAME_PLACE * np.ptp(X, axis=0).max())
-        if len(near):
-            message += (
-                f". Nodes {nodes[near[0]]} and {others[first[near[0]]]} are at the same place but"
-                " not the same node: merge them"
-            )
+        for k in near[:1]:
+            pair = f"Nodes {nodes[k]} and {others[first[k]]}"
+            message += f". {pair} are at the same place but not the same node: merge them"
     return message

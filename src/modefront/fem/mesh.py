@@ -92,10 +92,8 @@ class Mesh:
             raise FemError(f"mesh: no group of cells named {group!r}; there are: {groups}")
         for block in blocks:
             if block.type not in CELL_TYPES[kind]:
-                raise FemError(
-                    f"mesh: group {group!r} has cells of the type {block.type}; a {kind} can be"
-                    f" made of: {', '.join(CELL_TYPES[kind])}"
-                )
+                has = f"mesh: group {group!r} has cells of the type {block.type}"
+                raise FemError(f"{has}; a {kind} can be made of: {', '.join(CELL_TYPES[kind])}")
         return tuple(
             np.concatenate([block.nodes[:, part] for part in parts])
             for block in blocks
@@ -112,10 +110,8 @@ class Mesh:
             blocks.append(self.node_sets[name])
         if not blocks:
             names = sorted({b.group for b in self.blocks} | set(self.node_sets))
-            raise FemError(
-                f"mesh: no group or set of nodes named {name!r}; there are:"
-                f" {', '.join(names) or 'none'}"
-            )
+            there = ", ".join(names) or "none"
+            raise FemError(f"mesh: no group or set of nodes named {name!r}; there are: {there}")
         return np.unique(np.concatenate(blocks))
 
 
@@ -148,14 +144,10 @@ def read_mesh(path: str | Path) -> Mesh:
     points = arrays.pop("points")
     if points.ndim != 2 or not 1 <= points.shape[1] <= 3 or len(points) == 0:
         raise FemError(f"{path}: expected nodes in up to 3 dimensions, found {points.shape}")
-    return Mesh(
-        np.pad(points, ((0, 0), (0, 3 - points.shape[1]))),
-        tuple(
-            Cells(name, kind, arrays[f"cells {k}"])
-            for k, (name, kind) in enumerate(parts["blocks"])
-        ),
-        {name: arrays[f"set {k}"] for k, name in enumerate(parts["sets"])},
-    )
+    named = enumerate(parts["blocks"])
+    blocks = [Cells(name, kind, arrays[f"cells {k}"]) for k, (name, kind) in named]
+    sets = {name: arrays[f"set {k}"] for k, name in enumerate(parts["sets"])}
+    return Mesh(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))), tuple(blocks), sets)
 
 
 def refers_to(path: Path) -> str:
@@ -209,10 +201,9 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     blocks: dict[tuple[str, str], list[Ints]] = {}
     for name, kind, cells in _named_cells(raw):
         blocks.setdefault((str(name), kind), []).append(cells)
-    arrays = {f"cells {k}": np.concatenate(cells) for k, cells in enumerate(blocks.values())}
     sets = _node_sets(raw)
-    for k, nodes in enumerate(sets.values()):
-        arrays[f"set {k}"] = nodes
+    arrays = {f"cells {k}": np.concatenate(cells) for k, cells in enumerate(blocks.values())}
+    arrays |= {f"set {k}": nodes for k, nodes in enumerate(sets.values())}
     arrays["points"] = np.asarray(raw.points, dtype=float)
     return arrays, {"blocks": list(blocks), "sets": list(sets)}
 

@@ -25,33 +25,29 @@ def load_forces(
     loads: Sequence[Load], blocks: Sequence[Block], exists: Bools, checks: Checks
 ) -> list[Floats]:
     """Return the forces (6 nodes,) of each load in which nothing is wrong."""
-    forces = (checks.attempt(_forces, x, blocks, exists, f"load {x.name!r}") for x in loads)
+    forces = (checks.attempt(f"load {x.name!r}", _forces, x, blocks, exists) for x in loads)
     return [f for f in forces if f is not None]
 
 
-def _forces(load: Load, blocks: Sequence[Block], exists: Bools, place: str) -> Floats:
+def _forces(load: Load, blocks: Sequence[Block], exists: Bools) -> Floats:
     force, a = (np.asarray(x, dtype=float) for x in (load.force, load.acceleration))
     if force.shape not in ((3,), (6,)) or a.shape != (3,) or not np.isfinite([*force, *a]).all():
-        raise FemError(
-            f"{place}: expected a force (3,) or (6,) and an acceleration (3,), found {load.force!r}"
-            f" and {load.acceleration!r}"
-        )
+        found = f"{load.force!r} and {load.acceleration!r}"
+        raise FemError(f"expected a force (3,) or (6,) and an acceleration (3,), found {found}")
     f = np.zeros(exists.shape)
     if (np.size(load.nodes) > 0) != force.any():
-        raise FemError(f"{place}: expected nodes and a force on them, found one without the other")
+        raise FemError("expected nodes and a force on them, found one without the other")
     if force.any():
-        f[node_list(load.nodes, len(f), place), : len(force)] = force
+        f[node_list(load.nodes, len(f)), : len(force)] = force
     nowhere = np.argwhere((f != 0) & ~exists)
     if len(nowhere):
         node, direction = nowhere[0]
-        raise FemError(f"{place}: nothing resists {DIRECTIONS[direction]} of node {node}")
+        raise FemError(f"nothing resists {DIRECTIONS[direction]} of node {node}")
     out = f.ravel()
     known = {block.name for block in blocks if block.internal is not None}
     if unknown := set(load.strains) - known:
-        raise FemError(
-            f"{place}: nothing named {min(unknown)!r} has strains; those that do:"
-            f" {', '.join(sorted(known)) or 'none'}"
-        )
+        names = ", ".join(sorted(known)) or "none"
+        raise FemError(f"nothing named {min(unknown)!r} has strains; those that do: {names}")
     for block in blocks:
         pull = np.tile(np.append(a, np.zeros(3))[list(block.directions)], block.cells.shape[1])
         parts = [M @ pull for M in block.matrices.mass.values()]
@@ -60,7 +56,7 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools, place: str) -> F
         for each in parts:
             np.add.at(out, block.dofs(), each)
     if not out.any():
-        raise FemError(f"{place}: expected forces at nodes, an acceleration or strains, found none")
+        raise FemError("expected forces at nodes, an acceleration or strains, found none")
     return out
 
 

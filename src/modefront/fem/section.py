@@ -5,7 +5,8 @@ Warping is free: where it is held, open thin walls twist less than beams.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import ParamSpec, TypeVar
 
@@ -30,6 +31,15 @@ class FemError(ValueError):
         super().__init__("\n".join(messages))
 
 
+@contextmanager
+def at(place: str) -> Iterator[None]:
+    """Have messages begin with the place of what is checked; with an empty one as they are."""
+    try:
+        yield
+    except FemError as error:
+        raise FemError(*(f"{place}: {x}" if place else x for x in error.messages)) from None
+
+
 @dataclass(frozen=True)
 class Checks:
     """Checks that go on after one of them fails, so that all that is wrong is said at once.
@@ -41,10 +51,13 @@ class Checks:
 
     messages: list[str] = field(default_factory=list)
 
-    def attempt(self, check: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
-        """Return the result of a function; None, with its messages noted, where it fails."""
+    def attempt(
+        self, place: str, check: Callable[P, T], *args: P.args, **kwargs: P.kwargs
+    ) -> T | None:
+        """Return the result of a function; None, with messages noted for a place, if it fails."""
         try:
-            return check(*args, **kwargs)
+            with at(place):
+                return check(*args, **kwargs)
         except FemError as error:
             self.messages.extend(m for m in error.messages if m not in self.messages)
             return None
@@ -116,14 +129,11 @@ class Orthotropic:
             if len(value) != 3 or not min(value) > 0:
                 raise FemError(f"material: {name} must be three values > 0, found {value!r}")
         if len(self.nu) != 3 or not self.rho >= 0:
-            raise FemError(
-                f"material: expected three Poisson's ratios and rho >= 0, found {self.nu!r} and"
-                f" {self.rho!r}"
-            )
+            expected = "three Poisson's ratios and rho >= 0"
+            raise FemError(f"material: expected {expected}, found {self.nu!r} and {self.rho!r}")
         if not np.linalg.eigvalsh(self.compliance()[:3, :3] * max(self.E))[0] > 0:
-            raise FemError(
-                f"material: nu must leave the elasticity positive definite, found {self.nu!r}"
-            )
+            what = "nu must leave the elasticity positive definite"
+            raise FemError(f"material: {what}, found {self.nu!r}")
 
     def compliance(self) -> Floats:
         """Return S (6, 6), strains of stresses 11, 22, 33, 23, 13, 12 (engineering shear)."""
@@ -188,14 +198,8 @@ def hollow_rectangle(b_y: float, b_z: float, wall: float) -> Section:
     A = b_y * b_z - i_y * i_z
     middle_y, middle_z = b_y - wall, b_z - wall
     J = 2 * wall * (middle_y * middle_z) ** 2 / (middle_y + middle_z)
-    return Section(
-        A,
-        (b_y * b_z**3 - i_y * i_z**3) / 12,
-        (b_z * b_y**3 - i_z * i_y**3) / 12,
-        J,
-        2 * wall * b_y / A,
-        2 * wall * b_z / A,
-    )
+    I_y, I_z = (b_y * b_z**3 - i_y * i_z**3) / 12, (b_z * b_y**3 - i_z * i_y**3) / 12
+    return Section(A, I_y, I_z, J, 2 * wall * b_y / A, 2 * wall * b_z / A)
 
 
 def circle(diameter: float) -> Section:

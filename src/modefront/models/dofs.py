@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy.sparse
@@ -16,6 +16,7 @@ from modefront.errors import reason
 from modefront.fem.check import unit_vector
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import ended_column, file_size, wrong
+from modefront.json_schema import array, fits
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
 
@@ -46,16 +47,6 @@ class DofTable:
         """Number of degrees of freedom N."""
         return self.node.size
 
-    @cached_property
-    def _order(self) -> Ints:
-        return np.argsort(self.node, kind="stable")
-
-    def of_node(self, node: int) -> Ints:
-        """Return the degrees of freedom of a node, ascending."""
-        ordered = self.node[self._order]
-        first, last = np.searchsorted(ordered, [node, node + 1])
-        return self._order[first:last]
-
     def of_direction(self, direction: str) -> list[tuple[int, float]]:
         """Return all degrees of freedom of nodes in a direction, each with the weight 1."""
         number = number_of(direction)
@@ -78,14 +69,16 @@ class DofTable:
         LookupError
             With what was expected and what was found, where the node does not move so.
         """
-        dofs = self.of_node(node) if node > 0 else np.zeros(0, np.intp)
+        dofs = np.flatnonzero((self.node == node) & (self.node > 0))
         if dofs.size == 0:
             nodes = np.unique(self.node[self.node > 0])
             near = nodes[np.argsort(np.abs(nodes - node), kind="stable")[:6]]
             named = ", ".join(map(str, np.sort(near).tolist())) + ", …" * (nodes.size > 6)
             raise LookupError(f"a node with degrees of freedom, {named}", str(node))
         out: dict[int, float] = {}
-        for number, factor in _components(direction):
+        vector = unit_vector(direction)
+        for axis in np.flatnonzero(abs(vector) > ACCUMULATED).tolist():  # more is no rounding
+            number, factor = axis + 1, float(vector[axis])
             chosen = dofs[(self.direction[dofs] == number) & (self.weight[dofs] != 0)]
             if chosen.size == 0:
                 known = np.unique(self.direction[dofs[self.weight[dofs] != 0]]).tolist()
@@ -125,30 +118,19 @@ def name_of(direction: int) -> str:
     return DIRECTIONS[direction - 1] if 0 < direction <= len(DIRECTIONS) else str(direction)
 
 
-def _components(direction: str | Sequence[float]) -> list[tuple[int, float]]:
-    """Return numbers of directions and factors; a vector turned by a right angle has rounding."""
-    vector = unit_vector(direction, "direction")
-    return [(i + 1, float(vector[i])) for i in np.flatnonzero(abs(vector) > ACCUMULATED).tolist()]
-
-
-def is_direction(value: object) -> bool:
+def is_direction(value: Any) -> bool:
     """Return whether a value of a study file is a direction."""
     if isinstance(value, str):
         return value.removeprefix("-") in DIRECTIONS
     return (
-        isinstance(value, list)
-        and len(value) == 3
-        and all(isinstance(x, int | float) and not isinstance(x, bool) for x in value)
-        and 0 < float(np.linalg.norm(value)) < np.inf
+        fits(value, array({"type": "number"}, 3, 3)) and 0 < float(np.linalg.norm(value)) < np.inf
     )
 
 
 def write_dofs(path: Path, dofs: DofTable) -> None:
     """Write a table of degrees of freedom as CSV: one row a degree of freedom, in their order."""
-    directions = [name_of(n) for n in dofs.direction.tolist()]
-    rows = zip(dofs.node.tolist(), directions, dofs.weight.tolist(), strict=True)
-    written = [(node, name, f"{weight:.17g}") for node, name, weight in rows]
-    write_table(path, [COLUMNS, *written])
+    rows = zip(dofs.node.tolist(), dofs.direction.tolist(), dofs.weight.tolist(), strict=True)
+    write_table(path, [COLUMNS, *((node, name_of(k), f"{w:.17g}") for node, k, w in rows)])
 
 
 def read_dofs(path: Path) -> DofTable:

@@ -15,7 +15,7 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import suggestion
 from modefront.inputs import (
     available_memory,
     counted,
@@ -135,11 +135,9 @@ def _matrix_market(path: Path, _: str) -> Any:
     matrix = scipy.io.mmread(path, spmatrix=False)
     if isinstance(matrix, np.ndarray):
         return matrix
-    again = first_repeated(matrix.row, matrix.col, matrix.shape[1])
-    if again is not None:
+    if (again := first_repeated(matrix.row, matrix.col, matrix.shape[1])) is not None:
         place = f"row {matrix.row[again] + 1}, column {matrix.col[again] + 1}"
-        expected = "a readable matrix: each entry once"
-        raise InputError(Fault(str(path), place, expected, "it again"))
+        raise wrong(path, "a readable matrix: each entry once", "it again", place)
     return matrix
 
 
@@ -196,8 +194,7 @@ def _chosen(path: Path, name: str, shapes: Mapping[str, tuple[int, ...]]) -> str
             raise wrong(path, expected, ", ".join(matrices) or "none")
         name = matrices[0]
     if name not in shapes:
-        expected = "the name of a variable in it"
-        raise wrong(path, expected, suggestion(name, list(shapes)))
+        raise wrong(path, "the name of a variable in it", suggestion(name, list(shapes)))
     return name
 
 

@@ -97,22 +97,18 @@ class CheckedFunction:
 
         Steps stay within the bounds ``lower`` and ``upper``.
         """
-        span = upper - lower
-        for i, name in enumerate(self.names):
-            h = DIFFERENCE * span[i] * (1 if theta[i] + DIFFERENCE * span[i] <= upper[i] else -1)
-            ahead = theta.copy()
-            ahead[i] += h
+        for i, (name, span) in enumerate(zip(self.names, upper - lower, strict=True)):
+            ahead, h = theta.copy(), DIFFERENCE * span
+            ahead[i] += h if theta[i] + h <= upper[i] else -h
             moved = self.at(ahead, known[0][0].shape[0], derivatives=False)
             for what, (shifted, _), (nominal, slopes) in zip("KM", moved, known, strict=True):
                 difference = (shifted - nominal) / (ahead[i] - theta[i])
-                wrong_entry = _wrong_entry(nominal, slopes[i], difference, span[i])
-                if wrong_entry:
-                    expected = (
-                        f"derivatives of the matrices that {what} has, or, where none are "
-                        "returned, a function that keeps the imaginary part of complex parameters"
-                    )
+                if found := _wrong_entry(nominal, slopes[i], difference, span):
+                    expected = f"derivatives of the matrices that {what} has, or, where none are "
+                    expected += "returned, a function that keeps the imaginary part of complex "
+                    expected += "parameters"
                     place = f"{self._place(theta)}: derivative of {what} with respect to {name}"
-                    raise wrong(place, expected, wrong_entry)
+                    raise wrong(place, expected, found)
 
     def _complex_step(self, theta: Floats, i: int, size: int) -> tuple[Any, Any]:
         # The square of the step drowns in rounding, and division by it is exact.
@@ -131,11 +127,10 @@ class CheckedFunction:
         return _imaginary(K, h), _imaginary(M, h)
 
     def _listed(self, slopes: Any, place: str, size: int) -> tuple[Any, ...]:
-        expected = f"a list of {len(self.names)} derivatives, one a parameter"
-        if not isinstance(slopes, Sequence | np.ndarray):
-            raise wrong(place, expected, type(slopes).__name__)
-        if len(slopes) != len(self.names):
-            raise wrong(place, expected, f"{len(slopes)}")
+        listed = isinstance(slopes, Sequence | np.ndarray)
+        if not listed or len(slopes) != len(self.names):
+            expected = f"a list of {len(self.names)} derivatives, one a parameter"
+            raise wrong(place, expected, len(slopes) if listed else type(slopes).__name__)
         return tuple(
             None if slope is None else _checked(slope, f"{place} of {name}", size)
             for name, slope in zip(self.names, slopes, strict=True)
@@ -147,17 +142,15 @@ class CheckedFunction:
         except (ModelError, InputError):
             raise
         except Exception as error:  # a user's function may raise anything
-            found = f"{type(error).__name__}: {error}"
-            raise wrong(place, expected, found) from error
-        if not isinstance(returned, tuple | list):
-            raise wrong(place, RETURNED, type(returned).__name__)
-        if len(returned) not in (2, 4):
-            raise wrong(place, RETURNED, f"{len(returned)} values")
+            raise wrong(place, expected, f"{type(error).__name__}: {error}") from error
+        listed = isinstance(returned, tuple | list)
+        if not listed or len(returned) not in (2, 4):
+            found = f"{len(returned)} values" if listed else type(returned).__name__
+            raise wrong(place, RETURNED, found)
         return returned
 
     def _place(self, theta: Floats) -> str:
-        pairs = zip(self.names[:6], theta, strict=False)
-        shown = [f"{name} = {value:g}" for name, value in pairs]
+        shown = [f"{name} = {x:g}" for name, x in zip(self.names[:6], theta, strict=False)]
         return f"matrices({', '.join(shown + ['...'] * (len(self.names) > 6))})"
 
 
@@ -178,28 +171,19 @@ class FunctionModel:
     __repr__ = brief_model
     _repr_html_ = as_html
 
+    unused = ()  # on which parameters a function does not depend is not known
     parameters = passed_on("nominal", "parameters")
     sensors = passed_on("nominal", "sensors")
     size = passed_on("nominal", "size")
+    places = passed_on("nominal", "places")
+    directions = passed_on("nominal", "directions")
+    selection = passed_on("nominal", "selection")
+    footprint = passed_on("nominal", "footprint")
 
     @property
     def parts(self) -> tuple[MatrixModel]:
         """The nominal model, which is sent to other processes on its own."""
         return (self.nominal,)
-
-    @property
-    def footprint(self) -> float:
-        """Bytes that an eigensolution takes, estimated."""
-        return self.nominal.footprint
-
-    @property
-    def unused(self) -> tuple[str, ...]:
-        """No names: on which parameters a function does not depend is not known."""
-        return ()
-
-    places = passed_on("nominal", "places")
-    directions = passed_on("nominal", "directions")
-    selection = passed_on("nominal", "selection")
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
@@ -289,23 +273,16 @@ def function_model(
     K, M = function.at(theta, None)
     function.check_derivatives(theta, lower, upper, (K, M))
     size = int(K[0].shape[0])
-    nominal = MatrixModel(
-        function.names,
-        tuple(sensors),
-        select(sensors, size),
-        _affine(K, theta),
-        _affine(M, theta),
-        weights_of(outputs or {}, size, "outputs"),
-        weights_of(base or {}, size, "base"),
-    )
+    named = function.names, tuple(sensors), select(sensors, size)
+    others = weights_of(outputs, size, "outputs"), weights_of(base, size, "base")
+    nominal = MatrixModel(*named, _affine(K, theta), _affine(M, theta), *others)
     return FunctionModel(function, nominal)
 
 
 def _affine(known: Tangent, theta: Floats) -> DenseAffine | SparseAffine:
     matrix, each = known
     slopes = {i: slope for i, slope in enumerate(each) if slope is not None}
-    exponents = np.zeros((1 + len(slopes), theta.size))
-    exponents[1 + np.arange(len(slopes)), list(slopes)] = 1
+    exponents = np.vstack([np.zeros(theta.size), np.eye(theta.size)[list(slopes)]])
     terms, coefficients = [matrix, *slopes.values()], Monomials(exponents, theta.copy())
     if isinstance(matrix, np.ndarray):
         return DenseAffine(np.array(terms), coefficients)
@@ -318,11 +295,10 @@ def _checked(value: Matrix, place: str, size: int | None, real: bool = True) -> 
         A: Any = value if scipy.sparse.issparse(value) else np.asarray(value)
     except ValueError:  # lists of different lengths
         raise wrong(place, "a matrix", type(value).__name__) from None
-    n = "N" if size is None else size
-    square = A.ndim == 2 and A.shape[0] == A.shape[1] > 0
-    if not square or (size is not None and A.shape[0] != size):
+    n = size or (A.shape[0] if A.ndim else 0)
+    if A.shape != (n, n) or not n:
         found = " x ".join(map(str, A.shape)) or "a single number"
-        raise wrong(place, f"a matrix {n} x {n}", found)
+        raise wrong(place, f"a matrix {size or 'N'} x {size or 'N'}", found)
     if A.dtype.kind not in "biufc":
         raise wrong(place, "numbers", str(A.dtype))
     if real and A.dtype.kind == "c":

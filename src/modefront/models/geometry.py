@@ -51,9 +51,7 @@ class Geometry:
 
     def displacement(self, shapes: Floats) -> Floats:
         """Return the displacement of all nodes, (modes, nodes, 3), in mode shapes (N, modes)."""
-        moved = self.motion @ shapes
-        out: Floats = np.asarray(moved).T.reshape(-1, len(self.nodes), 3)
-        return out
+        return np.asarray(self.motion @ shapes).T.reshape(-1, len(self.nodes), 3)
 
 
 def chain_geometry(masses: int, sensors: scipy.sparse.csr_array) -> Geometry:
@@ -62,13 +60,11 @@ def chain_geometry(masses: int, sensors: scipy.sparse.csr_array) -> Geometry:
     The ground is the node at height 0, mass i is at height i. A sensor of several masses is drawn
     at the one with the greatest weight; ``sensors`` are weights (sensors, masses).
     """
-    heights = np.arange(masses + 1.0)
-    nodes = np.column_stack([0 * heights, 0 * heights, heights])
-    lines = np.column_stack([np.arange(masses), np.arange(1, masses + 1)])
-    rows = 3 * np.arange(1, masses + 1)
-    motion = scipy.sparse.csr_array(
-        (np.ones(masses), (rows, np.arange(masses))), shape=(3 * (masses + 1), masses)
-    )
+    nodes, lower = np.zeros((masses + 1, 3)), np.arange(masses)
+    nodes[1:, 2] = lower + 1
+    lines = np.column_stack([lower, lower + 1])
+    entries = np.ones(masses), (3 * lower + 3, lower)
+    motion = scipy.sparse.csr_array(entries, shape=(3 * (masses + 1), masses))
     weights = sensors.toarray()
     greatest = np.abs(weights).argmax(axis=1)
     directions = np.zeros((len(weights), 3))

@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -47,10 +47,6 @@ SensorSpec = int | Sequence[tuple[int, float]]
 """A sensor: a degree of freedom, counted from 0, or weighted degrees of freedom."""
 
 Matrix: TypeAlias = Floats | scipy.sparse.sparray
-
-
-def _factorisation() -> None:
-    spend(Costs(factorisations=1))
 
 
 @contextmanager
@@ -121,9 +117,7 @@ class MatrixModel:
     def unused(self) -> tuple[str, ...]:
         """Names of parameters on which neither matrix depends."""
         used = self.stiffness.used | self.mass.used
-        return tuple(
-            name for name, has_effect in zip(self.parameters, used, strict=True) if not has_effect
-        )
+        return tuple(self.parameters[i] for i in np.flatnonzero(~used))
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
@@ -187,10 +181,8 @@ class MatrixModel:
         out = np.zeros((self.size, len(sums)))
         for column, weights in zip(out.T, sums, strict=True):
             for name, weight in weights.items():
-                if name in self.sensors:
-                    row = self.selection[[self.sensors.index(name)]].toarray()[0]
-                else:
-                    row = self.outputs[name]
+                own = self.sensors.index(name) if name in self.sensors else None
+                row = self.outputs[name] if own is None else self.selection[[own]].toarray()[0]
                 column += weight * row
         return out
 
@@ -253,7 +245,7 @@ class MatrixModel:
         """The sparse pencil; its pattern is analysed at the first evaluation, and only then."""
         if isinstance(self.stiffness, DenseAffine) or isinstance(self.mass, DenseAffine):
             raise TypeError("stiffness and mass have to be both dense or both sparse")
-        return pencil(self.stiffness, self.mass, _factorisation)
+        return pencil(self.stiffness, self.mass, partial(spend, Costs(factorisations=1)))
 
 
 def of_free(model: Model, parameters: Sequence[Parameter]) -> tuple[Model, tuple[Parameter, ...]]:
@@ -319,16 +311,10 @@ def matrices(
     [4.0]
     """
     size = _common_size(parameters, {"stiffness": stiffness, "mass": mass})
-    return MatrixModel(
-        tuple(parameters),
-        tuple(sensors),
-        select(sensors, size),
-        affine(parameters, stiffness, size),
-        affine(parameters, mass, size),
-        weights_of(outputs or {}, size, "outputs"),
-        weights_of(base or {}, size, "base"),
-        floating,
-    ).compact()
+    K, M = (affine(parameters, terms, size) for terms in (stiffness, mass))
+    others = weights_of(outputs, size, "outputs"), weights_of(base, size, "base")
+    named = tuple(parameters), tuple(sensors), select(sensors, size)
+    return MatrixModel(*named, K, M, *others, floating).compact()
 
 
 def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) -> SparseAffine:
@@ -377,9 +363,10 @@ def select(
     return selection.tocsr()
 
 
-def weights_of(places: Mapping[str, SensorSpec], size: int, place: str) -> dict[str, Floats]:
+def weights_of(places: Mapping[str, SensorSpec] | None, size: int, place: str) -> dict[str, Floats]:
     """Return the weights (size,) of the degrees of freedom at each of some places, by name."""
-    return dict(zip(places, select(places, size, place).toarray(), strict=True))
+    known = places or {}
+    return dict(zip(known, select(known, size, place).toarray(), strict=True))
 
 
 def symmetrised(A: Any, file: str, place: str) -> Any:

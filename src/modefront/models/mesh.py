@@ -90,15 +90,9 @@ def _geometry(structure: fem.Structure, built: fem.StructureMatrices) -> Geometr
     types = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
     types |= {15: "wedge15", 20: "hexahedron20"}
     cells = [np.atleast_2d(np.asarray(group.cells)) for group in structure.groups]
+    named = zip(structure.groups, cells, strict=True)
+    known = tuple(Cells(group.name, types[each.shape[1]], each) for group, each in named)
     translations = 6 * np.arange(len(nodes))[:, None] + np.arange(3)
-    count = len(structure.sensors)
-    return Geometry(
-        nodes,
-        tuple(
-            Cells(group.name, types[each.shape[1]], each)
-            for group, each in zip(structure.groups, cells, strict=True)
-        ),
-        scipy.sparse.csr_array(built.dofs.T[translations.ravel()]),
-        built.places.nodes[:count],
-        built.places.directions[:count, :3],
-    )
+    motion = scipy.sparse.csr_array(built.dofs.T[translations.ravel()])
+    (at, along), count = built.places, len(structure.sensors)
+    return Geometry(nodes, known, motion, at[:count], along[:count, :3])

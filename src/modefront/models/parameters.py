@@ -30,11 +30,7 @@ from modefront.options import (
     text,
 )
 
-BOUNDS = numbers(
-    "[lower, upper], two finite numbers with lower < upper",
-    PAIR,
-    rising,
-)
+BOUNDS = numbers("[lower, upper], two finite numbers with lower < upper", PAIR, rising)
 
 
 @dataclass(frozen=True)
@@ -112,8 +108,7 @@ def parameters_of(
     """
     out, faults = [], []
     for name in dict.fromkeys([*bounds, *nominal]):
-        given = {"bounds": bounds, "nominal": nominal}
-        for what in (what for what, values in given.items() if name not in values):
+        for what in [*["bounds"] * (name not in bounds), *["nominal"] * (name not in nominal)]:
             faults.append(Fault("", f"{what} of '{name}'", f"{what} of each parameter", "nothing"))
         if name in bounds and name in nominal:
             try:

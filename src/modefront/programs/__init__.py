@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from modefront.programs.base import Program
 
 PROGRAMS: Mapping[str, Program] = {
-    name: Program(name, f"{__name__}.{name}", eliminates=name == "abaqus")
+    name: Program(name, eliminates=name == "abaqus")
     for name in ("calculix", "abaqus", "nastran", "ansys", "opensees")
 }
 """All programs by their names."""

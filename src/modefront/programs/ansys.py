@@ -56,12 +56,9 @@ class _Words:
 
     def record(self, start: int) -> tuple[np.ndarray, int]:
         """Return the words of the record at a position, and the position of the next."""
-        count = int(self.words[start]) if 0 <= start < self.words.size - 2 else -1
-        if (
-            count < 0
-            or start + count + 3 > self.words.size
-            or self.words[start + count + 2] != count
-        ):
+        size = self.words.size - 3
+        count = int(self.words[start]) if 0 <= start <= size else -1
+        if not 0 <= count <= size - start or self.words[start + count + 2] != count:
             raise wrong(self.path, "whole records of Ansys", "a file that is cut off, or another")
         flags = (int(self.words[start + 1]) >> 24) & 0xFF
         if flags not in (0x80, 0):  # integers, or doubles
@@ -113,9 +110,7 @@ def _from_full(path: Path) -> Listed:
 
 
 def _rows(words: _Words, position: int, terms: int, size: int) -> Entries:
-    columns: list[np.ndarray] = []
-    values: list[np.ndarray] = []
-    count = 0
+    columns, values, count = list[np.ndarray](), list[np.ndarray](), 0
     while count < terms:
         index, position = words.record(position)
         value, position = words.record(position)

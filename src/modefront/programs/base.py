@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -74,12 +74,8 @@ def arrays_of(mesh: ProgramMesh) -> dict[str, Any]:
 
 def mesh_from(arrays: Mapping[str, Any]) -> ProgramMesh:
     """Return the mesh of its arrays; raises ValueError where they do not belong together."""
-    number, coordinates = arrays["number"], arrays["coordinates"]
-    cells = {
-        name.removeprefix("cells_"): table
-        for name, table in arrays.items()
-        if name not in ("number", "coordinates")
-    }
+    cells = {name.removeprefix("cells_"): table for name, table in arrays.items()}
+    number, coordinates = cells.pop("number"), cells.pop("coordinates")
     if coordinates.shape != (number.size, 3) or not all(
         table.shape[1:] == (CORNERS[kind],) and np.isin(table, number).all()
         for kind, table in cells.items()
@@ -173,30 +169,26 @@ class Program:
 
     Attributes
     ----------
-    name : as the command line names it
-    module : has the function ``read`` that takes a path and options, and returns `Listed`
+    name : as the command line names it, and the module beside this one has it, whose function
+        ``read`` takes a path and options, and returns `modefront.programs.reading.Listed`
     eliminates : whether degrees of freedom of negative nodes are to be eliminated where that is
         exact; they are kept otherwise
     """
 
     name: str
-    module: str
     eliminates: bool = False
 
     def job(self, path: Path, options: JobOptions) -> Job:
         """Return a job; raises InputError where its files cannot be read, whatever the cause."""
-        texts = (options.stiffness, options.mass, options.dofs, options.deck)
-        arguments = (self.module, *(str(text or "") for text in texts))
+        texts = (str(text or "") for text in astuple(options))
         reader = "modefront.programs.reading:read_job"
         try:
-            arrays, (name, precision, notes) = isolated(reader, path, arguments=arguments)
+            arrays, (name, precision, notes) = isolated(reader, path, arguments=(self.name, *texts))
         except IsolatedError as error:
             raise wrong(path, f"a job of {self.name}", str(error)) from None
         dofs = DofTable(*(arrays.pop(part) for part in ("node", "direction", "weight")))
-        K, M = (
-            Matrix(tuple(arrays.pop(f"{A}{k}") for k in range(3)), shape=(dofs.size, dofs.size))
-            for A in "KM"
-        )
+        shape, parts = (dofs.size, dofs.size), range(3)
+        K, M = (Matrix(tuple(arrays.pop(f"{A}{k}") for k in parts), shape=shape) for A in "KM")
         mesh = mesh_from(arrays) if arrays else None
         return Job(name, K, M, dofs, precision, mesh, tuple(notes))
 

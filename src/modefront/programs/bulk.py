@@ -153,8 +153,6 @@ def read_bulk(path: Path) -> Bulk:
     Raises OSError where it cannot be read, and InputError for entries of nodes, elements and
     supports that cannot be understood.
     """
-    if not path.is_file():
-        raise FileNotFoundError(f"no file {path.name}")
     text = path.read_text(encoding="utf-8", errors="replace")
     parted = re.search(r"^\s*BEGIN\s+(BULK|SUPER).*$", text, re.MULTILINE | re.IGNORECASE)
     control, bulk = (text[: parted.start()], text[parted.end() :]) if parted else ("", text)

@@ -47,13 +47,9 @@ def read(path: Path, options: JobOptions) -> Listed:
         row, column, value = columns(files[suffix], r"\s+", "iif", comment="#")
         entries[suffix] = Entries(row - 1, column - 1, value, precision=1e-13)
     _refuse_cut_off(files, entries, node.size)
-    notes: list[str] = []
-    own = job.with_name(job.name + ".inp")
-    deck = deck_of(
-        options.deck or own,
-        notes,
-        ", and held nodes of shells and beams cannot be told from others",
-    )
+    own, notes = job.with_name(job.name + ".inp"), list[str]()
+    missing = ", and held nodes of shells and beams cannot be told from others"
+    deck = deck_of(options.deck or own, notes, missing)
     if deck is not None and own.is_file() and own.stat().st_mtime > files[".sti"].stat().st_mtime:
         notes.append(f"{job.name}.inp is newer than {job.name}.sti: was it run since?")
     dofs = _table(DofTable(node, direction, np.ones(node.size)), deck)
@@ -65,13 +61,9 @@ def read(path: Path, options: JobOptions) -> Listed:
     nodes = np.unique(dofs.node[dofs.node > 0])
     if dead := np.setdiff1d(nodes, dofs.node[dofs.weight != 0]).size:
         notes.append(f"{dead} nodes are held: there are no sensors at them")
-    return Listed(
-        (files[".sti"], files[".mas"]),
-        (entries[".sti"], entries[".mas"]),
-        dofs,
-        mesh=deck.mesh if deck else None,
-        notes=notes,
-    )
+    pair = entries[".sti"], entries[".mas"]
+    mesh = deck.mesh if deck else None
+    return Listed((files[".sti"], files[".mas"]), pair, dofs, mesh=mesh, notes=notes)
 
 
 def _refuse_cut_off(files: dict[str, Path], entries: dict[str, Entries], size: int) -> None:
@@ -85,10 +77,8 @@ def _refuse_cut_off(files: dict[str, Path], entries: dict[str, Entries], size: i
     pairs = (first.row, second.row), (first.column, second.column)
     if not all(np.array_equal(a, b) for a, b in pairs):
         expected = f"entries at the places of '{files['.sti'].name}', one after the other"
-        found = (
-            f"{second.row.size} in place of {first.row.size}, or others; is one of them cut off?"
-        )
-        raise wrong(files[".mas"], expected, found)
+        sizes = f"{second.row.size} in place of {first.row.size}"
+        raise wrong(files[".mas"], expected, f"{sizes}, or others; is one of them cut off?")
 
 
 def _table(labels: DofTable, deck: Deck | None) -> DofTable:
@@ -100,20 +90,18 @@ def _table(labels: DofTable, deck: Deck | None) -> DofTable:
     blocks, leading = _own_blocks(labels, deck)
     order = np.lexsort((direction, labels.node))
     keys = np.column_stack([labels.node, direction])[order]
-    starts = np.flatnonzero(np.append(True, (keys[1:] != keys[:-1]).any(axis=1)))
-    groups = np.split(order, starts[1:])
-    parts, most = [], dict[int, int]()
-    for group in groups:  # those of the node itself, and those that were made of it
-        number = int(labels.node[group[0]])
+    starts = np.flatnonzero((keys[1:] != keys[:-1]).any(axis=1)) + 1
+    parts, most = {}, dict[int, int]()
+    for group in np.split(order, starts):  # of the node itself, and those that were made of it
+        number, along = int(labels.node[group[0]]), int(direction[group[0]])
         first, behind = blocks.get(number, (0, 0))
         inside = (group >= first) & (group < behind)
-        parts.append((group[inside], group[~inside]))
+        parts[number, along] = group[inside], group[~inside]
         most[number] = max(most.get(number, 0), int((~inside).sum()))
     follow = _followers(labels, deck, blocks, most, leading)
-    for group, (itself, made) in zip(groups, parts, strict=True):
-        number, along = int(labels.node[group[0]]), int(direction[group[0]])
-        held = deck is not None and (number, along) in deck.held
-        if held or node[group[0]] < 0 or number in follow:
+    known = set() if deck is None else set(deck.mesh.number.tolist())
+    for (number, along), (itself, made) in parts.items():
+        if deck and (number not in known or number in follow or (number, along) in deck.held):
             continue
         if itself.size:
             weight[itself] = 1.0 / itself.size

@@ -92,10 +92,8 @@ class Differences:
 
     def __init__(self, nominal: Job, parameters: Sequence[str], terms: Sequence[str]) -> None:
         self.parameters, self.names = tuple(parameters), tuple(terms)
-        self.nominal = nominal
-        self.precision = nominal.precision
-        exponents = term_exponents(self.names, self.parameters)
-        self.coefficients = Monomials(exponents)
+        self.nominal, self.precision = nominal, nominal.precision
+        self.coefficients = Monomials(term_exponents(self.names, self.parameters))
         self._runs: list[tuple[Floats, Mapping[Quantity, Matrix]]] = []
 
     def add(self, label: str, job: Job, values: Floats) -> None:
@@ -119,11 +117,8 @@ class Differences:
         self._runs.append((values, differences))
 
     def _changed(self, values: Floats) -> str:
-        return ", ".join(
-            f"{name} = {value:g}"
-            for name, value in zip(self.parameters, values, strict=True)
-            if value != 1
-        )
+        pairs = zip(self.parameters, values, strict=True)
+        return ", ".join(f"{name} = {value:g}" for name, value in pairs if value != 1)
 
     def terms(self) -> Terms:
         """Return base and terms.
@@ -163,14 +158,11 @@ class Differences:
 
     def _refuse_undetermined(self, c: Floats) -> None:
         for i, name in enumerate(self.parameters):
-            of_parameter = np.flatnonzero(self.coefficients.exponents[:, i] != 0)
-            if np.linalg.matrix_rank(c[:, of_parameter]) < of_parameter.size:
-                terms = ", ".join(self.names[k] for k in of_parameter)
-                expected = (
-                    f"at least {of_parameter.size} runs with other values for the terms {terms}"
-                )
-                found = f"{np.linalg.matrix_rank(c[:, of_parameter])} that tell them apart"
-                raise wrong(f"--parameter {name}", expected, found)
+            own = np.flatnonzero(self.coefficients.exponents[:, i] != 0)
+            if (rank := np.linalg.matrix_rank(c[:, own])) < own.size:
+                terms = ", ".join(self.names[k] for k in own)
+                expected = f"at least {own.size} runs with other values for the terms {terms}"
+                raise wrong(f"--parameter {name}", expected, f"{rank} that tell them apart")
         if c.shape[1] == 0 or np.linalg.matrix_rank(c) < c.shape[1]:
             raise wrong("--parameter", f"runs that tell {c.shape[1]} terms apart", f"{len(c)}")
 
@@ -250,11 +242,9 @@ def matching(nominal: Job, job: Job, label: str) -> Ints | None:
             expected = f"{nominal.size} degrees of freedom, as '{nominal.name}' has"
             raise wrong(label, expected, job.size)
         return None
-    orders = [np.lexsort((table.direction, table.node)) for table in tables]
-    known = [
-        np.column_stack([table.node, table.direction])[order]
-        for table, order in zip(tables, orders, strict=True)
-    ]
+    labels = [np.column_stack([table.node, table.direction]) for table in tables]
+    orders = [np.lexsort(each.T[::-1]) for each in labels]
+    known = [each[order] for each, order in zip(labels, orders, strict=True)]
     if not np.array_equal(known[0], known[1]):
         expected = f"the degrees of freedom of '{nominal.name}' ({nominal.size})"
         before, after = (Counter(map(tuple, labels.tolist())) for labels in known)
@@ -279,8 +269,7 @@ def reordered(A: Matrix, order: Ints | None) -> Matrix:
 def _joint(E: scipy.sparse.coo_array, A: Matrix) -> Floats:
     """Return, for each entry of E, the geometric mean of the diagonal entries of A beside it."""
     scale = np.sqrt(np.abs(A.diagonal()))
-    out: Floats = scale[E.row] * scale[E.col]
-    return out
+    return np.asarray(scale[E.row] * scale[E.col])
 
 
 def _above(D: Matrix, A: Matrix, noise: float) -> Matrix:
@@ -343,25 +332,22 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
         expected += "(contact, connectors, incompressible elements) cannot be imported"
         raise InputError(Fault("", label, expected, f"none at {zero.size} of the program's own"))
     gone = np.zeros(internal.size, bool)
-    for name in stiffness:
-        part = owner[groups] == list(stiffness).index(name)
-        if part.any():
+    for position, name in enumerate(stiffness):
+        if (part := owner[groups] == position).any():
             stiffness[name], done = _eliminated(stiffness[name], internal[part], groups[part])
             gone[part] = done
     kept = np.setdiff1d(np.arange(terms.dofs.size), internal[gone])
 
     def restricted(term: Term) -> Term:
-        both = {
-            x: stiffness[term.name] if x == "stiffness" else A for x, A in term.matrices.items()
-        }
+        both = dict(term.matrices)
+        if "stiffness" in both:
+            both["stiffness"] = stiffness[term.name]
         rows = {x: scipy.sparse.triu(A[kept][:, kept], format="csr") for x, A in both.items()}
         return replace(term, matrices={x: A for x, A in rows.items() if A.nnz})
 
     dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
-    reduced = Terms(
-        terms.parameters, restricted(terms.base), tuple(map(restricted, terms.terms)), dofs
-    )
-    return reduced, int(gone.sum()), int((~gone).sum())
+    base, others = restricted(terms.base), tuple(map(restricted, terms.terms))
+    return Terms(terms.parameters, base, others, dofs), int(gone.sum()), int((~gone).sum())
 
 
 def _owners(

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -67,12 +68,8 @@ class Deck:
     @cached_property
     def held(self) -> set[tuple[int, int]]:
         """Node and direction, from 1, of every support."""
-        return {
-            (node, direction)
-            for name, first, last in self.supports
-            for node in self.nodes_of([name])
-            for direction in range(first, last + 1)
-        }
+        ranges = ((self.nodes_of([name]), range(a, b + 1)) for name, a, b in self.supports)
+        return {pair for each in ranges for pair in product(*each)}
 
     def nodes_of(self, names: Iterable[str]) -> Iterator[int]:
         """Yield nodes that are named, and those of sets, as far as they are listed."""
@@ -175,17 +172,14 @@ def _elements(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> Non
     # Names of these say how many nodes there are.
     counted = re.match(r"(?:D?C3D|SC|S|M3D|CPS|CPE|CAX)(?!27)([0-9]+)", name)
     count = int(counted[1]) if counted else 0
-    numbers: list[int] = []
-    joined: list[list[int]] = []
+    joined, more = list[list[int]](), False
     for row in rows:  # elements of many nodes go on in the next line after a comma at the end
-        numbers += [int(x) for x in row if x]
-        if row[-1] != "" or len(numbers) > count > 0:  # what is beyond is not read
-            joined.append(numbers[: count + 1] if count else numbers)
-            numbers = []
-    joined += [numbers] if numbers else []
+        joined += [] if more else [[]]
+        joined[-1] += [int(x) for x in row if x]
+        more = row[-1] == "" and (not count or len(joined[-1]) <= count)
     expanded = re.match(r"S[3468]|M3D|CPS|CPE|CAX|B[23][123]|PIPE|T[23]D", name)
     target = deck.expanded if expanded else deck.others
-    for number, *nodes in joined:
+    for number, *nodes in (each[: count + 1] if count else each for each in joined):
         if (count and len(nodes) != count) or (number in deck.elements and not deck.parts):
             raise ValueError(f"{len(nodes)} nodes of element {number}, or that element again")
         deck.elements.add(number)
@@ -204,8 +198,7 @@ def _add_set(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None
         items = [x for x in row if x]
         if "GENERATE" in options and all(x.isdigit() for x in items) and len(items) > 1:
             first, last, step = (*map(int, items), 1)[:3]
-            chosen += range(first, last + 1, max(step, 1))
-            continue
+            items = list(map(str, range(first, last + 1, max(step, 1))))
         for item in items:
             if not (item.isdigit() or item[0].isalpha() or item[0] in '_"'):
                 raise ValueError(f"{item!r} in place of a node or the name of a set")
@@ -215,15 +208,14 @@ def _add_set(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None
 def _boundary(deck: Deck, _: dict[str, str], rows: list[list[str]]) -> None:
     named = {"ENCASTRE": (1, 6), "PINNED": (1, 3)}
     for row in rows:
-        if len(row) < 2 or not (row[1].isdigit() or row[1][:1].isalpha()):
+        name, first, last, value = (*row, "", "", "")[:4]
+        if not (first.isdigit() or first[:1].isalpha()):
             raise ValueError(f"{', '.join(row)!r}")
-        if row[1].upper() in named:
-            deck.supports.append((row[0], *named[row[1].upper()]))
-            continue
-        last = row[2] if len(row) > 2 and row[2] else row[1]
-        value = row[3] if len(row) > 3 else ""
-        if row[1].isdigit() and last.isdigit() and not value.strip("0.+-eE "):
-            deck.supports.append((row[0], int(row[1]), min(int(last), 6)))
+        last = last or first
+        if first.upper() in named:
+            deck.supports.append((name, *named[first.upper()]))
+        elif first.isdigit() and last.isdigit() and not value.strip("0.+-eE "):
+            deck.supports.append((name, int(first), min(int(last), 6)))
 
 
 _TAKEN = {"NODE": _nodes, "ELEMENT": _elements, "NSET": _add_set, "BOUNDARY": _boundary}

@@ -62,18 +62,14 @@ def _pair(path: Path, names: Iterable[str], options: JobOptions) -> tuple[str, s
 
 
 def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
-    candidates = [options.deck] if options.deck else [path.with_suffix(x) for x in DECKS]
-    for deck in candidates:
-        try:
-            return read_bulk(deck)
-        except FileNotFoundError:
-            continue
-        except OSError as error:
-            raise wrong(deck, "a deck that can be read", reason(error)) from None
-    if options.deck:
-        raise wrong(options.deck, "a deck", "no such file")
-    notes.append(f"there is no deck ({path.stem}.dat or .bdf), and so there are no coordinates")
-    return None
+    deck = options.deck or next((x for x in map(path.with_suffix, DECKS) if x.is_file()), None)
+    if deck is None:
+        notes.append(f"there is no deck ({path.stem}.dat or .bdf), and so there are no coordinates")
+        return None
+    try:
+        return read_bulk(deck)
+    except OSError as error:
+        raise wrong(deck, "a deck that can be read", reason(error)) from None
 
 
 def _from_op4(path: Path, options: JobOptions) -> Listed:
@@ -85,8 +81,7 @@ def _from_op4(path: Path, options: JobOptions) -> Listed:
         if (shape := matrices[name].shape) != (size, size):
             expected = f"'{name}' with {size} rows and columns"
             raise wrong(path, expected, " x ".join(map(str, shape or ())))
-    notes: list[str] = []
-    deck = _deck(path, options, notes)
+    deck = _deck(path, options, notes := list[str]())
     dofs = given_table(options, size) or unlabelled(size)
     listed = Listed((path, path), (K, M), dofs, notes=notes)
     return listed if deck is None or options.dofs else _labelled(listed, deck, notes)
@@ -158,8 +153,7 @@ def _from_dmig(path: Path, options: JobOptions) -> Listed:
         row, column = np.searchsorted(keys, labels.reshape(-1, 2, 2) @ [10, 1]).T
         return Entries(row, column, value, precision=precision)
 
-    notes: list[str] = []
-    deck = _deck(path, options, notes)
+    deck = _deck(path, options, notes := list[str]())
     return Listed(
         (path, path),
         (numbered(*K), numbered(*M)),

@@ -274,18 +274,14 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
         raise wrong(path, "DMIG entries in large fields ('DMIG*')", "none")
     known = (text.strip().lstrip("+-").upper() for x in entries.values() for _, text in x[: 10**4])
     behind = (re.split("[DE+-]", text)[0].partition(".")[2] for text in known)
-    precision = 10.0 ** -max(map(len, behind), default=15)
-    try:
-        return {
-            each: (
-                np.array([labels for labels, _ in rows], dtype=np.intp).reshape(-1, 4),
-                np.array([fortran(text) for _, text in rows]),
-                precision,
-            )
-            for each, rows in entries.items()
-        }
-    except ValueError as error:
-        raise wrong(path, "numbers in the fourth field", reason(error)) from None
+    precision, out = 10.0 ** -max(map(len, behind), default=15), dict[str, DmigMatrix]()
+    for each, rows in entries.items():
+        labels = np.array([labels for labels, _ in rows], dtype=np.intp).reshape(-1, 4)
+        try:
+            out[each] = labels, np.array([fortran(text) for _, text in rows]), precision
+        except ValueError as error:
+            raise wrong(path, "numbers in the fourth field", reason(error)) from None
+    return out
 
 
 def _label(path: Path, place: str, *fields: str) -> list[int]:

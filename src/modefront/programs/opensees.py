@@ -29,9 +29,8 @@ def read(path: Path, options: JobOptions) -> Listed:
     dofs = read_dofs(existing(table, "nodes and directions of OpenSees", ADVICE))
     files, entries = [], []
     for letter in "KM":
-        file = path.with_name(f"{path.name}_{letter}.npz")
-        if not file.is_file():
-            file = path.with_name(f"{path.name}_{letter}.mtx")
+        names = [path.with_name(f"{path.name}_{letter}{ending}") for ending in (".npz", ".mtx")]
+        file = names[0] if names[0].is_file() else names[1]
         matrix = read_entries(existing(file, "a matrix of OpenSees", ADVICE))
         matrix.sum_duplicates()  # what a sum of elements is kept as
         if matrix.shape != (dofs.size, dofs.size):
@@ -49,20 +48,16 @@ def _mesh(path: Path) -> ProgramMesh | None:
         return None
     elements = path.with_name(path.name + "_elements.csv")
     try:
-        points = {
-            n: np.array(point + [0.0] * (3 - len(point))) for n, *point in _rows(nodes, float)
-        }
-        cells: dict[str, list[list[int]]] = {}
+        points = {n: np.array([*x, 0.0, 0.0][:3]) for n, *x in _rows(nodes, float)}
         rows = _rows(elements, int) if elements.is_file() else []
     except ValueError as error:
         expected = "rows node,x,y,z (and element,node,… of elements)"
         raise wrong(nodes, expected, reason(error)) from None
     refuse_unknown_nodes(elements, points, (n for row in rows for n in row[1:]))
     kinds = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
-    for row in rows:
-        if kind := kinds.get(len(row) - 1):
-            cells.setdefault(kind, []).append(row[1:])
-    return mesh_of(points, cells)
+    return mesh_of(
+        points, {cell: [x[1:] for x in rows if len(x) == 1 + k] for k, cell in kinds.items()}
+    )
 
 
 def _rows(path: Path, number: type) -> list[list[Any]]:

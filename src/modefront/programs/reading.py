@@ -81,24 +81,22 @@ def given_table(options: JobOptions, size: int) -> DofTable | None:
     return table
 
 
-# 6 arguments: those of the process, all texts.
-def read_job(path: Path, module: str, stiffness: str, mass: str, dofs: str, deck: str) -> Read:
-    """Return the parts of the job that the reader in a module returns, once it is checked."""
-    files = [Path(text) if text else None for text in (dofs, deck)]
-    options = JobOptions(stiffness or None, mass or None, *files)
-    listed: Listed = importlib.import_module(module).read(path, options)
+def read_job(path: Path, program: str, *given: str) -> Read:
+    """Return the parts of a job of a program once it is checked; options are given as texts."""
+    stiffness, mass, *files = (text or None for text in given)
+    options = JobOptions(stiffness, mass, *(Path(file) if file else None for file in files))
+    listed: Listed = importlib.import_module(f"modefront.programs.{program}").read(path, options)
     K, M = (
         upper(file, entries, listed.dofs)
         for file, entries in zip(listed.files, listed.entries, strict=True)
     )
     table, notes = listed.dofs, list(listed.notes)
-    if not listed.counted:  # a text whose stiffness ends before the mass does is cut off at a line
-        stiff = abs(K).sum(axis=0) + abs(K).sum(axis=1) > 0
-        alone = np.flatnonzero(~stiff & (M.diagonal() != 0))
-        if alone.size:
-            found = f"none at {alone.size} of them, the first {table.label(int(alone[0]))}"
-            expected = "stiffness at all degrees of freedom that have mass (is the file cut off?)"
-            raise wrong(listed.files[0], expected, found)
+    stiff = abs(K).sum(axis=0) + abs(K).sum(axis=1) > 0
+    alone = np.flatnonzero(~stiff & (M.diagonal() != 0))
+    if alone.size and not listed.counted:  # a text of the stiffness that is cut off at a line
+        found = f"none at {alone.size} of them, the first {table.label(int(alone[0]))}"
+        expected = "stiffness at all degrees of freedom that have mass (is the file cut off?)"
+        raise wrong(listed.files[0], expected, found)
     unheld = listed.free(K, M) if callable(listed.free) else listed.free
     free = np.arange(table.size) if unheld is None else np.flatnonzero(unheld)
     if free.size < table.size:
@@ -106,8 +104,7 @@ def read_job(path: Path, module: str, stiffness: str, mass: str, dofs: str, deck
         K, M = K[free][:, free].tocsr(), M[free][:, free].tocsr()
     if not (table.node > 0).any():
         notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
-    arrays = {"node": table.node, "direction": table.direction, "weight": table.weight}
-    arrays = {name: values[free] for name, values in arrays.items()}
+    arrays = {name: getattr(table, name)[free] for name in ("node", "direction", "weight")}
     for letter, A in (("K", K), ("M", M)):
         arrays |= {f"{letter}{k}": x for k, x in enumerate((A.data, A.indices, A.indptr))}
     if listed.mesh is not None:
@@ -177,17 +174,10 @@ def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.
     """
     ended(path)
     types = {k: np.int32 if kind == "i" else np.float64 for k, kind in enumerate(kinds)}
+    form = {"sep": separator, "comment": comment, "skipinitialspace": True, "engine": "c"}
     try:
         table = pd.read_csv(
-            path,
-            sep=separator,
-            header=None,
-            comment=comment,
-            skipinitialspace=True,
-            dtype=types,
-            names=range(len(kinds)),
-            index_col=False,
-            engine="c",
+            path, header=None, dtype=types, names=range(len(kinds)), index_col=False, **form
         )
     except (ValueError, OSError, OverflowError) as error:
         expected = f"{len(kinds)} numbers in every line"
@@ -203,7 +193,6 @@ def fixed_width(text: bytes, width: int) -> Floats:
     """
     array = np.frombuffer(text.replace(b"D", b"E").replace(b"d", b"e"), dtype=f"S{width}")
     try:
-        out: Floats = array.astype(float)
+        return np.asarray(array.astype(float))
     except ValueError:
-        out = np.array([fortran(field.decode("latin-1")) for field in array.tolist()])
-    return out
+        return np.array([fortran(field.decode("latin-1")) for field in array.tolist()])

@@ -158,7 +158,7 @@ def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | 
         inner.fault("node", "a node of the test", str(known["node"]))
         return None
     try:
-        return int(position[0]), unit_vector(known["direction"], name)
+        return int(position[0]), unit_vector(known["direction"])
     except FemError as error:
         inner.fault("direction", DIRECTIONS, str(error))
         return None

@@ -59,17 +59,12 @@ MIDDLES = TRIANGLE_6.nodes[3:]
 """Midpoints of the sides: with equal weights, a quadrature rule of degree 2."""
 
 
-def _means() -> tuple[Floats, Floats]:
-    """Return the means of products of linear functions and bows in u, and in v over 12."""
-    xi, w = gauss_simplex(3, 2)
-    N = np.concatenate([TRIANGLE_3.shape(xi)[0], TRIANGLE_6.shape(xi)[0][:, 3:]], 1)
-    mean = 2 * (N * w[:, None]).T @ N
-    linear = mean[:3, :3]
-    return block_diag(linear, linear, mean), block_diag(linear, linear, linear) / 12
-
-
-TRANSLATION, ROTARY = _means()
-
+_POINTS, _WEIGHTS = gauss_simplex(3, 2)
+_N = np.concatenate([TRIANGLE_3.shape(_POINTS)[0], TRIANGLE_6.shape(_POINTS)[0][:, 3:]], 1)
+_MEAN = 2 * (_N * _WEIGHTS[:, None]).T @ _N
+TRANSLATION = block_diag(_MEAN[:3, :3], _MEAN[:3, :3], _MEAN)
+ROTARY = block_diag(*[_MEAN[:3, :3]] * 3) / 12
+"""Means of products of linear functions and bows in u, and in v over 12."""
 
 Rows = tuple[Floats, Floats]
 """Rows B (elements, points, rows, n) and weights D (elements, points, rows, rows) of B^T D B."""

@@ -77,16 +77,14 @@ def _simplex(dim: int, edges: Edges = ()) -> Cell:
     return _cell(np.vstack([np.zeros(dim), np.eye(dim)]), powers, edges)
 
 
-def _wedge(edges: Edges) -> Cell:
-    corners = np.array([[x, y, z] for z in (-1, 1) for x, y in ((0, 0), (1, 0), (0, 1))])
-    powers = (p for p in product(range(3), repeat=3) if p[0] + p[1] <= (2 if p[2] < 2 else 1))
-    return _cell(corners, powers, edges)
-
-
 SQUARE_4, CUBE_8, CUBE_20 = _box(2), _box(3), _box(3, CUBE_EDGES)
 TRIANGLE_3, TRIANGLE_6 = _simplex(2), _simplex(2, TRIANGLE_EDGES)
 TETRAHEDRON_10 = _simplex(3, TETRAHEDRON_EDGES)
-WEDGE_15 = _wedge(WEDGE_EDGES)
+WEDGE_15 = _cell(
+    np.array([[x, y, z] for z in (-1, 1) for x, y in ((0, 0), (1, 0), (0, 1))]),
+    (p for p in product(range(3), repeat=3) if p[0] + p[1] <= (2 if p[2] < 2 else 1)),
+    WEDGE_EDGES,
+)
 
 
 def gauss_box(count: int, dim: int) -> tuple[Floats, Floats]:

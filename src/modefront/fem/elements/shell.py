@@ -131,14 +131,12 @@ def shell(
     varied : whether the thickness is a parameter
     """
     if len(X) > AT_ONCE:
-        starts = range(0, len(X), AT_ONCE)
         pieces = [
             shell(X[some], d[some], narrow[some], m[some], material, thickness, offset, varied)
-            for some in (slice(k, k + AT_ONCE) for k in starts)
+            for some in (slice(k, k + AT_ONCE) for k in range(0, len(X), AT_ONCE))
         ]
-        return ElementMatrices(
-            _joined([each.stiffness for each in pieces]), _joined([each.mass for each in pieces])
-        )
+        K, M = (_joined([getattr(x, y) for x in pieces]) for y in ("stiffness", "mass"))
+        return ElementMatrices(K, M)
     t, r = thickness, offset * d
     x = X + r
     A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)

@@ -19,12 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.common import (
-    ElementMatrices,
-    condense,
-    solid_mass,
-    solid_stiffness,
-)
+from modefront.fem.elements.common import ElementMatrices, condense, solid_mass, solid_stiffness
 from modefront.fem.elements.shapes import (
     CUBE_8,
     CUBE_20,
@@ -62,20 +57,14 @@ class Solid:
         return 1 + max(max(face) for face in self.faces)
 
 
+TRIANGLES = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
+SIDES = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
+"""Faces of a tetrahedron, and of a wedge."""
+
 SOLIDS = {
     8: Solid(CUBE_8, QUADS, gauss_box(2, 3), gauss_box(3, 3)),
-    10: Solid(
-        TETRAHEDRON_10,
-        ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)),
-        gauss_tetrahedron_4(),
-        gauss_simplex(3, 3),
-    ),
-    15: Solid(
-        WEDGE_15,
-        ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
-        gauss_wedge(3),
-        gauss_wedge(3),
-    ),
+    10: Solid(TETRAHEDRON_10, TRIANGLES, gauss_tetrahedron_4(), gauss_simplex(3, 3)),
+    15: Solid(WEDGE_15, SIDES, gauss_wedge(3), gauss_wedge(3)),
     20: Solid(CUBE_20, QUADS, gauss_box(3, 3), gauss_box(3, 3)),
 }
 """Kinds of solids by their number of nodes."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -107,7 +106,7 @@ class ReducedModel:
     tolerance : relative error of eigenvalues that is aimed at
     memory : GiB that the basis may take; one mode is always allowed
     spare : how many of the modes are only there to tell the others from them
-    snapshots : those in use
+    snapshots : those in use; others may be set, which are computed when needed, and not counted
     """
 
     full: MatrixModel
@@ -173,14 +172,6 @@ class ReducedModel:
     def first(self) -> SnapshotRequest:
         """The first snapshot, unless another one is taken before it."""
         return SnapshotRequest(self.nominal, self.count - self.spare)
-
-    def restart(self) -> None:
-        """Use no snapshots. Those at hand are not computed again, but count when taken again."""
-        self.snapshots = ()
-
-    def resume(self, snapshots: Sequence[SnapshotRequest]) -> None:
-        """Use these snapshots, which were counted before; they are computed when needed."""
-        self.snapshots = tuple(snapshots)
 
     def take(self, what: SnapshotRequest) -> float:
         """Add a snapshot and return the greatest relative error of an eigenvalue before it.
@@ -326,8 +317,8 @@ class ReducedModel:
         models = []
         for theta in what.models:
             with suppress(ModelError):
-                if basis.lowest(theta, what.modes).lam.size >= what.modes:
-                    models.append(theta)
+                enough = basis.lowest(theta, what.modes).lam.size >= what.modes
+                models += [theta] if enough else []
         if not models:
             return what.models[:WORST], np.inf
         lengths = lacking_lengths(basis, models, what.modes)
@@ -365,10 +356,8 @@ class ReducedModel:
         if known is None:
             return None
         basis, errors = known
-        count = int((errors >= what.enough).sum())
-        if count:
-            worst = near[int(errors.argmax())]
-            basis = self._with_derivatives(basis, worst, what.modes)
+        if count := int((errors >= what.enough).sum()):
+            basis = self._with_derivatives(basis, near[int(errors.argmax())], what.modes)
         spend(Costs(corrected=count, corrected_time=time.perf_counter() - started))
         return basis, float(errors.max())
 
@@ -420,26 +409,22 @@ class ReducedModel:
         return extended(basis, vectors, self._shortest, self.capacity)
 
     def _with_derivatives(self, basis: Basis, theta: Floats, modes: int) -> Basis:
-        count, half = min(modes, basis.columns - 1), (self.upper - self.lower) / 2
-        request = CorrectionRequest(SHARE, self._shortest, self.capacity)
-        if count < 1:
+        if (count := min(modes, basis.columns - 1)) < 1:
             return basis
-        return with_derivatives(basis, theta, count, half, request)
+        request = CorrectionRequest(SHARE, self._shortest, self.capacity)
+        return with_derivatives(basis, theta, count, (self.upper - self.lower) / 2, request)
 
     def _at_bounds(self, basis: Basis, theta: Floats) -> Basis:
         """Return the basis with the modes where one parameter is at a bound, or nearer to theta.
 
         They are for the global search, and take no more than half of what is left of the memory.
         """
-        bounds = []
+        bounds, unit = [], np.eye(theta.size)
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
             for end in ends:
-                for halving in range(5):
-                    nearby = theta.copy()
-                    nearby[i] += (end - theta[i]) / 2**halving
-                    if _condition(basis, nearby) <= FAR:
-                        bounds.append(nearby)
-                        break
+                nearby = (theta + unit[i] * ((end - theta[i]) / 2**k) for k in range(5))
+                first = next((x for x in nearby if _condition(basis, x) <= FAR), None)
+                bounds += [] if first is None else [first]
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis

@@ -96,7 +96,7 @@ def read_directions(place: Table) -> list[tuple[str, Any]]:
             place.fault("direction", "x, y or z where axes are given", f"'{direction}'")
             continue
         if axes is not None:
-            local = unit_vector(direction, "")[:3] @ axes_of(axes, "")
+            local = unit_vector(direction)[:3] @ axes_of(axes)
         known = direction if axes is None else local.tolist()
         out.append((axis if several else "", known))
     return out
