@@ -11,6 +11,7 @@ from modefront import fem
 from modefront._typing import Floats
 from modefront.data.modal import ModalData, modal_data
 from modefront.errors import ModelError
+from modefront.linalg.affine import SparseAffine
 from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
@@ -85,7 +86,7 @@ def differences(problem: UpdatingProblem, theta: Floats, h: float = 4e-3) -> Flo
 def test_finite_element_models_agree_with_differences_of_gradients(kind: str) -> None:
     model: Model = plate({"dense": 2, "few modes": 3}.get(kind, 5))
     assert isinstance(model, MatrixModel)
-    assert model.is_sparse == (kind not in ("dense", "few modes"))
+    assert isinstance(model.stiffness, SparseAffine) == (kind not in ("dense", "few modes"))
     if kind.startswith("reduced"):
         wide = "few" in kind
         lower, upper = np.full(4, 0.4), np.full(4, 2.5)

@@ -110,7 +110,7 @@ def read_csv(
     values: dict[Key, dict[str, float]] = {}
     lines: dict[Key, int] = {}
     last: list[str] = []
-    with _reader(path) as rows:
+    with table_rows(path, "a file of modal data") as rows:
         first, fields = next(rows, (1, []))
         if not fields:
             raise wrong(path, "a header of column names", "an empty file", "line 1")
@@ -187,9 +187,9 @@ def _place(line: int, column: str) -> str:
 
 
 @contextmanager
-def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
-    """Return the numbered rows that are not blank; raises InputError for what is no CSV."""
-    with opened(path, "a file of modal data") as (stream, separator, before):
+def table_rows(path: Path, what: str) -> Iterator[Iterator[tuple[int, list[str]]]]:
+    """Yield the numbered rows that are not blank; raises InputError for what is no CSV."""
+    with opened(path, what) as (stream, separator, before):
         reader = csv.reader(stream, delimiter=separator, strict=True, skipinitialspace=True)
         rows = ((before + reader.line_num, row) for row in reader if any(map(str.strip, row)))
         try:
@@ -352,21 +352,21 @@ def read_test_csv(path: Path, reference: str, columns: Mapping[str, str] | None 
     header, used = renamed(own, columns or {}, endings)
     unused = frozenset((columns or {}).keys() - used)
     column, file = dict(zip(header, values.T, strict=True)), str(path)
+    said = [(repr(x), "each column once", "another") for x, n in Counter(header).items() if n > 1]
     if TIME in header and FREQUENCY not in header:
-        faults = [*_twice(file, header)]
         if FORCE not in header:
-            place = f"line 1, column {FORCE!r}"
-            faults.append(Fault(file, place, "the record of the force", "no such column"))
+            said.append((repr(FORCE), "the record of the force", "no such column"))
         names = [name for name in header if name not in (TIME, FORCE)]
         if not names:
-            expected = "columns of at least one response"
-            faults.append(Fault(file, "line 1", expected, ", ".join(header)))
-        refuse(faults)
+            said.append(("", "columns of at least one response", ", ".join(header)))
+        _refuse_columns(path, said)
         records = {name: np.nan_to_num(column[name], nan=0.0) for name in names}  # empty columns
         blow = Blow(file, "columns", reference, column[TIME], column[FORCE], records)
         return Contents(blows=(blow,), unused=unused)
+    forms, more = _forms(header)
+    _refuse_columns(path, said + more)
     channels = []
-    for name, pair in _forms(file, header).items():
+    for name, pair in forms.items():
         coherence = column.get(name + COHERENCE)
         channels.append(
             Channel(
@@ -382,10 +382,9 @@ def read_test_csv(path: Path, reference: str, columns: Mapping[str, str] | None 
     return Contents(tuple(channels), unused=unused)
 
 
-def _twice(file: str, header: Sequence[str]) -> Iterator[Fault]:
-    for name, count in Counter(header).items():
-        if count > 1:
-            yield Fault(file, f"line 1, column {name!r}", "each column once", "another")
+def _refuse_columns(path: Path, said: Sequence[Said]) -> None:
+    places = [f"line 1, column {name}" if name else "line 1" for name, *_ in said[:LISTED]]
+    refuse(Fault(str(path), place, *each[1:]) for place, each in zip(places, said, strict=False))
 
 
 def _function(
@@ -413,33 +412,26 @@ def _function(
     return np.asarray(first * np.exp(1j * phase))
 
 
-def _forms(file: str, header: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """Return the endings of the two columns of every response, in the order of the columns."""
-    faults = []
-    if FREQUENCY not in header:
-        place = f"line 1, column {FREQUENCY!r}"
-        faults.append(Fault(file, place, "this column", "no such column"))
+def _forms(header: Sequence[str]) -> tuple[dict[str, tuple[str, str]], list[Said]]:
+    """Return the endings of the two columns of every response, in their order, and faults."""
+    said = [] if FREQUENCY in header else [(repr(FREQUENCY), "this column", "no such column")]
     forms: dict[str, tuple[str, str]] = {}
     for first in dict.fromkeys(pair[0] for pair in PAIRS):
         for name in (x.removesuffix(first) for x in header if x.endswith(first)):
             whole = [pair for pair in PAIRS if pair[0] == first and name + pair[1] in header]
             if len(whole) != 1 or name in forms:
                 wanted = " or ".join(repr(name + b) for a, b in PAIRS if a == first)
-                has = "both" if whole else "no such column"
-                faults.append(Fault(file, f"line 1, column {wanted}", "this column", has))
+                said.append((wanted, "this column", "both" if whole else "no such column"))
             forms[name] = whole[0] if whole else (first, first)
     known = {FREQUENCY, *(n + end for n, pair in forms.items() for end in (*pair, COHERENCE))}
-    faults += _twice(file, header)
     for name in dict.fromkeys(name for name in header if name not in known):
         expected = "frequency, or NAME_re and NAME_im, NAME_magnitude and NAME_rad or NAME_deg,"
         expected += " or NAME_coherence of a response; 'columns' in [[set]] renames others"
-        found = suggestion(name, known)
-        faults.append(Fault(file, f"line 1, column {name!r}", expected, found))
+        said.append((repr(name), expected, suggestion(name, known)))
     if not forms:
         expected = "columns NAME_re and NAME_im of at least one response"
-        faults.append(Fault(file, "line 1", expected, ", ".join(header[:6])))
-    refuse(faults[:LISTED])
-    return forms
+        said.append(("", expected, ", ".join(header[:6])))
+    return forms, said
 
 
 def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:

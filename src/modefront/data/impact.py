@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from typing import Annotated, Literal
 
 import numpy as np
 import scipy.fft
@@ -24,10 +24,17 @@ from modefront.data.responses import (
     frequency_responses,
 )
 from modefront.errors import Fault, InputError, refuse
+from modefront.json_schema import any_of
+from modefront.options import Requirement, check_fields, number
 from modefront.rounding import ACCUMULATED, LARGEST
 
 Estimator = Literal["H1", "H2", "Hv"]
-ESTIMATORS: tuple[Estimator, ...] = get_args(Estimator)
+
+EXPONENTIAL = Requirement(
+    "a time constant in s above zero, or 'none'",
+    any_of({"type": "number", "exclusiveMinimum": 0}, {"enum": ["none"]}),
+    lambda value: np.inf if value == "none" else float(value),
+)
 
 SECOND = 0.1
 """Force of a second hit over that of the first."""
@@ -52,13 +59,12 @@ class Windows:
     """
 
     estimator: Estimator = "H1"
-    force_window: float | None = None
-    exponential: float | None = None
+    force_window: Annotated[float, number("a time in s above zero", above=0)] | None = None
+    exponential: Annotated[float, EXPONENTIAL] | None = None
 
     def __post_init__(self) -> None:
-        """Raise ValueError for an unknown estimator."""
-        if self.estimator not in ESTIMATORS:
-            raise ValueError(f"expected estimator 'H1', 'H2' or 'Hv', found {self.estimator!r}")
+        """Raise InputError for values that are not possible."""
+        check_fields(self)
 
     def of_force(self, force: Floats, t: Floats) -> Floats:
         """Return the force window of every blow, (blows, samples)."""
@@ -346,17 +352,13 @@ def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
 
 
 def _channels(first: Blow, averaged: ImpactResponses, quantity: str) -> list[Channel]:
-    data = averaged.data
+    data, still = averaged.data, np.zeros(len(averaged.data.frequency), complex)
+    variance = [None] * len(averaged.coherence) if data.variance is None else data.variance[0]
+    coherence = variance if data.variance is None else averaged.coherence
+    known = dict(zip(data.responses, zip(data.H[0], coherence, variance, strict=True), strict=True))
     out = []
     for name in dict.fromkeys([*data.responses, *first.responses]):
-        H = np.zeros(len(data.frequency), complex)
-        coherence = variance = None
-        if name in data.responses:
-            i = data.responses.index(name)
-            H = data.H[0, i]
-            if data.variance is not None:
-                coherence, variance = averaged.coherence[i], data.variance[0, i]
+        H, *scatter = known.get(name, (still,))
         where = first.file, f"response {name!r}", first.reference, name
-        kind = first.quantity or quantity
-        out.append(Channel(*where, data.frequency, H, kind, coherence, variance))
+        out.append(Channel(*where, data.frequency, H, first.quantity or quantity, *scatter))
     return out

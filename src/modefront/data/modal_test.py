@@ -7,7 +7,6 @@ test of one set.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -16,22 +15,20 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.csv import read_test_csv
-from modefront.data.impact import ESTIMATORS, Contents, Functions, Windows, averaged_blows
+from modefront.data.impact import Contents, Functions, Windows, averaged_blows
 from modefront.data.records import ORDERS as RECORDED
 from modefront.data.records import Records, SetFiles, channel_name, read_records
 from modefront.data.responses import ORDERS, DataSet, assemble, joined
 from modefront.data.uff import is_universal, read_uff
 from modefront.errors import Fault, InputError, refuse, suggestion
 from modefront.inputs import wrong
-from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, any_of, array, whole_number
+from modefront.json_schema import NOT_NEGATIVE, any_of, array, whole_number
 from modefront.options import (
     Requirement,
     Table,
     is_name,
     keys,
-    number,
     numbers,
-    one_of,
     read_toml,
     repeated,
     rising,
@@ -56,17 +53,6 @@ IDENTIFY = keys(
     keep=MODES,
     drop=MODES,
     seed=numbers("a list of frequencies in Hz", array(NOT_NEGATIVE)),
-)
-
-IMPACT = keys(
-    (),
-    estimator=one_of(*ESTIMATORS),
-    force_window=number("a time in s above zero", above=0),
-    exponential=Requirement(
-        "a time constant in s above zero, or 'none'",
-        any_of(ABOVE_ZERO, {"enum": ["none"]}),
-        lambda value: math.inf if value == "none" else float(value),
-    ),
 )
 
 
@@ -145,7 +131,7 @@ def _from_toml(path: Path) -> ModalTest:
         table.close()
     windows = None
     if not ambient and (table := root.table("impact", default=None)):
-        windows = Windows(**table.read(IMPACT) or {})
+        windows = table.record(Windows)
     table = root.table("identify", default=None)
     given = (table.read(IDENTIFY) if table else None) or {}
     chosen = ByHand(*(given.get(key, ()) for key in ("keep", "drop", "seed")))

@@ -41,11 +41,6 @@ class Dofs:
     free: Ints
     T: sparse.csr_array
 
-    def name(self, q: int) -> str:
-        """Readable name of the free DOF q."""
-        node, direction = self.free[q]
-        return f"node {node}, {DIRECTIONS[direction]}"
-
 
 @dataclass(frozen=True)
 class Followers:

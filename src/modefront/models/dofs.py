@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,10 +11,10 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.errors import reason
+from modefront.data.csv import table_rows
 from modefront.fem.check import unit_vector
 from modefront.fem.structure import DIRECTIONS
-from modefront.inputs import ended_column, file_size, wrong
+from modefront.inputs import ended_column, wrong
 from modefront.json_schema import array, fits
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
@@ -138,21 +137,17 @@ def read_dofs(path: Path) -> DofTable:
 
     Raises InputError for a file that is not such a table.
     """
-    file_size(path, "a table of degrees of freedom")
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as stream:
-            header, *rows = list(csv.reader(stream))
-    except (OSError, ValueError, csv.Error) as error:
-        raise wrong(path, "CSV in UTF-8", reason(error)) from None
+    with table_rows(path, "a table of degrees of freedom") as listed:
+        (_, header), *rows = listed
     names = tuple(name.strip() for name in header)
     if names not in (COLUMNS, COLUMNS[:2]):
         expected = "node,direction or node,direction,weight"
         raise wrong(path, expected, ",".join(names), "header")
-    ended_column(path, (row[-1] for row in rows if row))
+    ended_column(path, (row[-1] for _, row in rows))
     node, direction = np.zeros((2, len(rows)), np.intp)
     table = DofTable(node, direction, np.ones(len(rows)))
     numbers = {name: number_of(name) for name in DIRECTIONS} | {str(k): k for k in range(-1, 1000)}
-    for k, row in enumerate(rows):
+    for k, (line, row) in enumerate(rows):
         try:
             label, name, *weight = map(str.strip, row)
             node[k], direction[k] = int(label), numbers[name]
@@ -162,7 +157,7 @@ def read_dofs(path: Path) -> DofTable:
         except (ValueError, KeyError, OverflowError):
             expected = f"a node, a direction ({', '.join(DIRECTIONS)})"
             expected += " and a weight" if len(names) > 2 else ""
-            raise wrong(path, expected, ",".join(row), f"line {k + 2}") from None
+            raise wrong(path, expected, ",".join(row), f"line {line}") from None
     if len(names) > 2:
         return table
     labels = np.column_stack([table.node, table.direction])

@@ -97,11 +97,6 @@ class MatrixModel:
         return self.stiffness.size
 
     @property
-    def is_sparse(self) -> bool:
-        """Whether the matrices are sparse; those of small models are dense."""
-        return self._dense is None
-
-    @property
     def footprint(self) -> float:
         """Bytes that an eigensolution takes, estimated; factors of solids fill in the most."""
         return 8.0 * (ARRAYS * self.size**2 if self._dense else FACTOR * self.size ** (4 / 3))

@@ -271,7 +271,8 @@ def _take(content: Bulk, card: list[str], default: list[str]) -> None:
         held = _all_of(card[2], card[3:]) if name == "SPC1" else _pairs(card[:8], 2, 3)
         if name == "MPC":
             held = {(int(card[2]), _whole(card[3]))}
-            content.links.append(tuple(int(x) for x in card[2::3] if x.isdigit()))
+            terms = (*card[2::8], *card[5::8])  # two in a line of 8 fields: G, C, A, G, C, A
+            content.links.append(tuple(int(x) for x in terms if x.isdigit()))
         content.sets.setdefault((name[:3], int(card[1])), set()).update(held)
     elif name in ("ASET1", "OMIT1", "ASET", "OMIT"):
         target = content.kept if name.startswith("ASET") else content.omitted

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -62,13 +62,11 @@ def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Cha
 
     None are returned where there are no decks, or these have different numbers of lines.
     """
-    name, lines = _different_lines(nominal, run)
-    out = []
-    for number, old, new in lines:
-        pairs = _changed(old, new)
-        if pairs and all(x and abs(y / x / factor - 1) <= 1e-6 for _, x, y in pairs):
-            out.append(Change(parameter, name, number, old, tuple(span for span, _, _ in pairs)))
-    return out
+    return [
+        Change(parameter, name, number, old, tuple(span for span, _, _ in pairs))
+        for name, number, old, pairs in _different_lines(nominal, run)
+        if pairs and all(x and abs(y / x / factor - 1) <= 1e-6 for _, x, y in pairs)
+    ]
 
 
 def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] | None:
@@ -77,10 +75,10 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
     None where some change by the given factor, by different ones, or something else changes.
     """
     factors: dict[float, int] = {}
-    for number, old, new in _different_lines(nominal, run)[1]:
+    for _, number, old, pairs in _different_lines(nominal, run):
         if old.lstrip().startswith(("**", "$", "!", "#")):
             continue  # a comment, in one program or another
-        if (pairs := _changed(old, new)) is None:
+        if pairs is None:
             return None
         for _, x, y in pairs:
             factors.setdefault(float(f"{y / x:.6g}") if x else 0.0, number)
@@ -90,15 +88,13 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
     return None if value <= 0 or abs(value / factor - 1) < 1e-5 else (value, line)
 
 
-def _different_lines(nominal: Path, run: Path) -> tuple[str, list[tuple[int, str, str]]]:
-    before, after = _deck(nominal), _deck(run)
-    if before is None or after is None:
-        return "", []
-    lines = [text_of(path).splitlines() for path in (before, after)]
-    if len(lines[0]) != len(lines[1]):
-        return before.name, []
-    numbered = enumerate(zip(*lines, strict=True), start=1)
-    return before.name, [(k, old, new) for k, (old, new) in numbered if old != new]
+def _different_lines(nominal: Path, run: Path) -> Iterator[tuple[str, int, str, Numbers | None]]:
+    """Yield file, number and text of lines of the nominal deck that differ, and their numbers."""
+    deck, lines = _deck(nominal), [deck_text(job).splitlines() for job in (nominal, run)]
+    if deck and len(lines[0]) == len(lines[1]):
+        for number, (old, new) in enumerate(zip(*lines, strict=True), start=1):
+            if old != new:
+                yield deck.name, number, old, _changed(old, new)
 
 
 def deck_text(job: Path) -> str:
@@ -149,11 +145,12 @@ def _deck(path: Path) -> Path | None:
     return None
 
 
-def _changed(old: str, new: str) -> list[tuple[tuple[int, int], float, float]] | None:
-    """Return the numbers of a line that are others: where they are, before and after.
+Numbers = list[tuple[tuple[int, int], float, float]]
+"""Numbers of a line that are others in a run: where they are, before and after."""
 
-    None where anything else in the line is different.
-    """
+
+def _changed(old: str, new: str) -> Numbers | None:
+    """Return the numbers of a line that are others; None where anything else is different."""
     before, after = list(NUMBER.finditer(old)), list(NUMBER.finditer(new))
     rest = ["".join(NUMBER.sub("#", text).split()) for text in (old, new)]
     if len(before) != len(after) or rest[0] != rest[1]:

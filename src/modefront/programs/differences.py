@@ -175,8 +175,7 @@ class Differences:
         shifts = self.coefficients.values(values) - 1.0
         worst = 0.0
         for quantity, A in self.nominal.matrices.items():
-            change = (reordered(job.matrices[quantity], order) - A).tocsr()
-            E = change
+            E = change = (reordered(job.matrices[quantity], order) - A).tocsr()
             for shift, term in zip(shifts, terms.terms, strict=True):
                 if quantity in term.matrices:
                     E = E - shift * term.matrices[quantity]
@@ -354,14 +353,12 @@ def _owners(
     stiffness: Mapping[str, Matrix], mass: Mapping[str, Matrix], internal: Ints, groups: Ints
 ) -> Ints:
     """Return for each group the only term that acts on it; -1 where several do, or mass."""
-    count = int(groups.max()) + 1
-    acting = np.zeros((count, len(stiffness)), bool)
-    for column, A in enumerate(stiffness.values()):
-        entries = abs(A[internal]).sum(axis=1) > 0
-        acting[groups[entries], column] = True
-    heavy = np.zeros(count, bool)
-    for M in mass.values():
-        heavy[groups[abs(whole(M)[internal]).sum(axis=1) > 0]] = True
+
+    def touched(A: Matrix) -> Bools:
+        return np.bincount(groups, abs(A[internal]).sum(axis=1)) > 0
+
+    acting = np.column_stack([touched(A) for A in stiffness.values()])
+    heavy = np.any([touched(whole(M)) for M in mass.values()], axis=0)
     alone = (acting.sum(axis=1) == 1) & ~heavy
     return np.where(alone, acting.argmax(axis=1), -1)
 

@@ -20,6 +20,7 @@ of 0 is a scalar point.
 from __future__ import annotations
 
 import re
+from collections import deque
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TypeAlias
@@ -53,7 +54,7 @@ def read_op4(path: Path) -> Mapping[str, Entries]:
         length = int(np.frombuffer(data, order + "i4", 1)[0])
         if length in (24, 48):
             return dict(_binary(path, order, length // 6))
-    return dict(_text(path, [line.rstrip() for line in data.split(b"\n")]))
+    return dict(_text(path, deque(line.rstrip() for line in data.split(b"\n"))))
 
 
 class _Pieces:
@@ -147,13 +148,10 @@ def _strings(pieces: _Pieces, body: np.ndarray, real: np.dtype[np.floating]) -> 
     return body[keep].view(real)
 
 
-def _text(path: Path, lines: list[bytes]) -> Iterator[tuple[str, Entries]]:
+def _text(path: Path, lines: deque[bytes]) -> Iterator[tuple[str, Entries]]:
     """Yield the matrices of a text; lines of values are those with a point."""
-    position = 0
-    while position < len(lines):
-        text = lines[position].decode("latin-1")
-        position += 1
-        if not text:
+    while lines:
+        if not (text := lines.popleft().decode("latin-1")):
             continue
         try:
             header = [int(text[k : k + 8]) for k in range(0, 32, 8)]
@@ -163,10 +161,9 @@ def _text(path: Path, lines: list[bytes]) -> Iterator[tuple[str, Entries]]:
         if form is None:
             raise wrong(path, f"{EXPECTED} with its format, such as 1P,3E23.16", repr(text[:60]))
         pieces, width = _Pieces(path, text[32:40].strip().upper(), header), int(form[1])
-        texts, position = _columns(pieces, lines, position, width)
-        if position >= len(lines) or b"." not in lines[position]:
+        texts = _columns(pieces, lines, width)
+        if not lines or b"." not in lines.popleft():
             raise wrong(path, f"a value behind the last column of '{pieces.name}'", "none")
-        position += 1
         try:
             values = fixed_width(b"".join(texts), width)
         except ValueError as error:
@@ -174,10 +171,8 @@ def _text(path: Path, lines: list[bytes]) -> Iterator[tuple[str, Entries]]:
         yield pieces.matrix(values, 10.0 ** -int(form[2]))
 
 
-def _columns(
-    pieces: _Pieces, lines: list[bytes], position: int, width: int
-) -> tuple[list[bytes], int]:
-    """Return the values of all columns from a line on as text, and the line behind the columns.
+def _columns(pieces: _Pieces, lines: deque[bytes], width: int) -> list[bytes]:
+    """Take the lines of all columns, and return their values as text.
 
     Headers count words: of a double either two, or one. They count those of headers of strings,
     or not.
@@ -196,12 +191,11 @@ def _columns(
 
     def take(row: int, words: int) -> None:
         """Take the lines of values from the present one on, so many words in all."""
-        nonlocal position
         count = 0
-        while position < len(lines) and b"." in lines[position]:
-            fields = -(-len(lines[position]) // width)
-            texts.append(lines[position].ljust(fields * width))
-            count, position = count + fields, position + 1
+        while lines and b"." in lines[0]:
+            fields = -(-len(lines[0]) // width)
+            texts.append(lines.popleft().ljust(fields * width))
+            count += fields
         sizes.intersection_update(size for size in (1, 2) if words == size * count)
         if not sizes:
             expected = f"as many values in every column of '{name}' as its headers say"
@@ -209,20 +203,18 @@ def _columns(
         pieces.places.append((pieces.column, row, count))
 
     while True:
-        if position >= len(lines) or not lines[position]:
-            expected = f"all columns of '{name}', and its end"
-            raise wrong(path, expected, "a file that is cut off")
-        line = lines[position]
+        if not lines or not lines[0]:
+            raise wrong(path, f"all columns of '{name}', and its end", "a file that is cut off")
+        line = lines.popleft()
         column, row, words = numbers(line[:8], line[8:16], line[16:])
-        position += 1
         if not pieces.begin(column):
-            return texts, position
+            return texts
         if row:
             take(row, words)
             continue
         strings = count = 0
-        while position < len(lines) and len(lines[position]) <= 16 and lines[position]:
-            line, position = lines[position], position + 1
+        while lines and 0 < len(lines[0]) <= 16:
+            line = lines.popleft()
             length, first = (
                 numbers(line[:8], line[8:]) if pieces.big else divmod(numbers(line)[0], STRING)
             )

@@ -7,12 +7,12 @@ its nodes) may be there for pictures.
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from modefront.data.csv import table_rows
 from modefront.errors import reason
 from modefront.inputs import ended, once, wrong
 from modefront.models.dofs import read_dofs
@@ -48,7 +48,7 @@ def _mesh(path: Path) -> ProgramMesh | None:
         return None
     elements = path.with_name(path.name + "_elements.csv")
     try:
-        points = {n: np.array([*x, 0.0, 0.0][:3]) for n, *x in _rows(nodes, float)}
+        points = {n: np.array([*x, 0.0, 0.0, 0.0][:3]) for n, *x in _rows(nodes, float)}
         rows = _rows(elements, int) if elements.is_file() else []
     except ValueError as error:
         expected = "rows node,x,y,z (and element,node,… of elements)"
@@ -63,12 +63,14 @@ def _mesh(path: Path) -> ProgramMesh | None:
 def _rows(path: Path, number: type) -> list[list[Any]]:
     """Return rows of whole numbers, each once, and others, without a header."""
     ended(path)
-    with path.open(encoding="utf-8-sig", newline="") as stream:
-        rows = [[x.strip() for x in row if x.strip()] for row in csv.reader(stream)]
-    rows = [row for row in rows if row]
+    with table_rows(path, "rows node,x,y,z, or element,node,…") as listed:
+        rows = [[x.strip() for x in row if x.strip()] for _, row in listed]
     begin = 0 if rows and rows[0][0].lstrip("-").isdigit() else 1
     out = [[int(row[0]), *map(number, row[1:])] for row in rows[begin:]]
     once(path, "rows", "each node or element", (row[0] for row in out))
-    if number is float and (len({len(row) for row in out}) > 1 or not np.isfinite(out).all()):
-        raise ValueError("rows of different lengths, or numbers that are not finite")
+    lengths = {len(row) for row in out}
+    if number is float and (len(lengths) > 1 or max(lengths, default=4) > 4):
+        raise ValueError("rows of different lengths, or of more than three coordinates")
+    if number is float and not np.isfinite(out).all():
+        raise ValueError("numbers that are not finite")
     return out

@@ -76,10 +76,8 @@ class Basis:
 
 def empty(pencil: Pencil, factor: Factorisation, theta: Floats, sigma: float) -> Basis:
     """Return the basis without columns in the norm of K - sigma M at ``theta``."""
-    K, M = (
-        DenseAffine(np.zeros((A.terms.shape[1], 0, 0)), A.coefficients)
-        for A in (pencil.K, pencil.M)
-    )
+    pair = (pencil.K, pencil.M)
+    K, M = (DenseAffine(np.zeros((A.terms.shape[1], 0, 0)), A.coefficients) for A in pair)
     return Basis(pencil, factor, theta, sigma, (), K, M)
 
 
@@ -120,12 +118,10 @@ def residuals(pencil: Pencil, thetas: Floats, lam: Floats, X: Floats) -> Floats:
 
 def _bordered(reduced: DenseAffine, new: Floats) -> DenseAffine:
     """Return projected terms with new columns (terms, rows, m), the last of which are new rows."""
-    n = reduced.size
-    across, inner = new[:, :n], new[:, n:]
+    across, inner = new[:, : reduced.size], new[:, reduced.size :]
     inner = (inner + inner.transpose(0, 2, 1)) / 2
-    top = np.concatenate([reduced.terms, across], axis=2)
-    bottom = np.concatenate([across.transpose(0, 2, 1), inner], axis=2)
-    return DenseAffine(np.concatenate([top, bottom], axis=1), reduced.coefficients)
+    terms = np.block([[reduced.terms, across], [across.transpose(0, 2, 1), inner]])
+    return DenseAffine(terms, reduced.coefficients)
 
 
 STEPS = 30
