@@ -21,7 +21,7 @@ import numpy as np
 
 from modefront._typing import Complexes, Floats
 from modefront.data.impact import TIME, Blow, Contents
-from modefront.data.modal import ModalData
+from modefront.data.modal import ModalData, Pairs
 from modefront.data.responses import Channel
 from modefront.errors import Fault, InputError, reason, refuse, suggestion
 from modefront.inputs import (
@@ -54,7 +54,8 @@ MOST_FAULTS = 100
 """Faults of rows after which the rest is not looked at."""
 
 Key = tuple[str, int]
-"""Data set and mode of a row."""
+Rows = Mapping[Key, Mapping[str, float]]
+"""Data set and mode of a row; rows by these, with values by column."""
 
 
 def is_reserved(name: str, sensors: Collection[str]) -> bool:
@@ -285,12 +286,7 @@ def _range(column: str, value: float) -> str:
     return "a standard deviation of 0 or more" if column.endswith(STD) and value < 0 else ""
 
 
-def _assembled(
-    path: Path,
-    values: Mapping[Key, Mapping[str, float]],
-    sensors: tuple[str, ...],
-    pairs: tuple[tuple[int, int], ...],
-) -> ModalData:
+def _assembled(path: Path, values: Rows, sensors: tuple[str, ...], pairs: Pairs) -> ModalData:
     """Return the data of all rows; raises InputError where they are spread over too many sets."""
     sets = tuple(dict.fromkeys(name for name, _ in values))
     modes = tuple(sorted({mode for _, mode in values}))
@@ -312,15 +308,11 @@ def _assembled(
     return ModalData(sets, modes, sensors, f, zeta, phi, f_std, phi_std, pairs)
 
 
-def _pairs(
-    path: Path, values: Mapping[Key, Mapping[str, float]], lines: Mapping[Key, int]
-) -> tuple[tuple[int, int], ...]:
+def _pairs(path: Path, values: Rows, lines: Mapping[Key, int]) -> Pairs:
     other = {key: x for key, row in values.items() if not math.isnan(x := row[PAIR])}
+    expected = "the other mode of a pair of this set"
     refuse(
-        Fault(
-            *(str(path), _place(lines[name, mode], PAIR)),
-            *("the other mode of a pair of this set", f"{x:g}"),
-        )
+        Fault(str(path), _place(lines[name, mode], PAIR), expected, f"{x:g}")
         for (name, mode), x in other.items()
         if x == mode or x % 1 or other.get((name, int(x))) != mode
     )

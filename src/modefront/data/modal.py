@@ -15,6 +15,10 @@ MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std")
 """Arrays of modal data, of which data sets are the first axis."""
 
 
+Pairs = tuple[tuple[int, int], ...]
+"""Numbers of modes of one frequency, two by two."""
+
+
 @dataclass(frozen=True, eq=False)
 class MeasuredShapes:
     """Shapes with zeros where nothing was measured.
@@ -62,7 +66,7 @@ class ModalData:
     shape: Floats
     frequency_std: Floats
     shape_std: Floats
-    pairs: tuple[tuple[int, int], ...] = ()
+    pairs: Pairs = ()
 
     __repr__ = brief
     _repr_html_ = as_html

@@ -90,10 +90,9 @@ class FrequencyResponses:
     def __post_init__(self) -> None:
         """Raise ValueError where the arrays do not fit."""
         expected = (len(self.references), len(self.responses), len(self.frequency))
-        if self.H.shape != expected:
-            raise ValueError(f"expected H of shape {expected}, found {self.H.shape}")
-        if self.variance is not None and self.variance.shape != expected:
-            raise ValueError(f"expected variance of shape {expected}, found {self.variance.shape}")
+        for what, values in (("H", self.H), ("variance", self.variance)):
+            if values is not None and values.shape != expected:
+                raise ValueError(f"expected {what} of shape {expected}, found {values.shape}")
         if self.quantity not in ORDERS:
             raise ValueError(f"expected one of {', '.join(ORDERS)}, found {self.quantity!r}")
         if not (np.isfinite(self.frequency).all() and (np.diff(self.frequency) > 0).all()):

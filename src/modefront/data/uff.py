@@ -422,12 +422,8 @@ class NodalModes:
     @property
     def measured(self) -> tuple[str, ...]:
         """Names of the measured degrees of freedom, such as ``12Z``."""
-        observed = np.asarray(np.isfinite(self.shape).any(axis=(0, 1)))
-        return tuple(
-            f"{node}{NAMES[axis]}"
-            for node, row in zip(self.nodes.tolist(), observed, strict=True)
-            for axis in np.flatnonzero(row).tolist()
-        )
+        observed = np.argwhere(np.isfinite(self.shape).any(axis=(0, 1))).tolist()
+        return tuple(f"{self.nodes[k]}{NAMES[axis]}" for k, axis in observed)
 
     def along(self, node: int, direction: Floats) -> Floats:
         """Return the components (sets, modes) of a node, by position, along a vector (6,).

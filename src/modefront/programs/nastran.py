@@ -100,8 +100,8 @@ def _labelled(listed: Listed, deck: Bulk, notes: list[str]) -> Listed:
         counts = ", ".join(f"{len(dofs)} for {name}" for name, dofs in choices.items())
         expected = f"{size} degrees of freedom, as the matrices have, in the deck (or --dofs FILE)"
         raise wrong(path, expected, counts)
-    table = np.array(fitting[0], dtype=np.intp).reshape(-1, 2)
-    dofs = DofTable(table[:, 0], table[:, 1], np.ones(size))
+    node, direction = np.array(fitting[0], dtype=np.intp).reshape(-1, 2).T
+    dofs = DofTable(node, direction, np.ones(size))
     unheld = np.array([dof not in deck.held | deck.followers for dof in fitting[0]])
 
     def free(K: Matrix, M: Matrix) -> Bools:

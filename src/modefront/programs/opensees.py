@@ -55,9 +55,8 @@ def _mesh(path: Path) -> ProgramMesh | None:
         raise wrong(nodes, expected, reason(error)) from None
     refuse_unknown_nodes(elements, points, (n for row in rows for n in row[1:]))
     kinds = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
-    return mesh_of(
-        points, {cell: [x[1:] for x in rows if len(x) == 1 + k] for k, cell in kinds.items()}
-    )
+    cells = {cell: [x[1:] for x in rows if len(x) == 1 + k] for k, cell in kinds.items()}
+    return mesh_of(points, cells)
 
 
 def _rows(path: Path, number: type) -> list[list[Any]]:
