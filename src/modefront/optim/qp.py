@@ -130,10 +130,13 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
         s = _clipped(s + d, lo, hi)
         if free.all() and len(active) < 2:
             break
-        kept, slope, scale = _stationarity(qp, s, active, free)
-        if len(kept) < len(active):
-            active = kept
+        mu, kappa = qp.multipliers(s, active, free)
+        if kappa.min(initial=0.0) < -FLAT:
+            active = [i for i in active if i != int(np.argmin(kappa))]
             continue
+        slope = qp.g + qp.B @ s + qp.C.T @ kappa
+        scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
+        slope = slope + qp.A.T @ mu
         low, high = s <= lo, s >= hi
         gain = np.where(free | (low & high), 0.0, np.where(low, -slope, slope))  # on leaving a side
         wrong = gain > FLAT * scale
@@ -141,20 +144,6 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
             break
         free = free | (wrong if many else np.arange(s.size) == gain.argmax())
     return QuadraticStep(s, active)
-
-
-def _stationarity(
-    qp: QuadraticProgramme, s: Floats, active: list[int], free: Bools
-) -> tuple[list[int], Floats, float]:
-    """Return the active functions to keep, the slope of the Lagrangian (p,), and its size.
-
-    The function of the most negative multiplier is not kept.
-    """
-    mu, kappa = qp.multipliers(s, active, free)
-    wrong = int(np.argmin(kappa)) if kappa.min(initial=0.0) < -FLAT else -1
-    slope = qp.g + qp.B @ s + qp.C.T @ kappa
-    scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
-    return [i for i in active if i != wrong], slope + qp.A.T @ mu, scale
 
 
 def _projected(

@@ -10,6 +10,7 @@ import numpy as np
 from modefront.front.archive import Outcome
 from modefront.front.proposers.base import Offer, solve_from
 from modefront.front.state import State
+from modefront.front.subproblems import competes
 from modefront.work.task import Key
 
 
@@ -33,7 +34,7 @@ class Polish:
         for k in [k for k in nearest_first if not state.places[k].closed][:most]:
             place = state.places[k]
             yield solve_from(k, place, place.incumbent, 1.0)
-        equations = [(k, x) for k, x in enumerate(state.places) if not x.subproblem.competes]
+        equations = [(k, x) for k, x in enumerate(state.places) if not competes(x.subproblem)]
         met = [x.incumbent for _, x in equations if x.incumbent.converged]
         for k, place in equations:
             if place.closed and not place.incumbent.converged:
