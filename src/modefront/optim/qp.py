@@ -13,8 +13,8 @@ have the wrong sign. Where B has negative curvature in the null space of the wor
 absolute value is used.
 
 Of many variables, hundreds may end at the box, and each change of the working set takes a
-decomposition: they are held and let go many at once, as long as what is minimised falls (Moré &
-Toraldo 1991, doi:10.1137/0801008).
+decomposition: without equalities, they are held and let go many at once, as long as what is
+minimised falls (Moré & Toraldo 1991, doi:10.1137/0801008).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ Wright, equation 18.46)."""
 
 MANY, HALVINGS = 48, 8
 """Variables from which on many are held and let go at once; halvings at most of a step until its
-projection falls, and times that variables move back to the equalities after others were held."""
+projection falls."""
 
 PASSES = 4
 """Changes of the working set, over the number of variables and functions, after which the method
@@ -66,14 +66,6 @@ class QuadraticProgramme:
         """Return the slope (p,) of what is minimised, with the base for the maximum."""
         slope = self.g + self.B @ s
         return slope + self.C[active[0]] if active else slope
-
-    def attaining(self, s: Floats, active: list[int]) -> list[int]:
-        """Return which of the active functions still attain the maximum, or the one that does."""
-        if not active:
-            return active
-        value = self.c + self.C @ s
-        least = value.max() - FLAT * float((np.abs(self.C) @ (self.hi - self.lo)).max())
-        return [i for i in active if value[i] >= least] or [int(np.argmax(value))]
 
     def multipliers(self, s: Floats, active: list[int], free: Bools) -> tuple[Floats, Floats]:
         """Return mu (k,) and kappa (m,), with which least is left of the slope of free variables.
@@ -118,14 +110,14 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
             s, active = _clipped(s + met * d, lo, hi), [*active, joining]
             continue
         if within < 1:
-            new = _projected(qp, s, d, active, free) if many else None
+            new = _projected(qp, s, d) if many and not len(qp.ties(active)) else None
             if new is None:
                 held = share <= within if many else np.arange(s.size) == stop
                 s = np.where(held, bound, _clipped(s + within * d, lo, hi))
                 free = free & ~held
             else:
                 s, free = new, free & (new > lo) & (new < hi)
-                active = qp.attaining(s, active)
+                active = active and [int(np.argmax(qp.c + qp.C @ s))]
             continue
         s = _clipped(s + d, lo, hi)
         if free.all() and len(active) < 2:
@@ -146,41 +138,15 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
     return QuadraticStep(s, active)
 
 
-def _projected(
-    qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int], free: Bools
-) -> Floats | None:
-    """Return where a step d, or its half and so on, ends on the box; None where nothing falls.
-
-    Variables inside the box keep the equalities, and active functions equal, as they are.
-    """
-    E, slope = qp.ties(active), qp.g + qp.B @ s
+def _projected(qp: QuadraticProgramme, s: Floats, d: Floats) -> Floats | None:
+    """Return where a step d, or its half and so on, ends on the box; None where nothing falls."""
+    slope, greatest = qp.g + qp.B @ s, (qp.c + qp.C @ s).max(initial=-np.inf)
     for halvings in range(HALVINGS):
-        new = _returned(qp, E, s, np.clip(s + 0.5**halvings * d, qp.lo, qp.hi), free)
-        if new is not None:
-            change = new - s
-            rise = float(np.max(qp.c + qp.C @ new) - np.max(qp.c + qp.C @ s)) if active else 0.0
-            if slope @ change + 0.5 * change @ qp.B @ change + rise < 0:
-                return new
-    return None
-
-
-def _returned(
-    qp: QuadraticProgramme, E: Floats, s: Floats, new: Floats, free: Bools
-) -> Floats | None:
-    """Return a step with E new = E s again, by changes of free variables; None where there is none.
-
-    The changes are the least ones within the box.
-    """
-    if not len(E):
-        return new
-    for _ in range(HALVINGS):
-        inside = free & (new > qp.lo) & (new < qp.hi)
-        new = new.copy()
-        new[inside] -= np.linalg.lstsq(E[:, inside], E @ (new - s), rcond=FLAT)[0]
-        if (new >= qp.lo).all() and (new <= qp.hi).all():
-            left = np.abs(E @ (new - s)) <= FLAT * (np.abs(E) @ (qp.hi - qp.lo))
-            return new if left.all() else None
-        new = np.clip(new, qp.lo, qp.hi)
+        new = np.clip(s + 0.5**halvings * d, qp.lo, qp.hi)
+        change = new - s
+        rise = float((qp.c + qp.C @ new).max() - greatest) if len(qp.C) else 0.0
+        if slope @ change + 0.5 * change @ qp.B @ change + rise < 0:
+            return new
     return None
 
 

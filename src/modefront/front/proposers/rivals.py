@@ -38,10 +38,10 @@ class Rivals:
         for k, place in enumerate(state.places):
             if not place.closed:
                 continue
-            new, of = range(place.compared, len(state.models)), place.subproblem
-            if new and isinstance(of, Point):
-                new = new[0] + of.near(np.array([x.J for x in state.models[new[0] :]]))
-            for m in new:
+            new, of = np.arange(place.compared, len(state.models)), place.subproblem
+            if new.size and isinstance(of, Point):
+                new = new[of.near(np.array([x.J for x in state.models[place.compared :]]))]
+            for m in new.tolist():
                 gain = predicted_gain(state, k, state.models[m])
                 if gain > state.tolerance:
                     self.found[k, m] = gain
