@@ -10,6 +10,7 @@ repeated after a single snapshot then. Snapshots are tasks: an interrupted run h
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -198,18 +199,12 @@ def _taken(model: ReducedModel, request: SnapshotRequest) -> SnapshotTaken | Non
     Where none of its models can be solved, the basis learns that, so that it is not searched there
     again; None is returned where that fails too.
     """
-    before, modes = model.columns if model.snapshots else 0, request.modes
-    try:
-        error = model.take(request)
-    except ModelError:
-        if not before:
-            return None
-        try:
-            modes, error = 0, model.take(replace(request, modes=0))
-        except ModelError:
-            return None
-    columns = model.columns
-    return SnapshotTaken(float(error), columns, columns - before, modes)
+    before = model.columns if model.snapshots else 0
+    for modes in (request.modes, 0) if before else (request.modes,):
+        with suppress(ModelError):
+            error = model.take(replace(request, modes=modes))
+            return SnapshotTaken(float(error), model.columns, model.columns - before, modes)
+    return None
 
 
 def _snapshot(solutions: Sequence[Solution], enough: float) -> SnapshotRequest:

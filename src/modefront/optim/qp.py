@@ -12,8 +12,8 @@ them; they are let go as their multipliers mu (of equalities) and kappa (of func
 have the wrong sign. Where B has negative curvature in the null space of the working set, its
 absolute value is used.
 
-Of many variables, hundreds may end at the box, and each change of the working set takes a
-decomposition: without equalities, they are held and let go many at once, as long as what is
+Hundreds of variables may end at the box, and each change of the working set takes a decomposition:
+without functions and equalities, they are held and let go many at once, as long as what is
 minimised falls (Moré & Toraldo 1991, doi:10.1137/0801008).
 """
 
@@ -34,9 +34,8 @@ NORMAL = 0.8
 """Share of the box that the normal step may use, so that something is left to descend (Nocedal &
 Wright, equation 18.46)."""
 
-MANY, HALVINGS = 48, 8
-"""Variables from which on many are held and let go at once; halvings at most of a step until its
-projection falls."""
+HALVINGS = 8
+"""Halvings at most of a step until its projection on the box falls."""
 
 PASSES = 4
 """Changes of the working set, over the number of variables and functions, after which the method
@@ -99,25 +98,19 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
     s = _normal_step(qp.A, qp.b, lo, hi)
     free = (s > lo) & (s < hi)
     active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
-    many = s.size >= MANY
     for _ in range(PASSES * (s.size + len(qp.C))):
         d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free)
         bound = np.where(d > 0, hi, lo)
         share = np.divide(bound - s, d, out=np.full(s.size, np.inf), where=d != 0)
-        stop = int(share.argmin())
-        within, (joining, met) = float(share[stop]), _met(qp, s, d, active)
+        within, (joining, met) = float(share.min()), _met(qp, s, d, active)
         if met < min(within, 1):
             s, active = _clipped(s + met * d, lo, hi), [*active, joining]
             continue
         if within < 1:
-            new = _projected(qp, s, d) if many and not len(qp.ties(active)) else None
-            if new is None:
-                held = share <= within if many else np.arange(s.size) == stop
-                s = np.where(held, bound, _clipped(s + within * d, lo, hi))
-                free = free & ~held
-            else:
-                s, free = new, free & (new > lo) & (new < hi)
-                active = active and [int(np.argmax(qp.c + qp.C @ s))]
+            new = None if len(qp.A) or len(qp.C) else _projected(qp, s, d)
+            held = share <= within if new is None else free & ((new <= lo) | (new >= hi))
+            s = np.where(held, bound, _clipped(s + within * d, lo, hi)) if new is None else new
+            free = free & ~held
             continue
         s = _clipped(s + d, lo, hi)
         if free.all() and len(active) < 2:
@@ -134,18 +127,17 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
         wrong = gain > FLAT * scale
         if not wrong.any():
             break
-        free = free | (wrong if many else np.arange(s.size) == gain.argmax())
+        free = free | wrong
     return QuadraticStep(s, active)
 
 
 def _projected(qp: QuadraticProgramme, s: Floats, d: Floats) -> Floats | None:
     """Return where a step d, or its half and so on, ends on the box; None where nothing falls."""
-    slope, greatest = qp.g + qp.B @ s, (qp.c + qp.C @ s).max(initial=-np.inf)
+    slope = qp.g + qp.B @ s
     for halvings in range(HALVINGS):
-        new = np.clip(s + 0.5**halvings * d, qp.lo, qp.hi)
+        new = _clipped(s + 0.5**halvings * d, qp.lo, qp.hi)
         change = new - s
-        rise = float((qp.c + qp.C @ new).max() - greatest) if len(qp.C) else 0.0
-        if slope @ change + 0.5 * change @ qp.B @ change + rise < 0:
+        if slope @ change + 0.5 * change @ qp.B @ change < 0:
             return new
     return None
 
