@@ -35,6 +35,7 @@ from modefront.front.simplex import (
 )
 from modefront.front.state import DISTINCT, Counted, Place, State, distinct_points
 from modefront.front.subproblems import (
+    LOOSE,
     RHO,
     Least,
     Subproblem,
@@ -55,10 +56,6 @@ from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
-
-LOOSE = 10 * RHO
-"""Distance of a point from its normal, over the ranges, above which the front ends there: the share
-of all objectives in what it minimises moves it by less."""
 
 
 # 8 arguments: the problem, and each group of options of a search.
@@ -270,8 +267,7 @@ class _Run:
         most = 2 * len(self._lattice())
         while self.n > 2:
             here = self._lattice()
-            ends = [(x.incumbent, point) for x, point in here if x.incumbent.converged]
-            at_points = [point.place for x, point in ends if point.spread(x.J) < LOOSE]
+            at_points = [point.place for x, point in here if point.met(x.incumbent)]
             beyond = {place for point in at_points for place in neighbours(point)}
             added = sorted(beyond - {point.place for _, point in here})[: most - len(here)]
             if not added:
@@ -310,8 +306,7 @@ class _Run:
             new = []
             for (x, one), (y, other) in pairwise(here):
                 apart = np.linalg.norm((x.incumbent.J - y.incumbent.J) / target.scale)
-                ends = (one.spread(x.incumbent.J), other.spread(y.incumbent.J))
-                if size and apart > size and max(ends) <= LOOSE:
+                if size and apart > size and one.met(x.incumbent) and other.met(y.incumbent):
                     middle = np.array(one.place) * sum(other.place)
                     middle += np.array(other.place) * sum(one.place)
                     new.append(tuple((middle // np.gcd.reduce(middle)).tolist()))

@@ -23,6 +23,10 @@ from modefront.work.task import Key
 RHO = 1e-4
 """Share of all objectives in what a point of the lattice minimises."""
 
+LOOSE = 10 * RHO
+"""Distance of a point from its normal, over the ranges, above which the front ends there: the share
+of all objectives in what it minimises moves it by less."""
+
 
 def active_bounds(shares: Floats) -> Bools:
     """Return which bounds are active, from the weights times the normal (n,): the others have rho.
@@ -174,9 +178,10 @@ class Point:
         """By the greatest excess with its share of all."""
         return Order(self.target.unit, self.target.offset(self.beta), 1.0, RHO)
 
-    def spread(self, J: Floats) -> float:
-        """Return how far objectives (n,) lie from the normal, over the ranges."""
-        return float(np.ptp(self.order.excess(J) * self.target.r))
+    def met(self, solution: Solution) -> bool:
+        """Return whether a solution lies on the normal, as it does if it meets equations."""
+        apart = float(np.ptp(self.order.excess(solution.J) * self.target.r))
+        return solution.converged and (self.equations or apart <= LOOSE)
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the fall of the excess, over the objectives along the normal or their ranges."""
