@@ -362,6 +362,24 @@ def test_polish_closes_every_incumbent() -> None:
     assert not list(Polish().offers(state, 6))
 
 
+def test_a_point_beside_its_normal_is_solved_from_the_nearest_that_lie_on_theirs() -> None:
+    problem = box(circles, [-2, -2], [2, 2])
+    edges = [[0.0, 0.0], [1.0, 0.0]]
+    state = state_of(problem, points_between(problem, edges, 5), edges)
+    run(state, Polish())
+    assert not list(Polish().offers(state, 6)), "all lie on their normals"
+    first, before, middle, behind, _ = state.places
+    found, middle.incumbent = middle.incumbent, first.incumbent
+    offers = list(Polish().offers(state, 6))
+    assert [offer.place for offer in offers] == [2, 2]
+    assert {id(offer.start) for offer in offers} == {id(before.incumbent), id(behind.incumbent)}
+    polish = Polish()
+    run(state, polish)
+    assert middle.incumbent.J == pytest.approx(found.J, abs=1e-6)
+    assert polish.rate.gains == 1
+    assert not list(polish.offers(state, 6))
+
+
 def test_a_model_of_another_basin_is_a_rival_where_its_derivatives_promise_more() -> None:
     problem = box(three_wells, [-1, -1.5], [2, 1.5])
     edges = [[0.0, -1.0], [1.0, 1.0]]

@@ -10,6 +10,7 @@ repeated after a single snapshot then. Snapshots are tasks: an interrupted run h
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -98,17 +99,20 @@ def certified_front(
     for number in range(1, ROUNDS + 1):
         here = Within(work, turn=("round", number))
         front = search(work=here, known=known)
-        candidates = _candidates(problem, front)
+        minima = best_minima(front, problem.properties, CLOSE)
+        candidates = _each_once([*_of_the_front(front), *(x for *_, some in minima for x in some)])
         enough = model.tolerance if known else AIM * model.tolerance
         is_last = number == ROUNDS or columns >= model.capacity
         taken = [] if is_last else _improve(model, candidates, enough, here)
         if not taken:
             front = _with_errors(problem, model, front, here)
-            wrong = _wrong(problem, model, front)
+            needed = _each_once([*_of_the_front(front), *_rivals(problem, front)])
+            wrong = [solution for solution in needed if _error(solution) > model.tolerance]
             if not wrong or is_last:
                 break
+            wrong = sorted(wrong, key=_error, reverse=True)[:WORST]
             worst = _snapshot(wrong, 0.0)
-            if not all(map(np.isfinite, map(_error, wrong))):
+            if not np.isfinite(_error(wrong[0])):
                 worst = replace(worst, modes=max(worst.modes, _lowest(problem)))
             last = _take(model, "worst", 1, worst, here)
             if last is None or not last.added:
@@ -195,37 +199,18 @@ def _taken(model: ReducedModel, request: SnapshotRequest) -> SnapshotTaken | Non
     Where none of its models can be solved, the basis learns that, so that it is not searched there
     again; None is returned where that fails too.
     """
-    before, modes = model.columns if model.snapshots else 0, request.modes
-    try:
-        error = model.take(request)
-    except ModelError:
-        if not before:
-            return None
-        try:
-            modes, error = 0, model.take(replace(request, modes=0))
-        except ModelError:
-            return None
-    columns = model.columns
-    return SnapshotTaken(float(error), columns, columns - before, modes)
+    before = model.columns if model.snapshots else 0
+    for modes in (request.modes, 0) if before else (request.modes,):
+        with suppress(ModelError):
+            error = model.take(replace(request, modes=modes))
+            return SnapshotTaken(float(error), model.columns, model.columns - before, modes)
+    return None
 
 
 def _snapshot(solutions: Sequence[Solution], enough: float) -> SnapshotRequest:
     """Return the snapshot of some models, of modes up to the last one that is paired."""
     modes = max(int(_paired(solution).max()) + 1 for solution in solutions)
     return SnapshotRequest(np.array([solution.theta for solution in solutions]), modes, enough)
-
-
-def _wrong(problem: UpdatingProblem, model: ReducedModel, front: Front) -> list[Solution]:
-    """Return the worst models above the tolerance of those that have to hold."""
-    needed = _each_once([*_of_the_front(front), *_rivals(problem, front)])
-    wrong = [solution for solution in needed if _error(solution) > model.tolerance]
-    return sorted(wrong, key=_error, reverse=True)[:WORST]
-
-
-def _candidates(problem: UpdatingProblem, front: Front) -> list[Solution]:
-    """Return the models that are reported, and minima that may be the best ones, each once."""
-    minima = best_minima(front, problem.properties, CLOSE)
-    return _each_once([*_of_the_front(front), *(x for *_, some in minima for x in some)])
 
 
 def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Floats]:
@@ -247,8 +232,7 @@ def _with_errors(
     certified = _certified(problem, model, reported, "front", work)
     known = {_key(x): x.evaluation.quantities for x in certified}
     front = replace(front, known=np.zeros((0, front.known.shape[1])))  # it holds in the basis only
-    out: Front = _replaced(front, known)
-    return out
+    return _replaced(front, known)
 
 
 def _replaced(part: Any, known: Mapping[bytes, Mapping[str, Floats]]) -> Any:
@@ -326,10 +310,10 @@ def _rivals(problem: UpdatingProblem, front: Front) -> Iterator[Solution]:
     for i, edge in enumerate(front.edges):
         most = roots(edge.best)[1][i]
         yield from (solution for solution in edge.minima if roots(solution)[0][i] <= most)
-    programme = LogSum(problem.properties)
+    value = LogSum(problem.properties).value
     for solution in front.optimal[1:]:
         least, most = roots(solution)[0], roots(front.optimal[0])[1]
-        if not least.all() or programme.value(least**2) <= programme.value(most**2):
+        if not least.all() or value(least**2) <= value(most**2):
             yield solution
 
 

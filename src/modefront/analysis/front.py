@@ -79,8 +79,7 @@ def analyse_front(
     samples = uncertainty.bootstrap
     solutions = 1 if sizes is None else len(front.points)
     work.expect({"second-derivatives": solutions, "bootstrap": samples})
-    part = _identifiable_part(problem, front, pareto, identifiability.flat, work)
-    points = _points(problem, front, part)
+    part, points = _identifiable_part(problem, front, pareto, identifiability.flat, work)
     manifolds = _manifolds(problem, front, identifiability, work)
     reference = front.reference
     solved = [SolvedPoint(reference.label, reference.solution, Role("optimal"))]
@@ -114,30 +113,23 @@ def analyse_front(
 
 def _identifiable_part(
     problem: UpdatingProblem, front: Front, pareto: Pareto, flat: float, work: Executor
-) -> Identifiable | None:
-    """Return the part of the front that is not flat; None where nothing is flat."""
+) -> tuple[Identifiable | None, list[Point]]:
+    """Return the part of the front that is not flat, if some is, and the points that it adds."""
     along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
-    boundary = METHODS[front.method].programme == "boundary"
-    if flat == 0 or len(along) < 2 or not boundary:
-        return None
+    if flat == 0 or len(along) < 2 or METHODS[front.method].programme != "boundary":
+        return None, []
     n = len(problem.objectives)
     edges = [point.solution for point in of_kind(front.points, Kind.EDGE)]
     known = [point.solution for point in front.points]
     sizes = np.ones(n) if front.scale is None else front.scale
     divisions = (pareto.points or default_points(n)) - 1
-    return identifiable_part(problem, along, edges, known, flat, sizes, divisions, work)
-
-
-def _points(problem: UpdatingProblem, front: Front, part: Identifiable | None) -> list[Point]:
-    """Return the points of the identifiable part, and its ends where they are no edges."""
+    part = identifiable_part(problem, along, edges, known, flat, sizes, divisions, work)
     if part is None:
-        return []
-    out = [Point(Kind.IDENTIFIABLE, x, index=i + 1) for i, x in enumerate(part.points)]
-    edges = [point.solution for point in of_kind(front.points, Kind.EDGE)]
+        return None, []
+    points = [Point(Kind.IDENTIFIABLE, x, index=i + 1) for i, x in enumerate(part.points)]
     ends = zip(problem.objectives, part.ends, edges, strict=True)
-    return out + [
-        Point(Kind.IDENTIFIABLE_EDGE, x, name) for name, x, edge in ends if not same(x, edge)
-    ]
+    moved = [(name, x) for name, x, edge in ends if not same(x, edge)]
+    return part, [*points, *(Point(Kind.IDENTIFIABLE_EDGE, x, name) for name, x in moved)]
 
 
 def _manifolds(

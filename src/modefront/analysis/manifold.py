@@ -98,24 +98,6 @@ class Manifold:
     twin: int | None = None
 
 
-@dataclass
-class _Meter:
-    """Counts evaluations, of which no more than ``most`` are made."""
-
-    most: int
-    spent: int = 0
-
-    def evaluation(
-        self, problem: Problem, theta: Floats, derivatives: bool, second: bool
-    ) -> Evaluation:
-        """Return an evaluation; raises SpentError where none is left."""
-        if self.spent >= self.most:
-            raise SpentError
-        self.spent += 1
-        note(f"model {self.spent} of at most {self.most}")
-        return problem.evaluate(theta, derivatives=derivatives, second=second)
-
-
 # 8 arguments: the minima, and limits by keyword.
 def equivalent_models(
     problem: Problem,
@@ -138,13 +120,22 @@ def equivalent_models(
     any objective, are left where they are. Minima for which no evaluation is left are manifolds of
     one model.
     """
-    meter = _Meter(SPEND * limit if evaluations is None else evaluations)
-    metered = Wrapped(problem, meter.evaluation)
+    most, spent = SPEND * limit if evaluations is None else evaluations, 0
+
+    def evaluation(of: Problem, theta: Floats, derivatives: bool, second: bool) -> Evaluation:
+        nonlocal spent
+        if spent >= most:
+            raise SpentError
+        spent += 1
+        note(f"model {spent} of at most {most}")
+        return of.evaluate(theta, derivatives=derivatives, second=second)
+
+    metered = Wrapped(problem, evaluation)
     still = np.zeros(problem.lower.size, dtype=bool) if idle is None else idle
     span = np.where(still, np.inf, problem.upper - problem.lower)
     out: list[Manifold] = []
     for minimum in minima:
-        before, twin = meter.spent, None
+        before, twin = spent, None
         on = next((k for k, x in enumerate(out) if _is_on(x, minimum, span, h)), None)
         if on is None:
             try:
@@ -154,15 +145,15 @@ def equivalent_models(
                 manifold = _follow(context, first, h, limit) if twin is None else None
             except SpentError:
                 manifold = Manifold(0, [minimum], Extent.SPENT)
-        spent = meter.spent - before
+        took = spent - before
         if on is not None:
             same = out[on]
-            out[on] = replace(same, minima=same.minima + 1, evaluations=same.evaluations + spent)
+            out[on] = replace(same, minima=same.minima + 1, evaluations=same.evaluations + took)
         elif manifold is not None:
-            out.append(replace(manifold, evaluations=spent))
+            out.append(replace(manifold, evaluations=took))
         elif twin is not None:
             twin -= len(out)
-            out.append(replace(known[twin], evaluations=spent, minima=1, twin=twin))
+            out.append(replace(known[twin], evaluations=took, minima=1, twin=twin))
     return out
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from modefront._typing import Bools, Floats, Ints
 from modefront.front.subproblems import RHO
 from modefront.optim.problem import Problem
-from modefront.optim.scalarisation import constrained, weighted
+from modefront.optim.scalarisation import Scalarisation, constrained, weighted
 from modefront.optim.sqp import TIGHT, Solution, solve
 from modefront.work.task import IMMEDIATE, Executor, Task
 
@@ -98,20 +98,21 @@ def _ends(
     scale: Floats,
 ) -> list[Solution | None]:
     """Return where the branch before a gap ends and that of b starts; ``slack`` of these points."""
+    unit, a = np.eye(2) / scale, before[-1]
+
+    def found(programme: Scalarisation, of: Solution) -> Solution | None:
+        solution = solve(problem, programme, of, TIGHT)
+        return solution if solution.converged else None
 
     def own(i: int, of: Solution) -> Solution | None:
         """Return where an objective is least within the branch of a point."""
-        return _converged(solve(problem, weighted(np.eye(2)[i] / scale), of, TIGHT))
+        return found(weighted(unit[i]), of)
 
     def at_level(i: int, of: Solution, other: Solution | None) -> Solution | None:
         """Return where the branch of a point has as much of an objective as the other end."""
-        if other is None:
-            return None
-        unit = np.eye(2) / scale
-        goal = constrained(unit[1 - i], unit[[i]], other.J[[i]] / scale[i])
-        return _converged(solve(problem, goal, of, TIGHT))
+        goal = None if other is None else other.J[[i]] / scale[i]
+        return None if goal is None else found(constrained(unit[1 - i], unit[[i]], goal), of)
 
-    a = before[-1]
     ends_itself, starts_itself = slack
     end = own(1, a) if ends_itself else None
     start = own(0, b) if starts_itself or not ends_itself else None
@@ -124,10 +125,6 @@ def _ends(
     elif not starts_itself:
         start = at_level(1, b, end)
     return [end, start]
-
-
-def _converged(solution: Solution) -> Solution | None:
-    return solution if solution.converged else None
 
 
 def branches_of(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, count, pairwise
 
@@ -35,6 +35,7 @@ from modefront.front.simplex import (
 )
 from modefront.front.state import DISTINCT, Counted, Place, State, distinct_points
 from modefront.front.subproblems import (
+    LOOSE,
     RHO,
     Least,
     Subproblem,
@@ -55,10 +56,6 @@ from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
-
-LOOSE = 10 * RHO
-"""Distance of a point from its normal, over the ranges, above which the front ends there: the share
-of all objectives in what it minimises moves it by less."""
 
 
 # 8 arguments: the problem, and each group of options of a search.
@@ -98,6 +95,8 @@ class _Run:
 
     def __post_init__(self) -> None:
         self.n = len(self.problem.objectives)
+        named = [(Kind.GIVEN, name, w) for name, w in self.given]
+        self.weighted = [*named, (Kind.EQUAL, "", np.ones(self.n))]
         archive = Archive(self.problem.lower.size, self.n)
         self.state = State(self.problem, self.search.tolerance, archive)
         self.needed = Counted(self.state, self.executor)
@@ -113,8 +112,15 @@ class _Run:
     def front(self) -> Front:
         """Return all that is found."""
         sizes = self._sizes()
-        self._recall()
-        self._add_anchors(sizes)
+        models = [point.solution for point in self.known.points] if self.known else []
+        starts = [at(x.theta) for x in self.state.distinct(models)]
+        self.state.models += [x for x in self._evaluated(("known",), starts) if x.feasible]
+        anchors: list[Subproblem] = [
+            Least(i, sizes, name) for i, name in enumerate(self.problem.objectives)
+        ]
+        for kind, name, w in self.weighted:
+            anchors.append(Weights(w, ("weights", kind.value, name), EXACT * float(w @ sizes)))
+        self.state.add(anchors)
         self.loop.run("edges")
         for place in self.places:
             if not place.incumbent.feasible:
@@ -124,7 +130,7 @@ class _Run:
         edges = self._edges()
         weighted = [
             Point(kind, self.place("weights", kind.value, name).incumbent, name)
-            for kind, name, _ in self._weights()
+            for kind, name, _ in self.weighted
         ]
         bests = self._reported(sizes, "last")
         points, places, beta = self._points(target, bests)
@@ -159,7 +165,7 @@ class _Run:
     def _open(self) -> tuple[str, ...]:
         """Return what the search had not finished at its budget, as labels; once for all points."""
         names: dict[Key, str] = {("edge", x): label(Kind.EDGE, x) for x in self.problem.objectives}
-        names |= {("weights", k.value, x): label(k, x) for k, x, _ in self._weights()}
+        names |= {("weights", k.value, x): label(k, x) for k, x, _ in self.weighted}
         left = self.loop.open
         more = ("points between the edges",) * bool(left - names.keys())
         more += ("what follows from the points",) * self.work.spent
@@ -174,11 +180,6 @@ class _Run:
         """Return the place of a subproblem."""
         return next(x for x in self.places if x.subproblem.key == key)
 
-    def _weights(self) -> list[tuple[Kind, str, Floats]]:
-        """Return kind and name of the models of given and of equal weights, with these weights."""
-        named = [(Kind.GIVEN, name, w) for name, w in self.given]
-        return [*named, (Kind.EQUAL, "", np.ones(self.n))]
-
     def _sizes(self) -> Floats:
         """Return the typical size of each objective, (n,), of random models, unless it is known."""
         seed = seed_sequence(0 if self.known else 1, "sample")
@@ -190,24 +191,6 @@ class _Run:
                 "the model cannot be evaluated at any of the parameters tried within the bounds"
             )
         return np.asarray(sizes)
-
-    def _add_anchors(self, sizes: Floats) -> None:
-        """Add the subproblems of the edges and of the weighted models."""
-        out: list[Subproblem] = [
-            Least(i, sizes, name) for i, name in enumerate(self.problem.objectives)
-        ]
-        for kind, name, w in self._weights():
-            out.append(Weights(w, ("weights", kind.value, name), EXACT * float(w @ sizes)))
-        self.state.add(out)
-
-    def _recall(self) -> None:
-        """Evaluate the models of the known front again, from which subproblems start."""
-        models = [point.solution for point in self.known.points] if self.known else []
-        tasks = [
-            Task(("known", k + 1), evaluated, (self.problem, at(x.theta)))
-            for k, x in enumerate(self.state.distinct(models))
-        ]
-        self.state.models += [x for x in self.needed.run(tasks) if x.feasible]
 
     def _between(self, sizes: Floats) -> Payoff | None:
         """Search the points between the edges, until these stay where they are."""
@@ -222,8 +205,10 @@ class _Run:
             if new is None:
                 self._drop_points()
                 return target
-            if target is not None and _are_alike(new, target):
-                break
+            if target is not None:
+                utopia = np.abs((new.utopia - target.utopia) / new.scale).max()
+                if max(utopia, np.abs(new.scale / target.scale - 1).max()) < DISTINCT:
+                    break
             target = new
             if METHODS[self.options.method].programme is None:
                 break  # its points are the models of a population
@@ -282,8 +267,7 @@ class _Run:
         most = 2 * len(self._lattice())
         while self.n > 2:
             here = self._lattice()
-            ends = [(x.incumbent, point) for x, point in here if x.incumbent.converged]
-            at_points = [point.place for x, point in ends if point.spread(x.J) < LOOSE]
+            at_points = [point.place for x, point in here if point.met(x.incumbent)]
             beyond = {place for point in at_points for place in neighbours(point)}
             added = sorted(beyond - {point.place for _, point in here})[: most - len(here)]
             if not added:
@@ -322,8 +306,7 @@ class _Run:
             new = []
             for (x, one), (y, other) in pairwise(here):
                 apart = np.linalg.norm((x.incumbent.J - y.incumbent.J) / target.scale)
-                ends = (one.spread(x.incumbent.J), other.spread(y.incumbent.J))
-                if size and apart > size and max(ends) <= LOOSE:
+                if size and apart > size and one.met(x.incumbent) and other.met(y.incumbent):
                     middle = np.array(one.place) * sum(other.place)
                     middle += np.array(other.place) * sum(one.place)
                     new.append(tuple((middle // np.gcd.reduce(middle)).tolist()))
@@ -335,13 +318,14 @@ class _Run:
         """Evaluate the derivatives of incumbents that no search has started from: at the budget."""
         rest = [x for x in self.places if x.incumbent.evaluation.derivatives is None]
         models = {x.incumbent.theta.tobytes(): x.incumbent for x in rest}
-        tasks = [
-            Task(("front", "rest", k + 1), evaluated, (self.problem, x))
-            for k, x in enumerate(models.values())
-        ]
-        found = dict(zip(models, self.needed.run(tasks), strict=True))
+        found = dict(zip(models, self._evaluated(("front", "rest"), models.values()), strict=True))
         for place in rest:
             place.incumbent = found[place.incumbent.theta.tobytes()]
+
+    def _evaluated(self, key: Key, models: Iterable[Solution]) -> list[Solution]:
+        """Return starts at models, with derivatives."""
+        tasks = [Task((*key, k + 1), evaluated, (self.problem, x)) for k, x in enumerate(models)]
+        return self.needed.run(tasks)
 
     def _edges(self) -> list[Edge]:
         """Return the edge of each objective with its other minima."""
@@ -371,15 +355,14 @@ class _Run:
             corner = within and max(point.place) == sum(point.place)
             best = bests[int(np.argmax(point.place))] if corner else x.incumbent
             solutions.append(replace(best, beta=point.beta))
-        beta = [point.beta for _, point in lattice]
         sweep = [x for x in self.places if x.subproblem.key[0] == "sweep"]
-        solutions += [x.incumbent for x in sweep]
         rows = [np.array(x.subproblem.key[1:], dtype=float) for x in sweep]
-        beta += [row / row.sum() for row in rows]
+        beta = [point.beta for _, point in lattice] + [row / row.sum() for row in rows]
+        solutions += [x.incumbent for x in sweep]
         kept = distinct_points(solutions, target.scale)
         J = np.array([x.J for x in kept])
-        apart = [(np.abs(J - x.J) / target.scale).max(axis=1) for x in solutions]
-        return kept, np.array([each.argmin() for each in apart], dtype=np.intp), np.array(beta)
+        apart = [(np.abs(J - x.J) / target.scale).max(axis=1).argmin() for x in solutions]
+        return kept, np.array(apart, dtype=np.intp), np.array(beta)
 
     def _reported(self, sizes: Floats, turn: int | str) -> list[Solution]:
         """Return the edges, those within the tolerance that are best in the others if wanted."""
@@ -428,9 +411,3 @@ class _Run:
         ]
         minima = self.state.distinct(x for x in self.work.run(tasks) if x and x.converged)
         return accepted(self.problem, minima, self.a, sizes)
-
-
-def _are_alike(one: Payoff, other: Payoff) -> bool:
-    """Return whether two simplexes hardly differ."""
-    utopia = np.abs((one.utopia - other.utopia) / one.scale).max()
-    return bool(max(utopia, np.abs(one.scale / other.scale - 1).max()) < DISTINCT)

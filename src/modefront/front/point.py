@@ -71,19 +71,14 @@ def label(kind: Kind, name: str = "", index: int = 0) -> str:
     >>> label(Kind.FRONT, "nbi", 3), label(Kind.EDGE, "shapes"), label(Kind.EQUAL)
     ('nbi-3', 'edge-shapes', 'equal-weights')
     """
-    match kind:
-        case Kind.FRONT:
-            return f"{name}-{index}"
-        case Kind.EDGE:
-            return f"edge-{name}"
-        case Kind.GIVEN:
-            return name
-        case Kind.IDENTIFIABLE:
-            return f"identifiable-{index}"
-        case Kind.IDENTIFIABLE_EDGE:
-            return f"identifiable-edge-{name}"
-        case _:
-            return kind.value
+    texts = {
+        Kind.FRONT: f"{name}-{index}",
+        Kind.EDGE: f"edge-{name}",
+        Kind.GIVEN: name,
+        Kind.IDENTIFIABLE: f"identifiable-{index}",
+        Kind.IDENTIFIABLE_EDGE: f"identifiable-edge-{name}",
+    }
+    return texts.get(kind, kind.value)
 
 
 def of_kind(points: Iterable[Point], *kinds: Kind) -> list[Point]:

@@ -108,14 +108,14 @@ class Loop:
 
     def _offers(self) -> list[tuple[Proposer, Offer]]:
         """Return the offers worth making, the greatest chance per evaluation first."""
-        offers = []
+        offers: list[tuple[float, Proposer, Offer]] = []
         confirming = self.state.evaluations < CONFIRMING * self.search.evaluations
-        for place, proposer in enumerate(self.proposers):
+        for proposer in self.proposers:
             tries, spent = self.costs.get(proposer.name, (0, 0))
             cost = (spent + USUAL) / (tries + 1)  # that a search is expected to take
             for offer in proposer.offers(self.state, BATCH):
                 doubt = offer.unseen if confirming else 0.0
                 if max(offer.chance, doubt) >= self.search.doubt:
-                    offers.append((offer.chance / cost, -place, proposer, offer))
-        offers.sort(key=lambda each: each[:2], reverse=True)
-        return [(proposer, offer) for _, _, proposer, offer in offers]
+                    offers.append((offer.chance / cost, proposer, offer))
+        offers.sort(key=lambda each: -each[0])
+        return [(proposer, offer) for _, proposer, offer in offers]

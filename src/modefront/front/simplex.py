@@ -158,11 +158,10 @@ def payoff(
     each: where the simplex between the edges is flat, its place takes that of the ranges over the
     edges and these, whose corners need not be attained.
     """
-    if (EXACT * sizes[:, None] >= simplex(edges)).all():
-        return None
     count = len(edges) if others else 0
     worst = [max([*edges, *others], key=lambda x: float(x.J[i])) for i in range(count)]
-    return spanned(edges, worst, sizes)
+    varies = (simplex(edges) > EXACT * sizes[:, None]).any()
+    return spanned(edges, worst, sizes) if varies else None
 
 
 def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats) -> Payoff | None:

@@ -11,7 +11,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.front.archive import Archive, Outcome, limited
 from modefront.front.dominance import SAME
-from modefront.front.subproblems import Order, Subproblem, together
+from modefront.front.subproblems import Order, Subproblem, competes, together
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.work.task import Executor, Task
@@ -134,7 +134,7 @@ class State:
 
     def _replaces(self, solution: Solution, gain: float, place: Place, is_incumbent: bool) -> bool:
         """Return whether a solution of a place, from its incumbent or not, takes that place."""
-        if place.subproblem.competes:
+        if competes(place.subproblem):
             first = (solution.converged or is_incumbent) and not place.closed
             return gain > 0 or (gain > -self.tolerance and first)
         return not place.closed or (solution.converged and not place.incumbent.converged)
@@ -153,7 +153,7 @@ class State:
 
         What is open starts from any model that is better, if its derivatives are known.
         """
-        if place.closed and not place.subproblem.competes:
+        if place.closed and not competes(place.subproblem):
             return 0.0
         ready = not place.closed and solution.evaluation.derivatives
         gain = place.subproblem.gain(solution.J, place.incumbent)

@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools, Floats, Ints
 from modefront.front.simplex import Payoff
 from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
 from modefront.optim.problem import Problem
@@ -23,6 +22,10 @@ from modefront.work.task import Key
 
 RHO = 1e-4
 """Share of all objectives in what a point of the lattice minimises."""
+
+LOOSE = 10 * RHO
+"""Distance of a point from its normal, over the ranges, above which the front ends there: the share
+of all objectives in what it minimises moves it by less."""
 
 
 def active_bounds(shares: Floats) -> Bools:
@@ -80,46 +83,15 @@ def _linear(w: Floats) -> Order:
     return Order(1 / w, np.zeros(w.size), 0.0, 1.0)
 
 
-class Subproblem(Protocol):
-    """An order on J, and a programme that leads to a model that is best in it."""
-
-    @property
-    def key(self) -> Key:
-        """Name among all subproblems."""
-
-    @property
-    def competes(self) -> bool:
-        """Whether any model that is better takes its place; else only its own solutions do."""
-        return True
-
-    @property
-    def order(self) -> Order:
-        """The order."""
-
-    def gain(self, J: Floats, known: Solution) -> float:
-        """Return how much better objectives (n,) are than a known model: over what that has."""
-
-    def is_near(self, J: Floats, /) -> Bools:
-        """Return which models of objectives (models, n) may lead to a solution by a few steps."""
-        return np.ones(len(J), dtype=np.bool_)
-
-    @property
-    def programme(self) -> Scalarisation:
-        """What is minimised, among equals apart."""
-
-    def solve(self, problem: Problem, start: Solution, known: Floats | None = None, /) -> Solution:
-        """Return the solution that a start leads to, in full if it may beat objectives (n,)."""
-
-
 @dataclass(frozen=True)
-class Least(Subproblem):
+class Least:
     """The lexicographic minimum of one objective; ``sizes`` (n,) are typical ones."""
 
     objective: int
     sizes: Floats
     name: str
 
-    @property
+    @cached_property
     def search(self) -> Lexicographic:
         """The search for it."""
         return Lexicographic(self.objective, self.sizes)
@@ -156,17 +128,12 @@ class Least(Subproblem):
 
 
 @dataclass(frozen=True)
-class Weights(Subproblem):
+class Weights:
     """The minimum of w^T J; values below ``negligible`` differ in nothing."""
 
     w: Floats
-    name: Key
+    key: Key
     negligible: float
-
-    @property
-    def key(self) -> Key:
-        """Name among all subproblems."""
-        return self.name
 
     @cached_property
     def order(self) -> Order:
@@ -190,7 +157,7 @@ class Weights(Subproblem):
 
 
 @dataclass(frozen=True)
-class Point(Subproblem):
+class Point:
     """The point of the lattice at ``beta`` (n,).
 
     With ``equations``, those of Das & Dennis are solved, which may lead to dominated models.
@@ -206,19 +173,15 @@ class Point(Subproblem):
         """Name among all subproblems."""
         return ("point", *self.place)
 
-    @property
-    def competes(self) -> bool:
-        """Whether it is no solution of equations."""
-        return not self.equations
-
     @cached_property
     def order(self) -> Order:
         """By the greatest excess with its share of all."""
         return Order(self.target.unit, self.target.offset(self.beta), 1.0, RHO)
 
-    def spread(self, J: Floats) -> float:
-        """Return how far objectives (n,) lie from the normal, over the ranges."""
-        return float(np.ptp(self.order.excess(J) * self.target.r))
+    def met(self, solution: Solution) -> bool:
+        """Return whether a solution lies on the normal, as it does if it meets equations."""
+        apart = float(np.ptp(self.order.excess(solution.J) * self.target.r))
+        return solution.converged and (self.equations or apart <= LOOSE)
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the fall of the excess, over the objectives along the normal or their ranges."""
@@ -226,10 +189,10 @@ class Point(Subproblem):
         fall = float(self.order.value(known.J) - self.order.value(J))
         return fall / min(max(float(w @ known.J), EXACT), 1.0)
 
-    def is_near(self, J: Floats) -> Bools:
-        """Return which models lie within a step of the lattice from the normal."""
+    def near(self, J: Floats) -> Ints:
+        """Return which rows of J (models, n) lie within a step of the lattice from the normal."""
         steps = np.abs(self.target.place(J) - self.beta) * abs(sum(self.place))
-        return np.asarray(steps.max(axis=-1) <= 1)
+        return np.flatnonzero(steps.max(axis=1) <= 1)
 
     def weights(self, known: Solution) -> Floats:
         """Return the multipliers of the excess at a solution, or of the greatest one at others."""
@@ -249,6 +212,16 @@ class Point(Subproblem):
             return self.target.boundary(self.beta)
         unit = self.target.unit
         return achievement(RHO / unit, np.diag(1 / unit), self.order.offset)
+
+
+Subproblem = Least | Weights | Point
+"""An order on J: ``gain`` tells how much better objectives (n,) are than a known model. ``solve``
+minimises its programme from a start, in full if that may beat known objectives."""
+
+
+def competes(subproblem: Subproblem) -> bool:
+    """Return whether any model that is better takes its place; else only its own solutions do."""
+    return not (isinstance(subproblem, Point) and subproblem.equations)
 
 
 def is_along(subproblem: Subproblem) -> bool:

@@ -98,34 +98,27 @@ def projected(x: Floats) -> Floats:
     return np.maximum(x - level[np.flatnonzero(falling > level)[-1]], 0.0)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Linearised:
-    """A programme at a point, in u; see the module for the symbols.
+    """A programme at an evaluation with derivatives, in u; see the module for the symbols.
 
-    ``reach`` (2, p) are the steps to the lower and the upper bounds, ``df`` (n,) is the slope of f
-    with respect to J.
+    ``df`` (n,) is the slope of f with respect to J, and ``free`` says whether there are neither
+    constraints nor functions of which the maximum counts.
     """
 
+    problem: Problem
     programme: Scalarisation
     evaluation: Evaluation
-    span: Floats
-    reach: Floats
-    df: Floats
-    g: Floats
-    c: Floats
-    dc: Floats
-    y: Floats
-    dy: Floats
 
-    @property
-    def free(self) -> bool:
-        """Whether there are neither constraints nor functions of which the maximum counts."""
-        return not (self.c.size or self.y.size)
-
-    @property
-    def f(self) -> float:
-        """Smooth part of what is minimised."""
-        return self.programme.value(self.evaluation.J)
+    def __post_init__(self) -> None:
+        self.span = self.problem.upper - self.problem.lower
+        J, dJ = self.evaluation.J, self.evaluation.dJ * self.span
+        constraints, maximised = self.programme.constraints, self.programme.maximised
+        self.f, self.df = self.programme.value(J), self.programme.gradient(J)
+        self.g = self.df @ dJ
+        self.c, self.dc = constraints.at(J), constraints.matrix @ dJ
+        self.y, self.dy = maximised.at(J), maximised.matrix @ dJ
+        self.free = not (self.c.size or self.y.size)
 
     def step(
         self, H: Floats, radius: float, multipliers: Multipliers | None
@@ -137,7 +130,9 @@ class Linearised:
         and, of functions of which the maximum counts, those of another step.
         """
         dJ, span = self.evaluation.dJ * self.span, self.span[:, None] * self.span
-        lo, hi = np.maximum(self.reach[0], -radius), np.minimum(self.reach[1], radius)
+        theta = self.evaluation.theta
+        lo = np.maximum((self.problem.lower - theta) / self.span, -radius)
+        hi = np.minimum((self.problem.upper - theta) / self.span, radius)
         curved = dJ.T @ self.programme.hessian(self.evaluation.J) @ dJ
 
         def with_curvature(B: Floats) -> QuadraticProgramme:
@@ -209,10 +204,11 @@ class Linearised:
         squares = [np.sum((each.r + each.dr @ change) ** 2) for each in x.residuals]
         return np.asarray(np.maximum(J, squares or 0.0))
 
-    def end(self, problem: Problem, s: Floats) -> Floats:
-        """Return the parameters at the end of a step."""
+    def after(self, s: Floats) -> Evaluation:
+        """Return the evaluation at the end of a step, with second derivatives."""
         theta = self.evaluation.theta + s * self.span
-        return np.minimum(np.maximum(theta, problem.lower), problem.upper)
+        within = np.minimum(np.maximum(theta, self.problem.lower), self.problem.upper)
+        return self.problem.evaluate(within, second=True)
 
     def noise(self, multipliers: Multipliers) -> float:
         """Return the change of the augmented Lagrangian that may be rounding."""
@@ -222,17 +218,6 @@ class Linearised:
         rows = np.abs(multipliers.mu) @ np.abs(A @ self.evaluation.J)
         rows += multipliers.kappa @ np.abs(C @ self.evaluation.J)
         return float(NOISE * (abs(self.f) + rows))
-
-
-def linearised(problem: Problem, programme: Scalarisation, evaluation: Evaluation) -> Linearised:
-    """Return a programme at an evaluation with derivatives."""
-    span = problem.upper - problem.lower
-    reach = np.array([problem.lower - evaluation.theta, problem.upper - evaluation.theta]) / span
-    df, dJ = programme.gradient(evaluation.J), evaluation.dJ * span
-    constraints, maximised = programme.constraints, programme.maximised
-    c, dc = constraints.at(evaluation.J), constraints.matrix @ dJ
-    y, dy = maximised.at(evaluation.J), maximised.matrix @ dJ
-    return Linearised(programme, evaluation, span, reach, df, df @ dJ, c, dc, y, dy)
 
 
 def weighted(w: Floats, H: Floats) -> Floats:

@@ -12,9 +12,9 @@ them; they are let go as their multipliers mu (of equalities) and kappa (of func
 have the wrong sign. Where B has negative curvature in the null space of the working set, its
 absolute value is used.
 
-Of many variables, hundreds may end at the box, and each change of the working set takes a
-decomposition: they are held and let go many at once, as long as what is minimised falls (Moré &
-Toraldo 1991, doi:10.1137/0801008).
+Hundreds of variables may end at the box, and each change of the working set takes a decomposition:
+without functions and equalities, they are held and let go many at once, as long as what is
+minimised falls (Moré & Toraldo 1991, doi:10.1137/0801008).
 """
 
 from __future__ import annotations
@@ -34,9 +34,8 @@ NORMAL = 0.8
 """Share of the box that the normal step may use, so that something is left to descend (Nocedal &
 Wright, equation 18.46)."""
 
-MANY, HALVINGS = 48, 8
-"""Variables from which on many are held and let go at once; halvings at most of a step until its
-projection falls, and times that variables move back to the equalities after others were held."""
+HALVINGS = 8
+"""Halvings at most of a step until its projection on the box falls."""
 
 PASSES = 4
 """Changes of the working set, over the number of variables and functions, after which the method
@@ -66,14 +65,6 @@ class QuadraticProgramme:
         """Return the slope (p,) of what is minimised, with the base for the maximum."""
         slope = self.g + self.B @ s
         return slope + self.C[active[0]] if active else slope
-
-    def attaining(self, s: Floats, active: list[int]) -> list[int]:
-        """Return which of the active functions still attain the maximum, or the one that does."""
-        if not active:
-            return active
-        value = self.c + self.C @ s
-        least = value.max() - FLAT * float((np.abs(self.C) @ (self.hi - self.lo)).max())
-        return [i for i in active if value[i] >= least] or [int(np.argmax(value))]
 
     def multipliers(self, s: Floats, active: list[int], free: Bools) -> tuple[Floats, Floats]:
         """Return mu (k,) and kappa (m,), with which least is left of the slope of free variables.
@@ -107,91 +98,47 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
     s = _normal_step(qp.A, qp.b, lo, hi)
     free = (s > lo) & (s < hi)
     active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
-    many = s.size >= MANY
     for _ in range(PASSES * (s.size + len(qp.C))):
         d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free)
         bound = np.where(d > 0, hi, lo)
         share = np.divide(bound - s, d, out=np.full(s.size, np.inf), where=d != 0)
-        stop = int(share.argmin())
-        within, (joining, met) = float(share[stop]), _met(qp, s, d, active)
+        within, (joining, met) = float(share.min()), _met(qp, s, d, active)
         if met < min(within, 1):
             s, active = _clipped(s + met * d, lo, hi), [*active, joining]
             continue
         if within < 1:
-            new = _projected(qp, s, d, active, free) if many else None
-            if new is None:
-                held = share <= within if many else np.arange(s.size) == stop
-                s = np.where(held, bound, _clipped(s + within * d, lo, hi))
-                free = free & ~held
-            else:
-                s, free = new, free & (new > lo) & (new < hi)
-                active = qp.attaining(s, active)
+            new = None if len(qp.A) or len(qp.C) else _projected(qp, s, d)
+            held = share <= within if new is None else free & ((new <= lo) | (new >= hi))
+            s = np.where(held, bound, _clipped(s + within * d, lo, hi)) if new is None else new
+            free = free & ~held
             continue
         s = _clipped(s + d, lo, hi)
         if free.all() and len(active) < 2:
             break
-        kept, slope, scale = _stationarity(qp, s, active, free)
-        if len(kept) < len(active):
-            active = kept
+        mu, kappa = qp.multipliers(s, active, free)
+        if kappa.min(initial=0.0) < -FLAT:
+            active = [i for i in active if i != int(np.argmin(kappa))]
             continue
+        slope = qp.g + qp.B @ s + qp.C.T @ kappa
+        scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
+        slope = slope + qp.A.T @ mu
         low, high = s <= lo, s >= hi
         gain = np.where(free | (low & high), 0.0, np.where(low, -slope, slope))  # on leaving a side
         wrong = gain > FLAT * scale
         if not wrong.any():
             break
-        free = free | (wrong if many else np.arange(s.size) == gain.argmax())
+        free = free | wrong
     return QuadraticStep(s, active)
 
 
-def _stationarity(
-    qp: QuadraticProgramme, s: Floats, active: list[int], free: Bools
-) -> tuple[list[int], Floats, float]:
-    """Return the active functions to keep, the slope of the Lagrangian (p,), and its size.
-
-    The function of the most negative multiplier is not kept.
-    """
-    mu, kappa = qp.multipliers(s, active, free)
-    wrong = int(np.argmin(kappa)) if kappa.min(initial=0.0) < -FLAT else -1
-    slope = qp.g + qp.B @ s + qp.C.T @ kappa
-    scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
-    return [i for i in active if i != wrong], slope + qp.A.T @ mu, scale
-
-
-def _projected(
-    qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int], free: Bools
-) -> Floats | None:
-    """Return where a step d, or its half and so on, ends on the box; None where nothing falls.
-
-    Variables inside the box keep the equalities, and active functions equal, as they are.
-    """
-    E, slope = qp.ties(active), qp.g + qp.B @ s
+def _projected(qp: QuadraticProgramme, s: Floats, d: Floats) -> Floats | None:
+    """Return where a step d, or its half and so on, ends on the box; None where nothing falls."""
+    slope = qp.g + qp.B @ s
     for halvings in range(HALVINGS):
-        new = _returned(qp, E, s, np.clip(s + 0.5**halvings * d, qp.lo, qp.hi), free)
-        if new is not None:
-            change = new - s
-            rise = float(np.max(qp.c + qp.C @ new) - np.max(qp.c + qp.C @ s)) if active else 0.0
-            if slope @ change + 0.5 * change @ qp.B @ change + rise < 0:
-                return new
-    return None
-
-
-def _returned(
-    qp: QuadraticProgramme, E: Floats, s: Floats, new: Floats, free: Bools
-) -> Floats | None:
-    """Return a step with E new = E s again, by changes of free variables; None where there is none.
-
-    The changes are the least ones within the box.
-    """
-    if not len(E):
-        return new
-    for _ in range(HALVINGS):
-        inside = free & (new > qp.lo) & (new < qp.hi)
-        new = new.copy()
-        new[inside] -= np.linalg.lstsq(E[:, inside], E @ (new - s), rcond=FLAT)[0]
-        if (new >= qp.lo).all() and (new <= qp.hi).all():
-            left = np.abs(E @ (new - s)) <= FLAT * (np.abs(E) @ (qp.hi - qp.lo))
-            return new if left.all() else None
-        new = np.clip(new, qp.lo, qp.hi)
+        new = _clipped(s + 0.5**halvings * d, qp.lo, qp.hi)
+        change = new - s
+        if slope @ change + 0.5 * change @ qp.B @ change < 0:
+            return new
     return None
 
 

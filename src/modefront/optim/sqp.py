@@ -29,7 +29,7 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Floats
-from modefront.optim.linearised import PENALTY, Merit, Multipliers, length, linearised
+from modefront.optim.linearised import PENALTY, Linearised, Merit, Multipliers, length
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
@@ -192,7 +192,7 @@ def _within(
     while True:
         count += 1
         note_iteration(count + 1)
-        local = linearised(problem, programme, evaluation)
+        local = Linearised(problem, programme, evaluation)
         if local.free and local.f <= options.negligible:
             ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
             return Solution(evaluation, local.df, 0.0, ended, count), None
@@ -207,7 +207,14 @@ def _within(
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
             still, far = not s.any(), length(s)
-        status = _outcome(options, violation, still, far, region.radius, proposal)
+        status: Status | None = None
+        if still and violation <= options.constraint:
+            status = Status.CONVERGED
+        elif far <= np.finfo(float).eps or region.radius <= options.step:
+            met = violation <= 10 * options.constraint
+            # Steps that were not held back were below the tolerance: rounding of J stops it here.
+            near = Status.CONVERGED if proposal <= options.step else Status.JUMP
+            status = near if met else Status.STALLED
         here = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
         if status or count >= options.iterations:
             return here, rejected if status is Status.JUMP else None
@@ -220,7 +227,7 @@ def _within(
                 return replace(calm[1], status=Status.CONVERGED, evaluations=count), None
         else:
             calm = (far, here) if rests else None
-        new = problem.evaluate(local.end(problem, s), second=True)
+        new = local.after(s)
         if not new.feasible:
             region.refused(far, 0.0)
             rejected = new
@@ -256,30 +263,12 @@ def _second_step(
     """
     if not new.exact:
         return new, 0
-    local = linearised(problem, merit.programme, new)
+    local = Linearised(problem, merit.programme, new)
     _, step, _ = local.step(H, radius, None)
     promised = merit.at(replace(new, J=local.promised(step.s)))
     if not promised < min(merit.at(here), merit.at(new)):
         return new, 0
-    return min(new, problem.evaluate(local.end(problem, step.s), second=True), key=merit.at), 1
-
-
-def _outcome(
-    options: Options, violation: float, still: bool, step: float, radius: float, proposal: float
-) -> Status | None:
-    """Return how the solution ends at a point; None where it goes on.
-
-    ``still`` says whether no step is worth making, ``step`` is the length of the next one, and
-    ``proposal`` that of the last one that the trust region did not hold back.
-    """
-    if still and violation <= options.constraint:
-        return Status.CONVERGED
-    if step > np.finfo(float).eps and radius > options.step:
-        return None
-    met = violation <= 10 * options.constraint
-    # Steps that were not held back were below the tolerance: rounding of J stops it here.
-    near = proposal <= options.step and met
-    return Status.CONVERGED if near else Status.JUMP if met else Status.STALLED
+    return min(new, local.after(step.s), key=merit.at), 1
 
 
 @dataclass

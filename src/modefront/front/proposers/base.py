@@ -13,7 +13,6 @@ from modefront.front.archive import Outcome
 from modefront.front.state import Place, State
 from modefront.front.subproblems import Subproblem
 from modefront.optim.problem import Evaluation, Problem
-from modefront.optim.scalarisation import Scalarisation
 from modefront.optim.sqp import Options, Solution, begin, solve
 
 USUAL = 10
@@ -100,7 +99,7 @@ def solve_from(k: int, place: Place, start: Solution, chance: float) -> Offer:
 
 def approach_from(k: int, place: Place, start: Solution, chance: float) -> Offer:
     """Return the offer to take a few steps towards the solution of a place, the k-th one."""
-    return Offer(k, start, chance, _approached, (place.subproblem.programme, start), final=False)
+    return Offer(k, start, chance, solve, (place.subproblem.programme, start, _ROUGH), final=False)
 
 
 def evaluate_all(thetas: Floats, chance: float) -> Offer:
@@ -117,11 +116,6 @@ def _solved(problem: Problem, subproblem: Subproblem, start: Solution, known: Fl
     """Return the solution of a subproblem from a start."""
     start = evaluated(problem, start)
     return subproblem.solve(problem, start, known) if start.feasible else start
-
-
-def _approached(problem: Problem, programme: Scalarisation, start: Solution) -> Solution:
-    """Return a model on the way to the solution of a programme."""
-    return solve(problem, programme, evaluated(problem, start), _ROUGH)
 
 
 def evaluated(problem: Problem, solution: Solution) -> Solution:

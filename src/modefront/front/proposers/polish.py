@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from modefront.front.archive import Outcome
-from modefront.front.proposers.base import Offer, solve_from
+from modefront.front.proposers.base import Offer, Rate, solve_from
 from modefront.front.state import State
+from modefront.front.subproblems import Point
 from modefront.work.task import Key
 
 
@@ -19,11 +20,17 @@ class Polish:
 
     A point of the lattice that no search has reached has the best known model as its incumbent:
     those that lag least behind what they could be come first, next to what is solved. So a front
-    is followed from its edges inwards, each point from its neighbour. Equations that are not met
-    from there are solved from the nearest models that meet theirs.
+    is followed from its edges inwards, each point from its neighbour. Points that end beside their
+    normals, or do not meet their equations, are solved from the nearest ones that lie on theirs, as
+    many as there are objectives: the front may go on from another side.
+
+    Attributes
+    ----------
+    rate : of the searches from other points
     """
 
     name: str = "polish"
+    rate: Rate = field(default_factory=Rate)
     _tried: set[tuple[Key, bytes]] = field(default_factory=set)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
@@ -33,16 +40,18 @@ class Polish:
         for k in [k for k in nearest_first if not state.places[k].closed][:most]:
             place = state.places[k]
             yield solve_from(k, place, place.incumbent, 1.0)
-        equations = [(k, x) for k, x in enumerate(state.places) if not x.subproblem.competes]
-        met = [x.incumbent for _, x in equations if x.incumbent.converged]
-        for k, place in equations:
-            if place.closed and not place.incumbent.converged:
-                key = place.subproblem.key
-                nearest = sorted(met, key=lambda x: float(place.subproblem.order.spread(x.J)))
-                for start in nearest[: len(state.problem.objectives)]:
-                    if (key, start.theta.tobytes()) not in self._tried:
-                        yield solve_from(k, place, start, 1.0)
+        pairs = [(k, x.incumbent, x.subproblem) for k, x in enumerate(state.places)]
+        met = [x for _, x, of in pairs if isinstance(of, Point) and of.met(x)]
+        J = np.array([x.J for x in met]).reshape(-1, len(state.problem.objectives))
+        for k, x, of in pairs:
+            if isinstance(of, Point) and state.places[k].closed and not of.met(x):
+                chance = 1.0 if of.equations else self.rate.recent
+                for m in of.order.spread(J).argsort(kind="stable")[: J.shape[1]].tolist():
+                    if (of.key, met[m].theta.tobytes()) not in self._tried:
+                        yield solve_from(k, state.places[k], met[m], chance)
 
-    def learn(self, state: State, offer: Offer, _: Outcome, __: float) -> None:
-        """Remember from which model a place was solved."""
+    def learn(self, state: State, offer: Offer, _: Outcome, gain: float) -> None:
+        """Remember from which model a place was solved, and count what others have led to."""
         self._tried.add((state.places[offer.place].subproblem.key, offer.start.theta.tobytes()))
+        if offer.chance < 1:
+            self.rate.note(gain > state.tolerance)

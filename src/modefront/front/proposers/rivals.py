@@ -14,7 +14,8 @@ import numpy as np
 from modefront.front.archive import Outcome
 from modefront.front.proposers.base import Offer, Rate, approach_from
 from modefront.front.state import DISTINCT, State
-from modefront.optim.linearised import linearised
+from modefront.front.subproblems import Point
+from modefront.optim.linearised import Linearised
 from modefront.optim.sqp import Options, Solution
 
 
@@ -37,9 +38,10 @@ class Rivals:
         for k, place in enumerate(state.places):
             if not place.closed:
                 continue
-            new = np.array([x.J for x in state.models[place.compared :]])
-            near = place.subproblem.is_near(new) if len(new) else np.zeros(0, dtype=np.bool_)
-            for m in (place.compared + np.flatnonzero(near)).tolist():
+            new, of = np.arange(place.compared, len(state.models)), place.subproblem
+            if new.size and isinstance(of, Point):
+                new = new[of.near(np.array([x.J for x in state.models[place.compared :]]))]
+            for m in new.tolist():
                 gain = predicted_gain(state, k, state.models[m])
                 if gain > state.tolerance:
                     self.found[k, m] = gain
@@ -72,7 +74,7 @@ def predicted_gain(state: State, k: int, model: Solution) -> float:
     place, evaluation = state.places[k], model.evaluation
     if np.abs((model.theta - place.incumbent.theta) / state.span).max() <= DISTINCT:
         return 0.0
-    local = linearised(state.problem, place.subproblem.programme, evaluation)
+    local = Linearised(state.problem, place.subproblem.programme, evaluation)
     _, step, _ = local.step(evaluation.H, Options().radius, None)
     J = local.promised(step.s)
     promise, own = place.subproblem.order.value(np.array([J, evaluation.J]))
