@@ -1,9 +1,9 @@
 """Modes of several data sets side by side, and the standard deviation between sets.
 
 Modes of different sets are the same where frequencies lie within half a bandwidth, 0.5 % or
-`WIDTH` standard deviations, and shapes agree at common sensors. Shapes are compared in the sign and
-scale of the first set that has the mode; those of a pair are not, as each set has some basis of
-their plane. Equations: docs/methods/deviations.md.
+`WIDTH` standard deviations, and shapes agree at common sensors, but for those of close modes, which
+each set may turn within their plane. Shapes are compared in the sign and scale of the first set
+that has the mode. Equations: docs/methods/deviations.md.
 """
 
 from __future__ import annotations
@@ -13,17 +13,18 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
+from scipy.optimize import linear_sum_assignment
 from scipy.stats import chi2
 
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
-from modefront.identification.record import Identification, ModeEstimate
+from modefront.identification.record import Identification
 
 WIDTH = 5.0
 """Distance within which frequencies may belong to the same mode."""
 
 LEAST_MAC = 0.5
-"""MAC of shapes from which on they may be of the same mode."""
+"""MAC from which on shapes may be of the same mode."""
 
 SIGNIFICANT = 0.95
 """Level of the test of homogeneity; the 5 % that is usual."""
@@ -147,23 +148,26 @@ def _at(values: Floats, identification: Identification, sensors: Sequence[str]) 
 def mode_groups(
     identifications: Sequence[Identification], sensors: Sequence[str]
 ) -> list[dict[int, int]]:
-    """Return, for every mode of the structure, which mode of each set it is."""
+    """Return, for every mode of the structure, which mode of each set it is.
+
+    All modes of a set are assigned at once, to as many modes of the sets before as agree, and by
+    the greatest sum of their MAC.
+    """
     groups: list[dict[int, int]] = []
-    for k, identification in enumerate(identifications):
-        for number, mode in enumerate(identification.modes):
-            best, most = None, LEAST_MAC
-            for group in groups:
-                if k in group:
-                    continue
-                first, index = next(iter(group.items()))
-                other = identifications[first]
-                mac = _agreement(mode, identification, other.modes[index], other, sensors)
-                if mac > most:
-                    best, most = group, mac
-            if best is None:
-                groups.append({k: number})
+    for k, own in enumerate(identifications):
+        score = np.zeros((len(own.modes), len(groups)))
+        for number, g in np.ndindex(score.shape):
+            score[number, g] = max(
+                _agreement(own, number, identifications[other], index, sensors)
+                for other, index in groups[g].items()
+            )
+        rows, columns = linear_sum_assignment(score, maximize=True)
+        known = {int(r): int(c) for r, c in zip(rows, columns, strict=True) if score[r, c] > 0}
+        for number in range(len(own.modes)):
+            if number in known:
+                groups[known[number]][k] = number
             else:
-                best[k] = number
+                groups.append({k: number})
 
     def mean(group: dict[int, int]) -> float:
         return float(
@@ -174,26 +178,42 @@ def mode_groups(
 
 
 def _agreement(
-    a: ModeEstimate,
-    of_a: Identification,
-    b: ModeEstimate,
-    of_b: Identification,
-    sensors: Sequence[str],
+    of_a: Identification, a: int, of_b: Identification, b: int, sensors: Sequence[str]
 ) -> float:
-    """Return the MAC at common sensors, 0 where the frequencies are too far apart.
+    """Return one more than the MAC at common sensors, 0 where modes cannot be the same.
 
-    That of the planes of pairs is the squared cosine of the least angle between them.
+    MAC of planes is the squared cosine of the least angle between them. Data of a set may turn the
+    shapes of modes that are close within their plane: one of a mode has to lie in that of the other
+    one and those close to it.
     """
-    half = max(a.damping * a.frequency, b.damping * b.frequency, 0.005 * a.frequency)
-    if abs(a.frequency - b.frequency) > max(
-        WIDTH * np.hypot(a.frequency_std, b.frequency_std), half
-    ):
+    x, y = of_a.modes[a], of_b.modes[b]
+    half = max(x.damping * x.frequency, y.damping * y.frequency, 0.005 * x.frequency)
+    reach = max(WIDTH * np.hypot(x.frequency_std, y.frequency_std), half)
+    shapes = _at(x.shape.plane, of_a, sensors), _at(y.shape.plane, of_b, sensors)
+    both = np.isfinite(shapes[0]).all(axis=1) & np.isfinite(shapes[1]).all(axis=1)
+    if abs(x.frequency - y.frequency) > reach or not both.any():
         return 0.0
-    x, y = _at(a.shape.plane, of_a, sensors), _at(b.shape.plane, of_b, sensors)
-    both = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
-    # squared cosine of the least angle between the planes of pairs: MAC of single shapes
-    first, second = (np.linalg.svd(z[both], full_matrices=False)[0] for z in (x, y))
-    return float(np.linalg.norm(first.T @ second, 2) ** 2) if both.any() else 0.0
+    planes = [_at(_close(of_a, a), of_a, sensors), _at(_close(of_b, b), of_b, sensors)]
+    own_a, own_b, plane_a, plane_b = (la.orth(each[both]) for each in (*shapes, *planes))
+
+    def mac(first: Floats, second: Floats) -> float:
+        return float(np.linalg.norm(first.T @ second, 2) ** 2) if first.size * second.size else 0.0
+
+    near = max(mac(own_a, plane_b), mac(plane_a, own_b))
+    return 1 + mac(own_a, own_b) if near > LEAST_MAC else 0.0
+
+
+def _close(identification: Identification, number: int) -> Floats:
+    """Return the shapes of the modes whose half bandwidths meet that of one, (responses, any)."""
+    own = identification.modes[number]
+    return np.hstack(
+        [
+            mode.shape.plane
+            for mode in identification.modes
+            if abs(mode.frequency - own.frequency)
+            <= mode.damping * mode.frequency + own.damping * own.frequency
+        ]
+    )
 
 
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:

@@ -59,6 +59,10 @@ BLOCK = 0.1
 MOST_TOGETHER = 5
 """Modes that are fitted at once, at most."""
 
+BESIDE = 4
+"""Modes on either side of a band whose forces the last fit has, too. With one only, what the others
+are driven to by forces of their own shifts damping ratios and shapes by more than a deviation."""
+
 DAMPING = 0.002, 0.05
 """Limits of damping ratios to start from."""
 
@@ -228,7 +232,7 @@ def _fitted(
             continue
         chosen = [modes[k] for k in group]
         band = _band_of(setup.lines, chosen)
-        beside = [modes[k] for k in _beside(band, modes, group)]
+        beside = [modes[k] for k in _beside(band, modes, group, BESIDE if last else 1)]
         found += _of_group(setup, band, chosen, beside, least, last)
     return found
 
@@ -255,11 +259,11 @@ def _band_of(lines: Transforms, modes: Sequence[Local]) -> Band:
     return lines.part(low, high, BLOCK * min(mode.half for mode in modes))
 
 
-def _beside(band: Band, modes: Sequence[Local], group: Sequence[int]) -> list[int]:
-    """Return the numbers of other modes in a band, and of the next one on either side."""
+def _beside(band: Band, modes: Sequence[Local], group: Sequence[int], most: int) -> list[int]:
+    """Return the numbers of other modes in a band, and of the next ones on either side."""
     rest = sorted(set(range(len(modes))) - set(group), key=lambda k: modes[k].omega)
     low, high = np.searchsorted([modes[k].omega for k in rest], band.omega[[0, -1]])
-    return rest[max(low - 1, 0) : high + 1]
+    return rest[max(low - most, 0) : high + most]
 
 
 def _of_group(
