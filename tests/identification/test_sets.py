@@ -3,35 +3,21 @@
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.responses import FrequencyResponses
-from modefront.identification.record import (
-    FittedFunctions,
-    Identification,
-    ModeEstimate,
-    Residuals,
-)
+from modefront.identification.record import ModeEstimate
 from modefront.identification.sets import mode_groups
 from modefront.identification.shapes import real_shape
-from modefront.identification.stabilisation import StabilisationDiagram
 
 SENSORS = tuple("abcd")
 
 
-def _identification(frequencies: list[float], shapes: Floats) -> Identification:
-    """Return a set with these modes and nothing besides; their damping is 1 %."""
-    modes = [
+def _set(frequencies: list[float], shapes: Floats) -> tuple[tuple[str, ...], list[ModeEstimate]]:
+    """Return sensors and modes of a set; their damping is 1 %."""
+    return SENSORS, [
         ModeEstimate(
             2j * np.pi * f, f, 0.01, 0.001, 0.001, real_shape(phi + 0j), phi, np.zeros(0, complex)
         )
         for f, phi in zip(frequencies, shapes, strict=True)
     ]
-    none, empty, poles = np.zeros(0, int), np.zeros(0), np.zeros(0, complex)
-    diagram = StabilisationDiagram(none, poles, poles[:, None], empty, none > 0, none, ())
-    H = np.zeros((1, 4, 2), complex)
-    data = FrequencyResponses(np.array([1.0, 9.0]), H, "receptance", ("1",), SENSORS)
-    fitted = Residuals(1.0, np.ones(1, complex), np.zeros(1), np.zeros((1, 4)))
-    functions = FittedFunctions(data, H, H.real, fitted, 0)
-    return Identification(SENSORS, (1.0, 9.0), tuple(modes), (), diagram, functions, 0, True)
 
 
 def _turned(shapes: Floats, degrees: float) -> Floats:
@@ -45,9 +31,9 @@ def test_close_modes_that_a_set_turns_in_their_plane_keep_one_number_each() -> N
     for degrees in range(0, 180, 15):
         plane = np.linalg.qr(rng.standard_normal((4, 2)))[0].T
         sets = [
-            _identification([5.0, 5.05], plane),
-            _identification([5.01, 5.06], _turned(plane, degrees)),
-            _identification([5.02], _turned(plane, degrees / 2)[1:]),
+            _set([5.0, 5.05], plane),
+            _set([5.01, 5.06], _turned(plane, degrees)),
+            _set([5.02], _turned(plane, degrees / 2)[1:]),
         ]
         groups = mode_groups(sets, SENSORS)
         assert len(groups) == 2
@@ -56,11 +42,11 @@ def test_close_modes_that_a_set_turns_in_their_plane_keep_one_number_each() -> N
 
 def test_shapes_choose_among_close_modes() -> None:
     plane = np.linalg.qr(np.random.default_rng(1).standard_normal((4, 2)))[0].T
-    sets = [_identification([5.0, 5.05], plane), _identification([5.02, 5.03], plane[::-1])]
+    sets = [_set([5.0, 5.05], plane), _set([5.02, 5.03], plane[::-1])]
     assert mode_groups(sets, SENSORS) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
 
 
 def test_shapes_outside_the_plane_and_modes_apart_are_others() -> None:
     basis = np.linalg.qr(np.random.default_rng(2).standard_normal((4, 4)))[0].T
-    sets = [_identification([5.0, 5.05], basis[:2]), _identification([5.0, 5.5], basis[[2, 0]])]
+    sets = [_set([5.0, 5.05], basis[:2]), _set([5.0, 5.5], basis[[2, 0]])]
     assert len(mode_groups(sets, SENSORS)) == 4

@@ -18,7 +18,7 @@ from scipy.stats import chi2
 
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
-from modefront.identification.record import Identification
+from modefront.identification.record import Identification, ModeEstimate
 
 WIDTH = 5.0
 """Distance within which frequencies may belong to the same mode."""
@@ -69,7 +69,7 @@ class CombinedModes:
 def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> CombinedModes:
     """Return the modes of several data sets under common numbers, by frequency."""
     sensors = tuple(dict.fromkeys(name for each in identifications for name in each.responses))
-    groups = mode_groups(identifications, sensors)
+    groups = mode_groups([(each.responses, each.modes) for each in identifications], sensors)
     K, R = len(identifications), len(groups)
     index = tuple(tuple(group.get(k, -1) for group in groups) for k in range(K))
     f, z, f_std, z_std = (np.full((K, R), np.nan) for _ in range(4))
@@ -79,9 +79,9 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
             mode = identifications[k].modes[number]
             f[k, r], f_std[k, r] = mode.frequency, mode.frequency_std
             z[k, r], z_std[k, r] = mode.damping, mode.damping_std
-            phi_std[k, r] = _at(mode.shape_std, identifications[k], sensors)
-            known = np.isfinite(mode.shape_std)
-            phi[k, r] = _at(np.where(known, mode.shape.shape, np.nan), identifications[k], sensors)
+            names, known = identifications[k].responses, np.isfinite(mode.shape_std)
+            phi_std[k, r] = _at(mode.shape_std, names, sensors)
+            phi[k, r] = _at(np.where(known, mode.shape.shape, np.nan), names, sensors)
     paired = _pairs(identifications, index)
     spread = np.zeros((R, 2))
     for r in range(R):
@@ -139,61 +139,58 @@ def between(x: Floats, std: Floats) -> float:
     return float(np.sqrt((Q - freedom) / (weight.sum() - np.sum(weight**2) / weight.sum())))
 
 
-def _at(values: Floats, identification: Identification, sensors: Sequence[str]) -> Floats:
+def _at(values: Floats, names: Sequence[str], sensors: Sequence[str]) -> Floats:
     out = np.full((len(sensors), *values.shape[1:]), np.nan)
-    out[[sensors.index(name) for name in identification.responses]] = values
+    out[[sensors.index(name) for name in names]] = values
     return out
 
 
-def mode_groups(
-    identifications: Sequence[Identification], sensors: Sequence[str]
-) -> list[dict[int, int]]:
+ModesOfSet = tuple[Sequence[str], Sequence[ModeEstimate]]
+"""Sensors and modes of one set."""
+
+
+def mode_groups(sets: Sequence[ModesOfSet], sensors: Sequence[str]) -> list[dict[int, int]]:
     """Return, for every mode of the structure, which mode of each set it is.
 
     All modes of a set are assigned at once, to as many modes of the sets before as agree, and by
     the greatest sum of their MAC.
     """
     groups: list[dict[int, int]] = []
-    for k, own in enumerate(identifications):
-        score = np.zeros((len(own.modes), len(groups)))
-        for number, g in np.ndindex(score.shape):
-            score[number, g] = max(
-                _agreement(own, number, identifications[other], index, sensors)
-                for other, index in groups[g].items()
-            )
+    for k, own in enumerate(sets):
+        score = np.zeros((len(own[1]), len(groups)))
+        for r, g in np.ndindex(score.shape):
+            score[r, g] = max(_agreement(own, r, sets[j], s, sensors) for j, s in groups[g].items())
         rows, columns = linear_sum_assignment(score, maximize=True)
-        known = {int(r): int(c) for r, c in zip(rows, columns, strict=True) if score[r, c] > 0}
-        for number in range(len(own.modes)):
-            if number in known:
-                groups[known[number]][k] = number
-            else:
-                groups.append({k: number})
-
-    def mean(group: dict[int, int]) -> float:
-        return float(
-            np.mean([identifications[k].modes[number].frequency for k, number in group.items()])
-        )
-
-    return sorted(groups, key=mean)
+        known = {int(r): int(g) for r, g in zip(rows, columns, strict=True) if score[r, g] > 0}
+        groups += [{} for _ in range(len(own[1]) - len(known))]
+        new = iter(groups[score.shape[1] :])
+        for r in range(len(own[1])):
+            (groups[known[r]] if r in known else next(new))[k] = r
+    return sorted(groups, key=lambda x: np.mean([sets[k][1][r].frequency for k, r in x.items()]))
 
 
-def _agreement(
-    of_a: Identification, a: int, of_b: Identification, b: int, sensors: Sequence[str]
-) -> float:
+def _agreement(of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, sensors: Sequence[str]) -> float:
     """Return one more than the MAC at common sensors, 0 where modes cannot be the same.
 
     MAC of planes is the squared cosine of the least angle between them. Data of a set may turn the
     shapes of modes that are close within their plane: one of a mode has to lie in that of the other
-    one and those close to it.
+    one and those whose half bandwidths meet its own.
     """
-    x, y = of_a.modes[a], of_b.modes[b]
-    half = max(x.damping * x.frequency, y.damping * y.frequency, 0.005 * x.frequency)
-    reach = max(WIDTH * np.hypot(x.frequency_std, y.frequency_std), half)
-    shapes = _at(x.shape.plane, of_a, sensors), _at(y.shape.plane, of_b, sensors)
-    both = np.isfinite(shapes[0]).all(axis=1) & np.isfinite(shapes[1]).all(axis=1)
+    x, y = of_a[1][a], of_b[1][b]
+    half = [mode.damping * mode.frequency for mode in (x, y)]
+    reach = max(WIDTH * np.hypot(x.frequency_std, y.frequency_std), *half, 0.005 * x.frequency)
+    shapes, planes = [], []
+    for mode, own, (names, modes) in zip((x, y), half, (of_a, of_b), strict=True):
+        close = [
+            each.shape.plane
+            for each in modes
+            if abs(each.frequency - mode.frequency) <= each.damping * each.frequency + own
+        ]
+        shapes.append(_at(mode.shape.plane, names, sensors))
+        planes.append(_at(np.hstack(close), names, sensors))
+    both = np.isfinite(np.hstack(shapes)).all(axis=1)
     if abs(x.frequency - y.frequency) > reach or not both.any():
         return 0.0
-    planes = [_at(_close(of_a, a), of_a, sensors), _at(_close(of_b, b), of_b, sensors)]
     own_a, own_b, plane_a, plane_b = (la.orth(each[both]) for each in (*shapes, *planes))
 
     def mac(first: Floats, second: Floats) -> float:
@@ -201,19 +198,6 @@ def _agreement(
 
     near = max(mac(own_a, plane_b), mac(plane_a, own_b))
     return 1 + mac(own_a, own_b) if near > LEAST_MAC else 0.0
-
-
-def _close(identification: Identification, number: int) -> Floats:
-    """Return the shapes of the modes whose half bandwidths meet that of one, (responses, any)."""
-    own = identification.modes[number]
-    return np.hstack(
-        [
-            mode.shape.plane
-            for mode in identification.modes
-            if abs(mode.frequency - own.frequency)
-            <= mode.damping * mode.frequency + own.damping * own.frequency
-        ]
-    )
 
 
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:

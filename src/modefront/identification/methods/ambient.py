@@ -30,7 +30,7 @@ from modefront.identification.record import (
     Rejected,
     Residuals,
 )
-from modefront.identification.selection import ALONE, FALSE, LEAST_ORDERS
+from modefront.identification.selection import FALSE, LEAST_ORDERS
 from modefront.identification.sets import between, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
 from modefront.identification.spectra import Transforms
@@ -145,7 +145,13 @@ def identify(
         if count < LEAST_LINES:
             raise ValueError(f"expected {LEAST_LINES} lines in the band, found {max(count, 0)}")
     identified = [_of_setup(records, low, high, seeds) for records in setups]
-    local = [_as_identification(each, (low, high)) for each in identified]
+    local = [
+        (
+            each.records.sensors,
+            [_estimate(x.omega, x.zeta, _stds(x), x.phi, np.zeros(0)) for x in each.modes],
+        )
+        for each in identified
+    ]
     sensors = tuple(dict.fromkeys(name for records in setups for name in records.sensors))
     groups = mode_groups(local, sensors)
     return _combined(_completed(identified, groups), (low, high), sensors, modes)
@@ -226,13 +232,19 @@ def _fitted(
     The ``last`` fit has the background that their forces move; no mode is judged by it. Modes that
     overlap none from number ``first`` on are left out.
     """
-    found = []
+    found, nearest = [], BESIDE if last else 1
     for group in _overlapping(modes):
         if max(group) < first:
             continue
         chosen = [modes[k] for k in group]
-        band = _band_of(setup.lines, chosen)
-        beside = [modes[k] for k in _beside(band, modes, group, BESIDE if last else 1)]
+        reach = [max(REACH * mode.half, LEAST_LINES / 2 * setup.spacing) for mode in chosen]
+        low = min(mode.omega - x for mode, x in zip(chosen, reach, strict=True))
+        high = max(mode.omega + x for mode, x in zip(chosen, reach, strict=True))
+        band = setup.lines.part(low, high, BLOCK * min(mode.half for mode in chosen))
+        others = [mode for k, mode in enumerate(modes) if k not in group]
+        rest = sorted(others, key=lambda mode: mode.omega)
+        start, end = np.searchsorted([mode.omega for mode in rest], [low, high])
+        beside = rest[max(start - nearest, 0) : end + nearest]
         found += _of_group(setup, band, chosen, beside, least, last)
     return found
 
@@ -250,20 +262,6 @@ def _overlapping(modes: Sequence[Local]) -> list[list[int]]:
         else:
             out.append([k])
     return out
-
-
-def _band_of(lines: Transforms, modes: Sequence[Local]) -> Band:
-    least = LEAST_LINES / 2 * (lines.omega[1] - lines.omega[0])
-    low = min(mode.omega - max(REACH * mode.half, least) for mode in modes)
-    high = max(mode.omega + max(REACH * mode.half, least) for mode in modes)
-    return lines.part(low, high, BLOCK * min(mode.half for mode in modes))
-
-
-def _beside(band: Band, modes: Sequence[Local], group: Sequence[int], most: int) -> list[int]:
-    """Return the numbers of other modes in a band, and of the next ones on either side."""
-    rest = sorted(set(range(len(modes))) - set(group), key=lambda k: modes[k].omega)
-    low, high = np.searchsorted([modes[k].omega for k in rest], band.omega[[0, -1]])
-    return rest[max(low - most, 0) : high + most]
 
 
 def _of_group(
@@ -291,13 +289,10 @@ def _of_group(
             continue
         if enough:
             break
-        pole = fit.model.omega * (1j - fit.model.zeta)
-        gone: list[int] = []
-        for r in worth.argsort()[: int(np.sum(worth < least))].tolist():
-            if (selection.alike(pole[r], pole[gone]) < ALONE).all():
-                gone.append(r)
-        model, held = fit.model, np.delete(held, gone)
-        for r in sorted(gone, reverse=True):
+        none = np.zeros(len(held), bool)
+        gone = selection.with_weak(none, worth, least, fit.model.omega * (1j - fit.model.zeta))
+        model, held = fit.model, held[~gone]
+        for r in np.flatnonzero(gone)[::-1].tolist():
             model = model.without(r, band)
         fit = spectral_density.maximise(band, model, TRIAL_STEPS)
     else:
@@ -374,17 +369,6 @@ def _kurtosis(setup: _Setup, model: Density, mode: int) -> tuple[float, float]:
     rho = np.abs(np.fft.ifft(power[mode], size))
     std = 2 * np.sqrt(np.mean((rho / rho[0]) ** 4))
     return float(np.mean(a**2) / np.mean(a) ** 2), float(std)
-
-
-def _as_identification(setup: _Setup, band: tuple[float, float]) -> Identification:
-    """Return the modes of one setup as those of a test."""
-    modes = [
-        _estimate(mode.omega, mode.zeta, _stds(mode), mode.phi, np.zeros(0)) for mode in setup.modes
-    ]
-    functions = _functions([setup], setup.records.sensors)
-    return Identification(
-        setup.records.sensors, band, tuple(modes), (), setup.diagram, functions, 0, converged=True
-    )
 
 
 def _stds(mode: Local) -> tuple[float, float]:

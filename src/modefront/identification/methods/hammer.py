@@ -224,9 +224,15 @@ class _Solution:
     diagram: StabilisationDiagram
 
     @cached_property
+    def found(self) -> selection.Scan:
+        """What poles explain of the residuals."""
+        return selection.scan(self.task, self.apart)
+
+    @cached_property
     def fit(self) -> Fit:
         """The fit with pairs."""
-        return selection.paired(self.task, self.apart, np.ones(len(self.apart.model), bool))
+        every = np.ones(len(self.apart.model), bool)
+        return selection.paired(self.task, self.apart, every, self.found)
 
 
 def _result(solution: _Solution) -> Identification:
@@ -295,7 +301,7 @@ def _evidence(
 ) -> list[Evidence]:
     """Return what speaks for every mode; only those that are ``kept`` are neighbours."""
     task, fit = solution.task, solution.fit
-    gain, least = selection.gains(task, solution.apart), selection.needed(task)
+    gain, least = selection.gains(task, solution.apart, solution.found), selection.needed(task)
     shares = support(solution.diagram, fit.model.lam * solution.omega, gain)
     visible, mac = _visibility(task, fit), auto_mac(fit.model.phi)
     spacing = float(np.median(np.diff(solution.data.frequency)))
