@@ -12,7 +12,7 @@ is :math:`4 \sum |\rho|^4 / n`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import chi2, norm
@@ -101,7 +101,7 @@ class Local:
     zeta: float
     phi: Floats
     gain: float = np.inf
-    covariance: Floats | None = None
+    covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     share: float = np.nan
     kurtosis: tuple[float, float] = (2.0, 1.0)
     held: bool = False
@@ -110,6 +110,11 @@ class Local:
     def half(self) -> float:
         """Half bandwidth in rad/s."""
         return self.zeta * self.omega
+
+    @property
+    def stds(self) -> Floats:
+        """Standard deviations of ln omega and ln zeta, and of the components of phi."""
+        return np.sqrt(np.diag(self.covariance))
 
 
 @dataclass(frozen=True)
@@ -148,7 +153,7 @@ def identify(
     local = [
         (
             each.records.sensors,
-            [_estimate(x.omega, x.zeta, _stds(x), x.phi, np.zeros(0)) for x in each.modes],
+            [_estimate(x.omega, x.zeta, x.stds, x.phi, np.zeros(0)) for x in each.modes],
         )
         for each in identified
     ]
@@ -337,7 +342,7 @@ def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
 def _astray(band: Band, model: Density, gain: Floats) -> Bools:
     """Return which modes left the band, are as flat as it, or double a stronger one."""
     omega, zeta = model.omega[: model.free], model.zeta[: model.free]
-    low, high = band.omega[0], band.omega[-1]
+    low, high = band.omega[[0, -1]]
     doubles = selection.doubles(
         omega * (1j - zeta), model.phi[:, : model.free].T.astype(complex), gain
     )
@@ -371,14 +376,8 @@ def _kurtosis(setup: _Setup, model: Density, mode: int) -> tuple[float, float]:
     return float(np.mean(a**2) / np.mean(a) ** 2), float(std)
 
 
-def _stds(mode: Local) -> tuple[float, float]:
-    """Return the standard deviations of ln omega and ln zeta."""
-    assert mode.covariance is not None
-    return float(np.sqrt(mode.covariance[0, 0])), float(np.sqrt(mode.covariance[1, 1]))
-
-
 def _estimate(
-    omega: float, zeta: float, stds: tuple[float, float], phi: Floats, phi_std: Floats
+    omega: float, zeta: float, stds: Floats, phi: Floats, phi_std: Floats
 ) -> ModeEstimate:
     """Return a mode in physical units from logarithmic deviations of its pole."""
     shape = real_shape(np.nan_to_num(phi).astype(complex))
@@ -386,8 +385,8 @@ def _estimate(
         complex(-zeta * omega, omega * np.sqrt(1 - zeta**2)),
         omega / (2 * np.pi),
         zeta,
-        stds[0] * omega / (2 * np.pi),
-        stds[1] * zeta,
+        float(stds[0]) * omega / (2 * np.pi),
+        float(stds[1]) * zeta,
         shape,
         phi_std,
         np.zeros(0, complex),
@@ -475,19 +474,17 @@ def _of_structure(
 ) -> ModeEstimate:
     """Return one mode from the setups that have it."""
     logs = np.array([[np.log(mode.omega), np.log(mode.zeta)] for _, mode in having])
-    stds = np.array([_stds(mode) for _, mode in having])
+    stds = np.array([mode.stds[:2] for _, mode in having])
     means, deviations = np.zeros(2), np.zeros(2)
     for c in range(2):
         variance = stds[:, c] ** 2 + between(logs[:, c], stds[:, c]) ** 2
         means[c] = np.average(logs[:, c], weights=1 / variance)
         deviations[c] = 1 / np.sqrt(np.sum(1 / variance))
     places = [np.array([sensors.index(x) for x in setup.records.sensors]) for setup, _ in having]
-    covariances = [mode.covariance[2:, 2:] for _, mode in having if mode.covariance is not None]
+    covariances = [mode.covariance[2:, 2:] for _, mode in having]
     phi, C = merged_shape(places, [mode.phi for _, mode in having], covariances, len(sensors))
     omega, zeta = np.exp(means)
-    mode = _estimate(
-        float(omega), float(zeta), (deviations[0], deviations[1]), phi, np.sqrt(np.diag(C))
-    )
+    mode = _estimate(float(omega), float(zeta), deviations, phi, np.sqrt(np.diag(C)))
     return replace(mode, evidence=_evidence(having, mode, setups))
 
 
