@@ -6,7 +6,8 @@ makes somewhere in the band; in other setups, where the pole is known, than nois
 with the amplitude of a machine is none: with :math:`a(t)` the modal response to lines about it,
 :math:`\kappa = \overline{|a|^4} / \overline{|a|^2}^2` is 2 for a normal response and 1 for a
 harmonic; over n samples whose response has the correlations :math:`\rho` at all lags, its variance
-is :math:`4 \sum |\rho|^4 / n`.
+is :math:`4 \sum |\rho|^4 / n`. One whose lines are rather those of a sine is none either: of
+:math:`c / (\omega_0 - \omega_k)`, which is its transform, with any amplitudes c of the sensors.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 from scipy.stats import chi2, norm
 
 from modefront._typing import Bools, Complexes, Floats
@@ -69,6 +71,9 @@ DAMPING = 0.002, 0.05
 TRIAL_STEPS = 8
 """Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
 
+SINE_LINES = 4
+"""Lines on either side of a mode where it may be a sine."""
+
 HARMONIC = 1e-3
 """Share of the modes that would be taken for harmonics by chance."""
 
@@ -94,6 +99,7 @@ class Local:
     covariance : of ln omega, ln zeta and phi
     share : its greatest share in the density of a sensor, at its frequency
     kurtosis : kappa, and its standard deviation for a mode
+    sine : gain of the likelihood where a sine takes the place of the mode, less its parameters more
     held : whether it stays whatever its gain
     """
 
@@ -104,6 +110,7 @@ class Local:
     covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     share: float = np.nan
     kurtosis: tuple[float, float] = (2.0, 1.0)
+    sine: float = -np.inf
     held: bool = False
 
     @property
@@ -314,6 +321,7 @@ def _of_group(
             fit.covariance(r),
             float(visible[r]),
             _kurtosis(setup, model, r),
+            _sine(setup, model, r),
             bool(held[r]),
         )
         for r in range(model.free)
@@ -374,6 +382,29 @@ def _kurtosis(setup: _Setup, model: Density, mode: int) -> tuple[float, float]:
     rho = np.abs(np.fft.ifft(power[mode], size))
     std = 2 * np.sqrt(np.mean((rho / rho[0]) ** 4))
     return float(np.mean(a**2) / np.mean(a) ** 2), float(std)
+
+
+def _sine(setup: _Setup, model: Density, mode: int) -> float:
+    """Return the gain of the likelihood by a sine in place of a mode, less its parameters more."""
+    line = (setup.lines.omega - model.omega[mode]) / setup.spacing
+    near = np.flatnonzero(np.abs(line) <= SINE_LINES)
+    F, h = setup.lines.F[:, near].T, model.lifted(setup.lines.omega[near], setup.lines.order)
+    costs, inverses = [], []
+    for kept in (np.ones(len(model.omega)), np.arange(len(model.omega)) != mode):
+        half = model.columns @ h @ (kept[:, None] * model.root)
+        E = half @ half.conj().swapaxes(1, 2) + model.background
+        inverses.append(np.linalg.inv(E))
+        misfit = np.einsum("ki,kij,kj->", F.conj(), inverses[-1], F).real
+        costs.append(float(np.linalg.slogdet(E)[1].sum() + misfit))
+
+    def loss(place: float) -> float:
+        D = np.sinc(line[near] - place) * (-1.0) ** np.arange(len(near))
+        A, b = (inverses[1].T @ D**2).T, np.einsum("k,kij,kj->i", D, inverses[1], F)
+        return -float((b.conj() @ np.linalg.solve(A, b)).real)
+
+    first = min(np.arange(-1.5, 1.5, 0.1), key=loss)
+    best = minimize_scalar(loss, bounds=(first - 0.1, first + 0.1), method="bounded")
+    return costs[0] - costs[1] - float(best.fun) - (F.shape[1] - 1)
 
 
 def _estimate(
@@ -509,8 +540,8 @@ def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
     """Return why a mode is the harmonic of a machine; empty where it is none."""
     if any(mode.held for _, mode in having):
         return ""
-    if all(mode.half < setup.spacing / 2 for setup, mode in having):
-        return "a harmonic: as narrow as the lines of the record"
+    if sum(mode.sine for _, mode in having) > 0:
+        return "a harmonic: its lines are those of a sine"
     z = np.array([(mode.kurtosis[0] - 2) / mode.kurtosis[1] for _, mode in having])
     if z.sum() / np.sqrt(len(z)) < norm.ppf(HARMONIC):
         mean = np.mean([mode.kurtosis[0] for _, mode in having])
