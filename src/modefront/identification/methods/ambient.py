@@ -62,8 +62,8 @@ MOST_TOGETHER = 5
 """Modes that are fitted at once, at most."""
 
 BESIDE = 4
-"""Modes on either side of a band whose forces the last fit has, too. With one only, what the others
-are driven to by forces of their own shifts damping ratios and shapes by more than a deviation."""
+"""Modes on either side of a band whose forces the last fit has, at most: as many as sensors tell
+apart. With one only, what forces of their own do to the others shifts frequencies and shapes."""
 
 DAMPING = 0.002, 0.05
 """Limits of damping ratios to start from."""
@@ -244,7 +244,7 @@ def _fitted(
     The ``last`` fit has the background that their forces move; no mode is judged by it. Modes that
     overlap none from number ``first`` on are left out.
     """
-    found, nearest = [], BESIDE if last else 1
+    found = []
     for group in _overlapping(modes):
         if max(group) < first:
             continue
@@ -256,6 +256,8 @@ def _fitted(
         others = [mode for k, mode in enumerate(modes) if k not in group]
         rest = sorted(others, key=lambda mode: mode.omega)
         start, end = np.searchsorted([mode.omega for mode in rest], [low, high])
+        told = max((len(setup.records.sensors) - len(group)) // 2, 1)
+        nearest = min(told, BESIDE) if last else 1
         beside = rest[max(start - nearest, 0) : end + nearest]
         found += _of_group(setup, band, chosen, beside, least, last)
     return found
