@@ -230,7 +230,7 @@ def with_weak(gone: Bools, gain: Floats, least: float, lam: Complexes) -> Bools:
     One of some neighbours goes alone: they may stand for one and the same mode.
     """
     for r in gain.argsort()[: np.sum(gain < least)]:
-        gone[r] |= (alike(lam[r], lam[: len(gone)][gone]) < ALONE).all()
+        gone[r] |= (alike(lam[r], lam[gone]) < ALONE).all()
     return gone
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.stats import chi2, norm
 
-from modefront._typing import Bools, Complexes, Floats
+from modefront._typing import Complexes, Floats
 from modefront.data.records import Records
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import selection, spectra, spectral_density
@@ -296,7 +296,14 @@ def _of_group(
         models = [fit.model.without(r, band) for r in range(fit.model.free)]
         without = [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
         gain = 2 * (np.array([each.cost for each in without]) - fit.cost)
-        worth = np.where(held, np.inf, np.where(_astray(band, fit.model, gain), 0.0, gain))
+        omega, zeta, phi = (
+            x[..., : len(held)] for x in (fit.model.omega, fit.model.zeta, fit.model.phi)
+        )
+        low, high = band.omega[[0, -1]]
+        # a mode that left the band, is as flat as it, or doubles a stronger one explains nothing
+        astray = (omega < low) | (omega > high) | (4 * zeta * omega > high - low)
+        astray |= selection.doubles(omega * (1j - zeta), phi.T.astype(complex), gain)
+        worth = np.where(held, np.inf, np.where(astray, 0.0, gain))
         enough = worth.min() >= least
         if not tried and not fit.converged and (gain.min() < 0 or (enough and last)):
             fit, tried = spectral_density.maximise(band, fit.model), True
@@ -304,7 +311,7 @@ def _of_group(
         if enough:
             break
         none = np.zeros(len(held), bool)
-        gone = selection.with_weak(none, worth, least, fit.model.omega * (1j - fit.model.zeta))
+        gone = selection.with_weak(none, worth, least, omega * (1j - zeta))
         model, held = fit.model, held[~gone]
         for r in np.flatnonzero(gone)[::-1].tolist():
             model = model.without(r, band)
@@ -347,17 +354,6 @@ def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
     filtered = np.einsum("ri,kij,rj->rk", inverse, band.power, inverse, optimize=True).real
     level = np.sum(filtered * h2, axis=1) / np.sum(h2**2, axis=1)
     return replace(model, root=np.diag(np.sqrt(level)).astype(complex))
-
-
-def _astray(band: Band, model: Density, gain: Floats) -> Bools:
-    """Return which modes left the band, are as flat as it, or double a stronger one."""
-    omega, zeta = model.omega[: model.free], model.zeta[: model.free]
-    low, high = band.omega[[0, -1]]
-    doubles = selection.doubles(
-        omega * (1j - zeta), model.phi[:, : model.free].T.astype(complex), gain
-    )
-    out: Bools = (omega < low) | (omega > high) | (4 * zeta * omega > high - low) | doubles
-    return out
 
 
 def _shares(band: Band, model: Density) -> Floats:

@@ -1,11 +1,8 @@
 r"""Hammer tests: from frequency response functions of one data set to its modes.
 
-1. Poles over a range of orders (`lscf`), their diagram and its clusters (`stabilisation`).
-2. The modes that data need (`selection`), from principal responses with common weights, of which
-   all responses have one set of equations.
-3. The modal model (`modal_model`) of all functions, each with its own variance: that of the data
-   or, where nothing is known, that of the residuals (`noise`); the same test for every mode.
-4. Standard deviations (`statistics`), and what else speaks for a mode.
+The steps are those of docs/methods/identification.md. Modes are chosen from principal responses
+with common weights, of which all responses have one set of equations, then tested again in the fit
+of all functions, each with its own variance.
 """
 
 from __future__ import annotations
