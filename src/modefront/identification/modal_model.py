@@ -2,22 +2,10 @@ r"""The maximum-likelihood modal model by variable projection.
 
 The functions of modes and the likelihood are those of docs/methods/identification.md; of records
 with an exponential window :math:`e^{-dt}`, at :math:`s = \mathrm{i}\omega + d`, so that poles are
-those without it. Of the real residuals R, k = -2 and 0 are the lower and the upper one. The cost is
-:math:`J = \|y - \Phi(\alpha) c\|^2`: poles and participation factors :math:`\alpha` enter
-nonlinearly; shapes and residuals c linearly, and separately for every response *i*. Variable
-projection (Golub & Pereyra 1973) eliminates c: :math:`c(\alpha) = \Phi^+ y`, and the derivative of
-the projected residual r is
-
-.. math:: \frac{\partial r}{\partial \alpha} = -P_\perp D - (\Phi^+)^T (\partial\Phi)^T r,
-          \qquad D = (\partial\Phi)\,c,\qquad P_\perp = I - \Phi\Phi^+ .
-
-Both terms are orthogonal, so with :math:`G = \Phi^T\Phi` and :math:`U = (\partial\Phi)^T r`,
-
-.. math:: \nabla J / 2 = -D^T r,\qquad
-          \text{Gauss–Newton matrix} = D^T D - D^T\Phi\, G^{-1}\Phi^T D + U^T G^{-1} U .
-
-Every column of :math:`\Phi` and D is a combination of a few *primitives*, real functions of
-frequency that all responses share: with a residue a = x + iy,
+those without it. Of the real residuals R, k = -2 and 0 are the lower and the upper one. Variable
+projection is that of docs/methods/deviations.md. Every column of :math:`\Phi` and D is a
+combination of a few *primitives*, real functions of frequency that all responses share: with a
+residue a = x + iy,
 
 .. math:: \frac{a}{s-\lambda}+\frac{a^*}{s-\lambda^*} = x\,e + y\,o,\qquad
           \frac{\partial}{\partial\operatorname{Re}\lambda} = x\,e_2 + y\,o_2,\qquad
@@ -48,6 +36,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 import scipy.linalg as la
@@ -357,30 +346,20 @@ def gram(task: Problem, E: Complexes) -> Floats:
     There is one for all responses where they share their weights.
     """
     flat = task.weight.reshape(-1, len(task.s))
-    if len(flat) <= FEW:
-        return _gram_of_few(flat, E).reshape(*task.weight.shape[:2], len(E), len(E))
-    p, q = np.triu_indices(len(E))
-    out = np.zeros((len(flat), len(p)))
-    for lines, products in _products(E):
-        out += flat[:, lines] @ products.T
     M = np.zeros((len(flat), len(E), len(E)))
-    M[:, p, q] = out
-    M[:, q, p] = out
-    return M.reshape(*task.weight.shape[:2], len(E), len(E))
-
-
-def _gram_of_few(weight: Floats, E: Complexes) -> Floats:
-    """Return the Gram matrix of each function, (functions, Q, Q), in portions of lines."""
-    M = np.zeros((len(weight), len(E), len(E)))
-    root = np.sqrt(weight).repeat(2, axis=1)
-    parts = E.view(float)
-    size = max(CHUNK // max(len(E), 1), 1)
-    for start in range(0, parts.shape[1], size):
-        lines = slice(start, start + size)
-        for k in range(len(M)):
+    if len(flat) <= FEW:
+        root, parts = np.sqrt(flat).repeat(2, axis=1), E.view(float)
+        size = max(CHUNK // max(len(E), 1), 1)
+        for start, k in product(range(0, parts.shape[1], size), range(len(M))):
+            lines = slice(start, start + size)
             weighted = parts[:, lines] * root[k, lines]
             M[k] += weighted @ weighted.T
-    return M
+    else:
+        p, q = np.triu_indices(len(E))
+        for lines, products in _products(E):
+            M[:, p, q] += flat[:, lines] @ products.T
+        M[:, q, p] = M[:, p, q]
+    return M.reshape(*task.weight.shape[:2], len(E), len(E))
 
 
 def leverage(task: Problem, fit: Fit) -> Floats:

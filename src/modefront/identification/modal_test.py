@@ -32,8 +32,8 @@ NAMED = 3
 """Functions that are fitted poorly, modes and warnings that are named."""
 
 NARROW = (
-    "standard deviations of ambient tests hold for white forces: under coloured ones that many "
-    "modes share, those of long tests are up to a third too small"
+    "standard deviations of ambient tests of more than 35 min are up to a quarter too small where "
+    "many modes share coloured forces"
 )
 """Warning on the modes of ambient tests."""
 

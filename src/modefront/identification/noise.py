@@ -53,20 +53,15 @@ def variance_from_differences(data: FrequencyResponses) -> Floats:
     kernel = DIFFERENCE / np.sqrt(np.sum(DIFFERENCE**2))
     passed = sum(c * H[..., k : lines - len(kernel) + 1 + k] for k, c in enumerate(kernel))
     raw = np.pad(square(np.asarray(passed)), [(0, 0), (0, 0), (2, 2)], mode="edge")
-    smooth = _running_median(raw) / MEDIAN
-    floor = np.maximum(ROUNDING * power, 1e-3 * np.median(smooth, axis=-1, keepdims=True))
-    return np.where(measured, np.maximum(smooth, floor + np.finfo(float).tiny), np.nan)
-
-
-def _running_median(values: Floats) -> Floats:
-    """Return running medians along the last axis, linear between windows that half overlap."""
-    lines = values.shape[-1]
-    width = [(0, 0)] * (values.ndim - 1) + [(HALF_WINDOW, 3 * HALF_WINDOW)]
-    windows = sliding_window_view(np.pad(values, width, mode="edge"), 2 * HALF_WINDOW + 1, axis=-1)
+    # running medians, linear between windows that half overlap
+    width = [(0, 0), (0, 0), (HALF_WINDOW, 3 * HALF_WINDOW)]
+    windows = sliding_window_view(np.pad(raw, width, mode="edge"), 2 * HALF_WINDOW + 1, axis=-1)
     knots = np.median(windows[..., ::HALF_WINDOW, :], axis=-1)
     before, past = np.divmod(np.arange(lines), HALF_WINDOW)
-    out: Floats = knots[..., before]
-    return out + (knots[..., before + 1] - out) * (past / HALF_WINDOW)
+    smooth = knots[..., before]
+    smooth = (smooth + (knots[..., before + 1] - smooth) * (past / HALF_WINDOW)) / MEDIAN
+    floor = np.maximum(ROUNDING * power, 1e-3 * np.median(smooth, axis=-1, keepdims=True))
+    return np.where(measured, np.maximum(smooth, floor + np.finfo(float).tiny), np.nan)
 
 
 def fitted_variance(raw: Floats, H: Complexes) -> Floats:
@@ -78,7 +73,9 @@ def fitted_variance(raw: Floats, H: Complexes) -> Floats:
     lines = raw.shape[-1]
     flat = raw.reshape(-1, lines)
     power = np.nan_to_num(square(H.reshape(-1, lines)))
-    hats = _hats(lines)
+    number = int(np.clip(lines // LINES_A_HAT, 2, MOST_HATS))
+    knots = np.linspace(0, max(lines - 1, 1), number)
+    hats = np.array([np.interp(np.arange(lines), knots, unit) for unit in np.eye(number)])
     known = np.isfinite(flat)
     blocks = np.linspace(0, lines, min(lines, MOST_BLOCKS) + 1).astype(int)[:-1]
 
@@ -111,11 +108,3 @@ def fitted_variance(raw: Floats, H: Complexes) -> Floats:
     out = np.maximum(out, ROUNDING * power.mean(axis=1, keepdims=True))
     out[~known.any(axis=1)] = np.nan
     return out.reshape(raw.shape)
-
-
-def _hats(lines: int) -> Floats:
-    """Return hat functions over the lines, (hats, lines), that sum to one."""
-    count = int(np.clip(lines // LINES_A_HAT, 2, MOST_HATS))
-    knots = np.linspace(0, max(lines - 1, 1), count)
-    k = np.arange(lines)
-    return np.array([np.interp(k, knots, unit) for unit in np.eye(count)])

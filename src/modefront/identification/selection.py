@@ -146,8 +146,8 @@ def choose_level(task: Problem, fit: Fit) -> Problem:
     return best
 
 
-def gains(task: Problem, fit: Fit) -> Floats:
-    """Return 2 Delta J of every mode in units of the noise, (modes,).
+def gains(task: Problem, fit: Fit, found: Scan) -> Floats:
+    """Return 2 Delta J of every mode in units of the noise that a scan found, (modes,).
 
     It is the Wald statistic of a shape whose poles are held, while all else may follow: with the
     covariance B + Z A^-1 Z^T, B of the shape's own equations, A of all other alphas.
@@ -169,7 +169,7 @@ def gains(task: Problem, fit: Fit) -> Floats:
         A = S[1:, 1:] + fit.information[np.ix_(others, others)]
         follows = S[0, 1:] @ la.lstsq(A, S[1:, 0])[0] if len(A) else 0.0
         out[r] = S[0, 0] - follows
-    return 2 * out / scan(task, fit).noise_of(fit.model.lam)
+    return 2 * out / found.noise_of(fit.model.lam)
 
 
 def start(task: Problem, clusters: Sequence[Cluster], omega: float) -> Fit:
@@ -209,17 +209,29 @@ def backward(task: Problem, fit: Fit, least: float, count: int | None = None) ->
     Where the ``count`` of modes is given, the strongest are kept instead.
     """
     while len(fit.model):
-        gain, lam = gains(task, fit), fit.model.lam
-        weak = gain < least if count is None else gain.argsort().argsort() < len(gain) - count
+        found, lam = scan(task, fit), fit.model.lam
+        gain = gains(task, fit, found)
         gone = doubles(lam, fit.model.phi, gain)
         if gone.any():  # shapes of a pair may be alike by chance
-            gone[[k for pair in paired(task, fit, gone).model.pairs for k in pair]] = False
-        for r in gain.argsort()[: weak.sum()]:  # neighbours may stand for one and the same mode
-            gone[r] |= (alike(lam[r], lam[gone]) < ALONE).all()
+            both = paired(task, fit, gone, found).model.pairs
+            gone[[k for pair in both for k in pair]] = False
+        if count is not None:
+            least = np.sort(gain)[::-1][count - 1] if count < len(gain) else -np.inf
+        gone = with_weak(gone, gain, least, lam)
         if not gone.any():
             return fit
         fit = refit(task, fit.model.lam[~gone], fit.model.L[~gone])
     return fit
+
+
+def with_weak(gone: Bools, gain: Floats, least: float, lam: Complexes) -> Bools:
+    """Return which modes go, with those that gain less than ``least``, the weakest first.
+
+    One of some neighbours goes alone: they may stand for one and the same mode.
+    """
+    for r in gain.argsort()[: np.sum(gain < least)]:
+        gone[r] |= (alike(lam[r], lam[gone]) < ALONE).all()
+    return gone
 
 
 def grow(task: Problem, fit: Fit, count: int | None = None) -> Fit:
@@ -269,7 +281,7 @@ def standing_out(
     return lam[chosen], L[chosen]
 
 
-def paired(task: Problem, fit: Fit, among: Bools) -> Fit:
+def paired(task: Problem, fit: Fit, among: Bools, found: Scan) -> Fit:
     """Return the fit in which modes are pairs whose poles the data cannot tell apart.
 
     The closest are tried first, of which one at least is ``among`` some, (modes,), and which are
@@ -278,7 +290,7 @@ def paired(task: Problem, fit: Fit, among: Bools) -> Fit:
     lam, pairs = fit.model.lam, fit.model.pairs
     apart = np.abs(lam[:, None] - lam) / np.maximum.outer(-lam.real, -lam.real)
     close = np.argwhere(np.triu(apart < 1, 1)) if len(task.H) > 1 else np.zeros((0, 2), int)
-    C, noise = np.linalg.pinv(fit.information, hermitian=True) / 2, scan(task, fit).noise_of(lam)
+    C, noise = np.linalg.pinv(fit.information, hermitian=True) / 2, found.noise_of(lam)
     for r, s in close[apart[tuple(close.T)].argsort()].tolist():
         if {r, s} & {k for pair in pairs for k in pair} or not among[[r, s]].any():
             continue

@@ -1,9 +1,9 @@
 """Modes of several data sets side by side, and the standard deviation between sets.
 
 Modes of different sets are the same where frequencies lie within half a bandwidth, 0.5 % or
-`WIDTH` standard deviations, and shapes agree at common sensors. Shapes are compared in the sign and
-scale of the first set that has the mode; those of a pair are not, as each set has some basis of
-their plane. Equations: docs/methods/deviations.md.
+`WIDTH` standard deviations, and shapes agree at common sensors, but for those of close modes, which
+each set may turn within their plane. Shapes are compared in the sign and scale of the first set
+that has the mode. Equations: docs/methods/deviations.md.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
+from scipy.optimize import linear_sum_assignment
 from scipy.stats import chi2
 
 from modefront._typing import Floats, Ints
@@ -23,7 +24,7 @@ WIDTH = 5.0
 """Distance within which frequencies may belong to the same mode."""
 
 LEAST_MAC = 0.5
-"""MAC of shapes from which on they may be of the same mode."""
+"""MAC from which on shapes may be of the same mode."""
 
 SIGNIFICANT = 0.95
 """Level of the test of homogeneity; the 5 % that is usual."""
@@ -68,7 +69,7 @@ class CombinedModes:
 def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> CombinedModes:
     """Return the modes of several data sets under common numbers, by frequency."""
     sensors = tuple(dict.fromkeys(name for each in identifications for name in each.responses))
-    groups = mode_groups(identifications, sensors)
+    groups = mode_groups([(each.responses, each.modes) for each in identifications], sensors)
     K, R = len(identifications), len(groups)
     index = tuple(tuple(group.get(k, -1) for group in groups) for k in range(K))
     f, z, f_std, z_std = (np.full((K, R), np.nan) for _ in range(4))
@@ -78,9 +79,9 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
             mode = identifications[k].modes[number]
             f[k, r], f_std[k, r] = mode.frequency, mode.frequency_std
             z[k, r], z_std[k, r] = mode.damping, mode.damping_std
-            phi_std[k, r] = _at(mode.shape_std, identifications[k], sensors)
-            known = np.isfinite(mode.shape_std)
-            phi[k, r] = _at(np.where(known, mode.shape.shape, np.nan), identifications[k], sensors)
+            names, known = identifications[k].responses, np.isfinite(mode.shape_std)
+            phi_std[k, r] = _at(mode.shape_std, names, sensors)
+            phi[k, r] = _at(np.where(known, mode.shape.shape, np.nan), names, sensors)
     paired = _pairs(identifications, index)
     spread = np.zeros((R, 2))
     for r in range(R):
@@ -138,62 +139,65 @@ def between(x: Floats, std: Floats) -> float:
     return float(np.sqrt((Q - freedom) / (weight.sum() - np.sum(weight**2) / weight.sum())))
 
 
-def _at(values: Floats, identification: Identification, sensors: Sequence[str]) -> Floats:
+def _at(values: Floats, names: Sequence[str], sensors: Sequence[str]) -> Floats:
     out = np.full((len(sensors), *values.shape[1:]), np.nan)
-    out[[sensors.index(name) for name in identification.responses]] = values
+    out[[sensors.index(name) for name in names]] = values
     return out
 
 
-def mode_groups(
-    identifications: Sequence[Identification], sensors: Sequence[str]
-) -> list[dict[int, int]]:
-    """Return, for every mode of the structure, which mode of each set it is."""
-    groups: list[dict[int, int]] = []
-    for k, identification in enumerate(identifications):
-        for number, mode in enumerate(identification.modes):
-            best, most = None, LEAST_MAC
-            for group in groups:
-                if k in group:
-                    continue
-                first, index = next(iter(group.items()))
-                other = identifications[first]
-                mac = _agreement(mode, identification, other.modes[index], other, sensors)
-                if mac > most:
-                    best, most = group, mac
-            if best is None:
-                groups.append({k: number})
-            else:
-                best[k] = number
-
-    def mean(group: dict[int, int]) -> float:
-        return float(
-            np.mean([identifications[k].modes[number].frequency for k, number in group.items()])
-        )
-
-    return sorted(groups, key=mean)
+ModesOfSet = tuple[Sequence[str], Sequence[ModeEstimate]]
+"""Sensors and modes of one set."""
 
 
-def _agreement(
-    a: ModeEstimate,
-    of_a: Identification,
-    b: ModeEstimate,
-    of_b: Identification,
-    sensors: Sequence[str],
-) -> float:
-    """Return the MAC at common sensors, 0 where the frequencies are too far apart.
+def mode_groups(sets: Sequence[ModesOfSet], sensors: Sequence[str]) -> list[dict[int, int]]:
+    """Return, for every mode of the structure, which mode of each set it is.
 
-    That of the planes of pairs is the squared cosine of the least angle between them.
+    All modes of a set are assigned at once, to as many modes of the sets before as agree, and by
+    the greatest sum of their MAC.
     """
-    half = max(a.damping * a.frequency, b.damping * b.frequency, 0.005 * a.frequency)
-    if abs(a.frequency - b.frequency) > max(
-        WIDTH * np.hypot(a.frequency_std, b.frequency_std), half
-    ):
+    groups: list[dict[int, int]] = []
+    for k, own in enumerate(sets):
+        score = np.zeros((len(own[1]), len(groups)))
+        for r, g in np.ndindex(score.shape):
+            score[r, g] = max(_agreement(own, r, sets[j], s, sensors) for j, s in groups[g].items())
+        rows, columns = linear_sum_assignment(score, maximize=True)
+        known = {int(r): int(g) for r, g in zip(rows, columns, strict=True) if score[r, g] > 0}
+        groups += [{} for _ in range(len(own[1]) - len(known))]
+        new = iter(groups[score.shape[1] :])
+        for r in range(len(own[1])):
+            (groups[known[r]] if r in known else next(new))[k] = r
+    return sorted(groups, key=lambda x: np.mean([sets[k][1][r].frequency for k, r in x.items()]))
+
+
+def _agreement(of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, sensors: Sequence[str]) -> float:
+    """Return one more than the MAC at common sensors, 0 where modes cannot be the same.
+
+    MAC of planes is the squared cosine of the least angle between them. Data of a set may turn the
+    shapes of modes that are close within their plane: one of a mode has to lie in that of the other
+    one and those whose half bandwidths meet its own.
+    """
+    x, y = of_a[1][a], of_b[1][b]
+    half = [mode.damping * mode.frequency for mode in (x, y)]
+    reach = max(WIDTH * np.hypot(x.frequency_std, y.frequency_std), *half, 0.005 * x.frequency)
+    shapes, planes = [], []
+    for mode, own, (names, modes) in zip((x, y), half, (of_a, of_b), strict=True):
+        close = [
+            each.shape.plane
+            for each in modes
+            if abs(each.frequency - mode.frequency) <= each.damping * each.frequency + own
+        ]
+        shapes.append(_at(mode.shape.plane, names, sensors))
+        planes.append(_at(np.hstack(close), names, sensors))
+    both = np.isfinite(np.hstack(shapes)).all(axis=1)
+    if abs(x.frequency - y.frequency) > reach or not both.any():
         return 0.0
-    x, y = _at(a.shape.plane, of_a, sensors), _at(b.shape.plane, of_b, sensors)
-    both = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
-    # squared cosine of the least angle between the planes of pairs: MAC of single shapes
-    first, second = (np.linalg.svd(z[both], full_matrices=False)[0] for z in (x, y))
-    return float(np.linalg.norm(first.T @ second, 2) ** 2) if both.any() else 0.0
+    own_a, own_b, plane_a, plane_b = (la.orth(each[both]) for each in (*shapes, *planes))
+
+    def mac(first: Floats, second: Floats) -> float:
+        return float(np.linalg.norm(first.T @ second, 2) ** 2) if first.size * second.size else 0.0
+
+    near = max(mac(own_a, plane_b), mac(plane_a, own_b))
+    return 1 + mac(own_a, own_b) if near > LEAST_MAC else 0.0
 
 
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:

@@ -184,27 +184,21 @@ class Density:
         kept, phi = np.delete(np.arange(len(self.omega)), mode), self.phi[:, mode]
         h = self.response(band.omega, band.order)[mode]
         power = self.force[mode, mode].real * np.average(np.abs(h) ** 2, weights=band.count)
+        S = self.force[np.ix_(kept, kept)]
+        scale = np.sqrt(np.maximum(S.diagonal().real, TINY))
+        unit = S / np.outer(scale, scale) + 1e-9 * np.eye(len(S))  # S may be singular
+        root = la.cholesky(unit, lower=True) if len(S) else unit
         return replace(
             self,
             omega=self.omega[kept],
             zeta=self.zeta[kept],
             phi=self.phi[:, kept],
-            root=root_of(self.force[np.ix_(kept, kept)]),
+            root=scale[:, None] * root,
             background=self.background + power * np.outer(phi, phi),
             free=self.free - (mode < self.free),
             coherent=self.coherent[:, :0],
             precision=self.precision[:0],
         )
-
-
-def root_of(S: Complexes) -> Complexes:
-    """Return L of a Hermitian matrix that may be singular."""
-    if not len(S):
-        return S
-    scale: Floats = np.sqrt(np.maximum(S.diagonal().real, TINY))
-    unit = S / np.outer(scale, scale) + 1e-9 * np.eye(len(S))
-    out: Complexes = scale[:, None] * la.cholesky(unit, lower=True)
-    return out
 
 
 @dataclass(frozen=True)
@@ -325,7 +319,10 @@ def evaluate(band: Band, model: Density, known: _Matrices | None = None) -> Fit:
     ``known`` are its matrices where they are computed already.
     """
     x, c, m = known or _matrices(band, model), band.count, model.free
-    d, J = _changes(band, model), _root_changes(model.root)
+    rows, columns_of, units = _entries(len(model.root))
+    d, J = _changes(band, model), np.zeros((len(rows), *model.root.shape), complex)
+    J[np.arange(len(rows)), rows] = units[:, None] * model.root[:, columns_of].conj().T
+    J += J.conj().swapaxes(1, 2)  # the derivatives of S by the parameters of L
     W = c[:, None, None] * (x.C - x.Y.conj().swapaxes(1, 2) @ x.own @ x.Y)
     measured = np.linalg.solve(model.background, x.both.T).T
     columns = 2 * (x.second @ x.hat.T - measured).real
@@ -370,14 +367,6 @@ def _entries(M: int) -> tuple[Ints, Ints, Complexes]:
     rows, columns = np.repeat(i, parts), np.repeat(j, parts)
     again = np.diff(rows * M + columns, prepend=-1) == 0
     return rows, columns, np.where(again, 1j, 1.0)
-
-
-def _root_changes(L: Complexes) -> Complexes:
-    """Return the derivatives of S by the parameters of L, (parameters, modes, modes)."""
-    rows, columns, units = _entries(len(L))
-    out = np.zeros((len(rows), *L.shape), complex)
-    out[np.arange(len(rows)), rows] = units[:, None] * L[:, columns].conj().T
-    return out + out.conj().swapaxes(1, 2)
 
 
 def _bending(G: Complexes) -> Floats:
@@ -497,7 +486,10 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
     """
     fit, damping, share = evaluate(band, _normalised(model)), 1e-3, 1.0
     for _ in range(most):
-        trial = _moved(fit.model, _step(fit, damping))
+        A, scale = fit.scaled(fit.bending)
+        value, vector = la.eigh(A)
+        weights = vector.T @ (scale * fit.gradient) / (np.maximum(value, 1e-10) + damping)
+        trial = _moved(fit.model, -scale * (vector @ weights))
         x = _matrices(band, trial)
         if not x.cost < fit.cost + TOLERANCE:
             damping = max(8 * damping, 1e-3)
@@ -511,15 +503,6 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
         if abs(before - fit.cost) < TOLERANCE and damping < 1e-2:
             return replace(fit, converged=True)
     return fit
-
-
-def _step(fit: Fit, damping: float) -> Floats:
-    A, scale = fit.scaled(fit.bending)
-    value, vector = la.eigh(A)
-    out: Floats = vector @ (
-        vector.T @ (scale * fit.gradient) / (np.maximum(value, 1e-10) + damping)
-    )
-    return -scale * out
 
 
 def _moved(model: Density, step: Floats) -> Density:

@@ -108,7 +108,11 @@ def diagram_of(
         good = -p.value.real < MOST_DAMPING * np.abs(p.value)
         kept.append(Poles(p.order, p.value[good], p.participation[good]))
     s: Complexes = np.asarray(1j * omega + data.decay, complex)
-    lines = _lines_of_shapes(s, np.concatenate([poles.value for poles in kept]))
+    # shapes are taken from every n-th line, and from those next to poles
+    lines: Bools = np.arange(len(s)) % -(-len(s) // SHAPE_LINES) == 0
+    found = np.concatenate([poles.value.imag for poles in kept])
+    nearest = np.searchsorted(s.imag, found)[:, None] + np.arange(-NEXT, NEXT + 1)
+    lines[np.clip(nearest, 0, len(s) - 1)] = True
     H, q = data.H[..., lines], ORDERS[data.quantity]
     shapes = [shapes_of(poles, H, s[lines], q) for poles in kept]
     distance = np.concatenate(
@@ -142,15 +146,6 @@ def diagram_of(
         tuple(poles.order for poles in estimates),
     )
     return diagram, _clusters(diagram)
-
-
-def _lines_of_shapes(s: Complexes, pole: Complexes) -> Bools:
-    """Return the lines from which shapes are taken: every n-th one, and those next to poles."""
-    stride = -(-len(s) // SHAPE_LINES)
-    lines: Bools = np.arange(len(s)) % stride == 0
-    nearest = np.searchsorted(s.imag, pole.imag)[:, None] + np.arange(-NEXT, NEXT + 1)
-    lines[np.clip(nearest, 0, len(s) - 1)] = True
-    return lines
 
 
 def shapes_of(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:

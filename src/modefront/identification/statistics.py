@@ -296,19 +296,14 @@ def _force_products(
             yield E[:, lines].conj() * (np.sqrt(b / 2) * weighted[:, None, lines])
         return
     f = task.s.imag
-    times, share = _merged(noise.times[j], noise.share[j], np.pi / (f[-1] - f[0]))
+    step = max(np.pi / (f[-1] - f[0]), float(np.ptp(noise.times[j])) / MOST_TIMES)
+    bins = np.floor((noise.times[j] - noise.times[j].min()) / step).astype(int)
+    share = np.bincount(bins, noise.share[j])
+    kept = share > 0
+    times = np.bincount(bins, noise.share[j] * noise.times[j])[kept] / share[kept]
+    share = share[kept]
     for start in range(0, len(times), TOGETHER):
         part = slice(start, start + TOGETHER)
         error = noise.deviation[j][:, None] * np.exp(-1j * np.outer(f, times[part]))
         error = error * np.sqrt(share[part] / 2)
         yield (weighted[:, None] * E.conj()) @ error
-
-
-def _merged(times: Floats, share: Floats, step: float) -> tuple[Floats, Floats]:
-    """Return the middle and the share of samples that lie within steps of time, `MOST_TIMES`."""
-    step = max(step, float(np.ptp(times)) / MOST_TIMES)
-    bins = np.floor((times - times.min()) / step).astype(int)
-    total: Floats = np.bincount(bins, share).astype(float)
-    kept = total > 0
-    middle = np.bincount(bins, share * times)[kept] / total[kept]
-    return middle, total[kept]

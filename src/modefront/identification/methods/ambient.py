@@ -6,18 +6,20 @@ makes somewhere in the band; in other setups, where the pole is known, than nois
 with the amplitude of a machine is none: with :math:`a(t)` the modal response to lines about it,
 :math:`\kappa = \overline{|a|^4} / \overline{|a|^2}^2` is 2 for a normal response and 1 for a
 harmonic; over n samples whose response has the correlations :math:`\rho` at all lags, its variance
-is :math:`4 \sum |\rho|^4 / n`.
+is :math:`4 \sum |\rho|^4 / n`. One whose lines are rather those of a sine is none either: of
+:math:`c / (\omega_0 - \omega_k)`, which is its transform, with any amplitudes c of the sensors.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 from scipy.stats import chi2, norm
 
-from modefront._typing import Bools, Complexes, Floats
+from modefront._typing import Complexes, Floats
 from modefront.data.records import Records
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import selection, spectra, spectral_density
@@ -30,7 +32,7 @@ from modefront.identification.record import (
     Rejected,
     Residuals,
 )
-from modefront.identification.selection import ALONE, FALSE, LEAST_ORDERS
+from modefront.identification.selection import FALSE, LEAST_ORDERS
 from modefront.identification.sets import between, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
 from modefront.identification.spectra import Transforms
@@ -59,11 +61,18 @@ BLOCK = 0.1
 MOST_TOGETHER = 5
 """Modes that are fitted at once, at most."""
 
+BESIDE = 4
+"""Modes on either side of a band whose forces the last fit has, at most: as many as sensors tell
+apart. With one only, what forces of their own do to the others shifts frequencies and shapes."""
+
 DAMPING = 0.002, 0.05
 """Limits of damping ratios to start from."""
 
 TRIAL_STEPS = 8
 """Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
+
+SINE_LINES = 4
+"""Lines on either side of a mode where it may be a sine."""
 
 HARMONIC = 1e-3
 """Share of the modes that would be taken for harmonics by chance."""
@@ -90,6 +99,7 @@ class Local:
     covariance : of ln omega, ln zeta and phi
     share : its greatest share in the density of a sensor, at its frequency
     kurtosis : kappa, and its standard deviation for a mode
+    sine : gain of the likelihood where a sine takes the place of the mode, less its parameters more
     held : whether it stays whatever its gain
     """
 
@@ -97,15 +107,21 @@ class Local:
     zeta: float
     phi: Floats
     gain: float = np.inf
-    covariance: Floats | None = None
+    covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     share: float = np.nan
     kurtosis: tuple[float, float] = (2.0, 1.0)
+    sine: float = -np.inf
     held: bool = False
 
     @property
     def half(self) -> float:
         """Half bandwidth in rad/s."""
         return self.zeta * self.omega
+
+    @property
+    def stds(self) -> Floats:
+        """Standard deviations of ln omega and ln zeta, and of the components of phi."""
+        return np.sqrt(np.diag(self.covariance))
 
 
 @dataclass(frozen=True)
@@ -141,7 +157,13 @@ def identify(
         if count < LEAST_LINES:
             raise ValueError(f"expected {LEAST_LINES} lines in the band, found {max(count, 0)}")
     identified = [_of_setup(records, low, high, seeds) for records in setups]
-    local = [_as_identification(each, (low, high)) for each in identified]
+    local = [
+        (
+            each.records.sensors,
+            [_estimate(x.omega, x.zeta, x.stds, x.phi, np.zeros(0)) for x in each.modes],
+        )
+        for each in identified
+    ]
     sensors = tuple(dict.fromkeys(name for records in setups for name in records.sensors))
     groups = mode_groups(local, sensors)
     return _combined(_completed(identified, groups), (low, high), sensors, modes)
@@ -227,8 +249,16 @@ def _fitted(
         if max(group) < first:
             continue
         chosen = [modes[k] for k in group]
-        band = _band_of(setup.lines, chosen)
-        beside = [modes[k] for k in _beside(band, modes, group)]
+        reach = [max(REACH * mode.half, LEAST_LINES / 2 * setup.spacing) for mode in chosen]
+        low = min(mode.omega - x for mode, x in zip(chosen, reach, strict=True))
+        high = max(mode.omega + x for mode, x in zip(chosen, reach, strict=True))
+        band = setup.lines.part(low, high, BLOCK * min(mode.half for mode in chosen))
+        others = [mode for k, mode in enumerate(modes) if k not in group]
+        rest = sorted(others, key=lambda mode: mode.omega)
+        start, end = np.searchsorted([mode.omega for mode in rest], [low, high])
+        told = max((len(setup.records.sensors) - len(group)) // 2, 1)
+        nearest = min(told, BESIDE) if last else 1
+        beside = rest[max(start - nearest, 0) : end + nearest]
         found += _of_group(setup, band, chosen, beside, least, last)
     return found
 
@@ -246,20 +276,6 @@ def _overlapping(modes: Sequence[Local]) -> list[list[int]]:
         else:
             out.append([k])
     return out
-
-
-def _band_of(lines: Transforms, modes: Sequence[Local]) -> Band:
-    least = LEAST_LINES / 2 * (lines.omega[1] - lines.omega[0])
-    low = min(mode.omega - max(REACH * mode.half, least) for mode in modes)
-    high = max(mode.omega + max(REACH * mode.half, least) for mode in modes)
-    return lines.part(low, high, BLOCK * min(mode.half for mode in modes))
-
-
-def _beside(band: Band, modes: Sequence[Local], group: Sequence[int]) -> list[int]:
-    """Return the numbers of other modes in a band, and of the next one on either side."""
-    rest = sorted(set(range(len(modes))) - set(group), key=lambda k: modes[k].omega)
-    low, high = np.searchsorted([modes[k].omega for k in rest], band.omega[[0, -1]])
-    return rest[max(low - 1, 0) : high + 1]
 
 
 def _of_group(
@@ -280,20 +296,24 @@ def _of_group(
         models = [fit.model.without(r, band) for r in range(fit.model.free)]
         without = [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
         gain = 2 * (np.array([each.cost for each in without]) - fit.cost)
-        worth = np.where(held, np.inf, np.where(_astray(band, fit.model, gain), 0.0, gain))
+        omega, zeta, phi = (
+            x[..., : len(held)] for x in (fit.model.omega, fit.model.zeta, fit.model.phi)
+        )
+        low, high = band.omega[[0, -1]]
+        # a mode that left the band, is as flat as it, or doubles a stronger one explains nothing
+        astray = (omega < low) | (omega > high) | (4 * zeta * omega > high - low)
+        astray |= selection.doubles(omega * (1j - zeta), phi.T.astype(complex), gain)
+        worth = np.where(held, np.inf, np.where(astray, 0.0, gain))
         enough = worth.min() >= least
         if not tried and not fit.converged and (gain.min() < 0 or (enough and last)):
             fit, tried = spectral_density.maximise(band, fit.model), True
             continue
         if enough:
             break
-        pole = fit.model.omega * (1j - fit.model.zeta)
-        gone: list[int] = []
-        for r in worth.argsort()[: int(np.sum(worth < least))].tolist():
-            if (selection.alike(pole[r], pole[gone]) < ALONE).all():
-                gone.append(r)
-        model, held = fit.model, np.delete(held, gone)
-        for r in sorted(gone, reverse=True):
+        none = np.zeros(len(held), bool)
+        gone = selection.with_weak(none, worth, least, omega * (1j - zeta))
+        model, held = fit.model, held[~gone]
+        for r in np.flatnonzero(gone)[::-1].tolist():
             model = model.without(r, band)
         fit = spectral_density.maximise(band, model, TRIAL_STEPS)
     else:
@@ -310,6 +330,7 @@ def _of_group(
             fit.covariance(r),
             float(visible[r]),
             _kurtosis(setup, model, r),
+            _sine(setup, model, r),
             bool(held[r]),
         )
         for r in range(model.free)
@@ -333,17 +354,6 @@ def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
     filtered = np.einsum("ri,kij,rj->rk", inverse, band.power, inverse, optimize=True).real
     level = np.sum(filtered * h2, axis=1) / np.sum(h2**2, axis=1)
     return replace(model, root=np.diag(np.sqrt(level)).astype(complex))
-
-
-def _astray(band: Band, model: Density, gain: Floats) -> Bools:
-    """Return which modes left the band, are as flat as it, or double a stronger one."""
-    omega, zeta = model.omega[: model.free], model.zeta[: model.free]
-    low, high = band.omega[0], band.omega[-1]
-    doubles = selection.doubles(
-        omega * (1j - zeta), model.phi[:, : model.free].T.astype(complex), gain
-    )
-    out: Bools = (omega < low) | (omega > high) | (4 * zeta * omega > high - low) | doubles
-    return out
 
 
 def _shares(band: Band, model: Density) -> Floats:
@@ -372,25 +382,31 @@ def _kurtosis(setup: _Setup, model: Density, mode: int) -> tuple[float, float]:
     return float(np.mean(a**2) / np.mean(a) ** 2), float(std)
 
 
-def _as_identification(setup: _Setup, band: tuple[float, float]) -> Identification:
-    """Return the modes of one setup as those of a test."""
-    modes = [
-        _estimate(mode.omega, mode.zeta, _stds(mode), mode.phi, np.zeros(0)) for mode in setup.modes
-    ]
-    functions = _functions([setup], setup.records.sensors)
-    return Identification(
-        setup.records.sensors, band, tuple(modes), (), setup.diagram, functions, 0, converged=True
-    )
+def _sine(setup: _Setup, model: Density, mode: int) -> float:
+    """Return the gain of the likelihood by a sine in place of a mode, less its parameters more."""
+    line = (setup.lines.omega - model.omega[mode]) / setup.spacing
+    near = np.flatnonzero(np.abs(line) <= SINE_LINES)
+    F, h = setup.lines.F[:, near].T, model.lifted(setup.lines.omega[near], setup.lines.order)
+    costs, inverses = [], []
+    for kept in (np.ones(len(model.omega)), np.arange(len(model.omega)) != mode):
+        half = model.columns @ h @ (kept[:, None] * model.root)
+        E = half @ half.conj().swapaxes(1, 2) + model.background
+        inverses.append(np.linalg.inv(E))
+        misfit = np.einsum("ki,kij,kj->", F.conj(), inverses[-1], F).real
+        costs.append(float(np.linalg.slogdet(E)[1].sum() + misfit))
 
+    def loss(place: float) -> float:
+        D = np.sinc(line[near] - place) * (-1.0) ** np.arange(len(near))
+        A, b = (inverses[1].T @ D**2).T, np.einsum("k,kij,kj->i", D, inverses[1], F)
+        return -float((b.conj() @ np.linalg.solve(A, b)).real)
 
-def _stds(mode: Local) -> tuple[float, float]:
-    """Return the standard deviations of ln omega and ln zeta."""
-    assert mode.covariance is not None
-    return float(np.sqrt(mode.covariance[0, 0])), float(np.sqrt(mode.covariance[1, 1]))
+    first = min(np.arange(-1.5, 1.5, 0.1), key=loss)
+    best = minimize_scalar(loss, bounds=(first - 0.1, first + 0.1), method="bounded")
+    return costs[0] - costs[1] - float(best.fun) - (F.shape[1] - 1)
 
 
 def _estimate(
-    omega: float, zeta: float, stds: tuple[float, float], phi: Floats, phi_std: Floats
+    omega: float, zeta: float, stds: Floats, phi: Floats, phi_std: Floats
 ) -> ModeEstimate:
     """Return a mode in physical units from logarithmic deviations of its pole."""
     shape = real_shape(np.nan_to_num(phi).astype(complex))
@@ -398,8 +414,8 @@ def _estimate(
         complex(-zeta * omega, omega * np.sqrt(1 - zeta**2)),
         omega / (2 * np.pi),
         zeta,
-        stds[0] * omega / (2 * np.pi),
-        stds[1] * zeta,
+        float(stds[0]) * omega / (2 * np.pi),
+        float(stds[1]) * zeta,
         shape,
         phi_std,
         np.zeros(0, complex),
@@ -487,19 +503,17 @@ def _of_structure(
 ) -> ModeEstimate:
     """Return one mode from the setups that have it."""
     logs = np.array([[np.log(mode.omega), np.log(mode.zeta)] for _, mode in having])
-    stds = np.array([_stds(mode) for _, mode in having])
+    stds = np.array([mode.stds[:2] for _, mode in having])
     means, deviations = np.zeros(2), np.zeros(2)
     for c in range(2):
         variance = stds[:, c] ** 2 + between(logs[:, c], stds[:, c]) ** 2
         means[c] = np.average(logs[:, c], weights=1 / variance)
         deviations[c] = 1 / np.sqrt(np.sum(1 / variance))
     places = [np.array([sensors.index(x) for x in setup.records.sensors]) for setup, _ in having]
-    covariances = [mode.covariance[2:, 2:] for _, mode in having if mode.covariance is not None]
+    covariances = [mode.covariance[2:, 2:] for _, mode in having]
     phi, C = merged_shape(places, [mode.phi for _, mode in having], covariances, len(sensors))
     omega, zeta = np.exp(means)
-    mode = _estimate(
-        float(omega), float(zeta), (deviations[0], deviations[1]), phi, np.sqrt(np.diag(C))
-    )
+    mode = _estimate(float(omega), float(zeta), deviations, phi, np.sqrt(np.diag(C)))
     return replace(mode, evidence=_evidence(having, mode, setups))
 
 
@@ -524,8 +538,8 @@ def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
     """Return why a mode is the harmonic of a machine; empty where it is none."""
     if any(mode.held for _, mode in having):
         return ""
-    if all(mode.half < setup.spacing / 2 for setup, mode in having):
-        return "a harmonic: as narrow as the lines of the record"
+    if sum(mode.sine for _, mode in having) > 0:
+        return "a harmonic: its lines are those of a sine"
     z = np.array([(mode.kurtosis[0] - 2) / mode.kurtosis[1] for _, mode in having])
     if z.sum() / np.sqrt(len(z)) < norm.ppf(HARMONIC):
         mean = np.mean([mode.kurtosis[0] for _, mode in having])

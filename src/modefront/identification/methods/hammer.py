@@ -1,11 +1,8 @@
 r"""Hammer tests: from frequency response functions of one data set to its modes.
 
-1. Poles over a range of orders (`lscf`), their diagram and its clusters (`stabilisation`).
-2. The modes that data need (`selection`), from principal responses with common weights, of which
-   all responses have one set of equations.
-3. The modal model (`modal_model`) of all functions, each with its own variance: that of the data
-   or, where nothing is known, that of the residuals (`noise`); the same test for every mode.
-4. Standard deviations (`statistics`), and what else speaks for a mode.
+The steps are those of docs/methods/identification.md. Modes are chosen from principal responses
+with common weights, of which all responses have one set of equations, then tested again in the fit
+of all functions, each with its own variance.
 """
 
 from __future__ import annotations
@@ -224,9 +221,15 @@ class _Solution:
     diagram: StabilisationDiagram
 
     @cached_property
+    def found(self) -> selection.Scan:
+        """What poles explain of the residuals."""
+        return selection.scan(self.task, self.apart)
+
+    @cached_property
     def fit(self) -> Fit:
         """The fit with pairs."""
-        return selection.paired(self.task, self.apart, np.ones(len(self.apart.model), bool))
+        every = np.ones(len(self.apart.model), bool)
+        return selection.paired(self.task, self.apart, every, self.found)
 
 
 def _result(solution: _Solution) -> Identification:
@@ -295,7 +298,7 @@ def _evidence(
 ) -> list[Evidence]:
     """Return what speaks for every mode; only those that are ``kept`` are neighbours."""
     task, fit = solution.task, solution.fit
-    gain, least = selection.gains(task, solution.apart), selection.needed(task)
+    gain, least = selection.gains(task, solution.apart, solution.found), selection.needed(task)
     shares = support(solution.diagram, fit.model.lam * solution.omega, gain)
     visible, mac = _visibility(task, fit), auto_mac(fit.model.phi)
     spacing = float(np.median(np.diff(solution.data.frequency)))

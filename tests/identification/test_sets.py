@@ -1,0 +1,52 @@
+"""Modes of several sets: which are the same, where data turn the shapes of close ones."""
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.identification.record import ModeEstimate
+from modefront.identification.sets import mode_groups
+from modefront.identification.shapes import real_shape
+
+SENSORS = tuple("abcd")
+
+
+def _set(frequencies: list[float], shapes: Floats) -> tuple[tuple[str, ...], list[ModeEstimate]]:
+    """Return sensors and modes of a set; their damping is 1 %."""
+    return SENSORS, [
+        ModeEstimate(
+            2j * np.pi * f, f, 0.01, 0.001, 0.001, real_shape(phi + 0j), phi, np.zeros(0, complex)
+        )
+        for f, phi in zip(frequencies, shapes, strict=True)
+    ]
+
+
+def _turned(shapes: Floats, degrees: float) -> Floats:
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    out: Floats = np.array([[c, s], [-s, c]]) @ shapes
+    return out
+
+
+def test_close_modes_that_a_set_turns_in_their_plane_keep_one_number_each() -> None:
+    rng = np.random.default_rng(0)
+    for degrees in range(0, 180, 15):
+        plane = np.linalg.qr(rng.standard_normal((4, 2)))[0].T
+        sets = [
+            _set([5.0, 5.05], plane),
+            _set([5.01, 5.06], _turned(plane, degrees)),
+            _set([5.02], _turned(plane, degrees / 2)[1:]),
+        ]
+        groups = mode_groups(sets, SENSORS)
+        assert len(groups) == 2
+        assert sorted(len(group) for group in groups) == [2, 3]
+
+
+def test_shapes_choose_among_close_modes() -> None:
+    plane = np.linalg.qr(np.random.default_rng(1).standard_normal((4, 2)))[0].T
+    sets = [_set([5.0, 5.05], plane), _set([5.02, 5.03], plane[::-1])]
+    assert mode_groups(sets, SENSORS) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
+
+
+def test_shapes_outside_the_plane_and_modes_apart_are_others() -> None:
+    basis = np.linalg.qr(np.random.default_rng(2).standard_normal((4, 4)))[0].T
+    sets = [_set([5.0, 5.05], basis[:2]), _set([5.0, 5.5], basis[[2, 0]])]
+    assert len(mode_groups(sets, SENSORS)) == 4
