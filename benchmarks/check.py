@@ -340,9 +340,59 @@ def numbers(case: Case) -> Case | None:
     return case.spoilt(claim, data=parts) if len(case.data.sets) > 1 else None
 
 
+def calibration(case: Case) -> Case | None:
+    """Return the study with a sensor of another sensitivity or unit."""
+    s = _sensor(case)
+    if s is None:
+        return None
+    shape = case.data.shape.copy()
+    shape[..., s] *= case.rng.choice([10.0, 0.1, 9.81, 1 / 9.81, 1e3, 2.0])
+    return case.spoilt(("sensor-factor", case.data.sensors[s]), data={"shape": shape})
+
+
+def pasted(case: Case) -> Case | None:
+    """Return the study with the column of a sensor in the place of one that moves otherwise."""
+    s, psi = _sensor(case), _psi(case)
+    if s is None:
+        return None
+    unlike = ((psi - psi[:, :, [s]]) ** 2).mean(axis=(0, 1)) > 0.5
+    blamed = {name for claim in case.made for name in claim}
+    fit = [t for t in np.flatnonzero(unlike).tolist() if case.data.sensors[t] not in blamed]
+    if not fit:
+        return None
+    t, shape = int(case.rng.choice(fit)), case.data.shape.copy()
+    shape[:, :, t] = shape[:, :, s]
+    return case.spoilt(("copied-sensor", case.data.sensors[t]), data={"shape": shape})
+
+
+def shifted(case: Case) -> Case | None:
+    """Return the study with a cell lost in a row of shapes, or in all: the rest moves up to it."""
+    sets, modes, n = case.data.shape.shape
+    start, shape = int(case.rng.integers(n - 2)), case.data.shape.copy()
+    k, r = int(case.rng.integers(sets)), int(case.rng.integers(modes))
+    where = f"mode {case.data.modes[r]}" + f" of set {case.data.sets[k]}" * (sets > 1)
+    row = shape[k, r] if case.rng.uniform() < 0.5 else shape
+    if row.ndim > 1:
+        where = "all data"
+    old = row.copy()
+    row[..., start:-1], row[..., -1] = row[..., start + 1 :].copy(), np.nan
+    psi, true = np.nan_to_num(row), np.nan_to_num(old)
+    cross, size = (psi * true).sum(axis=-1) ** 2, (psi**2).sum(axis=-1) * (true**2).sum(axis=-1)
+    if np.mean(1 - cross / size) < 0.1:
+        return None
+    return case.spoilt(("shifted-values", where), data={"shape": shape})
+
+
+def misread(case: Case) -> Case | None:
+    """Return the study with a frequency of a mode that lacks its decimal point, or is aliased."""
+    f, r = case.data.frequency.copy(), int(case.rng.integers(len(case.data.modes)))
+    f[:, r] *= case.rng.choice([10.0, 0.1, 100.0, 2.0, 0.5])
+    return case.spoilt(("far-from-model", str(case.data.modes[r])), data={"frequency": f})
+
+
 MISTAKES: Sequence[Callable[[Case], Case | None]] = (
     *(factor, set_factor, reversal, exchange, direction, directions, place, counted, nominal),
-    *(percent, odd_frequency, numbers),
+    *(percent, odd_frequency, numbers, calibration, pasted, shifted, misread),
 )
 
 

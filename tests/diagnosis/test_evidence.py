@@ -72,7 +72,9 @@ def test_a_fit_finds_the_structure_from_which_the_data_come() -> None:
     theta, unit = np.array([1.2, 0.8, 1.1]), np.ones(3)
     modes = model.modes(theta, 4, derivatives=False)
     data = measured(modal_data(modes.frequency, modes.phi.T, model.sensors))
-    state = State(data, np.zeros(4, dtype=bool), model.selection, None, unit, 0.2 * unit, 5 * unit)
+    state = State(
+        data, np.zeros(4, dtype=bool), 4, model.selection, None, unit, 0.2 * unit, 5 * unit
+    )
     result = quick(model, model, 4, unit, (0.2 * unit, 5 * unit)).fit(state, unit)
     assert result is not None
     np.testing.assert_allclose(result.theta, theta, rtol=0.03)

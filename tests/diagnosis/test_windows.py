@@ -1,34 +1,58 @@
-"""A pair of modes that are far apart: a window is advised only where it would mend that."""
+"""Pairs of modes that are far apart: what the search says of them, and when a window mends them."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from modefront._typing import Floats
 from modefront.data.modal import modal_data
-from modefront.diagnosis.comparison import bad_pairs, compare
+from modefront.diagnosis.comparison import compare
+from modefront.diagnosis.search import diagnose
+from modefront.findings.record import Finding
 from modefront.models.chain import chain
+from modefront.models.matrices import MatrixModel
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem
 
 
-@pytest.mark.parametrize(
-    ("ratio", "kind", "remedy"),
-    [
-        (1.0, "distant-pair", "model mode 1 at 1.313 Hz is near; set window = 1.5 in [pairing]"),
-        (0.1, "far-from-model", "none that is like it is near; check its frequency and shape"),
-    ],
-)
-def test_a_window_is_advised_where_a_mode_within_it_is_like_the_measured_one(
-    ratio: float, kind: str, remedy: str
-) -> None:
+def chain_of(sensors: dict[str, int] | None = None) -> MatrixModel:
+    names = ["k1"] * 4 + ["k2"] * 4
+    return chain(["k1", "k2"], [1.0] * 8, [2000.0] * 8, stiffness_parameters=names, sensors=sensors)
+
+
+def mistakes(model: MatrixModel, frequency: Floats, phi: Floats) -> list[Finding]:
+    data, one = modal_data(frequency, phi.T, model.sensors), np.ones(2)
+    groups = (Group("f", frequency="all"),)
+    return diagnose(compare(UpdatingProblem(model, data, groups, one / 5, 5 * one, one)))
+
+
+def test_a_window_is_advised_where_a_mode_within_it_is_like_the_measured_one() -> None:
     """Two sensors see the first and the third mode nearly alike, and the data are as the third."""
-    springs, sensors = ["k"] * 8, {"a": 0, "b": 1}
-    model = chain(["k"], [1.0] * 8, [2000.0] * 8, stiffness_parameters=springs, sensors=sensors)
-    modes = model.modes(np.ones(1), 8, derivatives=False)
-    data = modal_data(ratio * modes.frequency[:1], modes.phi[:, [2]].T, model.sensors)
-    one = np.ones(1)
-    problem = UpdatingProblem(model, data, (Group("f", frequency="all"),), one / 5, 5 * one, one)
-    (found,) = bad_pairs(compare(problem))
-    assert (found.kind, found.subject) == (kind, "1")
-    assert remedy in str(found)
+    model = chain_of({"a": 0, "b": 1})
+    modes = model.modes(np.ones(2), 8, derivatives=False)
+    (found,) = mistakes(model, modes.frequency[:1], modes.phi[:, [2]])
+    assert (found.kind, found.subject) == ("distant-pair", "1")
+    assert "model mode 1 at 1.313 Hz is near; set window = 1.5 in [pairing]" in str(found)
+
+
+@pytest.mark.parametrize(("factor", "looks"), [(0.1, ", and 10 times it would fit;"), (7.0, ";")])
+def test_a_frequency_of_which_the_shape_is_far_away_is_said_to_be_wrong(
+    factor: float, looks: str
+) -> None:
+    model = chain_of()
+    modes = model.modes(np.ones(2), 5, derivatives=False)
+    frequency = modes.frequency.copy()
+    frequency[1] *= factor
+    (found,) = mistakes(model, frequency, modes.phi)
+    assert (found.kind, found.subject) == ("far-from-model", "2")
+    assert f"none that is like it is near{looks} check its frequency and shape" in str(found)
+
+
+def test_a_mode_beyond_the_candidates_is_named_with_what_is_to_be_set() -> None:
+    model = chain_of()
+    modes = model.modes(np.ones(2), 8, derivatives=False)
+    (found,) = mistakes(model, modes.frequency[[0, 7]], modes.phi[:, [0, 7]])
+    assert (found.kind, found.subject) == ("beyond-candidates", "2")
+    assert "resembles model mode 8" in str(found)
+    assert "set spare = 6 in [pairing]" in str(found)

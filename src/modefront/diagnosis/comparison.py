@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,26 +10,18 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import MEASURED, ModalData
-from modefront.diagnosis.measured import Measured, log_frequencies, mac_values, measured
+from modefront.diagnosis.measured import Measured, measured
 from modefront.errors import ModelError
-from modefront.findings.record import Finding, found
 from modefront.models.base import full_of, matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.pairing.match import Pairs, match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 
-MORE = 12
+MORE = 8
 """Model modes that are looked at beyond those among which measured modes are paired."""
 
 COMPARED = 60
 """Data sets in which mistakes are sought, at most: each is compared with every other one."""
-
-
-FAR, NEAR = np.log(2.0), np.log(1.5)
-"""Logarithms of ratios of frequencies: pairs are far apart, and a window of a study is usual."""
-
-POOR, GOOD = 0.5, 0.8
-"""MAC below which a pair is poor, and from which on a mode is found."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,43 +87,3 @@ def of_few_sets(comparison: Comparison) -> Comparison:
     few = {name: getattr(data, name)[chosen] for name in MEASURED}
     sets = tuple(data.sets[k] for k in chosen.tolist())
     return compare(replace(comparison.problem, data=replace(data, sets=sets, **few)))
-
-
-def bad_pairs(comparison: Comparison) -> Iterator[Finding]:
-    """Yield the measured modes that the nominal model pairs badly, or does not have."""
-    view, f, low = comparison.view, comparison.frequency, comparison.candidates
-    logs, modes = log_frequencies(f), comparison.data.modes
-    mac = mac_values(view.mean, view.known, comparison.phi)
-    for r, (mode, log) in enumerate(zip(modes, view.logs, strict=True)):
-        q, later = int(comparison.pairs.index[r]), int(np.argmax(mac[r]))
-        measured = float(np.exp(log))
-        if log > logs.max() + NEAR:
-            whole = f.size == comparison.problem.model.size
-            end = f"{f.size} modes" if whole else f"{f.size} lowest modes"
-            yield found(
-                "outside-model", str(mode), measured=measured, modes=end, highest=float(f.max())
-            )
-        elif later >= low and mac[r, later] > GOOD and mac[r, :low].max() < POOR:
-            yield found(
-                "beyond-candidates",
-                str(mode),
-                later=later + 1,
-                f=float(f[later]),
-                mac=float(mac[r, later]),
-                best=float(mac[r, :low].max()),
-                spare=later + 1 - len(modes),
-            )
-        elif abs(log - logs[q]) > FAR:
-            value, apart = comparison.pairs.mac[r], np.abs(log - logs[:low])
-            fits = (apart < NEAR) & ~(mac[r, :low] < POOR)
-            near = int(np.argmin(np.where(fits, apart, np.inf)))
-            yield found(
-                "distant-pair" if fits.any() else "far-from-model",
-                str(mode),
-                measured=measured,
-                model=q + 1,
-                f=float(f[q]),
-                alike="" if np.isnan(value) else f" (MAC {value:.2f})",
-                near=near + 1,
-                there=float(f[near]),
-            )

@@ -70,6 +70,7 @@ class State:
     ----------
     data : the measured modes
     foreign : (modes,) modes that the model does not have
+    candidates : number of the lowest model modes among which pairs are sought
     selection : (sensors, N) weights of the degrees of freedom; None for a model without matrices
     geometry : places and directions of the sensors; None where they are not known
     start, lower, upper : (parameters,) nominal values and bounds
@@ -77,6 +78,7 @@ class State:
 
     data: Measured
     foreign: Bools
+    candidates: int
     selection: scipy.sparse.csr_array | None
     geometry: Geometry | None
     start: Floats
@@ -145,20 +147,22 @@ class Whole(NamedTuple):
     Phi: Floats
 
 
-def point_of(state: State, whole: Whole) -> Point:
-    """Return the state beside a model."""
+def point_of(state: State, whole: Whole, index: Ints | None = None) -> Point:
+    """Return the state beside a model, with the best pairs, or with those of an ``index``."""
     phi = whole.Phi if state.selection is None else state.selection @ whole.Phi
-    return point(state, whole.theta, whole.frequency, phi)
+    return point(state, whole.theta, whole.frequency, phi, index)
 
 
-def point(state: State, theta: Floats, frequency: Floats, phi: Floats) -> Point:
+def point(
+    state: State, theta: Floats, frequency: Floats, phi: Floats, index: Ints | None = None
+) -> Point:
     """Return the state beside a model's frequencies (model modes,) and shapes at the sensors."""
     data = state.data
     known = data.known & ~state.foreign[:, None]
     logs = log_frequencies(frequency)
     cost = pair_costs(mac_values(data.mean, known, phi), data.logs, logs)
     cost[state.foreign] = 0.0
-    index = assigned(cost)
+    index = assigned(cost[:, : state.candidates]) if index is None else index
     used = known & (known.sum(axis=1) > 1)[:, None]
     chi = np.where(data.known, phi[:, index].T, 0.0)
     c, weight = data.mean, used / data.motion**2

@@ -101,12 +101,15 @@ class Measured:
         return np.isfinite(self.shape)
 
     @cached_property
+    def size(self) -> Floats:
+        """Roots of the mean squares of shapes, (sets, modes); NaN of those without components."""
+        square = (np.where(self.seen, self.shape, 0.0) ** 2).sum(axis=2)
+        return np.sqrt(np.where(square > 0, square, np.nan) / np.maximum(self.seen.sum(axis=2), 1))
+
+    @cached_property
     def psi(self) -> Floats:
         """The shapes with a mean square of 1, and 0 where nothing was measured."""
-        psi = np.where(self.seen, self.shape, 0.0)
-        square = (psi**2).sum(axis=2, keepdims=True)
-        size = np.sqrt(square / np.maximum(self.seen.sum(axis=2, keepdims=True), 1))
-        return np.divide(psi, size, out=np.zeros(psi.shape), where=size > 0)
+        return np.nan_to_num(self.shape / self.size[:, :, None])
 
     @cached_property
     def mean(self) -> Floats:

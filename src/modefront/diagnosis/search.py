@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.diagnosis.comparison import Comparison, bad_pairs, compare, of_few_sets
-from modefront.diagnosis.evidence import Point, Quick, State, Whole, point_of, quick
+from modefront.diagnosis.comparison import Comparison, compare, of_few_sets
+from modefront.diagnosis.evidence import Point, Quick, State, Whole, point, point_of, quick
 from modefront.diagnosis.mistakes import MISTAKES
 from modefront.diagnosis.mistakes.record import TRIED, Mistake, Setting
-from modefront.findings.record import Finding
+from modefront.findings.record import Finding, found
+from modefront.pairing.match import match
 
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
@@ -28,11 +29,11 @@ FOLLOWED = 2
 EITHER = 3
 """Explanations that the data cannot tell apart and that are named nevertheless, at most."""
 
+WINDOW = 1.5
+"""Window of frequencies that is advised."""
+
 SEEN = 0.02
 """Increase of a MAC value that is worth its name."""
-
-MORE = 4
-"""Model modes with which measured ones may be paired, beyond the candidates of the study."""
 
 Claims = frozenset[tuple[str, ...]]
 
@@ -82,11 +83,12 @@ class Search:
     def of(cls, comparison: Comparison) -> Search:
         """Return the search that begins with a comparison."""
         problem, matrices = comparison.problem, comparison.matrices
-        count = min(problem.model.size, comparison.candidates + MORE, comparison.frequency.size)
+        count = min(problem.model.size, comparison.frequency.size)
         bounds = problem.lower, problem.upper
         plain = State(
             comparison.view,
             np.zeros(len(problem.data.modes), dtype=bool),
+            comparison.candidates,
             None if matrices is None else matrices.selection,
             None if matrices is None else matrices.geometry,
             problem.start,
@@ -260,5 +262,30 @@ def diagnose(comparison: Comparison) -> list[Finding]:
         if model is not None and state.selection is not None:
             problem = replace(problem, model=replace(model, selection=state.selection))
         comparison = compare(replace(problem, data=data, start=state.start))
-    foreign = {str(mode) for mode in np.array(comparison.data.modes)[state.foreign]}
-    return [*named.values(), *(x for x in bad_pairs(comparison) if x.subject not in foreign)]
+    return [*named.values(), *distant_pairs(comparison, state)]
+
+
+def distant_pairs(comparison: Comparison, state: State) -> Iterator[Finding]:
+    """Yield the pairs of a study that a window mends, where they are clearly better with it."""
+    problem, low = comparison.problem, state.candidates
+    f, phi, rule = comparison.frequency, comparison.phi, problem.pairing
+    if rule.method == "order":
+        return
+    pairs, mended = (
+        match(each, problem.data, f[:low], phi[:, :low])
+        for each in (rule, replace(rule, window=WINDOW))
+    )
+    cost, least = (point(state, problem.start, f, phi, x.index).cost for x in (pairs, mended))
+    changed = (pairs.index != mended.index) & ~state.foreign & (cost > least + CLEAR)
+    for r in np.flatnonzero(changed).tolist():
+        q, near, value = int(pairs.index[r]), int(mended.index[r]), pairs.mac[r]
+        yield found(
+            "distant-pair",
+            str(problem.data.modes[r]),
+            measured=float(np.exp(state.data.logs[r])),
+            model=q + 1,
+            f=float(f[q]),
+            alike="" if np.isnan(value) else f" (MAC {value:.2f})",
+            near=near + 1,
+            there=float(f[near]),
+        )

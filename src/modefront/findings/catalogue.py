@@ -40,6 +40,12 @@ reversed-sensor | sensor {sensor} is reversed in {where}; check the direction of
     change the sign of its column, or of the direction in the model
 exchanged-sensors | sensors {sensors} are exchanged in {where}; check the cables of {sensors}, and
     exchange their columns or sensors
+copied-sensor | sensor {sensor} has the same digits as {other} and should not; look for its own
+    values in the test, or leave them empty
+sensor-factor | the values of sensor {sensor} in {where} are {factor:.3g} times what the others say;
+    check unit and sensitivity of {sensor}, and divide its column by {factor:.3g}
+shifted-values | shapes of {where} look as if a value were {what} at sensor {sensor} and the rest
+    moved; compare the columns with the test, and put them below their sensors
 counted-from-one | the {what} of the sensors look as if they were counted from 1; count {what} from
     0: subtract 1 from each in [model.sensors]
 wrong-direction | direction {given} of {sensors} does not match the data: {better} does; check
@@ -58,7 +64,8 @@ damping | damping of {least:.3g} to {greatest:.3g} looks like percent; give the 
 foreign-mode | measured mode {mode}{at} resembles none of the model's; check its shape, refine the
     model, or leave it out of the groups
 outside-model | measured mode {subject} at {measured:.4g} Hz is outside what the model has: its
-    {modes} end at {highest:.4g} Hz; refine the model, or leave the mode out of all groups
+    {modes} lowest modes end at {highest:.4g} Hz; refine the model, or leave the mode out of all
+    groups
 beyond-candidates | measured mode {subject} resembles model mode {later} at {f:.4g} Hz (MAC
     {mac:.2f}), which is not looked at, and none of those that are (MAC {best:.2f} or less); set
     spare = {spare} in [pairing]
@@ -66,8 +73,8 @@ distant-pair | measured mode {subject} at {measured:.4g} Hz is paired with model
     {f:.4g} Hz{alike}, though model mode {near} at {there:.4g} Hz is near; set window = 1.5 in
     [pairing]
 far-from-model | measured mode {subject} at {measured:.4g} Hz is paired with model mode {model} at
-    {f:.4g} Hz{alike}: none that is like it is near; check its frequency and shape, or leave the
-    mode out of all groups
+    {f:.4g} Hz{alike}: none that is like it is near{looks}; check its frequency and shape, or leave
+    the mode out of all groups
 data-direction | sensor {subject} is along {model} in the model, but takes {data} of the data;
     write the same direction in [model.sensors] and [data.sensors]
 unused-group | mesh group '{subject}' of {cells} {type} cells has no elements and holds nothing;

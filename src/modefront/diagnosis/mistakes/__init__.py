@@ -14,6 +14,9 @@ MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
     sets.other_numbers,
     sensors.reversed_sensor,
     sensors.exchanged_sensors,
+    sensors.copied_sensor,
+    sensors.wrong_factor,
+    sensors.shifted_values,
     sensors.counted_from_one,
     sensors.wrong_direction,
     sensors.wrong_place,
@@ -21,7 +24,9 @@ MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
     values.excluding_bound,
     sets.odd_frequency,
     sets.odd_shape,
+    values.wrong_frequency,
     values.damping_in_percent,
     sets.foreign_mode,
+    sets.later_mode,
 )
 """All of them; where two explain the data equally well, the first one is tried first."""

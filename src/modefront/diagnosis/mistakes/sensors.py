@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import permutations, product
 from typing import Any
 
 import numpy as np
 import scipy.sparse
 
-from modefront._typing import Floats
-from modefront.diagnosis.evidence import State
+from modefront._typing import Floats, Ints
+from modefront.diagnosis.evidence import SHAPE, State
+from modefront.diagnosis.measured import SHAPE as NOISE
 from modefront.diagnosis.mistakes.record import (
     MANY,
     OFTEN,
@@ -28,7 +30,10 @@ from modefront.diagnosis.mistakes.record import (
 from modefront.diagnosis.notes import ALONG, axis_name
 from modefront.findings.knowledge import enumeration
 from modefront.models.geometry import Geometry
-from modefront.rounding import ACCUMULATED
+from modefront.rounding import ACCUMULATED, TINY
+
+FACTORS = (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 9.81, 1 / 9.81, 2.0, 0.5)
+"""Factors on the values of a sensor by another unit or sensitivity."""
 
 NEAREST = 4
 """Places of each sensor that are tried: those that promise most."""
@@ -113,6 +118,120 @@ def _costs(setting: Setting, sets: list[int], sign: float = 1.0) -> list[Floats]
         )
         for point in setting.points
     ]
+
+
+def wrong_factor(setting: Setting) -> Iterator[Mistake]:
+    """Yield for each sensor the factor of wrong units that is nearest to what the others say."""
+    data, where, found = setting.state.data, parts(setting.names.sets), []
+    price = one_of(USUAL, len(FACTORS) * len(where) * len(setting.measured))
+    for (sets, name), point in product(where, setting.points):
+        x, seen = data.psi[sets], data.seen[sets]
+        of_model = len(sets) == len(data.psi)
+        t = seen * (point.beta[:, None] * point.chi if of_model else data.mean)
+        square = (t**2).sum(axis=2, keepdims=True) - t**2
+        along = (x * t).sum(axis=2, keepdims=True) - x * t
+        y = t * np.divide(along, square, out=np.zeros(t.shape), where=square > 0)
+        slope = (x * y).sum(axis=(0, 1)) / np.maximum((y**2).sum(axis=(0, 1)), TINY)
+        gain = (slope - 1) ** 2 * (y**2).sum(axis=(0, 1))
+        for s in np.flatnonzero(slope > 0).tolist():
+            factor = min(FACTORS, key=lambda each: abs(np.log(each / slope[s])))
+            numbers = {"sensor": setting.names.sensors[s], "where": name, "factor": factor}
+            change = partial(_rescaled, sets=sets, s=s, factor=factor)
+            subject = setting.names.sensors[s], name
+            found.append((gain[s], Mistake("sensor-factor", subject, change, price, numbers)))
+    yield from promising(found)
+
+
+def _rescaled(state: State, sets: list[int], s: int, factor: float) -> State:
+    """Return the state with a sensor over a factor, and the cost of the values as they are given.
+
+    A density of values is one over their unit, which changes with the factor and the mean square.
+    """
+    shape = state.data.shape.copy()
+    shape[sets, :, s] /= factor
+    new = replace(state.data, shape=shape)
+    units = np.log(new.size / state.data.size) * new.seen.sum(axis=2)
+    left_out = np.nansum(units) + new.seen[sets, :, s].sum() * np.log(factor)
+    return replace(state, data=replace(new, left_out=new.left_out + float(left_out)))
+
+
+def copied_sensor(setting: Setting) -> Iterator[Mistake]:
+    """Yield sensors that have the values of another one, digit by digit.
+
+    A copy says nothing on its own: its values cost as much as those that fit exactly.
+    """
+    shape, names = setting.state.data.shape, setting.names.sensors
+    same = [
+        (s, t)
+        for s, t in permutations(setting.measured, 2)
+        if np.array_equal(shape[:, :, s], shape[:, :, t], equal_nan=True) and shape[..., s].any()
+    ]
+    for s, t in same:
+        numbers = {"sensor": names[s], "other": names[t]}
+        change = partial(_without, s=s)
+        yield Mistake(
+            "copied-sensor", (names[s], names[t]), change, one_of(OFTEN, len(same)), numbers
+        )
+
+
+def _without(state: State, s: int) -> State:
+    data, shape = state.data, state.data.shape.copy()
+    seen = data.seen[:, :, s].sum(axis=0)
+    exact = np.log(SHAPE) * (seen > 0).sum() + np.log(NOISE) * np.maximum(seen - 1, 0).sum()
+    shape[:, :, s] = np.nan
+    return replace(state, data=replace(data, shape=shape, left_out=data.left_out + float(exact)))
+
+
+def shifted_values(setting: Setting) -> Iterator[Mistake]:
+    """Yield rows of shapes, or all, in which a value is lost or too many, and the rest moved.
+
+    Where it begins is what makes the shapes most like those of the model, by their MAC.
+    """
+    data, (K, m, n) = setting.state.data, setting.state.data.shape.shape
+    every = list(range(K)), list(range(m)), "all data"
+    rows = [
+        ([k], [r], f"mode {mode}" + f" of set {name}" * (K > 1))
+        for k, name in enumerate(setting.names.sets)
+        for r, mode in enumerate(setting.names.modes)
+    ]
+    for by, point in product((1, -1), setting.points):
+        ahead = np.roll(point.chi, -by, axis=1)
+        for sets, modes, name in (every, *rows):
+            x, seen = data.psi[np.ix_(sets, modes)], data.seen[np.ix_(sets, modes)]
+            cross, size = (
+                _joined(seen * a, seen * b)
+                for a, b in (
+                    (x * point.chi[modes], x * ahead[modes]),
+                    (point.chi[modes] ** 2, ahead[modes] ** 2),
+                )
+            )
+            mac = np.divide(cross**2, size, out=np.zeros(size.shape), where=size > 0)
+            start = int(np.argmax(mac.sum(axis=(0, 1))[:-1]))
+            change = changed("shape", partial(_moved, rows=np.ix_(sets, modes), start=start, by=by))
+            numbers = {
+                "where": name,
+                "sensor": setting.names.sensors[start],
+                "what": "lost" if by > 0 else "too many",
+            }
+            price = one_of(USUAL, 2 * n * (1 + len(rows)))
+            yield Mistake("shifted-values", (name,), change, price, numbers)
+
+
+def _joined(a: Floats, b: Floats) -> Floats:
+    """Return sums along the last axis of a up to each place and of b from there on."""
+    return np.asarray(np.cumsum(a, axis=-1) - a + np.cumsum(b[..., ::-1], axis=-1)[..., ::-1])
+
+
+def _moved(shape: Floats, rows: tuple[Ints, ...], start: int, by: int) -> Floats:
+    part = shape[rows]
+    new = part.copy()
+    new[..., start:] = np.nan
+    if by > 0:
+        new[..., start + 1 :] = part[..., start:-1]
+    else:
+        new[..., start:-1] = part[..., start + 1 :]
+    shape[rows] = new
+    return shape
 
 
 def at_rows(state: State, sensors: Sequence[int], rows: scipy.sparse.csr_array) -> State:

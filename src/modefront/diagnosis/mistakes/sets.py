@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.diagnosis.evidence import State
+from modefront.diagnosis.evidence import State, point_of
 from modefront.diagnosis.measured import NOTHING, mac_values, median
 from modefront.diagnosis.mistakes.record import (
     MANY,
@@ -148,14 +148,34 @@ def _left_out(state: State, part: str, k: int, r: int) -> State:
 
 
 def foreign_mode(setting: Setting) -> Iterator[Mistake]:
-    """Yield modes that the model does not have."""
-    modes = setting.names.modes
-    for r, mode in enumerate(modes):
-        f = np.exp(setting.state.data.logs[r])
-        numbers = {"mode": mode, "at": "" if np.isnan(f) else f" at {f:.4g} Hz"}
-        price = one_of(USUAL, len(modes))
-        yield Mistake("foreign-mode", (str(mode),), partial(_foreign, r=r), price, numbers)
+    """Yield modes that the model does not have, or has not so high."""
+    modes, (*_, (_, of_model, _)) = setting.names.modes, setting.wholes
+    price = one_of(USUAL, len(modes))
+    for r, f in enumerate(np.exp(setting.state.data.logs).tolist()):
+        numbers = {"mode": modes[r], "at": "" if np.isnan(f) else f" at {f:.4g} Hz", "measured": f}
+        numbers |= {"modes": of_model.size, "highest": float(of_model.max())}
+        kind = "outside-model" if f > of_model.max() else "foreign-mode"
+        yield Mistake(kind, (str(modes[r]),), partial(_foreign, r=r), price, numbers)
 
 
 def _foreign(state: State, r: int) -> State:
     return replace(state, foreign=state.foreign | (np.arange(state.foreign.size) == r))
+
+
+def later_mode(setting: Setting) -> Iterator[Mistake]:
+    """Yield measured modes that are like model modes beyond those among which pairs are sought."""
+    state, modes = setting.state, setting.names.modes
+    for whole, own in zip(setting.wholes, setting.points, strict=True):
+        free = point_of(replace(state, candidates=whole.frequency.size), whole)
+        before, after = own.mac(state.data), free.mac(state.data)
+        for r in np.flatnonzero(free.index >= state.candidates).tolist():
+            later = int(free.index[r]) + 1
+            numbers = {"later": later, "f": float(whole.frequency[later - 1])}
+            numbers |= {
+                "mac": float(after[r]),
+                "best": float(before[r]),
+                "spare": later - len(modes),
+            }
+            change = partial(replace, candidates=later)
+            price = one_of(USUAL, whole.frequency.size - state.candidates)
+            yield Mistake("beyond-candidates", (str(modes[r]),), change, price, numbers)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.diagnosis.evidence import State
+from modefront.diagnosis.evidence import FREQUENCY, State
 from modefront.diagnosis.measured import RIGID, log_frequencies
 from modefront.diagnosis.mistakes.record import (
     OFTEN,
@@ -123,6 +123,34 @@ def damping_in_percent(setting: Setting) -> Iterator[Mistake]:
         numbers = {"least": float(known.min()), "greatest": float(known.max())}
         change = changed("damping", lambda zeta: zeta / 100)
         yield Mistake("damping", ("damping",), change, one_of(OFTEN, 1), numbers)
+
+
+SLIPS, FAR = (10.0, 0.1, 100.0, 0.01, 2.0, 0.5), 4.0
+"""Factors on the frequency of a mode by a lost decimal point or aliasing, and the logarithm of the
+range in which others are."""
+
+
+def wrong_frequency(setting: Setting) -> Iterator[Mistake]:
+    """Yield known factors on the frequency of each mode, and the one that the model has.
+
+    Of the latter nothing is known: its price is that of all values that it may have.
+    """
+    modes, logs = setting.names.modes, setting.state.data.logs
+    known = one_of(OFTEN, len(SLIPS) * len(modes))
+    unknown = one_of(OFTEN, FAR / FREQUENCY * len(modes))
+    for r in np.flatnonzero(np.isfinite(logs)).tolist():
+        found = [(known, factor, f", and {1 / factor:g} times it would fit") for factor in SLIPS]
+        for point, (_, f, _) in zip(setting.points, setting.wholes, strict=True):
+            q, mac = int(point.index[r]), point.mac(setting.state.data)[r]
+            found.append((unknown, float(np.exp(logs[r] - log_frequencies(f)[q])), ""))
+            alike = "" if np.isnan(mac) else f" (MAC {mac:.2f})"
+            numbers = {"model": q + 1, "f": float(f[q]), "alike": alike}
+            numbers["measured"] = float(np.exp(logs[r]))
+        for price, factor, looks in found:
+            over = np.where(np.arange(len(modes)) == r, factor, 1.0)
+            change = changed("frequency", partial(np.multiply, 1 / over))
+            subject, said = (str(modes[r]),), numbers | {"looks": looks}
+            yield Mistake("far-from-model", subject, change, price, said)
 
 
 def wrong_nominal_value(setting: Setting) -> Iterator[Mistake]:
