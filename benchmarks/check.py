@@ -412,7 +412,7 @@ def claims(found: Finding) -> list[Claim]:
     out = []
     for each in (found, *found.others):
         names = tuple(each.subject.split(", "))
-        if each.kind in ("reversed-sensor", "exchanged-sensors"):
+        if each.kind in ("reversed-sensor", "exchanged-sensors", "sensor-factor", "copied-sensor"):
             names = tuple(sorted(names[:-1]))
         if each.kind == "wrong-direction" and len(names) > 1:
             names = ("all",)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.diagnosis.comparison import Comparison, compare, of_few_sets
 from modefront.diagnosis.evidence import Point, Quick, State, Whole, point, point_of, quick
-from modefront.diagnosis.mistakes import MISTAKES
+from modefront.diagnosis.mistakes import sensors, sets, values
 from modefront.diagnosis.mistakes.record import TRIED, Mistake, Setting
 from modefront.findings.record import Finding, found
 from modefront.pairing.match import match
@@ -34,6 +34,29 @@ WINDOW = 1.5
 
 SEEN = 0.02
 """Increase of a MAC value that is worth its name."""
+
+MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
+    values.frequency_factor,
+    values.other_quantity,
+    sets.set_factor,
+    sets.other_numbers,
+    sensors.wrong_factor,
+    sensors.exchanged_sensors,
+    sensors.copied_sensor,
+    sensors.shifted_values,
+    sensors.counted_from_one,
+    sensors.wrong_direction,
+    sensors.wrong_place,
+    values.wrong_nominal_value,
+    values.excluding_bound,
+    sets.odd_frequency,
+    sets.odd_shape,
+    values.wrong_frequency,
+    values.damping_in_percent,
+    sets.foreign_mode,
+    sets.later_mode,
+)
+"""What is looked for; where two explain the data equally well, the first one is tried first."""
 
 Claims = frozenset[tuple[str, ...]]
 

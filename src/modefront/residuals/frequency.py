@@ -40,54 +40,63 @@ from modefront.residuals.base import (
 
 @dataclass(frozen=True, eq=False)
 class FrequencyResiduals:
-    """Residuals of the frequency of the measured mode at position ``mode`` of the data."""
+    """Residuals of the frequencies of the measured modes at some positions of the data.
+
+    Those of one mode are a member of a group, those of several a stack of them.
+    """
 
     data: ModalData
-    mode: int
+    modes: Sequence[int]
     scale: Scale
-    count: float = 1.0
     remark: str = ""
 
     @cached_property
+    def rows(self) -> tuple[Ints, Ints]:
+        """Data set and mode of each residual, mode after mode, each of shape (rows,)."""
+        place, sets = np.nonzero(np.isfinite(self.data.frequency[:, self.modes].T))
+        return sets, np.asarray(self.modes)[place]
+
+    @property
     def sets(self) -> Ints:
-        """Data sets with the frequency; each has one residual."""
-        return np.flatnonzero(np.isfinite(self.data.frequency[:, self.mode]))
+        """Data set of each residual."""
+        return self.rows[0]
+
+    @property
+    def count(self) -> float:
+        """Number of frequencies."""
+        return float(len(self.modes))
 
     @cached_property
     def measured(self) -> Floats:
         """Measured frequencies in Hz, shape (rows,)."""
-        return self.data.frequency[self.sets, self.mode]
-
-    @cached_property
-    def std(self) -> Floats:
-        """Standard deviations of the measured frequencies, shape (rows,)."""
-        return self.data.frequency_std[self.sets, self.mode]
+        return self.data.frequency[self.rows]
 
     @cached_property
     def unit(self) -> Floats:
         """Units u, shape (rows,)."""
-        return self.measured if self.scale == "measured" else self.std
+        return self.measured if self.scale == "measured" else self.data.frequency_std[self.rows]
 
     @cached_property
     def weight(self) -> Floats:
         """Factors of the errors of frequencies, shape (rows,)."""
-        return 1 / (self.unit * np.sqrt(self.sets.size))
+        mode = self.rows[1]
+        return 1 / (self.unit * np.sqrt(np.bincount(mode)[mode]))
 
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
         size = self.weight * self.measured
-        return float((errors.eigenvalue[self.mode] / 2) ** 2 * (size @ size))
+        return float((errors.eigenvalue[self.modes[0]] / 2) ** 2 * (size @ size))
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield the change of J by one standard deviation of each measured frequency."""
-        q = pairs.index[self.mode]
+        q = pairs.index[self.modes[0]]
         f, df = modes.frequency[q], modes.dfrequency[q]
-        step = known_std(self.std) / self.sets.size
+        step = known_std(self.data.frequency_std[self.rows]) / self.sets.size
         for k, y, u, h in zip(self.sets, self.measured, self.unit, step, strict=True):
             ratio = f / y if self.scale == "measured" else 1.0
             J = -2 * (f - y) / u**2 * ratio
             dJ = -2 * df / u**2 * (2 * ratio - 1)
-            number = value_numbers(self.data, k, self.mode)[:1]
+            number = value_numbers(self.data, k, self.modes[0])[:1]
             yield Sensitivity(number, np.array([J * h]), (dJ * h)[None])
 
     def independent(self) -> tuple[float, float, float]:
@@ -96,42 +105,26 @@ class FrequencyResiduals:
         mean = (w @ f) / w.sum()
         return 1.0, float(w @ (f - mean) ** 2), float(f.size - 1)
 
-
-@dataclass(frozen=True, eq=False)
-class FrequencyStack:
-    """Residuals of frequencies; see `modefront.residuals.base.Stack`.
-
-    Attributes
-    ----------
-    mode : (rows,) position of the measured mode in the data
-    measured : (rows,) measured frequencies in Hz
-    weight : (rows,) factors of their errors
-    """
-
-    mode: Ints
-    measured: Floats
-    weight: Floats
-
     def squares(self, modes: Modes, count: int) -> Floats:
         """Return the sums of squares with each model mode, (measured modes, modes)."""
         out = np.zeros((count, modes.frequency.size))
         r = (modes.frequency - self.measured[:, None]) * self.weight[:, None]
-        np.add.at(out, self.mode, r**2)
+        np.add.at(out, self.rows[1], r**2)
         return out
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""
-        return (modes.frequency[pairs.index[self.mode]] - self.measured) * self.weight
+        return (modes.frequency[pairs.index[self.rows[1]]] - self.measured) * self.weight
 
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, shape (rows, p)."""
-        dr = self.weight[:, None] * modes.dfrequency[pairs.index[self.mode]]
+        dr = self.weight[:, None] * modes.dfrequency[pairs.index[self.rows[1]]]
         return self.r(modes, pairs), dr
 
     def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
         """Return these and what is needed of second derivatives; d2f/dlam2 is -f' f' / f."""
         (r, dr), f, df = self.with_slopes(modes, pairs), modes.frequency, modes.dfrequency
-        slope = np.bincount(pairs.index[self.mode], 2 * self.weight * r, f.size)
+        slope = np.bincount(pairs.index[self.rows[1]], 2 * self.weight * r, f.size)
         own = df.T @ (-np.divide(slope, f, out=np.zeros(f.size), where=f > 0)[:, None] * df)
         return r, dr, Curvature(slope * modes.frequency_by_lam, np.zeros(modes.phi.shape), own)
 
@@ -154,13 +147,8 @@ class FrequencyKind:
 
     def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
         """Return the residuals of the frequency of each mode."""
-        return [FrequencyResiduals(data, r, scale) for r in modes]
+        return [FrequencyResiduals(data, [r], scale) for r in modes]
 
-    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> FrequencyStack:
+    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> FrequencyResiduals:
         """Return the residuals of the frequencies of some modes."""
-        members = [FrequencyResiduals(data, r, scale) for r in modes]
-        return FrequencyStack(
-            np.repeat(modes, [member.sets.size for member in members]),
-            np.concatenate([member.measured for member in members]),
-            np.concatenate([member.weight for member in members]),
-        )
+        return FrequencyResiduals(data, modes, scale)

@@ -55,33 +55,23 @@ from modefront.residuals.base import (
     Sensitivity,
     joined,
     known_std,
-    together,
     value_numbers,
 )
 
 
-@dataclass(frozen=True, eq=False)
-class _Components:
+class _Components(NamedTuple):
     """The measured components of a mode, those of a data set together.
 
-    Attributes
-    ----------
-    sizes : (shapes,) number of components of each data set that has the shape
-    sets, sensors : (components,) data set and sensor
-    weight : (components,) factors 1 / (u sqrt K)
-    psi : (components,) measured components times their factors
+    Of each data set that has the shape their number and where they are, and of each component data
+    set, sensor, factor 1 / (u sqrt K), and the measured value times that.
     """
 
     sizes: Ints
+    parts: list[slice]
     sets: Ints
     sensors: Ints
     weight: Floats
     psi: Floats
-
-    @property
-    def parts(self) -> list[slice]:
-        """Where the components of each shape are."""
-        return _runs(self.sizes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +91,7 @@ class ShapeResiduals:
         """All components, those of one data set after those of the other."""
         rows, sensors = np.nonzero(np.isfinite(self.data.shape[:, self.mode]))
         sizes = np.unique(rows, return_counts=True)[1]
-        parts = _runs(sizes)
+        parts = [slice(*ends) for ends in pairwise([0, *np.cumsum(sizes).tolist()])]
         values = self.data.shape[rows, self.mode, sensors]
         if self.scale == "measured":
             squares = np.array([values[part] @ values[part] for part in parts])
@@ -110,7 +100,7 @@ class ShapeResiduals:
             std = self.data.shape_std[rows, self.mode, sensors]
             weight = 1 / joined([without_negligible(std[part]) for part in parts] or [std])
         weight = weight / np.sqrt(sizes.size)
-        return _Components(sizes, rows, sensors, weight, weight * values)
+        return _Components(sizes, parts, rows, sensors, weight, weight * values)
 
     @property
     def count(self) -> float:
@@ -184,67 +174,37 @@ class ShapeStack:
 
     Attributes
     ----------
-    blocks : shapes one after the other, those of as many components together
-    """
-
-    blocks: tuple[ShapeBlock, ...]
-
-    def squares(self, modes: Modes, count: int) -> Floats:
-        """Return the sums of squares with each model mode, (measured modes, modes)."""
-        out = np.zeros((count, modes.frequency.size))
-        for block in self.blocks:
-            if block.fitted.shape[1] == 1:  # no pair of modes alone has a residual from a span
-                np.add.at(out, block.fitted[:, 0], block.squares(modes))
-        return out
-
-    def r(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the residuals, shape (rows,)."""
-        return joined([block.r(modes, pairs) for block in self.blocks])
-
-    def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
-        """Return the residuals and their derivatives, (rows, p), which are 0 of a shape that is."""
-        parts = [block.with_slopes(modes, pairs) for block in self.blocks]
-        return joined([r for r, _ in parts]), joined([dr for _, dr in parts])
-
-    def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
-        """Return these and what is needed of second derivatives."""
-        r, dr, parts = zip(*(x.with_curvature(modes, pairs) for x in self.blocks), strict=True)
-        return joined(r), joined(dr), together(parts)
-
-
-@dataclass(frozen=True, eq=False)
-class ShapeBlock:
-    """Shapes with as many measured components.
-
-    Attributes
-    ----------
     fitted : (shapes, m) positions in the data of the modes by which each is fitted
     sensors, weight, psi : (shapes, components) of each: its sensors, the factors 1 / (u sqrt K),
-        and the measured components times these
+        and the measured components times these; both are 0 beyond the components that it has
+    rows : (shapes, components) which components it has
     """
 
     fitted: Ints
     sensors: Ints
     weight: Floats
     psi: Floats
+    rows: Bools
 
-    def squares(self, modes: Modes) -> Floats:
-        """Return the sums of squares of each shape with each model mode, (shapes, modes)."""
-        c = np.einsum("rs,rsq->rq", self.psi * self.weight, modes.phi[self.sensors])
-        b = np.einsum("rs,rsq->rq", self.weight**2, modes.phi[self.sensors] ** 2)
-        seen = np.divide(c**2, b, out=np.zeros(b.shape), where=b > 0)
-        return np.asarray(np.vecdot(self.psi, self.psi)[:, None] - seen)
+    def squares(self, modes: Modes, count: int) -> Floats:
+        """Return the sums of squares with each model mode, (measured modes, modes)."""
+        out = np.zeros((count, modes.frequency.size))
+        if self.fitted.shape[1] == 1:  # no pair of modes alone has a residual from a span
+            c = np.einsum("rs,rsq->rq", self.psi * self.weight, modes.phi[self.sensors])
+            b = np.einsum("rs,rsq->rq", self.weight**2, modes.phi[self.sensors] ** 2)
+            seen = np.divide(c**2, b, out=np.zeros(b.shape), where=b > 0)
+            np.add.at(out, self.fitted[:, 0], np.vecdot(self.psi, self.psi)[:, None] - seen)
+        return out
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""
         X = self.weight[:, :, None] * modes.phi[self._places(pairs)]
-        c = _inverse(X) @ self.psi[:, :, None]
-        return ((X @ c)[:, :, 0] - self.psi).ravel()
+        return self._in_rows((X @ (_inverse(X) @ self.psi[:, :, None]))[:, :, 0] - self.psi)
 
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, (rows, p), which are 0 of a shape that is."""
         fit, _ = self._fit(modes, pairs)
-        return fit.r.ravel(), fit.dr.reshape(fit.r.size, -1)
+        return self._in_rows(fit.r), self._in_rows(fit.dr)
 
     def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
         """Return these and what is needed of second derivatives."""
@@ -253,7 +213,17 @@ class ShapeBlock:
         v, own = np.zeros(modes.phi.shape), 2 * of_dX.T @ fit.dc.reshape(of_dX.shape)
         np.add.at(v, self._places(pairs), 2 * (self.weight * fit.r)[:, :, None] * fit.c[:, None])
         curvature = Curvature(np.zeros(modes.lam.size), v, own + own.T)
-        return fit.r.ravel(), fit.dr.reshape(fit.r.size, -1), curvature
+        return self._in_rows(fit.r), self._in_rows(fit.dr), curvature
+
+    def _in_rows(self, values: Floats) -> Floats:
+        """Return values (shapes, components, ...) of the components that there are, (rows, ...)."""
+        if self._is_full:
+            return values.reshape(-1, *values.shape[2:])
+        return values[self.rows]
+
+    @cached_property
+    def _is_full(self) -> bool:
+        return bool(self.rows.all())
 
     def _places(self, pairs: Pairs) -> tuple[Ints, Ints]:
         """Return sensors and model modes of the entries of X, (shapes, components, m)."""
@@ -328,33 +298,17 @@ class ShapeKind:
         """Return the residuals of the shapes of some modes."""
         parts = [ShapeResiduals(data, r, scale).components for r in modes]
         sizes = np.concatenate([part.sizes for part in parts])
-        fitted = np.repeat(
-            [modes] * len(modes) if self.joint else np.array(modes)[:, None],
-            [part.sizes.size for part in parts],
-            axis=0,
-        )
-        columns = [
-            np.concatenate([getattr(part, name) for part in parts])
-            for name in ("sensors", "weight", "psi")
-        ]
-        ends = np.append(0, np.cumsum(sizes))
-        changes = np.flatnonzero(np.diff(sizes)) + 1
-        return ShapeStack(
-            tuple(
-                ShapeBlock(
-                    fitted[first:last],
-                    *(x[ends[first] : ends[last]].reshape(last - first, -1) for x in columns),
-                )
-                for first, last in pairwise([0, *changes.tolist(), sizes.size])
-            )
-        )
+        fitted = np.array([modes] * len(modes) if self.joint else np.array(modes)[:, None])
+        rows = np.arange(sizes.max()) < sizes[:, None]
+        columns = []
+        for name in ("sensors", "weight", "psi"):
+            values = np.concatenate([getattr(part, name) for part in parts])
+            columns.append(np.zeros(rows.shape, values.dtype))
+            columns[-1][rows] = values
+        return ShapeStack(np.repeat(fitted, [x.sizes.size for x in parts], axis=0), *columns, rows)
 
 
 def without_negligible(std: Floats) -> Floats:
     """Return standard deviations with negligible ones replaced by the median of the others."""
     real = std > NEGLIGIBLE * std.max()
     return np.where(real, std, np.median(std[real]))
-
-
-def _runs(sizes: Ints) -> list[slice]:
-    return [slice(*each) for each in pairwise([0, *np.cumsum(sizes).tolist()])]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Floats
 from modefront.diagnosis.evidence import SHAPE, State
 from modefront.diagnosis.measured import SHAPE as NOISE
 from modefront.diagnosis.mistakes.record import (
@@ -19,7 +19,6 @@ from modefront.diagnosis.mistakes.record import (
     OFTEN,
     TRIED,
     USUAL,
-    Change,
     Mistake,
     Setting,
     changed,
@@ -30,13 +29,13 @@ from modefront.diagnosis.mistakes.record import (
 from modefront.diagnosis.notes import ALONG, axis_name
 from modefront.findings.knowledge import enumeration
 from modefront.models.geometry import Geometry
-from modefront.rounding import ACCUMULATED, TINY
+from modefront.rounding import ACCUMULATED
 
 FACTORS = (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 9.81, 1 / 9.81, 2.0, 0.5)
 """Factors on the values of a sensor by another unit or sensitivity."""
 
 NEAREST = 4
-"""Places of each sensor that are tried: those that promise most."""
+"""Places of each sensor, or beginnings of a row, that are tried: those that promise most."""
 
 OFTEN_SHARED = 2.0
 """Logarithm of how much likelier a sensor is at a wrong place where it shares it with another."""
@@ -55,91 +54,56 @@ def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
     return [(every, "all data"), *of_sets]
 
 
-def permuted(sets: list[int], sensors: list[int], order: list[int], sign: float) -> Change:
-    """Return the change that takes some sensors from others in some data sets."""
+def _beside(setting: Setting, sets: list[int]) -> list[tuple[Floats, Floats, Floats]]:
+    """Return shapes (sets, modes, n) of measured sensors, what they should be, and their scale.
 
-    def new(shape: Floats) -> Floats:
-        to, of = (np.ix_(sets, range(shape.shape[1]), x) for x in (sensors, order))
-        shape[to] = sign * shape[of]
-        return shape
-
-    return changed("shape", new)
-
-
-def reversed_sensor(setting: Setting) -> Iterator[Mistake]:
-    """Yield every sensor; of many, those after whose reversal residuals are the least."""
-    where, found = parts(setting.names.sets), []
-    price = one_of(OFTEN, len(where) * len(setting.measured))
-    for sets, name in where:
-        costs = _costs(setting, sets), _costs(setting, sets, -1.0)
-        gain = np.max([np.diag(a - b) for a, b in zip(*costs, strict=True)], axis=0)
-        for value, s in zip(gain.tolist(), setting.measured, strict=True):
-            sensor, change = setting.names.sensors[s], permuted(sets, [s], [s], -1.0)
-            numbers = {"sensor": sensor, "where": name}
-            one = Mistake("reversed-sensor", (sensor, name), change, price, numbers)
-            found.append((value, one))
-    yield from promising(found)
-
-
-def exchanged_sensors(setting: Setting) -> Iterator[Mistake]:
-    """Yield pairs of sensors; of many, those after whose exchange residuals are the least."""
-    where, found, count = parts(setting.names.sets), [], len(setting.measured)
-    price = one_of(USUAL, len(where) * count * (count - 1) / 2)
-    pairs = np.argwhere(np.triu(np.ones((count, count)), 1) > 0)
-    for sets, name in where if len(pairs) else ():
-        costs = [(np.diag(cost), cost) for cost in _costs(setting, sets)]
-        gain = np.max([own[:, None] + own - x - x.T for own, x in costs], axis=0)
-        best = np.argsort(-gain[tuple(pairs.T)], kind="stable")[:TRIED]
-        for i, j in pairs[best].tolist():
-            s, t = setting.measured[i], setting.measured[j]
-            names = setting.names.sensors[s], setting.names.sensors[t]
-            numbers = {"sensors": enumeration(names), "where": name}
-            change = permuted(sets, [s, t], [t, s], 1.0)
-            one = Mistake("exchanged-sensors", (*names, name), change, price, numbers)
-            found.append((float(gain[i, j]), one))
-    yield from promising(found)
-
-
-def _costs(setting: Setting, sets: list[int], sign: float = 1.0) -> list[Floats]:
-    """Return the cost of each sensor with a sign, beside what each should be, at each point.
-
-    That is what the model has where all data sets have the mistake, else what the sets have in
-    common.
+    They should be what the model has where all data sets have a mistake, else what the sets have in
+    common; for each point.
     """
     data, some = setting.state.data, setting.measured
     a = data.factors(data.mean)[sets]
-    psi = np.where(data.seen[sets], data.psi[sets] / np.where(a == 0, 1.0, a), np.nan)
-    of_model = len(sets) == len(data.psi)
+    x = np.where(data.seen[sets], data.psi[sets] / np.where(a == 0, 1.0, a), np.nan)[..., some]
     return [
-        mismatch(
-            sign * psi[:, :, some],
-            (point.beta[:, None] * point.chi if of_model else data.mean)[:, some],
-            point.sigma * data.motion[some],
+        (
+            x,
+            (each.beta[:, None] * each.chi if len(sets) == len(data.psi) else data.mean)[:, some],
+            each.sigma * data.motion[some],
         )
-        for point in setting.points
+        for each in setting.points
     ]
 
 
 def wrong_factor(setting: Setting) -> Iterator[Mistake]:
-    """Yield for each sensor the factor of wrong units that is nearest to what the others say."""
-    data, where, found = setting.state.data, parts(setting.names.sets), []
-    price = one_of(USUAL, len(FACTORS) * len(where) * len(setting.measured))
-    for (sets, name), point in product(where, setting.points):
-        x, seen = data.psi[sets], data.seen[sets]
-        of_model = len(sets) == len(data.psi)
-        t = seen * (point.beta[:, None] * point.chi if of_model else data.mean)
-        square = (t**2).sum(axis=2, keepdims=True) - t**2
-        along = (x * t).sum(axis=2, keepdims=True) - x * t
-        y = t * np.divide(along, square, out=np.zeros(t.shape), where=square > 0)
-        slope = (x * y).sum(axis=(0, 1)) / np.maximum((y**2).sum(axis=(0, 1)), TINY)
-        gain = (slope - 1) ** 2 * (y**2).sum(axis=(0, 1))
-        for s in np.flatnonzero(slope > 0).tolist():
-            factor = min(FACTORS, key=lambda each: abs(np.log(each / slope[s])))
-            numbers = {"sensor": setting.names.sensors[s], "where": name, "factor": factor}
-            change = partial(_rescaled, sets=sets, s=s, factor=factor)
-            subject = setting.names.sensors[s], name
-            found.append((gain[s], Mistake("sensor-factor", subject, change, price, numbers)))
-    yield from promising(found)
+    """Yield sensors that are reversed or in other units, those by which residuals fall most.
+
+    What a sensor should have is said by the others, as it would change the scale of the shape.
+    """
+    where, names = parts(setting.names.sets), setting.names.sensors
+    count = len(where) * len(setting.measured)
+    for kind, factors, how_often in (
+        ("reversed-sensor", (-1.0,), OFTEN),
+        ("sensor-factor", FACTORS, USUAL),
+    ):
+        found, price = [], one_of(how_often, len(factors) * count)
+        for sets, name in where:
+            gains = np.max([_gains(x, t, factors) for x, t, _ in _beside(setting, sets)], axis=0)
+            for s, gain in zip(setting.measured, gains.T, strict=True):
+                factor, subject = factors[int(np.argmax(gain))], (names[s], name)
+                change = partial(_rescaled, sets=sets, s=s, factor=factor)
+                numbers = {"sensor": names[s], "where": name, "factor": factor}
+                one = Mistake(kind, subject, change, price, numbers)
+                found.append((float(gain.max()), one))
+        yield from promising(found)
+
+
+def _gains(x: Floats, t: Floats, factors: Sequence[float]) -> Floats:
+    """Return by how much squares fall where a sensor has a factor, (factors, sensors)."""
+    xt, tt = np.nan_to_num(x * t), np.isfinite(x) * t**2
+    others, square = (y.sum(axis=2, keepdims=True) - y for y in (xt, tt))
+    y = t * np.divide(others, square, out=np.zeros(square.shape), where=square > 0)
+    r = np.nan_to_num(x - np.multiply.outer(np.array([1.0, *factors]), y))
+    squares = (r**2).sum(axis=(1, 2))
+    return np.asarray(squares[0] - squares[1:])
 
 
 def _rescaled(state: State, sets: list[int], s: int, factor: float) -> State:
@@ -151,8 +115,33 @@ def _rescaled(state: State, sets: list[int], s: int, factor: float) -> State:
     shape[sets, :, s] /= factor
     new = replace(state.data, shape=shape)
     units = np.log(new.size / state.data.size) * new.seen.sum(axis=2)
-    left_out = np.nansum(units) + new.seen[sets, :, s].sum() * np.log(factor)
+    left_out = np.nansum(units) + new.seen[sets, :, s].sum() * np.log(abs(factor))
     return replace(state, data=replace(new, left_out=new.left_out + float(left_out)))
+
+
+def exchanged_sensors(setting: Setting) -> Iterator[Mistake]:
+    """Yield pairs of sensors; of many, those after whose exchange residuals are the least."""
+    where, found, count = parts(setting.names.sets), [], len(setting.measured)
+    price = one_of(USUAL, len(where) * count * (count - 1) / 2)
+    pairs = np.argwhere(np.triu(np.ones((count, count)), 1) > 0)
+    for sets, name in where if len(pairs) else ():
+        costs = [mismatch(*each) for each in _beside(setting, sets)]
+        gain = np.max([x.diagonal()[:, None] + x.diagonal() - x - x.T for x in costs], axis=0)
+        best = np.argsort(-gain[tuple(pairs.T)], kind="stable")[:TRIED]
+        for i, j in pairs[best].tolist():
+            s, t = setting.measured[i], setting.measured[j]
+            names = setting.names.sensors[s], setting.names.sensors[t]
+            numbers = {"sensors": enumeration(names), "where": name}
+            change = changed("shape", partial(_exchanged, sets=sets, s=s, t=t))
+            one = Mistake("exchanged-sensors", (*names, name), change, price, numbers)
+            found.append((float(gain[i, j]), one))
+    yield from promising(found)
+
+
+def _exchanged(shape: Floats, sets: list[int], s: int, t: int) -> Floats:
+    for k in sets:
+        shape[k, :, [s, t]] = shape[k, :, [t, s]]
+    return shape
 
 
 def copied_sensor(setting: Setting) -> Iterator[Mistake]:
@@ -185,52 +174,40 @@ def _without(state: State, s: int) -> State:
 def shifted_values(setting: Setting) -> Iterator[Mistake]:
     """Yield rows of shapes, or all, in which a value is lost or too many, and the rest moved.
 
-    Where it begins is what makes the shapes most like those of the model, by their MAC.
+    Where it begins is what makes each shape most like a mode of the model, by the sum of their MAC.
     """
-    data, (K, m, n) = setting.state.data, setting.state.data.shape.shape
-    every = list(range(K)), list(range(m)), "all data"
-    rows = [
-        ([k], [r], f"mode {mode}" + f" of set {name}" * (K > 1))
-        for k, name in enumerate(setting.names.sets)
-        for r, mode in enumerate(setting.names.modes)
-    ]
-    for by, point in product((1, -1), setting.points):
-        ahead = np.roll(point.chi, -by, axis=1)
-        for sets, modes, name in (every, *rows):
-            x, seen = data.psi[np.ix_(sets, modes)], data.seen[np.ix_(sets, modes)]
+    state, names, found = setting.state, setting.names, []
+    data, (K, _, n) = state.data, state.data.shape.shape
+    where = {"all data": np.s_[:, :]}
+    for k, name in enumerate(names.sets):
+        where |= {f"set {name}": np.s_[k : k + 1, :]} if K > 1 else {}
+        for r, mode in enumerate(names.modes):
+            where[f"mode {mode}" + f" of set {name}" * (K > 1)] = np.s_[k : k + 1, r : r + 1]
+    price = one_of(USUAL, 2 * n * len(where))
+    for (by, what), whole in product(((1, "lost"), (-1, "too many")), setting.wholes):
+        phi = (whole.Phi if state.selection is None else state.selection @ whole.Phi).T
+        for name, rows in where.items():
+            x, seen = (y[rows].reshape(-1, 1, n) for y in (data.psi, data.seen))
+            products = (x * phi, x * np.roll(phi, -by, axis=1))
+            squares = (seen * phi**2, seen * np.roll(phi, -by, axis=1) ** 2)
             cross, size = (
-                _joined(seen * a, seen * b)
-                for a, b in (
-                    (x * point.chi[modes], x * ahead[modes]),
-                    (point.chi[modes] ** 2, ahead[modes] ** 2),
-                )
+                np.cumsum(own, axis=-1) - own + np.cumsum(moved[..., ::-1], axis=-1)[..., ::-1]
+                for own, moved in (products, squares)
             )
             mac = np.divide(cross**2, size, out=np.zeros(size.shape), where=size > 0)
-            start = int(np.argmax(mac.sum(axis=(0, 1))[:-1]))
-            change = changed("shape", partial(_moved, rows=np.ix_(sets, modes), start=start, by=by))
-            numbers = {
-                "where": name,
-                "sensor": setting.names.sensors[start],
-                "what": "lost" if by > 0 else "too many",
-            }
-            price = one_of(USUAL, 2 * n * (1 + len(rows)))
-            yield Mistake("shifted-values", (name,), change, price, numbers)
+            likeness = mac.max(axis=1).sum(axis=0)
+            for start in np.argsort(-likeness[:-1])[:NEAREST].tolist():
+                numbers = {"where": name, "sensor": names.sensors[start], "what": what}
+                change = changed("shape", partial(_moved, rows=rows, start=start, by=by))
+                one = Mistake("shifted-values", (name,), change, price, numbers)
+                found.append((float(likeness[start] - likeness[-1]), one))
+    yield from promising(found)
 
 
-def _joined(a: Floats, b: Floats) -> Floats:
-    """Return sums along the last axis of a up to each place and of b from there on."""
-    return np.asarray(np.cumsum(a, axis=-1) - a + np.cumsum(b[..., ::-1], axis=-1)[..., ::-1])
-
-
-def _moved(shape: Floats, rows: tuple[Ints, ...], start: int, by: int) -> Floats:
-    part = shape[rows]
-    new = part.copy()
-    new[..., start:] = np.nan
-    if by > 0:
-        new[..., start + 1 :] = part[..., start:-1]
-    else:
-        new[..., start:-1] = part[..., start + 1 :]
-    shape[rows] = new
+def _moved(shape: Floats, rows: tuple[slice, slice], start: int, by: int) -> Floats:
+    part = shape[rows]  # a view
+    part[..., start:] = np.roll(part[..., start:], by, axis=-1)
+    part[..., start if by > 0 else -1] = np.nan
     return shape
 
 
