@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -40,7 +41,8 @@ MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
     values.other_quantity,
     sets.set_factor,
     sets.other_numbers,
-    sensors.wrong_factor,
+    sensors.reversed_sensor,
+    sensors.wrong_unit,
     sensors.exchanged_sensors,
     sensors.copied_sensor,
     sensors.shifted_values,
@@ -158,11 +160,21 @@ class Search:
                     cost = self._screened(one.change(old.state), old.state, wholes) + one.price
                     promising.append((cost, len(promising), one))
         count: Counter[tuple[str, ...]] = Counter()
-        out = []
+        added: list[tuple[Mistake, ...]] = []
+        firsts: dict[tuple[str, ...], Mistake] = {}
         for _, _, one in sorted(self._followed(promising, old.state, wholes)):
+            firsts.setdefault(one.claim, one)
             count[one.claim] += 1
             if count[one.claim] <= VARIANTS and len(count) <= FITTED:
-                out.append(self.fitted((*old.mistakes, one), [old.point.theta]))
+                added.append((one,))
+        if not old.mistakes:
+            pairs = [
+                (self._screened(b.change(a.change(old.state)), old.state, wholes), k, (a, b))
+                for k, (a, b) in enumerate(combinations(list(firsts.values())[:TRIED], 2))
+            ]
+            costs = [(cost + a.price + b.price, k, (a, b)) for cost, k, (a, b) in pairs]
+            added += [two for *_, two in sorted(costs)[:FITTED]]
+        out = [self.fitted((*old.mistakes, *new), [old.point.theta]) for new in added]
         return [each for each in out if each is not None]
 
     def _screened(self, new: State, old: State, wholes: Sequence[Whole]) -> float:

@@ -97,9 +97,10 @@ def mismatch(x: Floats, target: Floats, scale: Floats) -> Floats:
 
 
 def promising(found: Iterable[tuple[float, Mistake]]) -> Iterator[Mistake]:
-    """Yield the mistakes that promise most, of pairs with the fall of the cost by each."""
-    for _, each in sorted(found, key=lambda pair: -pair[0])[:TRIED]:
-        yield each
+    """Yield the mistakes that promise most, of pairs with the fall of the cost by each, once."""
+    ordered = sorted(found, key=lambda pair: -pair[0])
+    once = {(each.claim, str(each.numbers)): each for _, each in reversed(ordered)}
+    yield from list(reversed(once.values()))[:TRIED]
 
 
 def one_of(probability: float, count: float) -> float:
