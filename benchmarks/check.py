@@ -412,8 +412,10 @@ def claims(found: Finding) -> list[Claim]:
     out = []
     for each in (found, *found.others):
         names = tuple(each.subject.split(", "))
-        if each.kind in ("reversed-sensor", "exchanged-sensors", "sensor-factor", "copied-sensor"):
+        if each.kind in ("reversed-sensor", "exchanged-sensors", "sensor-factor"):
             names = tuple(sorted(names[:-1]))
+        if each.kind == "copied-sensor":
+            names = (each.numbers["sensor"],)
         if each.kind == "wrong-direction" and len(names) > 1:
             names = ("all",)
         if each.kind == "counted-from-one":

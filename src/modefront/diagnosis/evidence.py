@@ -185,14 +185,7 @@ def point(
 
 @dataclass(frozen=True, eq=False)
 class Quick:
-    """A model, or one in the space of some of its modes, that is quickly solved.
-
-    Attributes
-    ----------
-    model : the model
-    basis : (N, n) modes; None where the model is not reduced
-    count : number of modes that are looked at
-    """
+    """A model of which ``count`` modes are quickly solved for, if in a basis (N, n) of modes."""
 
     model: Model
     basis: Floats | None

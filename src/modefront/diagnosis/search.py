@@ -65,14 +65,7 @@ Claims = frozenset[tuple[str, ...]]
 
 @dataclass(frozen=True, eq=False)
 class Explanation:
-    """Assumed mistakes, with the state without them at its fitted parameters.
-
-    Attributes
-    ----------
-    mistakes : that are assumed
-    state, point : data and model without them, and the end of a fit
-    cost : C with the prices
-    """
+    """Assumed mistakes, the state without them, the end of a fit, and C there with the prices."""
 
     mistakes: tuple[Mistake, ...]
     state: State
@@ -87,15 +80,10 @@ class Explanation:
 
 @dataclass(eq=False)
 class Search:
-    """Explanations that were tried.
+    """Explanations of a comparison: those ``known`` were fitted, those ``extended`` also added to.
 
-    Attributes
-    ----------
-    comparison : the nominal model beside the measured modes
-    model : the model, quickly solved
-    plain : data and model as they are
-    known : explanations that were fitted, the best of those with the same claims
-    extended : claims of those to which mistakes were added
+    Of explanations with the same claims, the best one is kept; ``plain`` are data and model as they
+    are.
     """
 
     comparison: Comparison
@@ -168,12 +156,11 @@ class Search:
             if count[one.claim] <= VARIANTS and len(count) <= FITTED:
                 added.append((one,))
         if not old.mistakes:
-            pairs = [
-                (self._screened(b.change(a.change(old.state)), old.state, wholes), k, (a, b))
-                for k, (a, b) in enumerate(combinations(list(firsts.values())[:TRIED], 2))
-            ]
-            costs = [(cost + a.price + b.price, k, (a, b)) for cost, k, (a, b) in pairs]
-            added += [two for *_, two in sorted(costs)[:FITTED]]
+            pairs = list(combinations(list(firsts.values())[:TRIED], 2))
+            both = [b.change(a.change(old.state)) for a, b in pairs]
+            costs = [self._screened(new, old.state, wholes) for new in both]
+            costs = [x + a.price + b.price for x, (a, b) in zip(costs, pairs, strict=True)]
+            added += [pairs[k] for k in np.argsort(costs, kind="stable")[:FITTED]]
         out = [self.fitted((*old.mistakes, *new), [old.point.theta]) for new in added]
         return [each for each in out if each is not None]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -59,14 +58,10 @@ class Mistake:
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """What mistakes are sought for: a state, and the model beside it at some parameters.
+    """What mistakes are sought for: a state, with names of its sets, modes, sensors and parameters.
 
-    Attributes
-    ----------
-    state : data and model
-    wholes, points : the model, and the state beside it, at nominal and at fitted parameters
-    names : the data, with the names of their sets, modes and sensors
-    parameters : names
+    ``wholes`` and ``points`` are the model, and the state beside it, at nominal and at fitted
+    parameters.
     """
 
     state: State
@@ -108,11 +103,23 @@ def one_of(probability: float, count: float) -> float:
     return float(np.log(max(count, 1) / probability))
 
 
-def _replaced(state: State, part: str, new: Callable[[Floats], Floats]) -> State:
-    values: Any = {part: new(getattr(state.data, part).copy())}
-    return replace(state, data=replace(state.data, **values))
-
-
 def changed(part: str, new: Callable[[Floats], Floats]) -> Change:
     """Return the change of a part of the data into what a function makes of it."""
-    return partial(_replaced, part=part, new=new)
+
+    def change(state: State) -> State:
+        values: Any = {part: new(getattr(state.data, part).copy())}
+        return replace(state, data=replace(state.data, **values))
+
+    return change
+
+
+def without(part: str, place: Any, cost: float) -> Change:
+    """Return the change that leaves out some values of a part of the data, for a cost."""
+
+    def change(state: State) -> State:
+        values = getattr(state.data, part).copy()
+        values[place] = np.nan
+        data: Any = {part: values, "left_out": state.data.left_out + float(cost)}
+        return replace(state, data=replace(state.data, **data))
+
+    return change

@@ -13,8 +13,8 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.diagnosis.evidence import SHAPE, State
+from modefront.diagnosis.measured import NOTHING, median
 from modefront.diagnosis.measured import SHAPE as NOISE
-from modefront.diagnosis.measured import median
 from modefront.diagnosis.mistakes.record import (
     MANY,
     OFTEN,
@@ -26,6 +26,7 @@ from modefront.diagnosis.mistakes.record import (
     mismatch,
     one_of,
     promising,
+    without,
 )
 from modefront.diagnosis.notes import ALONG, axis_name
 from modefront.findings.knowledge import enumeration
@@ -176,7 +177,7 @@ def _exchanged(shape: Floats, sets: list[int], s: int, t: int) -> Floats:
 def copied_sensor(setting: Setting) -> Iterator[Mistake]:
     """Yield sensors that have the values of another one, digit by digit.
 
-    A copy says nothing on its own: its values cost as much as those that fit exactly.
+    A copy says nothing on its own: its values cost as much as those that fit as well as is usual.
     """
     shape, names = setting.state.data.shape, setting.names.sensors
     same = [
@@ -185,19 +186,12 @@ def copied_sensor(setting: Setting) -> Iterator[Mistake]:
         if np.array_equal(shape[:, :, s], shape[:, :, t], equal_nan=True) and shape[..., s].any()
     ]
     for s, t in same:
-        numbers = {"sensor": names[s], "other": names[t]}
-        change = partial(_without, s=s)
-        yield Mistake(
-            "copied-sensor", (names[s], names[t]), change, one_of(OFTEN, len(same)), numbers
-        )
-
-
-def _without(state: State, s: int) -> State:
-    data, shape = state.data, state.data.shape.copy()
-    seen = data.seen[:, :, s].sum(axis=0)
-    exact = np.log(SHAPE) * (seen > 0).sum() + np.log(NOISE) * np.maximum(seen - 1, 0).sum()
-    shape[:, :, s] = np.nan
-    return replace(state, data=replace(data, shape=shape, left_out=data.left_out + float(exact)))
+        sets = np.isfinite(shape[:, :, s]).sum(axis=0)
+        of_model, of_noise = (sets > 0).sum(), np.maximum(sets - 1, 0).sum()
+        usual = np.log(SHAPE) * of_model + np.log(NOISE) * of_noise + NOTHING * sets.sum()
+        change, price = without("shape", np.s_[..., s], usual), one_of(OFTEN, len(same))
+        numbers, subject = {"sensor": names[s], "other": names[t]}, sorted((names[s], names[t]))
+        yield Mistake("copied-sensor", tuple(subject), change, price, numbers)
 
 
 def shifted_values(setting: Setting) -> Iterator[Mistake]:

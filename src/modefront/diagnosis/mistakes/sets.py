@@ -19,6 +19,7 @@ from modefront.diagnosis.mistakes.record import (
     Setting,
     changed,
     one_of,
+    without,
 )
 from modefront.findings.knowledge import enumeration
 from modefront.pairing.match import assigned
@@ -114,13 +115,16 @@ def _odd(setting: Setting, part: str, away: Floats) -> Iterator[Mistake]:
 
     Of two sets nobody knows which one is wrong: both are yielded, and blame the mode.
     """
-    sets, frequency = setting.names.sets, setting.state.data.frequency
+    sets, data = setting.names.sets, setting.state.data
     price = one_of(OFTEN, len(sets) * len(setting.names.modes))
     for r, mode in enumerate(setting.names.modes if len(sets) > 1 else ()):
         known = np.flatnonzero(np.isfinite(away[:, r]))
         for k in known[np.argsort(-away[known, r])][: 2 if known.size > 1 else 0].tolist():
             others, subject = [j for j in known.tolist() if j != k], [str(mode)]
-            value, other = frequency[k, r], np.exp(median(np.log(frequency[others, r, None]))[0])
+            value, other = (
+                data.frequency[k, r],
+                np.exp(median(np.log(data.frequency[others, r, None]))[0]),
+            )
             if len(others) > 1:
                 subject.append(sets[k])
                 names = enumeration([sets[j] for j in others], 3)
@@ -128,23 +132,16 @@ def _odd(setting: Setting, part: str, away: Floats) -> Iterator[Mistake]:
                 look = f"look at set {sets[k]} again, or leave out its"
             else:
                 (first, second), look = known, "look at both again, or leave out the worse"
-                value, other = frequency[second, r], frequency[first, r]
+                value, other = data.frequency[second, r], data.frequency[first, r]
                 who = f"sets {sets[second]} and {sets[first]} disagree"
             numbers = {
                 **{"mode": mode, "who": who, "look": look},
                 **{"f": float(value), "other": float(other)},
                 "percent": float(100 * (value / other - 1)),
             }
-            change = partial(_left_out, part=part, k=k, r=r)
+            count = np.isfinite(getattr(data, part)[k, r]).sum()
+            change = without(part, np.s_[k, r], count * (NOTHING + np.log(WRONG[part])))
             yield Mistake(f"odd-{part}", tuple(subject), change, price, numbers)
-
-
-def _left_out(state: State, part: str, k: int, r: int) -> State:
-    values = getattr(state.data, part).copy()
-    count = float(np.isfinite(values[k, r]).sum())
-    left_out = state.data.left_out + count * (NOTHING + np.log(WRONG[part]))
-    values[k, r] = np.nan
-    return replace(state, data=replace(state.data, left_out=left_out, **{part: values}))
 
 
 def foreign_mode(setting: Setting) -> Iterator[Mistake]:
