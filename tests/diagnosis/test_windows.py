@@ -56,3 +56,20 @@ def test_a_mode_beyond_the_candidates_is_named_with_what_is_to_be_set() -> None:
     assert (found.kind, found.subject) == ("beyond-candidates", "2")
     assert "resembles model mode 8" in str(found)
     assert "set spare = 6 in [pairing]" in str(found)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "kind", "text"),
+    [
+        (60.0, "outside-model", "is outside what the model has: its 8 lowest modes end at 14 Hz;"),
+        (9.0, "foreign-mode", "at 9 Hz resembles none of the model's"),
+    ],
+)
+def test_a_mode_that_the_model_does_not_have(frequency: float, kind: str, text: str) -> None:
+    model = chain_of()
+    modes = model.modes(np.ones(2), 5, derivatives=False)
+    f, phi = np.append(modes.frequency[:4], frequency), modes.phi.copy()
+    phi[:, 4] = [1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0]
+    (found,) = mistakes(model, f, phi)
+    assert found.kind == kind
+    assert text in str(found)

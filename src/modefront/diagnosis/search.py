@@ -258,8 +258,9 @@ class Search:
     def _evidence(self, without: Explanation, best: Explanation) -> str:
         """Return how the MAC value changes that gains most by a mistake, where one does."""
         before, after = (each.point.mac(each.state.data) for each in (without, best))
-        r = int(np.argmax(np.nan_to_num(after - before)))
-        if np.isnan(after[r] - before[r]) or after[r] - before[r] < SEEN:
+        rise = np.where(best.state.foreign, 0.0, np.nan_to_num(after - before))
+        r = int(np.argmax(rise))
+        if rise[r] < SEEN:
             return ""
         mode = self.comparison.data.modes[r]
         return f" (without, MAC {mode} is {after[r]:.2f} after a fit, and not {before[r]:.2f})"

@@ -133,14 +133,15 @@ range in which others are."""
 def wrong_frequency(setting: Setting) -> Iterator[Mistake]:
     """Yield known factors on the frequency of each mode, and the one that the model has.
 
-    Of the latter nothing is known: its price is that of all values that it may have.
+    Of the latter nothing is known: its price is the range that it may be in over the width of a
+    normal distribution.
     """
     modes, logs = setting.names.modes, setting.state.data.logs
     known = one_of(OFTEN, len(SLIPS) * len(modes))
-    unknown = one_of(OFTEN, FAR / FREQUENCY * len(modes))
+    unknown = one_of(OFTEN, FAR / (FREQUENCY * np.sqrt(2 * np.pi)) * len(modes))
     for r in np.flatnonzero(np.isfinite(logs)).tolist():
         found = [(known, factor, f", and {1 / factor:g} times it would fit") for factor in SLIPS]
-        for point, (_, f, _) in zip(setting.points, setting.wholes, strict=True):
+        for point, (_, f, _) in zip(setting.points[::-1], setting.wholes[::-1], strict=True):
             q, mac = int(point.index[r]), point.mac(setting.state.data)[r]
             found.append((unknown, float(np.exp(logs[r] - log_frequencies(f)[q])), ""))
             alike = "" if np.isnan(mac) else f" (MAC {mac:.2f})"
