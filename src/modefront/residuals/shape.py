@@ -38,7 +38,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -300,12 +300,15 @@ class ShapeKind:
         sizes = np.concatenate([part.sizes for part in parts])
         fitted = np.array([modes] * len(modes) if self.joint else np.array(modes)[:, None])
         rows = np.arange(sizes.max()) < sizes[:, None]
-        columns = []
-        for name in ("sensors", "weight", "psi"):
+
+        def in_rows(name: str) -> Any:
             values = np.concatenate([getattr(part, name) for part in parts])
-            columns.append(np.zeros(rows.shape, values.dtype))
-            columns[-1][rows] = values
-        return ShapeStack(np.repeat(fitted, [x.sizes.size for x in parts], axis=0), *columns, rows)
+            out = np.zeros(rows.shape, values.dtype)
+            out[rows] = values
+            return out
+
+        fitted = np.repeat(fitted, [part.sizes.size for part in parts], axis=0)
+        return ShapeStack(fitted, in_rows("sensors"), in_rows("weight"), in_rows("psi"), rows)
 
 
 def without_negligible(std: Floats) -> Floats:

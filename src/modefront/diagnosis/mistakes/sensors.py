@@ -201,7 +201,7 @@ def shifted_values(setting: Setting) -> Iterator[Mistake]:
     """
     state, names, found = setting.state, setting.names, []
     data, (K, _, n) = state.data, state.data.shape.shape
-    where = {"all data": np.s_[:, :]}
+    where: dict[str, tuple[slice, slice]] = {"all data": np.s_[:, :]}
     for k, name in enumerate(names.sets):
         where |= {f"set {name}": np.s_[k : k + 1, :]} if K > 1 else {}
         for r, mode in enumerate(names.modes):
