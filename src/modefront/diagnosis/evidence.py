@@ -72,7 +72,7 @@ class State:
     foreign : (modes,) modes that the model does not have
     candidates : number of the lowest model modes among which pairs are sought
     selection : (sensors, N) weights of the degrees of freedom; None for a model without matrices
-    geometry : places and directions of the sensors; None where they are not known
+    geometry : places and directions of the sensors; None for a model without matrices
     start, lower, upper : (parameters,) nominal values and bounds
     """
 
@@ -106,6 +106,17 @@ class State:
             factors = np.exp(np.where(self.is_positive, x, 0.0))
         values = np.where(self.is_positive, self.start * factors, self.start + x * self.unit)
         return np.clip(values, self.lower, self.upper)
+
+
+def places(model: MatrixModel) -> Geometry:
+    """Return where sensors are: of nodes that move along a single axis, degrees of freedom."""
+    if model.geometry is not None and len(model.geometry.axes) > 1:
+        return model.geometry
+    (n, N), dof = model.selection.shape, np.arange(model.size)
+    motion = scipy.sparse.csr_array((np.ones(N), (3 * dof, dof)), shape=(3 * N, N))
+    directions = np.column_stack([model.selection.sum(axis=1), np.zeros((n, 2))])
+    greatest = abs(model.selection).argmax(axis=1)
+    return Geometry(np.zeros((N, 3)), (), motion, greatest, directions)
 
 
 @dataclass(frozen=True, eq=False)

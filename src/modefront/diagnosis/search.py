@@ -11,7 +11,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.diagnosis.comparison import Comparison, compare, of_few_sets
-from modefront.diagnosis.evidence import Point, Quick, State, Whole, point, point_of, quick
+from modefront.diagnosis.evidence import Point, Quick, State, Whole, places, point, point_of, quick
 from modefront.diagnosis.mistakes import sensors, sets, values
 from modefront.diagnosis.mistakes.record import TRIED, Mistake, Setting
 from modefront.findings.record import Finding, found
@@ -103,7 +103,7 @@ class Search:
             np.zeros(len(problem.data.modes), dtype=bool),
             comparison.candidates,
             None if matrices is None else matrices.selection,
-            None if matrices is None else matrices.geometry,
+            None if matrices is None else places(matrices),
             problem.start,
             *bounds,
         )

@@ -234,30 +234,19 @@ def _moved(shape: Floats, rows: tuple[slice, slice], start: int, by: int) -> Flo
     return shape
 
 
-def at_rows(state: State, sensors: Sequence[int], rows: scipy.sparse.csr_array) -> State:
-    """Return the state in which sensors have other weights (sensors, N)."""
-    assert state.selection is not None
-    ones = np.ones(len(sensors)), (sensors, np.arange(len(sensors)))
-    place = scipy.sparse.csr_array(ones, shape=(state.selection.shape[0], len(sensors)))
-    difference = place @ (rows - state.selection[list(sensors)])
-    return replace(state, selection=(state.selection + difference).tocsr())
-
-
 def relocated(state: State, sensors: Sequence[int], **changed: Any) -> State:
     """Return the state with other ``sensor_nodes`` or ``sensor_directions`` of some sensors."""
     assert state.geometry is not None
+    assert state.selection is not None
     parts = {name: getattr(state.geometry, name).copy() for name in changed}
     for name, values in parts.items():
         values[sensors] = changed[name]
-    geometry = replace(state.geometry, **parts)
-    places = geometry.sensor_nodes[sensors], geometry.sensor_directions[sensors]
-    return replace(at_rows(state, sensors, geometry.weights(*places)), geometry=geometry)
-
-
-def in_space(setting: Setting) -> Geometry | None:
-    """Return the geometry of a model whose nodes move along several axes."""
-    geometry = setting.state.geometry
-    return geometry if geometry is not None and len(geometry.axes) > 1 else None
+    geometry, chosen = replace(state.geometry, **parts), list(sensors)
+    rows = geometry.weights(geometry.sensor_nodes[chosen], geometry.sensor_directions[chosen])
+    ones = np.ones(len(chosen)), (chosen, np.arange(len(chosen)))
+    place = scipy.sparse.csr_array(ones, shape=(state.selection.shape[0], len(chosen)))
+    selection = state.selection + place @ (rows - state.selection[chosen])
+    return replace(state, geometry=geometry, selection=selection.tocsr())
 
 
 def _gain(setting: Setting, s: int, rows: scipy.sparse.csr_array) -> Floats:
@@ -276,60 +265,47 @@ def _gain(setting: Setting, s: int, rows: scipy.sparse.csr_array) -> Floats:
 
 def wrong_place(setting: Setting) -> Iterator[Mistake]:
     """Yield sensors at other nodes, directions kept; in a chain, at other degrees of freedom."""
-    selection, geometry = setting.state.selection, in_space(setting)
-    if selection is None:
+    selection, geometry = setting.state.selection, setting.state.geometry
+    if selection is None or geometry is None:
         return
-    found: list[tuple[float, int, int, int]] = []
-    count = 0
+    found: list[tuple[float, int, int]] = []
+    count, nodes = 0, np.arange(len(geometry.nodes))
     for s in setting.measured:
-        rows, place = _rows(setting, s)
+        rows = geometry.weights(nodes, np.tile(geometry.sensor_directions[s], (nodes.size, 1)))
         moves = abs(rows).sum(axis=1) > 0
-        if moves.any() and selection[[s]].nnz:
+        if moves.any():
             count = max(count, int(moves.sum()))
             gains = np.where(moves, _gain(setting, s, rows), -np.inf)
-            best = [k for k in np.argsort(-gains)[:NEAREST].tolist() if moves[k] and k != place]
-            found += [(float(gains[k]), s, place, k) for k in best]
+            gains[geometry.sensor_nodes[s]] = -np.inf
+            best = np.argsort(-gains)[:NEAREST]
+            found += [(float(gains[k]), s, k) for k in best[gains[best] > -np.inf].tolist()]
     products = (selection @ selection.T).toarray()
     squares = np.diag(products)
     is_same = np.abs(squares[:, None] + squares - 2 * products) <= ACCUMULATED * squares
     price, names = one_of(USUAL, count * len(setting.measured)), setting.names.sensors
-    for _, s, place, k in sorted(found, key=lambda each: -each[0])[:TRIED]:
+    for _, s, k in sorted(found, key=lambda each: -each[0])[:TRIED]:
         others = [names[t] for t in np.flatnonzero(is_same[s]).tolist() if t != s]
         numbers = {
             "sensor": names[s],
-            "given": _place(geometry, place),
+            "given": _place(geometry, geometry.sensor_nodes[s]),
             "place": _place(geometry, k),
             "too": f", where the model has {enumeration(others, MANY)} too" if others else "",
         }
         change = partial(relocated, sensors=[s], sensor_nodes=k)
-        if geometry is None:
-            change = partial(at_rows, sensors=[s], rows=_rows(setting, s)[0][[k]])
         less = OFTEN_SHARED if others else 0.0
         yield Mistake("wrong-place", (names[s],), change, price - less, numbers)
 
 
-def _rows(setting: Setting, s: int) -> tuple[scipy.sparse.csr_array, int]:
-    """Return the weights (places, N) that sensor s has at each place, and the place of its own."""
-    geometry, selection = in_space(setting), setting.state.selection
-    if geometry is not None:
-        along = np.tile(geometry.sensor_directions[s], (len(geometry.nodes), 1))
-        return geometry.weights(np.arange(len(along)), along), int(geometry.sensor_nodes[s])
-    assert selection is not None
-    own = selection[[s]]
-    place = int(own.indices[0]) if own.nnz else 0
-    return (own.sum() * scipy.sparse.eye_array(own.shape[1])).tocsr(), place
-
-
-def _place(geometry: Geometry | None, k: int) -> str:
-    if geometry is None:
+def _place(geometry: Geometry, k: int) -> str:
+    if len(geometry.axes) == 1:
         return f"degree of freedom {k}"
     return f"({', '.join(f'{x:.4g}' for x in geometry.nodes[k])})"
 
 
 def wrong_direction(setting: Setting) -> Iterator[Mistake]:
     """Yield other directions: of single sensors, of all along an axis, of two axes exchanged."""
-    geometry = in_space(setting)
-    if geometry is None or setting.state.selection is None:
+    geometry = setting.state.geometry
+    if geometry is None or len(geometry.axes) == 1:
         return
     given, axes = geometry.sensor_directions, geometry.axes
     along = np.where(np.abs(given).max(axis=1) > ALONG, np.abs(given).argmax(axis=1), -1)
@@ -378,19 +354,11 @@ def _turned(
 
 def counted_from_one(setting: Setting) -> Iterator[Mistake]:
     """Yield all sensors at the node, or the degree of freedom, before their own."""
-    geometry, selection = in_space(setting), setting.state.selection
-    if selection is None:
+    geometry = setting.state.geometry
+    if geometry is None or (geometry.sensor_nodes == 0).any():
         return
-    every = list(range(selection.shape[0]))
-    if geometry is not None:
-        if (geometry.sensor_nodes == 0).any() or not geometry.sensor_directions.any(axis=1).all():
-            return
-        change = partial(relocated, sensors=every, sensor_nodes=geometry.sensor_nodes - 1)
-    else:
-        first = selection[:, [0]]
-        if first.nnz or not selection.nnz:
-            return
-        shifted = scipy.sparse.hstack([selection[:, 1:], first], format="csr")
-        change = partial(at_rows, sensors=every, rows=shifted)
-    what = "degrees of freedom" if geometry is None else "nodes"
-    yield Mistake("counted-from-one", (what,), change, one_of(USUAL, 1), {"what": what})
+    if geometry.sensor_directions.any(axis=1).all():
+        every, nodes = list(range(geometry.sensor_nodes.size)), geometry.sensor_nodes - 1
+        what = "degrees of freedom" if len(geometry.axes) == 1 else "nodes"
+        change = partial(relocated, sensors=every, sensor_nodes=nodes)
+        yield Mistake("counted-from-one", (what,), change, one_of(USUAL, 1), {"what": what})
