@@ -11,8 +11,9 @@ places that move alike.
 
 Prints the share of correct studies with a false alarm; of studies with one mistake and with two,
 the share of mistakes that are named (alone, or as one of two or three that the data cannot tell
-apart), by kind, and the share in which an innocent is blamed; the processor time. Remarks on pairs
-count as neither, since shapes alone, by which studies pair here, do not always tell modes apart.
+apart), by kind, and the share in which an innocent is blamed; the processor time. Pairs that a
+window mends count as neither, since shapes alone, by which studies pair here, do not always tell
+modes apart.
 """
 
 from __future__ import annotations
