@@ -157,9 +157,10 @@ class Search:
                 added.append((one,))
         if not old.mistakes:
             pairs = list(combinations(list(firsts.values())[:TRIED], 2))
-            both = [b.change(a.change(old.state)) for a, b in pairs]
-            costs = [self._screened(new, old.state, wholes) for new in both]
-            costs = [x + a.price + b.price for x, (a, b) in zip(costs, pairs, strict=True)]
+            costs = [
+                self._screened(b.change(a.change(old.state)), old.state, wholes) + a.price + b.price
+                for a, b in pairs
+            ]
             added += [pairs[k] for k in np.argsort(costs, kind="stable")[:FITTED]]
         out = [self.fitted((*old.mistakes, *new), [old.point.theta]) for new in added]
         return [each for each in out if each is not None]
