@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import permutations, product
@@ -12,8 +12,8 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.diagnosis.evidence import SHAPE, State
-from modefront.diagnosis.measured import NOTHING, median
+from modefront.diagnosis.evidence import OF_MODEL, SHAPE, State
+from modefront.diagnosis.measured import NOTHING, loss
 from modefront.diagnosis.measured import SHAPE as NOISE
 from modefront.diagnosis.mistakes.record import (
     MANY,
@@ -31,7 +31,7 @@ from modefront.diagnosis.mistakes.record import (
 from modefront.diagnosis.notes import ALONG, axis_name
 from modefront.findings.knowledge import enumeration
 from modefront.models.geometry import Geometry
-from modefront.rounding import ACCUMULATED, TINY
+from modefront.rounding import ACCUMULATED
 
 FACTORS = (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 9.81, 1 / 9.81, 2.0, 0.5)
 """Factors on the values of a sensor by another unit or sensitivity."""
@@ -75,65 +75,32 @@ def _beside(setting: Setting, sets: list[int]) -> list[tuple[Floats, Floats, Flo
     ]
 
 
-def reversed_sensor(setting: Setting) -> Iterator[Mistake]:
-    """Yield every sensor; of many, those by the reversal of which squares fall most."""
+def wrong_factor(setting: Setting) -> Iterator[Mistake]:
+    """Yield sensors that are reversed or in other units, those first by which the cost falls most.
 
-    def estimate(x: Floats, t: Floats) -> tuple[Floats, Floats]:
-        along, square = _by_others(x, t)
-        return -along, np.full(square.shape, -1.0)
-
-    return _with_factors(setting, "reversed-sensor", OFTEN, estimate)
-
-
-def wrong_unit(setting: Setting) -> Iterator[Mistake]:
-    """Yield for each sensor the factor of wrong units that is nearest to what the others say.
-
-    Squares say it best, unless a wrong unit or a wrong pair spoils them all; then medians do of the
-    logarithms of values over what they should be.
+    What a sensor should have is said by the others, as it would change the scale of the shape.
     """
-
-    def nearest(log: Floats) -> tuple[Floats, Floats]:
-        units = np.log(FACTORS)
-        return np.abs(log), np.exp(units[np.abs(units - log[:, None]).argmin(axis=1)])
-
-    def by_squares(x: Floats, t: Floats) -> tuple[Floats, Floats]:
-        along, square = _by_others(x, t)
-        return nearest(np.log(np.maximum(along, TINY) / np.maximum(square, TINY)))
-
-    def by_medians(x: Floats, t: Floats) -> tuple[Floats, Floats]:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            log = np.log(np.abs(x / t)).reshape(-1, x.shape[2])
-        log = np.where(np.isfinite(log), log, np.nan)
-        return nearest(np.nan_to_num(median(log - median(log.T)[:, None])))
-
-    for estimate in (by_squares, by_medians):
-        yield from _with_factors(setting, "sensor-factor", USUAL / len(FACTORS), estimate)
-
-
-def _by_others(x: Floats, t: Floats) -> tuple[Floats, Floats]:
-    """Return x^T y and y^T y of each sensor, where the others say that it should have y."""
-    xt, tt = np.nan_to_num(x * t), np.isfinite(x) * t**2
-    others, square = (z.sum(axis=2, keepdims=True) - z for z in (xt, tt))
-    scale = np.divide(others, square, out=np.zeros(square.shape), where=square > 0)
-    return (xt * scale).sum(axis=(0, 1)), (tt * scale**2).sum(axis=(0, 1))
-
-
-def _with_factors(
-    setting: Setting,
-    kind: str,
-    probability: float,
-    estimate: Callable[[Floats, Floats], tuple[Floats, Floats]],
-) -> Iterator[Mistake]:
-    """Yield sensors with the factors that are estimated, and those first that promise most."""
-    where, names, found = parts(setting.names.sets), setting.names.sensors, []
-    price = one_of(probability, len(where) * len(setting.measured))
-    for sets, name in where:
-        for x, t, _ in _beside(setting, sets):
-            for s, gain, factor in zip(setting.measured, *estimate(x, t), strict=True):
-                numbers = {"sensor": names[s], "where": name, "factor": float(factor)}
-                change = partial(_rescaled, sets=sets, s=s, factor=float(factor))
-                found.append((gain, Mistake(kind, (names[s], name), change, price, numbers)))
-    yield from promising(found)
+    where, names = parts(setting.names.sets), setting.names.sensors
+    count = len(where) * len(setting.measured)
+    for kind, factors, price in (
+        ("reversed-sensor", (-1.0,), one_of(OFTEN, count)),
+        ("sensor-factor", FACTORS, one_of(USUAL, len(FACTORS) * count)),
+    ):
+        found = []
+        for sets, name in where:
+            for x, t, scale in _beside(setting, sets):
+                xt, tt = np.nan_to_num(x * t), np.isfinite(x) * t**2
+                others, square = (y.sum(axis=2, keepdims=True) - y for y in (xt, tt))
+                y = t * np.divide(others, square, out=np.zeros(square.shape), where=square > 0)
+                r = np.nan_to_num(x / np.reshape([1.0, *factors], (-1, 1, 1, 1)) - y) / scale
+                before, *after = loss(r, OF_MODEL).mean(axis=1).sum(axis=1)
+                for factor, cost in zip(factors, after, strict=True):
+                    for s, gain in zip(setting.measured, (before - cost).tolist(), strict=True):
+                        numbers = {"sensor": names[s], "where": name, "factor": factor}
+                        change = partial(_rescaled, sets=sets, s=s, factor=factor)
+                        one = Mistake(kind, (names[s], name), change, price, numbers)
+                        found.append((gain, one))
+        yield from promising(found)
 
 
 def _rescaled(state: State, sets: list[int], s: int, factor: float) -> State:
