@@ -17,6 +17,8 @@ spring      a spring to the ground that the model lacks   do not use
 sensor      one sensor has the wrong sign                 do not use
 idle        a parameter that changes no measured mode     not determined; fix it
 twins       two parameters of the same spring             neither is determined; tie them
+fixed       a fixed parameter is wrong by a third or so   free this one
+kept        a fixed parameter is right                    use; no warning
 few         one mode                                      nothing determined is 5 deviations off
 overfit     three modes at three sensors                  nothing determined is 5 deviations off
 ==========  ============================================  ==========================================
@@ -49,6 +51,13 @@ def solved(case: str, seed: int) -> tuple[mf.Results, dict[str, float], str]:
     if case == "bound":
         truth[planted] = rng.uniform(1.4, 1.8)
         bounds[planted] = (0.3, truth[planted] - 0.2)
+    fixed = {planted} if case in ("fixed", "kept") else set()
+    if case == "kept":
+        truth[planted] = 1.0
+    if case == "fixed":
+        right = str(rng.choice([name for name in parts if name != planted]))
+        truth[planted], truth[right] = float(rng.choice([0.65, 1.5])), 1.0
+        fixed.add(right)
     K = sum((truth[name] * part for name, part in parts.items()), np.zeros((n, n)))
     if case == "spring":
         K[-1, -1] += rng.uniform(0.5, 1.0) * SCALE
@@ -79,7 +88,10 @@ def solved(case: str, seed: int) -> tuple[mf.Results, dict[str, float], str]:
         model,
         mf.modal_data(f, shape, model.sensors),
         [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")],
-        parameters=[mf.Parameter(name, nominal=1.0, bounds=bounds[name]) for name in parts],
+        parameters=[
+            mf.Parameter(name, nominal=1.0, bounds=bounds[name], fixed=name in fixed)
+            for name in parts
+        ],
     )
     options = mf.Identifiability(models=0)
     return mf.solve(problem, points=3, identifiability=options, seed=seed), truth, planted
@@ -97,11 +109,15 @@ def is_right(case: str, results: mf.Results, truth: dict[str, float], planted: s
     """Return whether the verdict says what was planted, and nothing else."""
     text = "\n".join(results.verdict)
     refused = text.startswith("Do not use")
-    alarm = refused or any(x in text for x in (" bound ", "larger than noise", "do not tell"))
+    alarm = refused or any(
+        x in text for x in (" bound ", "larger than noise", "do not tell", "is fixed")
+    )
     trust = dict(zip(results.parameter.values.tolist(), results.trust.values.tolist(), strict=True))
     match case:
-        case "good":
+        case "good" | "kept":
             return not alarm
+        case "fixed":
+            return f"With {planted} = " in text and "which is fixed" in text
         case "bound":
             named = text.partition("With ")[2].partition(", errors")[0]
             return f"{planted} = " in named and named.count(" = ") == 1
@@ -116,7 +132,7 @@ def is_right(case: str, results: mf.Results, truth: dict[str, float], planted: s
             return not refused and not far(results, truth)
 
 
-CASES = ("good", "bound", "spring", "sensor", "idle", "twins", "few", "overfit")
+CASES = ("good", "bound", "spring", "sensor", "idle", "twins", "few", "overfit", "fixed", "kept")
 
 
 def main() -> None:

@@ -218,6 +218,8 @@ at-bound | {at}: widen {it}, or ask what the model lacks.
 at-harmless-bound | {at}: wider bounds lower no errors by more than {gain:.0f} %.
 at-wrong-bound | {at}. With {where}, errors of {group} are {after:.2g} of those expected instead of
     {before:.2g}: widen {its} bounds, or ask what the model lacks.
+wrong-fixed | With {name} = {value:.3g}, which is fixed, errors of {group} are {after:.2g} of those
+    expected instead of {before:.2g}: write fixed = false in its [[parameter]].
 assumed | Assumed: {assumed}; say yours in [noise].
 unlike | Shapes at these sensors do not tell which modes of the model are those measured as
     {modes}: frequencies decide here. The front pairs them by the MAC, and may be wrong.

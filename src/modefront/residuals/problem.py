@@ -10,8 +10,9 @@ count :math:`a_i` of measured properties is the sum of theirs.
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -42,6 +43,7 @@ from modefront.residuals.groups import Group
 from modefront.work.transfer import Shared, is_shared, shared
 
 
+# 11 fields: model and data, limits of the parameters, and how both are compared.
 @shared
 @dataclass(frozen=True)
 class UpdatingProblem:
@@ -58,6 +60,8 @@ class UpdatingProblem:
     lower, upper, start : (parameters,) bounds and nominal values
     pairing : how measured modes and model modes are paired
     priors : what is expected of each parameter; none of any unless given
+    whole : the model as a function of its fixed parameters too, and all of these; None where none
+        is fixed
     likelihood : function of the objectives that is least with the pairs, instead of those that the
         MAC says; None for these
     """
@@ -71,6 +75,9 @@ class UpdatingProblem:
     pairing: Pairing = field(default_factory=Pairing)
     priors: tuple[Prior | None, ...] = ()
     likelihood: LogSum | None = None
+    whole: tuple[Model, tuple[Parameter, ...]] | None = field(
+        default=None, repr=False, compare=False
+    )
     members: tuple[tuple[Member, ...], ...] = field(init=False, repr=False, compare=False)
     """The members of each group."""
 
@@ -88,6 +95,18 @@ class UpdatingProblem:
         )
 
     _repr_html_ = as_html
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state without the whole model, which no other process needs."""
+        return vars(self) | {"whole": None}
+
+    def with_free(self, names: Sequence[str]) -> UpdatingProblem:
+        """Return the problem with more parameters: those of its fixed ones that are named."""
+        assert self.whole is not None, "no parameter is fixed"
+        model, given = self.whole
+        given = tuple(replace(x, fixed=x.fixed and x.name not in names) for x in given)
+        model, chosen = of_free(model, given)
+        return replace(self, model=model, **_limits(chosen))
 
     @cached_property
     def _stacks(self) -> tuple[tuple[Stack, ...], ...]:
@@ -282,17 +301,26 @@ def updating_problem(
         (`InputError`), if a group has no members, or if data have a sensor that the model has not.
     """
     data = data.at(model.sensors)
-    given = parameters or parameters_of(bounds or {}, nominal or {})
-    model, chosen = of_free(model, in_order(given, model.parameters))
+    given = in_order(parameters or parameters_of(bounds or {}, nominal or {}), model.parameters)
+    whole = (model, tuple(given)) if any(each.fixed for each in given) else None
+    model, chosen = of_free(model, given)
     if reduction is not None:
         model = reduction.of(model, data, pairing or Pairing(), chosen)
     return UpdatingProblem(
         model,
         data,
         tuple(groups),
-        np.array([each.lower for each in chosen]),
-        np.array([each.upper for each in chosen]),
-        np.array([each.nominal for each in chosen]),
-        pairing or Pairing(),
-        priors=tuple(each.prior for each in chosen),
+        pairing=pairing or Pairing(),
+        whole=whole,
+        **_limits(chosen),
     )
+
+
+def _limits(parameters: Sequence[Parameter]) -> dict[str, Any]:
+    """Return the fields of a problem that are those of its parameters."""
+    return {
+        "lower": np.array([each.lower for each in parameters]),
+        "upper": np.array([each.upper for each in parameters]),
+        "start": np.array([each.nominal for each in parameters]),
+        "priors": tuple(each.prior for each in parameters),
+    }

@@ -224,7 +224,8 @@ def with_intervals(data: xr.Dataset, inference: Inference) -> xr.Dataset:
     A quantile is such that the next draw is below it with its probability. Of draws that do not
     settle no parameter is called determined.
     """
-    draws, fit, freed = inference.draws, inference.fit, inference.freed
+    draws, fit = inference.draws, inference.fit
+    freed, unfixed = inference.freed, inference.unfixed
     interval = np.quantile(draws.theta, QUANTILES, axis=0, method="weibull").T
     share = (interval[:, 2] - interval[:, 0]) / inference.widths
     place = np.where((share < DETERMINED) & draws.settled, 0, np.where(share > OPEN, 2, 1))
@@ -247,5 +248,9 @@ def with_intervals(data: xr.Dataset, inference: Inference) -> xr.Dataset:
     }
     if freed is not None:
         values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
+    attributes = {"assumed": inference.assumed, "settled": int(draws.settled)}
+    if unfixed is not None:
+        attributes |= {"fixed_parameter": unfixed.name, "fixed_value": unfixed.value}
+        values["unfixed_misfit"] = unfixed.misfit
     out = data.assign(described(values)).assign_coords(quantile=list(QUANTILES))
-    return out.assign_attrs(assumed=inference.assumed, settled=int(draws.settled))
+    return out.assign_attrs(attributes)

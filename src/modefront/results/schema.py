@@ -193,6 +193,7 @@ freed_theta | parameter | | theta of the most probable model where the bounds th
     widened
 freed_misfit | group | 1 | misfit of the most probable model where the bounds that hold it are
     widened
+unfixed_misfit | group | 1 | misfit of the most probable model where `fixed_parameter` is free
 # Errors of the data / bootstrap
 bootstrap_theta | replicate point parameter | | theta with the data drawn again; NaN where it did
     not converge
@@ -236,6 +237,8 @@ inputs | text | hash of the study file and of all files that it names
 checksum | text | BLAKE2b hash of all variables and attributes, in hexadecimal digits
 assumed | text | which errors of the data are assumed, and how great
 settled | number | 1 where the chains that draw from the posterior agree
+fixed_parameter | text | fixed parameter that lowers errors beyond chance when it is free
+fixed_value | number | its value at the most probable model then
 verdict | text | sentences of the first screen, one a line
 remark | text | why a requested option is not in use
 seed* | count | seed of all random numbers

@@ -62,7 +62,8 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     groups = list(map(str, data["group"].values))
     refused = refusals(groups, data["misfit"].values, data["nominal_misfit"].values)
     assumed = data.attrs.get("assumed")
-    said = [*_at_bounds(data), *([_say("assumed", assumed=assumed)] if assumed else [])]
+    said = [*_at_bounds(data), *_fixed(data)]
+    said += [_say("assumed", assumed=assumed)] if assumed else []
     said += _pairs(data)
     if not data.attrs.get("settled", 1):
         said.insert(0, _say("unsettled"))
@@ -146,6 +147,22 @@ def _at_bounds(data: xr.Dataset) -> Iterator[str]:
         after=after[i],
         before=before[i],
         its="its" if len(beyond) == 1 else "their",
+    )
+
+
+def _fixed(data: xr.Dataset) -> Iterator[str]:
+    """Yield which fixed parameter the data contradict."""
+    if "fixed_parameter" not in data.attrs:
+        return
+    before, after = data["misfit"].values, data["unfixed_misfit"].values
+    i = int(np.argmax(before - after))
+    yield _say(
+        "wrong-fixed",
+        name=data.attrs["fixed_parameter"],
+        value=data.attrs["fixed_value"],
+        group=data["group"].values[i],
+        after=after[i],
+        before=before[i],
     )
 
 

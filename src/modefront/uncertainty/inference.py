@@ -1,7 +1,9 @@
 """What the posterior says about a most probable model: draws, misfit, bounds and measurements.
 
 A bound that excludes the truth also drives other parameters to theirs. All bounds that hold the
-model are widened at once, and only those beyond which it then lies are to blame.
+model are widened at once, and only those beyond which it then lies are to blame. Of the fixed
+parameters, each promises to lower -2 ln p by what its slope and the Gauss-Newton matrix say where
+all others follow (Rao's score); those that promise most are freed and tried, one at a time.
 """
 
 from __future__ import annotations
@@ -10,16 +12,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.stats import chi2
 
 from modefront._typing import Floats
 from modefront.optim.problem import at_bounds
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.most_probable import maximum
 from modefront.uncertainty.planning import Candidates, candidates
-from modefront.uncertainty.prior import NoiseModel, prior_widths
+from modefront.uncertainty.prior import Distance, NoiseModel, prior_widths
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task
+
+CHANCE = 0.01
+"""Probability that a fixed parameter is named where all of them are right."""
+
+
+TRIED = 3
+"""Fixed parameters that are tried at most."""
 
 
 @record
@@ -44,15 +54,33 @@ class Fit:
 @record
 @dataclass(frozen=True)
 class Freed:
-    """The most probable model between wider bounds.
+    """The most probable model between wider bounds, or with a parameter more.
 
     Attributes
     ----------
     theta : (p,) its parameters
     misfit : (n,) its root mean square errors over those expected
+    less : by which -2 ln p is less
     """
 
     theta: Floats
+    misfit: Floats
+    less: float
+
+
+@record
+@dataclass(frozen=True)
+class Unfixed:
+    """The most probable model with a parameter free that is fixed.
+
+    Attributes
+    ----------
+    name, value : of this parameter
+    misfit : (n,) root mean square errors of the model over those expected
+    """
+
+    name: str
+    value: float
     misfit: Floats
 
 
@@ -65,6 +93,7 @@ class Inference:
     draws : models drawn from the posterior
     fit : of its maximum
     freed : the maximum between wider bounds; None where no bound holds it
+    unfixed : the maximum with a fixed parameter free; None where none lowers errors beyond chance
     widths : (p,) of the 90 % intervals of the priors
     assumed : in words, which errors are assumed; empty for none
     """
@@ -72,6 +101,7 @@ class Inference:
     draws: Draws
     fit: Fit
     freed: Freed | None
+    unfixed: Unfixed | None
     widths: Floats
     assumed: str
 
@@ -91,9 +121,8 @@ def infer(
     """Return what follows from the posterior with maxima (p,), the greatest first, by draws."""
     draws, theta = draw_models(noise, maxima, count, seed, work), maxima[0]
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
-    return Inference(
-        draws, fit, freed(noise, theta, work), prior_widths(noise.problem), noise.assumed
-    )
+    wider, more = freed(noise, theta, work), unfixed(noise, theta, work)
+    return Inference(draws, fit, wider, more, prior_widths(noise.problem), noise.assumed)
 
 
 def _fit(noise: NoiseModel, theta: Floats) -> Fit:
@@ -126,6 +155,62 @@ def freed(noise: NoiseModel, theta: Floats, work: Executor) -> Freed | None:
     return out
 
 
+def unfixed(noise: NoiseModel, theta: Floats, work: Executor) -> Unfixed | None:
+    """Return the most probable model with that fixed parameter free with which it is most so.
+
+    None where none is fixed, and where -2 ln p becomes less by no more than right ones may.
+    """
+    problem = noise.problem
+    fixed = [x for x in problem.whole[1] if x.fixed] if problem.whole else []
+    if not fixed:
+        return None
+    every = replace(noise, problem=problem.with_free([x.name for x in fixed]))
+    known = problem.model.parameters
+    (promises,) = work.run(
+        [
+            Task(
+                ("most-probable", "promises"),
+                _promises,
+                (every, _placed(every, known, theta), known),
+            )
+        ]
+    )
+    tasks, tried = [], [fixed[k].name for k in np.argsort(-promises)[:TRIED].tolist()]
+    for k, name in enumerate(tried):
+        one = replace(noise, problem=problem.with_free([name]))
+        start = _placed(one, known, theta)
+        tasks.append(Task(("most-probable", "unfixed", k + 1), _freed, (one, start)))
+    found = [(x, name) for x, name in zip(work.run(tasks), tried, strict=True) if x is not None]
+    best, name = max(found, key=lambda x: x[0].less, default=(None, ""))
+    if best is None or best.less < chi2.isf(CHANCE / len(fixed), 1):
+        return None
+    names = problem.with_free([name]).model.parameters
+    return Unfixed(name, float(best.theta[names.index(name)]), best.misfit)
+
+
+def _placed(noise: NoiseModel, known: Sequence[str], theta: Floats) -> Floats:
+    """Return all parameters of a problem, of which those known are theta, others nominal."""
+    names = noise.problem.model.parameters
+    out = noise.problem.start.copy()
+    out[[names.index(x) for x in known]] = theta
+    return out
+
+
+def _promises(noise: NoiseModel, theta: Floats, known: Sequence[str]) -> Floats:
+    """Return by how much -2 ln p becomes less with each parameter that is not known so far."""
+    problem = noise.problem
+    found = problem.evaluate(theta)
+    w = noise.programme.logs.gradient(found.J)
+    slope = w @ found.dJ / 2
+    prior = Distance(problem, problem.start, 12.0).residuals(theta)[1]
+    A = np.tensordot(w, found.H, axes=1) / 2 + np.diag(prior**2)
+    free = np.isin(problem.model.parameters, known)
+    moved = free & (at_bounds(theta, problem.lower, problem.upper) == 0)
+    Q, R = A[np.ix_(moved, moved)], A[np.ix_(moved, ~free)]
+    left = np.diag(A)[~free] - (R * np.linalg.solve(Q, R)).sum(axis=0)
+    return slope[~free] ** 2 / left
+
+
 def wider(lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
     """Return bounds (p,) that are farther away by the range, or by the ratio of positive ones."""
     positive = lower > 0
@@ -138,5 +223,8 @@ def wider(lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
 
 def _freed(noise: NoiseModel, theta: Floats) -> Freed | None:
     """Return the model to which theta (p,) leads; None where the search does not converge."""
-    found = maximum(noise, theta)
-    return Freed(found.theta, noise.over_expected(found.J[:-1])) if found.converged else None
+    start, found = noise.target.evaluate(theta, derivatives=False), maximum(noise, theta)
+    if not found.converged:
+        return None
+    less = noise.programme.value(start.J) - noise.programme.value(found.J)
+    return Freed(found.theta, noise.over_expected(found.J[:-1]), less)

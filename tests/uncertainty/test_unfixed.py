@@ -1,0 +1,69 @@
+"""Fixed parameters that are wrong are named, and those that are right are not."""
+
+import numpy as np
+import pytest
+
+import modefront as mf
+from modefront._typing import Floats
+from modefront.uncertainty.inference import unfixed
+from modefront.uncertainty.most_probable import most_probable
+from modefront.uncertainty.prior import NoisePrior
+from modefront.work.task import IMMEDIATE
+
+NAMES = ("k1", "k2", "k3", "k4", "k5")
+FIXED = ("k2", "k4")
+
+
+def problem_of(truth: Floats, seed: int) -> mf.UpdatingProblem:
+    """Return a measured chain of five stories, of which two stiffnesses are fixed."""
+    model = mf.chain(NAMES, [20.0] * 5, [80e3] * 5, stiffness_parameters=NAMES)
+    rng, true = np.random.default_rng(seed), model.modes(truth, 4)
+    shape = true.phi.T
+    top = np.abs(shape).max(axis=1)[:, None]
+    data = mf.modal_data(
+        true.frequency * (1 + 0.005 * rng.normal(size=4)),
+        shape + 0.03 * top * rng.normal(size=shape.shape),
+        model.sensors,
+    )
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    parameters = [mf.Parameter(x, nominal=1.0, bounds=(0.3, 3.0), fixed=x in FIXED) for x in NAMES]
+    return mf.updating_problem(model, data, groups, parameters=parameters)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("wrong", [*FIXED, ""])
+def test_the_wrong_one_is_named_and_a_right_one_is_not(wrong: str, seed: int) -> None:
+    rng = np.random.default_rng([seed, 1])
+    truth = np.where(np.isin(NAMES, FIXED), 1.0, rng.uniform(0.8, 1.25, 5))
+    truth[np.isin(NAMES, wrong)] = rng.choice([0.65, 1.5])
+    problem = problem_of(truth, seed)
+    noise = NoisePrior().of(problem, None)
+    assert noise is not None
+    theta = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
+    found = unfixed(noise, theta, IMMEDIATE)
+    if not wrong:
+        assert found is None
+        return
+    assert found is not None
+    assert found.name == wrong
+    assert found.value == pytest.approx(truth[NAMES.index(wrong)], rel=0.1)
+    before = noise.over_expected(noise.problem.evaluate(theta).J)
+    assert (before - found.misfit).max() > 1
+
+
+def test_the_verdict_says_what_to_write() -> None:
+    problem = problem_of(np.array([0.9, 1.5, 1.1, 1.0, 1.2]), 1)
+    options = mf.Identifiability(models=0)
+    results = mf.solve(problem, points=3, identifiability=options)
+    (said,) = [x for x in results.verdict if "which is fixed" in x]
+    assert said.startswith("With k2 = 1.")
+    assert said.endswith("write fixed = false in its [[parameter]].")
+    assert results.attrs["fixed_parameter"] == "k2"
+
+
+def test_a_problem_without_fixed_parameters_has_no_other_model() -> None:
+    model = mf.chain(["k"], [20.0], [80e3], stiffness_parameters=["k"])
+    data = mf.modal_data(np.array([10.0]), np.array([[1.0]]), model.sensors)
+    groups = [mf.Group("frequencies", frequency="all")]
+    problem = mf.updating_problem(model, data, groups, {"k": (0.3, 3.0)}, {"k": 1.0})
+    assert problem.whole is None
