@@ -16,16 +16,11 @@ import numpy as np
 import openturns as ot
 from scipy.linalg import eigh
 
-from modefront.reliability import (
-    METHODS,
-    FirstPassage,
-    Sided,
-    WhiteNoise,
-    directional_importance_sampling,
-    importance_sampling,
-)
+from modefront.reliability.estimate import estimate
 from modefront.reliability.gaussian import Convolution, gaussian_response
-from modefront.response import ModalSystem
+from modefront.reliability.methods import METHODS
+from modefront.reliability.problem import FirstPassage
+from modefront.response.system import ModalSystem
 
 DRIFTS = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, -1.0, 1.0]])
 LEVEL = 2.1
@@ -45,16 +40,16 @@ def chain(theta: np.ndarray) -> ModalSystem:
 def many_models(method: str, workers: int) -> None:
     """Print the time for the 20 structures."""
     rng = np.random.default_rng(0)
-    noise = WhiteNoise(0.001, Sided.TWO)
+    noise = 2 * np.pi * 0.001
     problems = [FirstPassage(chain(rng.uniform(0.8, 1.6, 3)), noise, 30.0, 0.01) for _ in range(20)]
     levels = np.array([0.004, 0.005])
     start = time.perf_counter()
     results = [
-        METHODS[method](problem, levels, 2000, np.random.SeedSequence(number), workers)
+        estimate(METHODS[method], problem, levels, 2000, np.random.SeedSequence(number), workers)
         for number, problem in enumerate(problems)
     ]
     elapsed = time.perf_counter() - start
-    p = np.array([[estimate.probability for estimate in pair] for pair in results])
+    p = np.array([P for P, _ in results])
     ranges = "; ".join(f"P from {column.min():.1e} to {column.max():.1e}" for column in p.T)
     print(f"  {method:12s} {workers} worker(s) {elapsed:6.1f} s    {ranges}")
 
@@ -92,7 +87,7 @@ def subset_simulation(problem: FirstPassage, runs: int) -> tuple[np.ndarray, flo
 def evaluations_needed(runs: int) -> None:
     """Print evaluations for a coefficient of variation of 10 %, and their ratio."""
     system = ModalSystem(np.array([7.85]), np.array([0.02]), np.eye(1), np.eye(1))
-    problem = FirstPassage(system, WhiteNoise(1.0, Sided.TWO), 30.0, 0.02)
+    problem = FirstPassage(system, 2 * np.pi, 30.0, 0.02)
     start = time.perf_counter()
     estimates, evaluations = subset_simulation(problem, runs)
     spread = estimates.std(ddof=1) / estimates.mean()
@@ -103,13 +98,14 @@ def evaluations_needed(runs: int) -> None:
         f"± {100 * uncertain:.0f} %, {evaluations:.0f} evaluations a run, c.o.v. of {runs} runs "
         f"{spread:.2f}\n    -> {subset:.0f} evaluations ({time.perf_counter() - start:.0f} s)"
     )
-    for method in (importance_sampling, directional_importance_sampling):
-        (result,) = method(problem, [LEVEL], 20_000, np.random.SeedSequence(0))
-        needed = (result.unit_coefficient_of_variation / 0.1) ** 2
+    for method in ("importance", "directional"):
+        seed = np.random.SeedSequence(0)
+        found = estimate(METHODS[method], problem, np.array([LEVEL]), 20_000, seed)
+        (P,), (variation,) = found
+        unit = variation * np.sqrt(20_000)
+        needed = (unit / 0.1) ** 2
         print(
-            f"  {result.method}: P = {result.probability:.3e} ± "
-            f"{100 * result.coefficient_of_variation:.1f} %, unit c.o.v. "
-            f"{result.unit_coefficient_of_variation:.3f}\n"
+            f"  {method}: P = {P:.3e} ± {100 * variation:.1f} %, unit c.o.v. {unit:.3f}\n"
             f"    -> {needed:.0f} evaluations: {subset / needed:.0f} times fewer"
         )
 

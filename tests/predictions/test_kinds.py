@@ -12,7 +12,6 @@ from two_masses import FRF, PASSAGE, write_study
 
 import modefront as mf
 from modefront.predictions import CLASSES, Prediction
-from modefront.response import ResponseQuantity
 
 PEAK: dict[str, Any] = {"name": "peak", "response": ["high"], "force": "high", "damping": 0.02}
 DRIFT: dict[str, Any] = {
@@ -40,7 +39,7 @@ def problem(tmp_path: Path) -> mf.UpdatingProblem:
         (mf.PeakResponse, PEAK | {"quantity": "force"}, "quantity: expected one of 'receptance'"),
         (
             mf.PeakResponse,
-            PEAK | {"quantity": ResponseQuantity.ABSOLUTE_ACCELERANCE},
+            PEAK | {"quantity": "absolute accelerance"},
             "quantity: expected another one where forces act, found 'absolute accelerance'",
         ),
         (

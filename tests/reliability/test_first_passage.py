@@ -1,6 +1,7 @@
 """The estimators against exact results, published-style reference values and one another."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -10,50 +11,58 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.stats import norm
 
-from modefront.reliability import (
-    METHODS,
-    FirstPassage,
-    KanaiTajimi,
-    Sided,
-    WhiteNoise,
-    additive_rules,
-    directional_importance_sampling,
-    importance_sampling,
-    monte_carlo,
-    step_effect,
-)
+from modefront.reliability.estimate import estimate, step_effect
 from modefront.reliability.gaussian import gaussian_response
-from modefront.reliability.methods import elementary_failures
-from modefront.response import ModalSystem
+from modefront.reliability.methods import METHODS, elementary_failures
+from modefront.reliability.problem import FirstPassage
+from modefront.response.system import ModalSystem
 
-CONDITIONAL = [importance_sampling, directional_importance_sampling, additive_rules]
+CONDITIONAL = ["importance", "directional", "additive"]
 OSCILLATOR = ModalSystem(np.array([7.85]), np.array([0.02]), np.eye(1), np.eye(1))
-REFERENCE = FirstPassage(OSCILLATOR, WhiteNoise(1.0, Sided.TWO), 30.0, 0.02)
+REFERENCE = FirstPassage(OSCILLATOR, 2 * np.pi, 30.0, 0.02)
 REFERENCE_VALUES = {1.6: 8.37e-3, 1.8: 1.144e-3, 2.1: 3.48e-5, 2.4: 5.84e-7}
+
+
+class Estimate(NamedTuple):
+    level: float
+    probability: float
+    coefficient_of_variation: float
+    unit_coefficient_of_variation: float
+
+    @property
+    def standard_error(self):
+        return self.probability * self.coefficient_of_variation
+
+
+def run(method, problem, levels, samples, of_numbers, workers=1):
+    """Return the estimates of a method, by its name, level by level."""
+    levels = np.array(levels, dtype=float)
+    found = estimate(METHODS[method], problem, levels, samples, of_numbers, workers)
+    return [Estimate(b, p, v, v * samples**0.5) for b, p, v in zip(levels, *found, strict=True)]
 
 
 def seed(number):
     return np.random.SeedSequence(number)
 
 
-@pytest.mark.parametrize("method", CONDITIONAL, ids=lambda m: m.method)
+@pytest.mark.parametrize("method", CONDITIONAL)
 def test_reference_values(method):
-    for result in method(REFERENCE, list(REFERENCE_VALUES), 4000, seed(7), 1):
+    for result in run(method, REFERENCE, list(REFERENCE_VALUES), 4000, seed(7), 1):
         expected = REFERENCE_VALUES[result.level]
         assert abs(result.probability - expected) < 4 * result.standard_error
         assert result.coefficient_of_variation < 0.05
 
 
 def test_reference_values_by_counting():
-    result, _ = monte_carlo(REFERENCE, [1.6, 1.8], 20_000, seed(8), 1)
+    result, _ = run("monte-carlo", REFERENCE, [1.6, 1.8], 20_000, seed(8), 1)
     assert abs(result.probability - 8.37e-3) < 4 * result.standard_error
     bernoulli = np.sqrt((1 - result.probability) / result.probability)
     assert result.unit_coefficient_of_variation == pytest.approx(bernoulli, rel=1e-3)
 
 
 def test_unit_coefficients_of_variation_of_the_reference():
-    (plain,) = importance_sampling(REFERENCE, [2.1], 12_000, seed(1))
-    (directional,) = directional_importance_sampling(REFERENCE, [2.1], 12_000, seed(1))
+    (plain,) = run("importance", REFERENCE, [2.1], 12_000, seed(1))
+    (directional,) = run("directional", REFERENCE, [2.1], 12_000, seed(1))
     assert plain.unit_coefficient_of_variation <= 1.0
     assert directional.unit_coefficient_of_variation <= 0.8
 
@@ -61,19 +70,19 @@ def test_unit_coefficients_of_variation_of_the_reference():
 def test_estimated_coefficient_of_variation_is_that_of_repetitions():
     short = replace(REFERENCE, duration=3.0)
     for method in CONDITIONAL:
-        runs = [method(short, [1.0], 100, seed(k), 1)[0] for k in range(80)]
+        runs = [run(method, short, [1.0], 100, seed(k), 1)[0] for k in range(80)]
         p = np.array([run.probability for run in runs])
         claimed = np.sqrt(np.mean([run.standard_error**2 for run in runs]))
         assert p.std(ddof=1) == pytest.approx(claimed, rel=0.3)
 
 
-@pytest.mark.parametrize("method", CONDITIONAL, ids=lambda m: m.method)
+@pytest.mark.parametrize("method", CONDITIONAL)
 def test_one_time_step_is_known_exactly(method):
     """One response at one time: P = 2Φ(-b/σ), without any spread."""
-    problem = FirstPassage(OSCILLATOR, WhiteNoise(1.0, Sided.TWO), 0.02, 0.02)
+    problem = FirstPassage(OSCILLATOR, 2 * np.pi, 0.02, 0.02)
     sigma = gaussian_response(problem).deviation[0, 0]
     for result, beta in zip(
-        method(problem, sigma * np.array([0.1, 3.0, 30.0]), 50, seed(0), 1),
+        run(method, problem, sigma * np.array([0.1, 3.0, 30.0]), 50, seed(0), 1),
         (0.1, 3.0, 30.0),
         strict=True,
     ):
@@ -81,11 +90,11 @@ def test_one_time_step_is_known_exactly(method):
         assert result.unit_coefficient_of_variation < 1e-9
 
 
-@pytest.mark.parametrize("method", [*CONDITIONAL, monte_carlo], ids=lambda m: m.method)
+@pytest.mark.parametrize("method", [*CONDITIONAL, "monte-carlo"])
 @pytest.mark.parametrize("beta", [0.3, 0.8])
 def test_two_time_steps_against_quadrature(method, beta):
     """Two correlated normal numbers: one integral, also where P is no small number."""
-    problem = FirstPassage(OSCILLATOR, WhiteNoise(1.0, Sided.TWO), 0.04, 0.02)
+    problem = FirstPassage(OSCILLATOR, 2 * np.pi, 0.04, 0.02)
     response = gaussian_response(problem)
     a = response.design_excitation(np.array([0, 0]), np.array([0, 1]))[:, 0]
     level = beta * response.deviation[0, 1]
@@ -96,7 +105,7 @@ def test_two_time_steps_against_quadrature(method, beta):
 
     bound = min(level / a[0, 0], 9.0)
     exact = 1 - quad(stays, -bound, bound, epsabs=1e-12)[0]
-    (result,) = method(problem, [level], 20_000, seed(4), 1)
+    (result,) = run(method, problem, [level], 20_000, seed(4), 1)
     assert abs(result.probability - exact) < 4 * result.standard_error + 1e-9
 
 
@@ -110,10 +119,10 @@ def problems(draw):
         input=rng.normal(size=(m, inputs)),
         output=rng.normal(size=(outputs, m)),
     )
-    soil = draw(st.sampled_from([None, KanaiTajimi(15.0, 0.6)]))
+    soil = draw(st.sampled_from([None, (15.0, 0.6)]))
     modulation = draw(st.sampled_from([None, lambda t: np.minimum(t / 2, 1)]))
-    noise = WhiteNoise(rng.uniform(0.1, 3), draw(st.sampled_from(Sided)))
-    return FirstPassage(system, noise, 6.0, 0.05, filter=soil, modulation=modulation)
+    noise = 2 * np.pi * rng.uniform(0.05, 3)
+    return FirstPassage(system, noise, 6.0, 0.05, soil=soil, modulation=modulation)
 
 
 @pytest.mark.slow(3)
@@ -123,14 +132,14 @@ def test_estimators_agree_with_counting(problem):
     response = gaussian_response(problem)
 
     def excess(factor):
-        return elementary_failures(response, factor * response.deviation.max()).total - 0.05
+        return elementary_failures(response, factor * response.deviation.max())[-1] - 0.05
 
     # P is about 1e-2 where the elementary failures sum to some times that.
     level = brentq(excess, 0.5, 8) * response.deviation.max()
-    (counted,) = monte_carlo(problem, [level], 20_000, seed(11))
+    (counted,) = run("monte-carlo", problem, [level], 20_000, seed(11))
     assert 3e-3 < counted.probability < 5.5e-2
     for method in CONDITIONAL:
-        (result,) = method(problem, [level], 2_000, seed(12), 1)
+        (result,) = run(method, problem, [level], 2_000, seed(12), 1)
         error = np.hypot(result.standard_error, counted.standard_error)
         assert abs(result.probability - counted.probability) < 4 * error
 
@@ -142,18 +151,18 @@ def test_responses_and_levels_scale_together(problem, power):
     system, factor = problem.system, 2.0**power
     scaled = replace(problem, system=replace(system, output=factor * system.output))
     level = 2 * gaussian_response(problem).deviation.max()
-    for method in METHODS.values():
-        (result,) = method(problem, [level], 40, seed(5), 1)
-        (other,) = method(scaled, [factor * level], 40, seed(5), 1)
-        assert replace(other, level=level) == result
+    for method in METHODS:
+        (result,) = run(method, problem, [level], 40, seed(5), 1)
+        (other,) = run(method, scaled, [factor * level], 40, seed(5), 1)
+        assert other[1:] == result[1:]
 
 
 def test_directions_never_have_the_larger_spread():
     """Rao and Blackwell: the radius integrated out, the variance can only fall."""
     for level in (0.6, 1.0, 1.4):
-        (plain,) = importance_sampling(replace(REFERENCE, duration=4.0), [level], 8000, seed(2))
-        (directional,) = directional_importance_sampling(
-            replace(REFERENCE, duration=4.0), [level], 8000, seed(2)
+        (plain,) = run("importance", replace(REFERENCE, duration=4.0), [level], 8000, seed(2))
+        (directional,) = run(
+            "directional", replace(REFERENCE, duration=4.0), [level], 8000, seed(2)
         )
         delta = directional.unit_coefficient_of_variation
         assert delta < 1.02 * plain.unit_coefficient_of_variation
@@ -162,109 +171,59 @@ def test_directions_never_have_the_larger_spread():
 def test_a_response_counted_twice_fails_no_more_often():
     twice = replace(REFERENCE, system=replace(OSCILLATOR, output=np.array([[1.0], [-1.0]])))
     for method in CONDITIONAL:
-        (result,) = method(twice, [1.8], 4000, seed(3), 1)
+        (result,) = run(method, twice, [1.8], 4000, seed(3), 1)
         assert abs(result.probability - 1.144e-3) < 4 * result.standard_error
 
 
 def test_an_input_split_in_two_is_the_same_input():
     split = replace(REFERENCE, system=replace(OSCILLATOR, input=np.array([[0.6, 0.8]])))
-    (result,) = directional_importance_sampling(split, [1.8], 4000, seed(3))
+    (result,) = run("directional", split, [1.8], 4000, seed(3))
     assert abs(result.probability - 1.144e-3) < 4 * result.standard_error
 
 
-@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+@pytest.mark.parametrize("method", METHODS)
 def test_same_digits_on_one_worker_and_many(method):
     short = replace(REFERENCE, duration=4.0)
     given_seed = seed(9)
-    alone = method(short, [0.5, 0.9], 201, given_seed, 1)
-    assert method(short, [0.5, 0.9], 201, given_seed, 3) == alone
-    assert method(short, [0.9], 201, given_seed, 2) == alone[1:]
-    assert method(short, [0.5, 0.9], 201, seed(10), 1) != alone
+    alone = run(method, short, [0.5, 0.9], 201, given_seed, 1)
+    assert run(method, short, [0.5, 0.9], 201, given_seed, 3) == alone
+    assert run(method, short, [0.9], 201, given_seed, 2) == alone[1:]
+    assert run(method, short, [0.5, 0.9], 201, seed(10), 1) != alone
 
 
 def test_one_pass_serves_levels_far_apart():
-    together = importance_sampling(REFERENCE, [1.6, 2.4], 500, seed(6))
-    apart = [importance_sampling(REFERENCE, [b], 500, seed(6))[0] for b in (1.6, 2.4)]
+    together = run("importance", REFERENCE, [1.6, 2.4], 500, seed(6))
+    apart = [run("importance", REFERENCE, [b], 500, seed(6))[0] for b in (1.6, 2.4)]
     assert list(together) == apart
 
 
 def test_the_error_falls_with_the_root_of_the_samples():
-    problem = replace(REFERENCE, duration=2.0, noise=WhiteNoise(2.0, Sided.ONE))
-    (result,) = directional_importance_sampling(problem, [0.8], 100, seed(0))
+    problem = replace(REFERENCE, duration=2.0)
+    (result,) = run("directional", problem, [0.8], 100, seed(0))
     delta = result.unit_coefficient_of_variation
     assert result.coefficient_of_variation == pytest.approx(delta / 10)
     assert result.standard_error == pytest.approx(result.probability * delta / 10)
 
 
-@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+@pytest.mark.parametrize("method", METHODS)
 def test_nothing_sampled_is_said(method):
     """A barrier beyond the range of floating point, or one that no sample reached."""
-    (result,) = method(replace(REFERENCE, duration=1.0), [100.0], 10, seed(0), 1)
+    (result,) = run(method, replace(REFERENCE, duration=1.0), [100.0], 10, seed(0), 1)
     assert result.probability == 0
     assert result.coefficient_of_variation == np.inf
-    assert np.isnan(result.standard_error)
 
 
 def test_halving_the_step():
     """Peaks between the times are missed: the finer grid sees more failures."""
-    coarse = replace(REFERENCE, time_step=0.1)
-    (effect,) = step_effect(directional_importance_sampling, coarse, [1.8], 2000, seed(1))
-    assert effect.ratio == effect.halved.probability / effect.given.probability
-    assert effect.ratio - 1 > 2 * effect.standard_error
-    (fine,) = step_effect(directional_importance_sampling, REFERENCE, [1.8], 2000, seed(1))
-    assert abs(fine.ratio - 1) < max(0.1, 4 * fine.standard_error)
+    coarse, directional = replace(REFERENCE, time_step=0.1), METHODS["directional"]
+    level = np.array([1.8])
+    (ratio,), (error,) = step_effect(directional, coarse, level, 2000, seed(1))
+    assert ratio - 1 > 2 * error
+    (ratio,), (error,) = step_effect(directional, REFERENCE, level, 2000, seed(1))
+    assert abs(ratio - 1) < max(0.1, 4 * error)
 
 
 def test_halving_the_step_where_nothing_failed():
-    (effect,) = step_effect(monte_carlo, replace(REFERENCE, duration=1.0), [100.0], 10, seed(1))
-    assert np.isnan(effect.ratio)
-    assert np.isnan(effect.standard_error)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"duration": 0.0}, r"duration: expected a positive number \(s\), found 0.0"),
-        ({"duration": np.nan}, "duration: expected a positive number"),
-        ({"duration": 1.005}, "duration: expected a whole number of time steps of 0.02 s, found"),
-        ({"duration": 1e-9}, "duration: expected a whole number of time steps"),
-        ({"time_step": -0.02}, "time_step: expected a positive number"),
-        ({"time_step": 0.25}, r"time_step: expected at most 0.200101 s.*7.85 rad/s.*found 0.25"),
-        ({"filter": KanaiTajimi(100.0, 0.6)}, "time_step: expected at most 0.015708 s"),
-    ],
-)
-def test_wrong_problems_say_what_is_wrong(change, message):
-    with pytest.raises(ValueError, match=message):
-        replace(REFERENCE, **change)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"levels": [1.0, 0.0]}, "levels: expected positive numbers, found 0.0 at index 1"),
-        ({"levels": [np.inf]}, "levels: expected finite numbers"),
-        ({"levels": 1.0}, r"levels: expected shape \(n\)"),
-        ({"levels": []}, r"levels: expected shape \(n\) \(barriers\), found \(0,\)"),
-        ({"samples": 0}, "samples: expected a whole number of at least 1, found 0"),
-        ({"samples": 1}, "samples: expected at least 2"),
-        ({"samples": 10.5}, "samples: expected a whole number"),
-        ({"samples": np.nan}, "samples: expected a whole number"),
-        ({"workers": 0}, "workers: expected a whole number of at least 1"),
-    ],
-)
-def test_wrong_calls_say_what_is_wrong(change, message):
-    good = {"levels": [1.0], "samples": 10, "seed": seed(0), "workers": 1}
-    with pytest.raises(ValueError, match=message):
-        importance_sampling(REFERENCE, **(good | change))
-
-
-def test_wrong_noise_filter_and_modulation():
-    with pytest.raises(ValueError, match="density: expected a positive number"):
-        WhiteNoise(0.0, Sided.TWO)
-    with pytest.raises(ValueError, match="zeta: expected a positive number"):
-        KanaiTajimi(15.0, -0.6)
-    with pytest.raises(ValueError, match="omega: expected a positive number"):
-        KanaiTajimi(0.0, 0.6)
-    wrong = replace(REFERENCE, modulation=lambda t: t[:-1])
-    with pytest.raises(ValueError, match=r"modulation: expected shape \(1500\)"):
-        importance_sampling(wrong, [1.0], 10, seed(0))
+    short = replace(REFERENCE, duration=1.0)
+    ratio, error = step_effect(METHODS["monte-carlo"], short, np.array([100.0]), 10, seed(1))
+    assert np.isnan([ratio, error]).all()

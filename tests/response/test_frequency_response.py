@@ -1,13 +1,17 @@
 """Modal superposition against the direct solution, and the peaks against brute force."""
 
+from dataclasses import replace
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
-from modefront.response import ModalSystem, ResponseQuantity, frequency_response, peaks
-from modefront.response.function import derivatives
+from modefront.response import function
+from modefront.response.function import ORDERS, derivatives
+from modefront.response.system import ModalSystem
 
 M = np.diag([22.6, 22.6, 0.76 * 22.6])
 K = 84763.8 * np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
@@ -15,6 +19,20 @@ DRIFTS = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, -1.0, 1.0]])
 R = np.ones((3, 1))
 ZETA = np.array([0.02, 0.03, 0.05])
 OMEGA = np.linspace(0.0, 160.0, 97)
+
+
+class Peak(NamedTuple):
+    omega: float
+    amplitude: float
+
+
+def peaks(system, quantity="receptance", output=0, band=None):
+    band = band or (0.0, 2 * system.omega.max())
+    return tuple(map(Peak, *function.peaks(system, quantity, output, band)))
+
+
+def frequency_response(system, omega, quantity="receptance"):
+    return derivatives(system, np.array(omega, dtype=complex), quantity)[0]
 
 
 def chain(load, output, modes=3, rigid=None):
@@ -42,11 +60,11 @@ def direct(load, output, damping, omega):
 @pytest.mark.parametrize(
     ("quantity", "factor"),
     [
-        (ResponseQuantity.RECEPTANCE, np.ones_like(OMEGA)),
-        (ResponseQuantity.MOBILITY, 1j * OMEGA),
-        (ResponseQuantity.ACCELERANCE, -(OMEGA**2)),
+        ("receptance", np.ones_like(OMEGA)),
+        ("mobility", 1j * OMEGA),
+        ("accelerance", -(OMEGA**2)),
     ],
-    ids=lambda value: value.value if isinstance(value, ResponseQuantity) else "",
+    ids=["receptance", "mobility", "accelerance"],
 )
 @pytest.mark.parametrize("load", [np.eye(3), -M @ R], ids=["forces", "base"])
 def test_superposition_is_the_direct_solution(quantity, factor, load):
@@ -61,7 +79,7 @@ def test_absolute_acceleration_follows_from_newtons_law():
     system, damping = chain(-M @ R, np.eye(3), rigid=R)
     relative = direct(-M @ R, np.eye(3), damping, OMEGA)
     exact = 1 - OMEGA[:, None, None] ** 2 * relative
-    result = frequency_response(system, OMEGA, ResponseQuantity.ABSOLUTE_ACCELERANCE)
+    result = frequency_response(system, OMEGA, "absolute accelerance")
     np.testing.assert_allclose(result, exact, rtol=1e-10, atol=1e-12)
     np.testing.assert_allclose(result[0], R, rtol=1e-14)
 
@@ -80,7 +98,7 @@ def test_static_correction_makes_the_error_fourth_order():
     assert np.all(full.residual_flexibility() < 1e-12 * abs(exact[0]).max())
 
 
-@pytest.mark.parametrize("quantity", list(ResponseQuantity))
+@pytest.mark.parametrize("quantity", ORDERS)
 def test_derivatives_against_a_contour_integral(quantity):
     """T is analytic in ω: by Cauchy's formula a ring of values gives its derivatives."""
     system, _ = chain(-M @ R, DRIFTS, modes=2, rigid=DRIFTS @ R)
@@ -100,17 +118,16 @@ def one_mode(omega, zeta, **other):
 @pytest.mark.parametrize(
     ("quantity", "position"),
     [
-        (ResponseQuantity.RECEPTANCE, lambda z: np.sqrt(1 - 2 * z**2)),
-        (ResponseQuantity.MOBILITY, lambda z: 1.0),
-        (ResponseQuantity.ACCELERANCE, lambda z: 1 / np.sqrt(1 - 2 * z**2)),
+        ("receptance", lambda z: np.sqrt(1 - 2 * z**2)),
+        ("mobility", lambda z: 1.0),
+        ("accelerance", lambda z: 1 / np.sqrt(1 - 2 * z**2)),
     ],
 )
 @pytest.mark.parametrize("zeta", [1e-5, 0.02, 0.3])
 def test_peak_of_one_mode_is_where_the_textbook_has_it(quantity, position, zeta):
     (peak,) = peaks(one_mode(29.2, zeta), quantity)
     assert peak.omega == pytest.approx(29.2 * position(zeta), rel=1e-12)
-    assert peak.frequency == peak.omega / (2 * np.pi)
-    if quantity is ResponseQuantity.RECEPTANCE:
+    if quantity == "receptance":
         exact = 1 / (2 * zeta * np.sqrt(1 - zeta**2) * 29.2**2)
         assert peak.amplitude == pytest.approx(exact, rel=1e-10)
 
@@ -140,9 +157,7 @@ def test_peak_close_to_an_antiresonance():
 
 
 @settings(max_examples=60, deadline=None)
-@given(
-    seed=st.integers(0, 2**32 - 1), m=st.integers(1, 8), quantity=st.sampled_from(ResponseQuantity)
-)
+@given(seed=st.integers(0, 2**32 - 1), m=st.integers(1, 8), quantity=st.sampled_from([*ORDERS]))
 def test_no_peak_is_missed(seed, m, quantity):
     rng = np.random.default_rng(seed)
     omega = np.sort(rng.uniform(1, 30, m))
@@ -190,55 +205,18 @@ def test_hundred_modes():
 def test_peaks_of_one_output_and_input_of_many():
     system, _ = chain(np.eye(3), np.eye(3))
     alone, _ = chain(np.eye(3)[:, 2:], np.eye(3)[:1])
-    assert peaks(system, output=0, input=2) == peaks(alone)
-    assert len(peaks(system)) == 3
-    low, *_ = peaks(system)
-    assert peaks(system, band=(20.0, 40.0)) == (low,)
+    last = replace(system, input=system.input[:, 2:], static=system.static[:, 2:])
+    assert peaks(last) == peaks(alone)
+    first = replace(system, input=system.input[:, :1], static=system.static[:, :1])
+    assert len(peaks(first)) == 3
+    low, *_ = peaks(first)
+    assert peaks(first, band=(20.0, 40.0)) == (low,)
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (
-            {"zeta": np.array([0.02, -0.01])},
-            r"zeta: expected no negative damping.*index \(1,\)",
-        ),
-        ({"omega": np.array([1.0, np.nan])}, "omega: expected finite numbers, found nan"),
-        ({"omega": np.array([-1.0, 2.0])}, "omega: expected no negative frequency"),
-        ({"zeta": np.array([0.02])}, r"zeta: expected shape \(2\) \(modes\), found \(1,\)"),
-        ({"input": np.ones(2)}, r"input: expected shape \(2, n\) \(modes, inputs\), found \(2,\)"),
-        ({"output": np.ones((1, 3))}, r"output: expected shape \(n, 2\)"),
-        ({"static": np.ones((2, 2))}, r"static: expected shape \(1, 1\)"),
-        ({"omega": np.array([0.0, 2.0]), "static": np.ones((1, 1))}, "rigid-body mode"),
-    ],
-)
-def test_wrong_systems_say_what_is_wrong(change, message):
-    good = {
-        "omega": np.array([1.0, 2.0]),
-        "zeta": np.array([0.02, 0.02]),
-        "input": np.ones((2, 1)),
-        "output": np.ones((1, 2)),
-    }
-    with pytest.raises(ValueError, match=message):
-        ModalSystem(**(good | change))
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda s: frequency_response(s, [-1.0]), "omega: expected no negative frequency"),
-        (lambda s: frequency_response(s, 1.0), "omega: expected shape"),
-        (
-            lambda s: frequency_response(s, [1.0], ResponseQuantity.ABSOLUTE_ACCELERANCE),
-            "rigid: expected",
-        ),
-        (lambda s: peaks(s, output=1), "output: expected a number from 0 to 0, found 1"),
-        (lambda s: peaks(s, band=(2.0, 1.0)), "band: expected"),
-    ],
-)
-def test_wrong_calls_say_what_is_wrong(call, message):
-    with pytest.raises(ValueError, match=message):
-        call(one_mode(3.0, 0.02))
+def test_a_rigid_body_has_no_static_response():
+    omega, one = np.array([0.0, 2.0]), np.ones((1, 1))
+    with pytest.raises(ValueError, match="rigid-body mode"):
+        ModalSystem(omega, np.full(2, 0.02), np.ones((2, 1)), np.ones((1, 2)), static=one)
 
 
 def test_undamped_modes():

@@ -45,18 +45,11 @@ from modefront.predictions.load_model import (
     load_faults,
     nominal_system,
 )
-from modefront.reliability import (
-    METHODS,
-    FirstPassage,
-    KanaiTajimi,
-    Sided,
-    StepError,
-    WhiteNoise,
-    step_effect,
-)
-from modefront.reliability.problem import LARGEST_ANGLE, WHOLE
+from modefront.reliability.estimate import Prepare, estimate, step_effect
+from modefront.reliability.methods import METHODS
+from modefront.reliability.problem import LARGEST_ANGLE, FirstPassage
 from modefront.residuals.problem import UpdatingProblem
-from modefront.response import ModalSystem
+from modefront.response.system import ModalSystem
 from modefront.rounding import ACCUMULATED
 
 MOST_WORKERS = 8
@@ -68,7 +61,8 @@ STEPS_A_PERIOD = 20
 MOST_STEPS = 10**6
 """Time steps at most: convolutions of more fill the memory."""
 
-SIDES = {"one": Sided.ONE, "two": Sided.TWO}
+WHOLE = 1e-6
+"""Difference from a whole number of time steps that passes for the digits of their length."""
 
 
 def _is_modulation(value: list[list[float]]) -> bool:
@@ -245,7 +239,7 @@ class Passage:
         return (
             f"{self.name}: {loads.load}; probability that any response leaves [-level, level] "
             f"(two-sided barrier) within {self.duration:g} s, at rest at first; "
-            f"{SIDES[self.sided].value} spectral density {self.density:g}, time step "
+            f"{self.sided}-sided spectral density {self.density:g}, time step "
             f"{filled(self.step, 'step'):g} s, {self.samples} samples ({self.method}), "
             f"{self.modes} modes, damping {loads.damped}"
         )
@@ -260,7 +254,7 @@ class Passage:
             "failure_duration": self.duration,
             "failure_step": self.step,
             "failure_density": self.density,
-            "failure_sided": SIDES[self.sided].value,
+            "failure_sided": f"{self.sided}-sided",
             "failure_load": loads.load,
             "failure_damping": loads.damped,
             "failure_modes": self.modes,
@@ -288,10 +282,10 @@ class Passage:
     def _step(self, system: ModalSystem) -> float:
         """Return the time step.
 
-        Raises InputError where it is too long for the nominal model, or there are too many.
+        Raises InputError where it is too long for a structure, or there are too many.
         """
         soil = 0.0 if self.filter is None else self.filter.omega
-        highest = max(float(system.omega.max()), soil)
+        highest = max(float(system.omega.max()), soil, np.finfo(float).tiny)
         if self.step is not None:
             limit = LARGEST_ANGLE / highest
             if self.step > limit * (1 + ACCUMULATED):
@@ -309,20 +303,17 @@ class Passage:
 
         Raises InputError where the time step is too long for the highest mode there.
         """
-        step, soil = filled(self.step, "step"), self.filter
+        filled(self.step, "step")
+        system, soil = self.loads.system(problem, theta), self.filter
         times, factors = zip(*self.modulation or [(0.0, 1.0)], strict=True)
-        try:
-            return FirstPassage(
-                self.loads.system(problem, theta),
-                WhiteNoise(self.density, SIDES[self.sided]),
-                self.duration,
-                step,
-                None if soil is None else KanaiTajimi(soil.omega, soil.damping),
-                (lambda t: np.interp(t, times, factors)) if self.modulation else None,
-            )
-        except StepError as error:
-            expected = f"at most {error.limit:.4g} s, a quarter of the shortest period"
-            raise wrong("step", expected, f"{step:g}") from None
+        return FirstPassage(
+            system,
+            2 * np.pi * (self.density if self.sided == "two" else self.density / 2),
+            self.duration,
+            self._step(system),
+            None if soil is None else (soil.omega, soil.damping),
+            (lambda t: np.interp(t, times, factors)) if self.modulation else None,
+        )
 
     def evaluate(
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
@@ -332,32 +323,21 @@ class Passage:
         Raises ModelError where the model cannot be evaluated at ``theta``, InputError where the
         time step is too long there.
         """
-        estimates = METHODS[self.method](
-            self.problem(problem, theta), self.levels, self.samples, seed, _workers()
-        )
-        return {
-            "probability": np.array([estimate.probability for estimate in estimates]),
-            "variation": np.array([estimate.coefficient_of_variation for estimate in estimates]),
-        }
+        P, variation = estimate(*self._sampled(problem, theta, seed))
+        return {"probability": P, "variation": variation}
 
     def check(
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
     ) -> Mapping[str, Floats]:
         """Return P with half the time step over P, and its standard error, (levels,)."""
-        effects = step_effect(
-            METHODS[self.method],
-            self.problem(problem, theta),
-            self.levels,
-            self.samples,
-            seed,
-            _workers(),
-        )
-        return {
-            "ratio": np.array([effect.ratio for effect in effects]),
-            "error": np.array([effect.standard_error for effect in effects]),
-        }
+        ratio, error = step_effect(*self._sampled(problem, theta, seed))
+        return {"ratio": ratio, "error": error}
 
-
-def _workers() -> int:
-    """Return the number of threads; how many there are changes no digit, only memory and time."""
-    return min(os.cpu_count() or 1, MOST_WORKERS)
+    def _sampled(
+        self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
+    ) -> tuple[Prepare, FirstPassage, Floats, int, np.random.SeedSequence, int]:
+        """Return what estimates at a model take."""
+        method, passage = METHODS[self.method], self.problem(problem, theta)
+        # How many threads there are changes no digit, only memory and time.
+        workers = min(os.cpu_count() or 1, MOST_WORKERS)
+        return method, passage, np.array(self.levels), self.samples, seed, workers

@@ -37,9 +37,7 @@ from modefront.predictions.load_model import (
     nominal_system,
 )
 from modefront.residuals.problem import UpdatingProblem
-from modefront.response import ResponseQuantity, peaks
-
-QUANTITIES = tuple(quantity.value for quantity in ResponseQuantity)
+from modefront.response.function import ORDERS, peaks
 
 BAND = numbers(
     "[lowest, highest] frequency in Hz, 0 <= lowest < highest",
@@ -72,7 +70,7 @@ class PeakResponse:
     response: Response
     force: Force | None = None
     base: Base | None = None
-    quantity: Annotated[str, one_of(*QUANTITIES)] = ResponseQuantity.RECEPTANCE.value
+    quantity: Annotated[str, one_of(*ORDERS)] = "receptance"
     band: Annotated[tuple[float, float], BAND] | None = None
     static: Annotated[bool, TRUE_OR_FALSE] = True
     modes: ModeCount | None = None
@@ -100,7 +98,7 @@ class PeakResponse:
     def __post_init__(self) -> None:
         check_fields(self)
         faults = list(contradictions(self.loads))
-        if self.quantity == ResponseQuantity.ABSOLUTE_ACCELERANCE.value and self.base is None:
+        if self.quantity == "absolute accelerance" and self.base is None:
             faults.append(
                 Fault("", "quantity", "another one where forces act", f"'{self.quantity}'")
             )
@@ -179,14 +177,14 @@ class PeakResponse:
         NaN where there is no local maximum within the band. Raises ModelError where the model
         cannot be evaluated at ``theta``.
         """
-        system, quantity = self.loads.system(problem, theta), ResponseQuantity(self.quantity)
+        system = self.loads.system(problem, theta)
         low, high = (2 * np.pi * f for f in filled(self.band, "band"))
         out = np.full((2, len(self.response)), np.nan)
         for o in range(len(self.response)):
-            local = peaks(system, quantity, output=o, band=(low, high))
-            if local:
-                greatest = max(local, key=lambda peak: peak.amplitude)
-                out[:, o] = greatest.amplitude, greatest.frequency
+            omega, height = peaks(system, self.quantity, o, (low, high))
+            if height.size:
+                k = int(np.argmax(height))
+                out[:, o] = height[k], omega[k] / (2 * np.pi)
         return {"peak": out[0], "frequency": out[1]}
 
     def check(

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 from scipy.linalg import expm
 
-from modefront.reliability.problem import FirstPassage, KanaiTajimi
+from modefront.reliability.problem import FirstPassage
 from modefront.response.system import FloatArray, ModalSystem
 
 IndexArray = NDArray[np.intp]
@@ -117,20 +117,20 @@ def pulse_response(problem: FirstPassage) -> FloatArray:
 
     The array is (n_outputs, n_inputs, n), in units of output per unit load.
     """
-    generator = _generator(problem.system, problem.filter)
+    generator = _generator(problem.system, problem.soil)
     step = np.asarray(expm(generator * problem.time_step))
     power, states = step[:, :-1, :-1], step[:, :-1, -1:]
-    while states.shape[-1] < problem.steps():
+    while states.shape[-1] < problem.steps:
         # Not `@`: sums of two to four terms need no BLAS, whose threads may change the last digit.
         states = np.concatenate([states, np.einsum("mij,mjk->mik", power, states)], axis=-1)
         power = np.einsum("mij,mjk->mik", power, power)
-    modal = states[:, 0, : problem.steps()]
+    modal = states[:, 0, : problem.steps]
     shapes = problem.system
     outputs: FloatArray = np.einsum("om,mi,mk->oik", shapes.output, shapes.input, modal)
     return outputs
 
 
-def _generator(system: ModalSystem, soil: KanaiTajimi | None) -> FloatArray:
+def _generator(system: ModalSystem, soil: tuple[float, float] | None) -> FloatArray:
     """Return [A B; 0 0] of each mode, (m, 3, 3), or (m, 5, 5) with a filter."""
     size = 3 if soil is None else 5
     generator = np.zeros((system.omega.size, size, size))
@@ -140,17 +140,19 @@ def _generator(system: ModalSystem, soil: KanaiTajimi | None) -> FloatArray:
     if soil is None:
         generator[:, 1, 2] = 1
     else:
-        generator[:, 1, 2:4] = soil.omega**2, 2 * soil.zeta * soil.omega
+        omega, zeta = soil
+        generator[:, 1, 2:4] = omega**2, 2 * zeta * omega
         generator[:, 2, 3] = 1
-        generator[:, 3, 2:] = -(soil.omega**2), -2 * soil.zeta * soil.omega, 1
+        generator[:, 3, 2:] = -(omega**2), -2 * zeta * omega, 1
     return generator
 
 
 def gaussian_response(problem: FirstPassage) -> GaussianResponse:
     """Return the map from standard normal numbers to the responses of `problem`."""
-    h = pulse_response(problem) * np.sqrt(problem.noise.intensity() / problem.time_step)
-    q = problem.modulation_factors()
+    h = pulse_response(problem) * np.sqrt(problem.intensity / problem.time_step)
     n = h.shape[-1]
+    middle = np.asarray((np.arange(n) + 0.5) * problem.time_step)
+    q = np.ones(n) if problem.modulation is None else problem.modulation(middle)
     size = _fft_size(n)
     squares = (np.fft.rfft(h**2, size) * np.fft.rfft(q**2, size)).sum(axis=1)
     variance = np.fft.irfft(squares, size)[:, :n]

@@ -18,37 +18,18 @@ same for all levels.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
 
 import numpy as np
 from scipy.special import gammaincc, gammainccinv, log_ndtr, ndtr, ndtri_exp
 
-from modefront.reliability.estimate import Estimator, Prepare, Weigh
+from modefront.reliability.estimate import Prepare, Weigh
 from modefront.reliability.gaussian import Convolution, GaussianResponse, IndexArray
 from modefront.response.system import FloatArray
 
 NEGLIGIBLE = 1e-22
 """The Q(ρ_oj) left out, relative to the largest: even millions of them are below rounding."""
-
-
-@dataclass(frozen=True, eq=False)
-class ElementaryFailures:
-    """The elementary failures at one barrier, made by `elementary_failures`.
-
-    Attributes
-    ----------
-    response : the map from z to x
-    level : barrier b
-    cumulative : (n_outputs · n,) sums of P_oj over the steps of one output after another
-    """
-
-    response: GaussianResponse
-    level: float
-    cumulative: FloatArray
-
-    @property
-    def total(self) -> float:
-        """ΣP, the sum over all elementary failures, which may exceed 1."""
-        return float(self.cumulative[-1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,32 +48,41 @@ class Failed:
     step: IndexArray
 
 
-def elementary_failures(response: GaussianResponse, level: float) -> ElementaryFailures:
-    """Return the elementary failures at the barrier `level`."""
+def elementary_failures(response: GaussianResponse, level: float) -> FloatArray:
+    """Return the sums of P_oj over the steps of one output after another, (n_outputs · n,).
+
+    The last one, ΣP, may exceed 1.
+    """
     # Before the load sets in there is no response, and β is infinite.
     with np.errstate(divide="ignore"):
         beta = level / response.deviation.ravel()
-    return ElementaryFailures(response, level, np.cumsum(2 * ndtr(-beta)))
+    return np.cumsum(2 * ndtr(-beta))
 
 
-def given_failure(failures: ElementaryFailures, z: FloatArray, uniform: FloatArray) -> Failed:
+def given_failure(
+    response: GaussianResponse,
+    level: float,
+    cumulative: FloatArray,
+    z: FloatArray,
+    uniform: FloatArray,
+) -> Failed:
     """Make samples given failure of standard normal ones.
 
     Parameters
     ----------
-    failures : the elementary failures, of which one at least has a probability above zero
+    response, level : the map from z to x, and the barrier
+    cumulative : `elementary_failures` there, of which one at least has a probability above zero
     z : (samples, n_inputs, n) standard normal numbers
     uniform : (2, samples) uniform numbers in [0, 1): the choice of the elementary failure, and 1 -
         v
     """
-    response, cumulative = failures.response, failures.cumulative
     # The last failure of non-zero probability is meant by a number that rounding brings to ΣP.
     last = int(np.searchsorted(cumulative, cumulative[-1], "left"))
     drawn = np.minimum(np.searchsorted(cumulative, uniform[0] * cumulative[-1], "right"), last)
     output, step = np.unravel_index(drawn, response.deviation.shape)
     a, sigma = response.design_excitation(output, step), response.deviation[output, step]
     # In logarithms, as far out in the tail 1 - Φ(β) is zero in floating point.
-    r = -ndtri_exp(np.log1p(-uniform[1]) + log_ndtr(-failures.level / sigma))
+    r = -ndtri_exp(np.log1p(-uniform[1]) + log_ndtr(-level / sigma))
     u = np.einsum("sik,sik->s", z, a) / sigma
     a *= ((r - u) / sigma)[:, None, None]
     a += z
@@ -107,19 +97,18 @@ def conditional(share: Share) -> Prepare:
     """Return the weights ΣP · share, with the same normal numbers at every level."""
 
     def prepare(response: GaussianResponse, levels: FloatArray) -> Weigh:
-        everywhere = [elementary_failures(response, level) for level in levels.tolist()]
+        sums = [elementary_failures(response, level) for level in levels.tolist()]
 
         def weigh(convolution: Convolution, rng: np.random.Generator, count: int) -> FloatArray:
             z = rng.standard_normal((count, response.n_inputs, response.n_steps))
             uniform = rng.random((2, count))
             weights = np.zeros((levels.size, count))
-            for row, failures in zip(weights, everywhere, strict=True):
+            for row, level, cumulative in zip(weights, levels.tolist(), sums, strict=True):
                 # At a barrier so high that P is below the smallest float, the estimate is zero;
                 # its coefficient of variation, infinite, says that there were no samples.
-                if failures.total > 0:
-                    failed = given_failure(failures, z, uniform)
-                    magnitudes = convolution.magnitudes(failed.z)
-                    row[:] = failures.total * share(failed, failures.level, magnitudes)
+                if cumulative[-1] > 0:
+                    failed = given_failure(response, level, cumulative, z, uniform)
+                    row[:] = cumulative[-1] * share(failed, level, convolution.magnitudes(failed.z))
             return weights
 
         return weigh
@@ -177,9 +166,12 @@ def _counted(response: GaussianResponse, levels: FloatArray) -> Weigh:
     return weigh
 
 
-importance_sampling = Estimator("importance sampling", conditional(_one_of_all))
-directional_importance_sampling = Estimator(
-    "directional importance sampling", conditional(_any_radius)
+METHODS: Final = MappingProxyType(
+    {
+        "importance": conditional(_one_of_all),
+        "directional": conditional(_any_radius),
+        "additive": conditional(_first),
+        "monte-carlo": _counted,
+    }
 )
-additive_rules = Estimator("additive rules", conditional(_first))
-monte_carlo = Estimator("Monte Carlo", _counted)
+"""The methods by the names that a user gives them."""

@@ -19,62 +19,30 @@ taken by its absolute value.
 """
 
 from dataclasses import dataclass, replace
-from enum import Enum
 from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from modefront.errors import wrong
-from modefront.response.system import FloatArray, ModalSystem, no_negative, real_array
+from modefront.response.system import FloatArray, ModalSystem
 
 ComplexArray = NDArray[np.complex128]
 
 
-class ResponseQuantity(Enum):
-    """The response that is set against the load."""
-
-    RECEPTANCE = "receptance"
-    MOBILITY = "mobility"
-    ACCELERANCE = "accelerance"
-    ABSOLUTE_ACCELERANCE = "absolute accelerance"
-
-    @property
-    def order(self) -> int:
-        """The power s of iω: number of differentiations of the displacement in time."""
-        return {"receptance": 0, "mobility": 1}.get(self.value, 2)
-
-
-def frequency_response(
-    system: ModalSystem, omega: ArrayLike, quantity: ResponseQuantity = ResponseQuantity.RECEPTANCE
-) -> ComplexArray:
-    """Return T(ω) at the circular frequencies `omega`.
-
-    Parameters
-    ----------
-    system : the structure, with m modes, n_inputs loads and n_outputs responses
-    omega : (n,) circular frequencies in rad/s, none negative
-    quantity : what is set against the load
-
-    Returns
-    -------
-    (n, n_outputs, n_inputs) complex response, in units of output per unit load.
-
-    Raises
-    ------
-    InputError
-        For frequencies that are negative, or meet an undamped mode; for absolute acceleration of
-        a system that does not say how its outputs move with the base.
-    """
-    lines = no_negative("omega", real_array("omega", omega, (None,), "frequencies"), "frequency")
-    return derivatives(system, lines.astype(np.complex128), quantity)[0]
+ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2, "absolute accelerance": 2}
+"""The power s of iω, by the response that is set against the load."""
 
 
 def derivatives(
-    system: ModalSystem, omega: ComplexArray, quantity: ResponseQuantity
+    system: ModalSystem, omega: ComplexArray, quantity: str
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Return T, dT/dω and d²T/dω², each (n, n_outputs, n_inputs), at (n,) frequencies."""
+    """Return T, dT/dω and d²T/dω², each (n, n_outputs, n_inputs), at (n,) frequencies.
+
+    These are in rad/s, and the response in units of output per unit load. Raises InputError at the
+    frequency of an undamped mode.
+    """
     w = omega[:, None]
     # ω_r² - ω² as a product: exact to rounding next to the mode, where the difference is small.
     d = (system.omega - w) * (system.omega + w) + 2j * system.zeta * system.omega * w
@@ -91,23 +59,17 @@ def derivatives(
     alpha = alpha + system.residual_flexibility()
 
     # Leibniz' rule on (iω)^s α.
-    s, w = quantity.order, omega[:, None, None]
+    s, w = ORDERS[quantity], omega[:, None, None]
     power = (1j) ** s * w**s
     power1 = (1j) ** s * s * w ** max(s - 1, 0)
     power2 = (1j) ** s * s * (s - 1)
-    response = power * alpha + _rigid(system, quantity)
+    response = power * alpha
+    if quantity == "absolute accelerance":
+        assert system.rigid is not None, "the load is no motion of the base"
+        response = response + system.rigid
     first = power1 * alpha + power * alpha1
     second = power2 * alpha + 2 * power1 * alpha1 + power * alpha2
     return response, first, second
-
-
-def _rigid(system: ModalSystem, quantity: ResponseQuantity) -> NDArray[np.float64] | float:
-    if quantity is not ResponseQuantity.ABSOLUTE_ACCELERANCE:
-        return 0.0
-    if system.rigid is None:
-        expected = "the motion of the outputs with the base for absolute accelerance"
-        raise wrong("rigid", expected, None)
-    return system.rigid
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +77,7 @@ class Slope:
     """g between the one output and the one input of `pair`, and the error by rounding."""
 
     pair: ModalSystem
-    quantity: ResponseQuantity
+    quantity: str
 
     def both(self, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return g and g'."""
@@ -136,7 +98,7 @@ class Slope:
         inverse = np.hstack([1 / abs(d), np.ones_like(w)])
         inverse1 = np.hstack([2 * (w + pair.zeta * pair.omega) / abs(d) ** 2, np.zeros_like(w)])
         alpha, alpha1 = inverse @ (shape * load), inverse1 @ (shape * load)
-        s = self.quantity.order
+        s = ORDERS[self.quantity]
         rigid = 0.0 if pair.rigid is None else abs(pair.rigid[0, 0])
         t = omega**s * alpha + rigid
         t1 = omega**s * alpha1 + s * omega ** max(s - 1, 0) * alpha
@@ -164,55 +126,28 @@ NEWTON_STEPS = 6
 """From the accuracy of the series, two or three do; more than enough even for merging peaks."""
 
 
-@dataclass(frozen=True)
-class Peak:
-    """A local maximum of |T|.
-
-    Attributes
-    ----------
-    omega : where it is, rad/s
-    amplitude : |T| there, in units of output per unit load
-    phase : arg T there, rad
-    """
-
-    omega: float
-    amplitude: float
-    phase: float
-
-    @property
-    def frequency(self) -> float:
-        """Frequency of the peak in Hz."""
-        return self.omega / (2 * np.pi)
-
-
 def peaks(
-    system: ModalSystem,
-    quantity: ResponseQuantity = ResponseQuantity.RECEPTANCE,
-    *,
-    output: int = 0,
-    input: int = 0,
-    band: tuple[float, float] | None = None,
-) -> tuple[Peak, ...]:
-    """Return all local maxima of |T| between one output and one input, by rising frequency.
+    system: ModalSystem, quantity: str, output: int, band: tuple[float, float]
+) -> tuple[FloatArray, FloatArray]:
+    """Return where |T| has its local maxima, by rising frequency, and |T| there.
 
     Parameters
     ----------
-    system : the structure; every mode in the band damped and above 0 Hz
-    quantity : what is set against the load
-    output, input : which response and which load, counted from 0
-    band : lowest and highest circular frequency, rad/s; None for 0 to twice the highest mode's. The
-        ends are no peaks, however large |T| is there.
+    system : the structure, with one input; every mode in the band damped and above 0 Hz
+    quantity : what is set against the load, one of `ORDERS`
+    output : which response, counted from 0
+    band : lowest and highest circular frequency, rad/s. The ends are no peaks, however large |T| is
+        there.
 
-    Raises
-    ------
-    InputError
-        For undamped modes in the band (their peaks are infinite), an unknown output or input, an
-        empty band.
+    Raises InputError for undamped modes in the band, as their peaks are infinite.
     """
-    pair = _pair(system, output, input)
-    low, high = (0.0, 2 * float(pair.omega.max())) if band is None else band
-    if not (0 <= low < high < np.inf):
-        raise wrong("band", "0 <= lowest < highest (rad/s)", (low, high))
+    one, (low, high) = slice(output, output + 1), band
+    pair = replace(
+        system,
+        output=system.output[one],
+        static=None if system.static is None else system.static[one],
+        rigid=None if system.rigid is None else system.rigid[one],
+    )
     infinite = (pair.zeta * pair.omega == 0) & (pair.omega >= low) & (pair.omega <= high)
     if np.any(infinite):
         mode = int(np.argmax(infinite))
@@ -227,28 +162,7 @@ def peaks(
     zeros = _polish(slope, roots, low, high)
     at_peak = zeros[slope.both(zeros)[1] < 0]
     values = derivatives(pair, at_peak.astype(np.complex128), quantity)[0][:, 0, 0]
-    return tuple(
-        Peak(float(w), float(abs(t)), float(np.angle(t)))
-        for w, t in zip(at_peak, values, strict=True)
-    )
-
-
-def _pair(system: ModalSystem, output: int, input: int) -> ModalSystem:
-    """Return the part of `system` between one output and one input."""
-    for name, index, size in (
-        ("output", output, system.output.shape[0]),
-        ("input", input, system.input.shape[1]),
-    ):
-        if not 0 <= index < size:
-            raise wrong(name, f"a number from 0 to {size - 1}", index)
-    o, i = slice(output, output + 1), slice(input, input + 1)
-    return replace(
-        system,
-        input=system.input[:, i],
-        output=system.output[o],
-        static=None if system.static is None else system.static[o, i],
-        rigid=None if system.rigid is None else system.rigid[o, i],
-    )
+    return at_peak, np.abs(values)
 
 
 def _zeros(slope: Slope, a: float, b: float) -> FloatArray:
