@@ -14,7 +14,7 @@ from modefront.optim.scalarisation import LogSum
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Options, begin, solve
 from modefront.uncertainty.laplace import Posterior, laplace
-from modefront.uncertainty.prediction import draw, linear
+from modefront.uncertainty.prediction import draw
 
 TIGHT = Options(step=1e-11, reduction=0.0, iterations=200)
 
@@ -84,10 +84,12 @@ def test_two_groups_against_integration_over_parameters_and_variances() -> None:
     assert posterior.covariance == pytest.approx(covariance, rel=0.06)
     # ... and of a prediction, by its gradient and by a sample.
     slope = np.array([[point.theta[1], point.theta[0]]])
-    product = linear(posterior.covariance, slope)[0, 0]
+    product = (slope @ posterior.covariance @ slope.T)[0, 0]
     exact = (p * (x * y) ** 2).sum() - (p * x * y).sum() ** 2
     assert product == pytest.approx(exact, rel=0.08)
-    drawn = draw(point.theta, posterior.axes, np.random.default_rng(0), 4000).prod(axis=1)
+    everywhere = np.full(point.theta.size, -np.inf), np.full(point.theta.size, np.inf)
+    rng = np.random.default_rng(0)
+    drawn = draw(point.theta, posterior.axes, rng, 4000, everywhere).prod(axis=1)
     assert drawn.var() == pytest.approx(product, rel=0.08)
 
 

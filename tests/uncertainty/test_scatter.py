@@ -16,17 +16,15 @@ from modefront.optim.scalarisation import LogSum, Scalarisation, constrained, we
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.uncertainty.conditions import (
-    between,
     boundary,
     given_weights,
     level,
     optimal_weights,
-    over_ranges,
+    simplex,
 )
-from modefront.uncertainty.linear import Local, front_scatter
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.points import Role, SolvedPoint
-from modefront.uncertainty.scatter import Scatter, scatter
+from modefront.uncertainty.scatter import Local, Scatter, front_scatter, scatter
 
 TIGHT = Options(step=1e-11, constraint=1e-12, reduction=0.0, iterations=200)
 
@@ -188,9 +186,9 @@ def test_points_of_the_front_follow_their_edges(
         columns.append(scatter(problem, point, np.eye(n)[i], given_weights(noise), noise).J)
     E, dE = np.array([edge.J for edge in edges]).T, np.stack(columns, axis=2)
     noise, point = case.noise(computed.theta), point_of(problem, computed)
-    target = between(E, dE)
+    target = simplex(E, dE)
     if ranges:
-        target = over_ranges(E, dE, E[range(3), [2, 2, 1]])
+        target = simplex(E, dE, E[range(3), [2, 2, 1]])
     w, conditions = boundary(point, computed.weights, target, place, noise)
     result = scatter(problem, point, w, conditions, noise)
     ahead, behind = (

@@ -19,15 +19,14 @@ from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Status, begin, solve
 from modefront.uncertainty.conditions import (
     LinearisationWarning,
-    between,
     boundary,
     given_weights,
     optimal_weights,
+    simplex,
 )
-from modefront.uncertainty.linear import with_neighbours
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.points import Role, SolvedPoint
-from modefront.uncertainty.scatter import Scatter, scatter
+from modefront.uncertainty.scatter import Scatter, scatter, with_neighbours
 
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
@@ -108,7 +107,7 @@ def of_corners(beta: Floats, std: float) -> Scatter:
     assert result.converged
     E = np.array([edge.J for edge in edges]).T
     point, chosen = point_at(problem, result.theta.tolist()), noise(result.theta)
-    moving = between(E, np.stack(dE, axis=2))
+    moving = simplex(E, np.stack(dE, axis=2))
     found = boundary(point, result.weights, moving, beta, chosen)
     assert found is not None
     w, conditions = found

@@ -28,7 +28,7 @@ from modefront.results.schema import described
 from modefront.rounding import TINY
 from modefront.uncertainty.conditions import std
 from modefront.uncertainty.inference import Inference
-from modefront.uncertainty.prediction import linear, summary
+from modefront.uncertainty.prediction import summary
 
 Values = dict[str, object]
 """Values of variables by name; `modefront.results.schema` describes them."""
@@ -189,9 +189,7 @@ def _posterior(front: Front, analysis: FrontAnalysis) -> Values:
     }
     for name in ("frequency", "mac"):
         slopes = analysis.slopes[front.reference.label][name]
-        variance = np.diag(linear(posterior.covariance, slopes))
-        # Rounding may leave a variance below 0.
-        out[f"posterior_{name}_std"] = np.sqrt(np.maximum(variance, 0.0))
+        out[f"posterior_{name}_std"] = np.linalg.norm(slopes @ posterior.axes, axis=1)
     return out
 
 

@@ -6,13 +6,13 @@ the solution remains the same minimum: in doubt where one of these is within a s
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Floats
 from modefront.front.subproblems import RHO, active_bounds
 from modefront.optim.problem import Evaluation
 from modefront.uncertainty.noise import Noise
@@ -35,64 +35,14 @@ def std(changes: Floats) -> Floats:
     return np.asarray(np.sqrt((changes**2).sum(axis=0)))
 
 
-def near_an_end(J: Floats, changes: Floats, ends: Iterable[Floats]) -> bool:
-    """Return whether a point J (n,) that changes by (sources, n) is within its scatter of an end.
-
-    ``ends`` are the objectives (n,) at the ends of the branches of the front.
-
-    >>> J, changes = np.array([1.0, 2.0]), np.array([[0.2, 0.1]])
-    >>> near_an_end(J, changes, [np.array([1.1, 1.95])])
-    True
-    >>> near_an_end(J, changes, [np.array([1.1, 1.8])])
-    False
-    """
-    reach = std(changes)
-    return any(bool((np.abs(J - end) <= reach).all()) for end in ends)
-
-
-def has_rival(value: float, changes: Floats, others: Iterable[float]) -> bool:
-    """Return whether a least value that changes by (sources,) is within its scatter of others.
-
-    >>> has_rival(1.0, np.array([0.3, 0.4]), [1.4]), has_rival(1.0, np.array([0.3, 0.4]), [1.6])
-    (True, False)
-    """
-    reach = float(std(changes))
-    return any(other - value <= reach for other in others)
-
-
-@dataclass(frozen=True)
-class Bounds:
-    """Bounds c_i <= tau on objectives.
-
-    Attributes
-    ----------
-    active : (n,) those that hold as equations
-    n, dn : (n,) and (sources, n) the normal and its changes
-    slack : (n,) tau n - n c
-    moved : (sources, n) changes of the slack at this model and this tau
-    """
-
-    active: Bools
-    n: Floats
-    dn: Floats
-    slack: Floats
-    moved: Floats
-
-    def switch(self, w: Floats, dw: Floats, dJ: Floats, dtau: Floats) -> bool:
-        """Return whether errors of one standard deviation change the active set."""
-        weight = w * self.n - RHO
-        hardly = weight <= std(dw * self.n + w * self.dn)
-        close = self.slack <= std(self.moved - dJ + dtau * self.n)
-        return bool(np.where(self.active, hardly, close).any())
-
-
 @dataclass(frozen=True)
 class Conditions:
     r"""Conditions of a programme on the changes: C dtheta + D dw - e dtau = f, e^T dw = h.
 
     Arrays are C (n, p), D (n,), a diagonal of ones and zeros, f (sources, n), and e (n, k), h
-    (sources, k) with k either 0 or 1. D is 0 for equations. ``bounds`` are on the objectives,
-    where they are no equations.
+    (sources, k) with k either 0 or 1. D is 0 for equations. ``switch`` tells of dw, of the changes
+    of J at this solution's data and of dtau, whether errors of one standard deviation change the
+    active set.
     """
 
     C: Floats
@@ -100,7 +50,7 @@ class Conditions:
     e: Floats
     f: Floats
     h: Floats
-    bounds: Bounds | None = None
+    switch: Callable[[Floats, Floats, Floats], bool] = lambda _, __, ___: False
 
 
 def _open(C: Floats, D: Floats, f: Floats) -> Conditions:
@@ -143,15 +93,14 @@ class Target:
     dP: Floats
 
 
-def between(E: Floats, dE: Floats) -> Target:
-    """Return the simplex between edges, (n, n) with a column an edge, that change by (., n, n)."""
-    utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
-    return Target(utopia, E - utopia[:, None], dutopia, dE - dutopia[:, :, None])
+def simplex(E: Floats, dE: Floats, top: Floats | None = None) -> Target:
+    """Return the simplex between edges, or that of the ranges up to ``top`` (n,), which stay.
 
-
-def over_ranges(E: Floats, dE: Floats, top: Floats) -> Target:
-    """Return the simplex of the ranges up to ``top`` (n,), which stay; E and dE as above."""
+    E (n, n) has a column an edge, which changes by dE (sources, n, n).
+    """
     utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
+    if top is None:
+        return Target(utopia, E - utopia[:, None], dutopia, dE - dutopia[:, :, None])
     return Target(utopia, np.diag(top - utopia), dutopia, -dutopia[:, :, None] * np.eye(top.size))
 
 
@@ -179,5 +128,12 @@ def boundary(
     f = np.where(active, moved, -RHO * dn / n**2)
     e = np.where(active, n, 0.0)[:, None]
     h = -(dn[:, active] @ w[active])[:, None]
-    bounds = None if equations else Bounds(active, n, dn, tau * n - above, moved)
-    return w, Conditions(active[:, None] * point.dJ, (~active).astype(float), e, f, h, bounds)
+    slack = tau * n - above
+
+    def switch(dw: Floats, dJ: Floats, dtau: Floats) -> bool:
+        hardly = w * n - RHO <= std(dw * n + w * dn)
+        close = slack <= std(moved - dJ + dtau * n)
+        return bool(np.where(active, hardly, close).any())
+
+    fixed = {} if equations else {"switch": switch}
+    return w, Conditions(active[:, None] * point.dJ, (~active).astype(float), e, f, h, **fixed)

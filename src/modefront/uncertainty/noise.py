@@ -71,12 +71,8 @@ def _from_sets(problem: UpdatingProblem, modes: Modes, pairs: Pairs) -> Noise:
             if K < 2:
                 continue
             r, dr = residual.r[rows], residual.dr[rows]
-            terms = np.array([K * _square(r[member.sets == k]) for k in sets])
+            terms = np.array([K * float(r[member.sets == k] @ r[member.sets == k]) for k in sets])
             slopes = np.array([2 * K * r[member.sets == k] @ dr[member.sets == k] for k in sets])
             J[sets, i] += (terms - terms.mean()) / np.sqrt(K * (K - 1))
             dJ[sets, i] += (slopes - slopes.mean(axis=0)) / np.sqrt(K * (K - 1))
     return Noise(J, dJ)
-
-
-def _square(r: Floats) -> float:
-    return float(r @ r)

@@ -91,12 +91,6 @@ class TruncationError(ValueError):
     """The share of a Gaussian within the bounds is too small to sample."""
 
 
-def linear(covariance: Floats, slope: Floats) -> Floats:
-    """Return the covariance (q, q) of predictions with derivatives ``slope`` (q, p)."""
-    out: Floats = slope @ covariance @ slope.T
-    return out
-
-
 def lognormal_std(median: Floats, s: Floats) -> Floats:
     """Return the standard deviation of what has this median and, of its logarithm, the std s."""
     with np.errstate(over="ignore"):
@@ -110,15 +104,15 @@ def draw(
     axes: Floats,
     rng: np.random.Generator,
     count: int,
-    bounds: tuple[Floats, Floats] | None = None,
+    bounds: tuple[Floats, Floats],
 ) -> Floats:
     """Return a sample (count, p) of theta + axes z, z standard normal, axes (p, m).
 
-    With ``bounds`` (lower, upper), draws outside them are drawn again: the Gaussian is truncated.
-    A longer sample begins with a shorter one. Raises TruncationError where fewer than
-    one draw of 10,000 is within the bounds.
+    Draws outside the bounds (lower, upper) are drawn again: the Gaussian is truncated. A longer
+    sample begins with a shorter one. Raises TruncationError where fewer than one draw of 10,000 is
+    within the bounds.
     """
-    lower, upper = bounds if bounds is not None else (-np.inf, np.inf)
+    lower, upper = bounds
     parts: list[Floats] = []
     accepted = drawn_count = 0
     while accepted < count:

@@ -298,7 +298,7 @@ def expected(
     ratios = [
         np.abs(x).max() / np.sqrt((x**2).mean())
         for k, r in np.argwhere(measured)
-        if (x := _components(data.shape[k, r])).any()
+        if (x := data.shape[k, r][np.isfinite(data.shape[k, r])]).any()
     ]
     ratio = float(np.sqrt(np.mean(np.square(ratios)))) if ratios else 1.0
     shape = np.full(data.shape.shape, np.nan)
@@ -314,8 +314,3 @@ def expected(
         shape[k, r, here] = size / np.sqrt(measured[:, r].sum())
     changed = replace(data, frequency_std=frequency, shape_std=shape)
     return changed, tuple(dict.fromkeys(assumed))
-
-
-def _components(shape: Floats) -> Floats:
-    out: Floats = shape[np.isfinite(shape)]
-    return out
