@@ -19,7 +19,7 @@ from modefront.optim.problem import at_bounds
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.most_probable import maximum
 from modefront.uncertainty.planning import Candidates, candidates
-from modefront.uncertainty.prior import Distance, NoiseModel, prior_widths
+from modefront.uncertainty.prior import NoiseModel, prior_widths
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task
@@ -200,10 +200,7 @@ def _promises(noise: NoiseModel, theta: Floats, known: Sequence[str]) -> Floats:
     """Return by how much -2 ln p becomes less with each parameter that is not known so far."""
     problem = noise.problem
     found = problem.evaluate(theta)
-    w = noise.programme.logs.gradient(found.J)
-    slope = w @ found.dJ / 2
-    prior = Distance(problem, problem.start, 12.0).residuals(theta)[1]
-    A = np.tensordot(w, found.H, axes=1) / 2 + np.diag(prior**2)
+    slope, A = noise.programme.logs.gradient(found.J) @ found.dJ / 2, noise.precision(found)
     free = np.isin(problem.model.parameters, known)
     moved = free & (at_bounds(theta, problem.lower, problem.upper) == 0)
     Q, R = A[np.ix_(moved, moved)], A[np.ix_(moved, ~free)]

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modefront._typing import Bools, Floats, Ints
-from modefront.modes.result import Modes
+from modefront._typing import Bools, Floats
 from modefront.optim.problem import Evaluation
-from modefront.uncertainty.prior import Distance, NoiseModel
+from modefront.uncertainty.prior import NoiseModel
 from modefront.work.codec import record
 
 
@@ -40,97 +39,57 @@ def candidates(noise: NoiseModel, evaluation: Evaluation) -> Candidates:
     """Return what could be measured besides the data; ``evaluation`` is most probable."""
     problem = noise.problem
     span = problem.upper - problem.lower
-    w = noise.programme.logs.gradient(evaluation.J)
-    slope = Distance(problem, problem.start, 12.0).residuals(evaluation.theta)[1]
-    G = sum(v * x.dr.T @ x.dr for v, x in zip(w, evaluation.residuals, strict=True))
-    C = np.linalg.inv((G + np.diag(slope**2)) * np.outer(span, span))
-    modes, pairs = problem.modes(evaluation.theta)
-    gains, frequencies, sensors = [], [], []
-    for frequency, sensor, rows in _Further(noise, w, modes, pairs.index).rows():
+    C = np.linalg.inv(noise.precision(evaluation) * np.outer(span, span))
+    found = list(_further(noise, evaluation))
+    gain = np.zeros((len(found), span.size))
+    for k, (_, _, rows) in enumerate(found):
         R = rows * span
         X = C @ R.T
         less = np.einsum("jr,jr->j", np.linalg.solve(np.eye(len(R)) + R @ X, X.T).T, X)
-        gains.append(1 - np.sqrt(np.maximum(1 - less / np.diag(C), 0.0)))
-        frequencies.append(frequency)
-        sensors.append(sensor)
-    gain = np.array(gains).reshape(-1, span.size)
-    return Candidates(np.array(frequencies), tuple(sensors), gain)
+        gain[k] = 1 - np.sqrt(np.maximum(1 - less / np.diag(C), 0.0))
+    return Candidates(np.array([f for f, *_ in found]), tuple(name for _, name, _ in found), gain)
 
 
-@dataclass(frozen=True)
-class _Further:
-    """Residuals of further measurements, at the modes of the most probable model.
+def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float, str, Floats]]:
+    """Yield the frequency of a mode or the name of a sensor, and the residuals' rows (., p)."""
+    problem, data = noise.problem, noise.problem.data
+    modes, pairs = problem.modes(evaluation.theta)
+    w = noise.programme.logs.gradient(evaluation.J)
 
-    Attributes
-    ----------
-    w : (n,) weights of the groups
-    index : (measured modes,) model modes that are paired
-    """
+    def size(kind: str, std: Floats, values: Floats) -> float:
+        """Return the root of the weight of a group of this kind over the expected error."""
+        known = np.isfinite(values) & (values != 0)
+        tau = float(np.median((std / np.where(known, values, 1.0))[known])) if known.any() else 1.0
+        own = [v for v, x in zip(w, problem.groups, strict=True) if x.modes_of(kind)]
+        return float(np.sqrt(np.mean(own or [1.0]))) / tau
 
-    noise: NoiseModel
-    w: Floats
-    modes: Modes
-    index: Ints
+    top = np.nanmax(np.abs(data.shape), axis=2, initial=0.0, keepdims=True)
+    of_shape = size("shape", data.shape_std, np.where(np.isfinite(data.shape), top, 0.0))
+    of_frequency = size("frequency", data.frequency_std, data.frequency)
 
-    def rows(self) -> Iterator[tuple[float, str, Floats]]:
-        """Yield the frequency of a mode or the name of a sensor, and the rows (., p) of each."""
-        data, modes = self.noise.problem.data, self.modes
-        measured: Bools = np.asarray(np.isfinite(data.shape).any(axis=0))
-        seen: Bools = np.asarray(measured.any(axis=0))
-        for q in sorted(set(range(modes.lam.size)) - set(self.index.tolist())):
-            parts = []
-            if np.isfinite(data.frequency).any() and modes.frequency[q] > 0:
-                parts.append(self._frequency(q))
-            if modes.phi[seen, q].any():
-                parts.append(self._shape(q, seen))
-            if parts:
-                yield float(modes.frequency[q]), "", np.vstack(parts)
-        for s in np.flatnonzero(~seen).tolist():
-            parts = [
-                self._component(q, s, measured[r])
-                for r, q in enumerate(self.index.tolist())
-                if modes.phi[measured[r], q].any()
-            ]
-            if parts:
-                yield 0.0, data.sensors[s], np.array(parts)
-
-    def _frequency(self, q: int) -> Floats:
-        """Return the row (1, p) of the frequency of a mode."""
-        data = self.noise.problem.data
-        known = np.isfinite(data.frequency)
-        tau = float(np.median((data.frequency_std / data.frequency)[known]))
-        f, df = self.modes.frequency[q], self.modes.dfrequency[q]
-        return self._size("frequency") * df[None] / (tau * f)
-
-    def _chi(self, q: int, sensors: Bools) -> tuple[Floats, Floats]:
+    def shape(q: int, sensors: Bools) -> tuple[Floats, Floats]:
         """Return a shape over expected errors, and its derivatives, at some sensors."""
-        data = self.noise.problem.data
-        top = np.nanmax(np.abs(data.shape), axis=2, initial=0.0, keepdims=True)
-        known = np.isfinite(data.shape) & (top > 0)
-        tau = float(np.median((data.shape_std / np.where(top > 0, top, 1.0))[known]))
-        phi, dphi = self.modes.phi[:, q], self.modes.dphi[:, q]
-        size = self._size("shape") / (tau * np.abs(phi).max())
-        return size * phi[sensors], size * dphi[sensors]
+        unit = of_shape / np.abs(modes.phi[:, q]).max()
+        return unit * modes.phi[sensors, q], unit * modes.dphi[sensors, q]
 
-    def _shape(self, q: int, sensors: Bools) -> Floats:
-        """Return the rows (sensors, p) of a shape."""
-        chi, dchi = self._chi(q, sensors)
-        return dchi - np.outer(chi, chi @ dchi / (chi @ chi))
-
-    def _component(self, q: int, s: int, others: Bools) -> Floats:
-        """Return the row (p,) of a component that is added to others."""
-        chi, dchi = self._chi(q, others)
-        alone = np.arange(others.size) == s
-        (x,), (dx,) = self._chi(q, alone)
-        b = chi @ chi
-        out: Floats = (dx - x * (chi @ dchi) / b) / np.sqrt(1 + x**2 / b)
-        return out
-
-    def _size(self, kind: str) -> float:
-        """Return the root of the weight of the groups with members of a kind; one without."""
-        own = [
-            v
-            for v, group in zip(self.w, self.noise.problem.groups, strict=True)
-            if group.modes_of(kind)
-        ]
-        return float(np.sqrt(np.mean(own))) if own else 1.0
+    measured: Bools = np.asarray(np.isfinite(data.shape).any(axis=0))
+    seen: Bools = np.asarray(measured.any(axis=0))
+    for q in sorted(set(range(modes.lam.size)) - set(pairs.index.tolist())):
+        parts, f = [], modes.frequency[q]
+        if np.isfinite(data.frequency).any() and f > 0:
+            parts.append(of_frequency * modes.dfrequency[q][None] / f)
+        if modes.phi[seen, q].any():
+            chi, dchi = shape(q, seen)
+            parts.append(dchi - np.outer(chi, chi @ dchi / (chi @ chi)))
+        if parts:
+            yield float(f), "", np.vstack(parts)
+    for s in np.flatnonzero(~seen).tolist():
+        rows = []
+        for others, q in zip(measured, pairs.index.tolist(), strict=True):
+            if modes.phi[others, q].any():
+                (x,), (dx,) = shape(q, np.arange(seen.size) == s)
+                chi, dchi = shape(q, others)
+                b = chi @ chi
+                rows.append((dx - x * (chi @ dchi) / b) / np.sqrt(1 + x**2 / b))
+        if rows:
+            yield 0.0, data.sensors[s], np.array(rows)

@@ -112,6 +112,13 @@ class NoiseModel:
         distance = Distance(self.problem, self.problem.start, PULL)
         return Wrapped(self.problem, distance.evaluation, names)
 
+    def precision(self, evaluation: Evaluation) -> Floats:
+        """Return Gauss-Newton's matrix (p, p) of -ln p; a uniform prior has its variance."""
+        w = self.programme.logs.gradient(evaluation.J)
+        dr = Distance(self.problem, self.problem.start, 12.0).residuals(evaluation.theta)[1]
+        out: Floats = np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
+        return out
+
     def over_expected(self, J: Floats) -> Floats:
         """Return the root mean square errors (n,) of J' (n,) over those expected."""
         return np.sqrt(np.maximum(J - self.S, 0.0) / (np.maximum(self.a, 1.0) * self.level))
