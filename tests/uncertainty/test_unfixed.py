@@ -40,14 +40,14 @@ def test_the_wrong_one_is_named_and_a_right_one_is_not(wrong: str, seed: int) ->
     noise = NoisePrior().of(problem, None)
     assert noise is not None
     theta = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
-    found = unfixed(noise, theta, IMMEDIATE)
+    before = noise.over_expected(noise.problem.evaluate(theta).J)
+    found = unfixed(noise, theta, before, IMMEDIATE)
     if not wrong:
         assert found is None
         return
     assert found is not None
     assert found.name == wrong
     assert found.value == pytest.approx(truth[NAMES.index(wrong)], rel=0.1)
-    before = noise.over_expected(noise.problem.evaluate(theta).J)
     assert (before - found.misfit).max() > 1
 
 

@@ -21,12 +21,10 @@ from modefront.front.point import Kind, front_points, preferred
 from modefront.predictions.registry import predictions_in
 from modefront.results.analysis import TRUST
 from modefront.results.remarks import fit_of
+from modefront.uncertainty.inference import LARGE
 
 FAR = 10.0
 """Errors over those expected, from which no model is advised: far above what is called noise."""
-
-LARGE = 2.0
-"""Errors over those expected, from which they are said to be larger."""
 
 WORSE = 1.1
 """Error of a group over that of the nominal model, from which the nominal one is better there."""

@@ -28,6 +28,9 @@ CHANCE = 0.01
 """Probability that a fixed parameter is named where all of them are right."""
 
 
+LARGE = 2.0
+"""Errors over those expected, from which they are said to be larger."""
+
 TRIED = 3
 """Fixed parameters that are tried at most."""
 
@@ -121,7 +124,7 @@ def infer(
     """Return what follows from the posterior with maxima (p,), the greatest first, by draws."""
     draws, theta = draw_models(noise, maxima, count, seed, work), maxima[0]
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
-    wider, more = freed(noise, theta, work), unfixed(noise, theta, work)
+    wider, more = freed(noise, theta, work), unfixed(noise, theta, fit.misfit, work)
     return Inference(draws, fit, wider, more, prior_widths(noise.problem), noise.assumed)
 
 
@@ -155,10 +158,12 @@ def freed(noise: NoiseModel, theta: Floats, work: Executor) -> Freed | None:
     return out
 
 
-def unfixed(noise: NoiseModel, theta: Floats, work: Executor) -> Unfixed | None:
+def unfixed(noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor) -> Unfixed | None:
     """Return the most probable model with that fixed parameter free with which it is most so.
 
     None where none is fixed, and where -2 ln p becomes less by no more than right ones may.
+    ``misfit`` (n,) are the errors over those expected: where they are large, the promises, which
+    are linearised, only say which parameters are tried first.
     """
     problem = noise.problem
     fixed = [x for x in problem.whole[1] if x.fixed] if problem.whole else []
@@ -166,23 +171,18 @@ def unfixed(noise: NoiseModel, theta: Floats, work: Executor) -> Unfixed | None:
         return None
     every = replace(noise, problem=problem.with_free([x.name for x in fixed]))
     known = problem.model.parameters
-    (promises,) = work.run(
-        [
-            Task(
-                ("most-probable", "promises"),
-                _promises,
-                (every, _placed(every, known, theta), known),
-            )
-        ]
-    )
-    tasks, tried = [], [fixed[k].name for k in np.argsort(-promises)[:TRIED].tolist()]
+    at = every, _placed(every, known, theta), known
+    (promises,) = work.run([Task(("most-probable", "promises"), _promises, at)])
+    least, far = float(chi2.isf(CHANCE / len(fixed), 1)), (misfit > LARGE).any()
+    order = [k for k in np.argsort(-promises).tolist() if far or promises[k] > least]
+    tasks, tried = [], [fixed[k].name for k in order[:TRIED]]
     for k, name in enumerate(tried):
         one = replace(noise, problem=problem.with_free([name]))
         start = _placed(one, known, theta)
         tasks.append(Task(("most-probable", "unfixed", k + 1), _freed, (one, start)))
     found = [(x, name) for x, name in zip(work.run(tasks), tried, strict=True) if x is not None]
     best, name = max(found, key=lambda x: x[0].less, default=(None, ""))
-    if best is None or best.less < chi2.isf(CHANCE / len(fixed), 1):
+    if best is None or best.less < least:
         return None
     names = problem.with_free([name]).model.parameters
     return Unfixed(name, float(best.theta[names.index(name)]), best.misfit)
