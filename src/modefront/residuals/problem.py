@@ -195,8 +195,8 @@ class UpdatingProblem:
             outside = np.where(distance > np.log(self.pairing.window), OUTSIDE, 0.0)
         silent = np.asarray(~squares.any(axis=(0, 2)))[:, None]
         rest = np.where(silent, np.where(np.isnan(values), distance, 1 - values), 0.0)
-        found = []
-        for index in (by_mac.index, assigned(distance + outside)):
+        found, starts = [], [by_mac.index, assigned(distance + outside)]
+        for index in starts[: 1 + (starts[0] != starts[1]).any()]:
             value = np.inf
             while True:
                 J = squares[:, np.arange(m), index].sum(axis=1)

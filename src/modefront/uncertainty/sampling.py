@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.special import chdtri, gammainc, gammaln, logsumexp, ndtr, ndtri, softmax
+from scipy.special import chdtri, gammainc, gammaln, ndtr, ndtri, softmax
 from scipy.stats import rankdata
 
 from modefront._typing import Floats
@@ -358,7 +358,7 @@ def _advanced(
         mac,
         here.s,
         length,
-        not np.isfinite(of.densities(here)).any(),
+        not np.isfinite(of.densities(here)[1]),
     )
 
 
@@ -377,23 +377,25 @@ class Sampler:
 
         Returns also the probability with which the step is taken.
         """
-        own = self.densities(here)
-        weight = here.log_posterior(self.logs) - logsumexp(own)
+        own, of_mixture = self.densities(here)
+        weight = here.log_posterior(self.logs) - of_mixture
         if not np.isfinite(weight):
             return here, 0.0
-        peak = self.peaks[rng.choice(len(self.peaks), p=None if jumps else softmax(own))]
+        near = None if jumps else np.exp(own - of_mixture)
+        peak = self.peaks[rng.choice(len(self.peaks), p=near)]
         u = rng.normal(size=peak.at.theta.size + peak.logs.a.size)
         if b < 1:
             u = np.sqrt(1 - b**2) * peak.behind(here) + b * u
         new = peak.model(self.target, u, here.found if b < 1 else peak.at)
         if new is None:
             return here, 0.0
-        change = new.log_posterior(self.logs) - logsumexp(self.densities(new)) - weight
+        change = new.log_posterior(self.logs) - self.densities(new)[1] - weight
         return _taken(here, new, change, rng)
 
-    def densities(self, model: Model) -> Floats:
-        """Return the logarithms (peaks,) of the parts of the mixture."""
-        return np.array([peak.log_density(model) for peak in self.peaks])
+    def densities(self, model: Model) -> tuple[Floats, float]:
+        """Return the logarithms (peaks,) of the parts of the mixture, and that of their sum."""
+        parts = np.array([peak.log_density(model) for peak in self.peaks])
+        return parts, float(np.logaddexp.reduce(parts))
 
     def nearby(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
         """Return the model after a step of the stochastic Newton method."""
