@@ -124,8 +124,14 @@ def infer(
     """Return what follows from the posterior with maxima (p,), the greatest first, by draws."""
     draws, theta = draw_models(noise, maxima, count, seed, work), maxima[0]
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
-    wider, more = freed(noise, theta, work), unfixed(noise, theta, fit.misfit, work)
-    return Inference(draws, fit, wider, more, prior_widths(noise.problem), noise.assumed)
+    return Inference(
+        draws,
+        fit,
+        freed(noise, theta, work),
+        unfixed(noise, theta, fit.misfit, work),
+        prior_widths(noise.problem),
+        noise.assumed,
+    )
 
 
 def _fit(noise: NoiseModel, theta: Floats) -> Fit:
