@@ -16,7 +16,7 @@ from modefront.models.parameters import Prior
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.most_probable import log_values, maximum
 from modefront.uncertainty.prior import NoiseModel, Standardised
-from modefront.uncertainty.sampling import Peak, agreement, draw_models
+from modefront.uncertainty.sampling import DRAWS, Peak, agreement, draw_models
 from modefront.work.task import IMMEDIATE
 
 NU = 4.0
@@ -192,3 +192,35 @@ def test_parameters_have_their_priors_between_the_bounds(z: float) -> None:
     differences = (of.theta(at + step)[0] - of.theta(at - step)[0]) / (2 * step)
     assert slope == pytest.approx(differences, rel=1e-6)
     assert of.z(theta) == pytest.approx(at, abs=1e-9)
+
+
+@pytest.mark.parametrize(("size", "rounds"), [(5.0, range(6, 7)), (60.0, range(12, 16))])
+def test_chains_end_at_half_their_length_where_each_stays_where_it_is(
+    size: float, rounds: range, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At most 12 rounds are for 200 draws, and those of the warm-up that it does not need."""
+    calls = []
+
+    def apart(x: Floats) -> tuple[float, float]:
+        calls.append(x.shape)
+        return 2.0, size
+
+    monkeypatch.setattr("modefront.uncertainty.sampling.agreement", apart)
+    noise = noise_of(flat, [-2, -2], [2, 3], [1.0])
+    found = draw_models(noise, [np.array([0.4, 0.0])], DRAWS, 1, IMMEDIATE)
+    assert len(calls) in rounds
+    assert not found.settled
+    assert found.theta.shape == (DRAWS, 2)
+
+
+def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
+    """Shapes of modes that nearly meet change by 1e9 along one direction: rounding is above 1."""
+    rng = np.random.default_rng(3)
+    steep = 1e9 * rng.normal(size=(40, 1)) @ rng.normal(size=(1, 6))
+
+    def meet(theta: Floats) -> Residuals:
+        return [(steep @ theta, steep)]
+
+    noise = noise_of(meet, [-1] * 6, [1] * 6, [40.0])
+    peak = Peak(Standardised(noise.problem).evaluate(np.zeros(6)), noise.programme.logs)
+    assert np.linalg.eigvalsh(peak.precision(np.ones(1))).min() > 0

@@ -7,7 +7,8 @@ change the normal variables, :math:`u' = \sqrt{1 - b^2}\, u + b\, N(0, I)`; the 
 from 1, independent models, as far as is needed. Steps of the stochastic Newton method go between
 (Martin et al. 2012, doi:10.1137/110845598), and find models beyond a fold of F, which become
 centres of further proposals. Chains go on until they agree and the effective sample is large enough
-(Vehtari et al. 2021, doi:10.1214/20-BA1221).
+(Vehtari et al. 2021, doi:10.1214/20-BA1221). They end at half of their length at most where none of
+their halves is worth more than one draw.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from modefront._typing import Floats
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import begin, solve
+from modefront.rounding import ACCUMULATED
 from modefront.uncertainty.prior import FARTHEST, NoiseModel, Standardised
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task, seed_sequence
@@ -95,8 +97,7 @@ class Peak:
 
     def precision(self, s: Floats) -> Floats:
         """Return A (p, p)."""
-        out: Floats = np.eye(self.at.theta.size) + np.tensordot(1 / s, self.squares, axes=1)
-        return out
+        return _definite(np.tensordot(1 / s, self.squares, axes=1))
 
     def variances(self, eta: Floats) -> Floats:
         """Return variances (n,) of normal variables (n,)."""
@@ -157,6 +158,15 @@ class Peak:
         return None
 
 
+def _definite(squares: Floats) -> Floats:
+    """Return 1 plus a sum of squares (p, p), with as much more as rounding may have taken of it.
+
+    Where modes nearly meet, derivatives of shapes are beyond all bounds.
+    """
+    out: Floats = squares + (1 + ACCUMULATED * np.trace(squares)) * np.eye(len(squares))
+    return out
+
+
 @dataclass(frozen=True)
 class Model:
     """A model, evaluated in the standardised problem, with variances s (n,) of its errors."""
@@ -196,7 +206,7 @@ class Model:
         Of a Gaussian they leave it as it is, whatever b.
         """
         over = np.repeat(1 / self.s, self.rows)
-        A = np.eye(self.z.size) + self.dr.T @ (over[:, None] * self.dr)
+        A = _definite(self.dr.T @ (over[:, None] * self.dr))
         slope = self.z + self.dr.T @ (over * self.r)
         return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
 
@@ -258,7 +268,8 @@ def draw_models(
     chains: list[Chain | None] = [None] * CHAINS
     kept: list[list[Chain]] = []
     warm, settled = True, False
-    for turn in range(WARM + -(-LONGEST * count // (CHAINS * ROUND))):
+    rounds = -(-LONGEST * count // (CHAINS * ROUND))
+    for turn in range(WARM + rounds):
         steps = [
             Task(
                 (stage, k + 1, turn + 1),
@@ -281,7 +292,8 @@ def draw_models(
         kept.append(found)
         ratio, size = agreement(np.array([_joined(x, "z") for x in zip(*kept, strict=True)]))
         settled = ratio < AGREE and size >= count / 2
-        if settled and size >= count:
+        stuck = 2 * len(kept) >= rounds and size <= 2 * CHAINS
+        if stuck or (settled and size >= count):
             break
     every = [x for chain in zip(*kept, strict=True) for x in chain]
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
