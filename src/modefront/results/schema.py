@@ -193,6 +193,7 @@ freed_theta | parameter | | theta of the most probable model where the bounds th
     widened
 freed_misfit | group | 1 | misfit of the most probable model where the bounds that hold it are
     widened
+# Errors of the data / a fixed parameter
 unfixed_misfit | group | 1 | misfit of the most probable model where `fixed_parameter` is free
 # Errors of the data / bootstrap
 bootstrap_theta | replicate point parameter | | theta with the data drawn again; NaN where it did
