@@ -135,7 +135,7 @@ source = "none"
     return study
 
 
-@pytest.mark.slow(240)
+@pytest.mark.slow(60)
 def test_the_front_of_the_steel_bridge_over_its_standard_deviations(tmp_path: Path) -> None:
     """474 of its 946 degrees of freedom have no mass; what scales a shape has no deviation."""
     study = load(write_study(read("steel_bridge_exp"), tmp_path))

@@ -21,13 +21,7 @@ from modefront.front.point import Kind, front_points, preferred
 from modefront.predictions.registry import predictions_in
 from modefront.results.analysis import TRUST
 from modefront.results.remarks import fit_of
-from modefront.uncertainty.inference import LARGE
-
-FAR = 10.0
-"""Errors over those expected, from which no model is advised: far above what is called noise."""
-
-WORSE = 1.1
-"""Error of a group over that of the nominal model, from which the nominal one is better there."""
+from modefront.uncertainty.inference import LARGE, WORSE, refused
 
 SMALL = 0.5
 """Change of errors along a front, over those expected, below which the compromise hardly counts."""
@@ -58,17 +52,17 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     if "misfit" not in data:
         return data.assign_attrs(verdict="\n".join(_unjudged(data)))
     groups = list(map(str, data["group"].values))
-    refused = refusals(groups, data["misfit"].values, data["nominal_misfit"].values)
+    why = refusals(groups, data["misfit"].values, data["nominal_misfit"].values)
     assumed = data.attrs.get("assumed")
     said = [*_at_bounds(data), *_fixed(data)]
     said += [_say("assumed", assumed=assumed)] if assumed else []
     said += _pairs(data)
-    if not data.attrs.get("settled", 1):
-        said.insert(0, _say("unsettled"))
-    if refused:
-        said.insert(0, _say("do-not-use", why=enumeration(refused, NAMED)))
+    if why:
+        said.insert(0, _say("do-not-use", why=enumeration(why, NAMED)))
         data = data.assign_attrs(reference="")
     else:
+        if not data.attrs.get("settled", 1):
+            said.insert(0, _say("unsettled"))
         further = (_parameters(data), _front(data), _next(data), _predictions(data))
         said = [_use(data), *said, *chain.from_iterable(further)]
     return data.assign_attrs(verdict="\n".join(_with_room(said)))
@@ -103,10 +97,10 @@ def refusals(groups: Sequence[str], misfit: Floats, nominal: Floats) -> list[str
     ``misfit`` and ``nominal`` (n,) are the errors of its groups, and those of the nominal model,
     over those expected.
     """
-    far, worse = misfit > FAR, (misfit > WORSE * nominal) & (misfit > LARGE)
+    far, worse = refused(misfit, nominal)
     return [
         *(_say("far", group=groups[i], misfit=misfit[i]) for i in np.flatnonzero(far).tolist()),
-        *(_say("worse", group=groups[i]) for i in np.flatnonzero(worse & ~far).tolist()),
+        *(_say("worse", group=groups[i]) for i in np.flatnonzero(worse).tolist()),
     ]
 
 

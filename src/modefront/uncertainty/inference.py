@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
-from modefront._typing import Floats
+from modefront._typing import Bools, Floats
 from modefront.optim.problem import at_bounds
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.most_probable import maximum
@@ -27,9 +27,12 @@ from modefront.work.task import Executor, Task
 CHANCE = 0.01
 """Probability that a fixed parameter is named where all of them are right."""
 
+LARGE, FAR = 2.0, 10.0
+"""Errors over those expected, from which they are said to be larger, and from which no model is
+advised: far above what is called noise."""
 
-LARGE = 2.0
-"""Errors over those expected, from which they are said to be larger."""
+WORSE = 1.1
+"""Error of a group over that of the nominal model, from which the nominal one is better there."""
 
 TRIED = 3
 """Fixed parameters that are tried at most."""
@@ -52,6 +55,21 @@ class Fit:
     nominal: Floats
     pairs: Floats
     candidates: Candidates
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether the model cannot be used."""
+        return bool(np.any(refused(self.misfit, self.nominal)))
+
+
+def refused(misfit: Floats, nominal: Floats) -> tuple[Bools, Bools]:
+    """Return the groups (n,) that forbid a model: far from the data, or worse than the nominal one.
+
+    ``misfit`` and ``nominal`` (n,) are their errors and those of the nominal model, over those
+    expected.
+    """
+    far = misfit > FAR
+    return far, (misfit > WORSE * nominal) & (misfit > LARGE) & ~far
 
 
 @record
@@ -121,11 +139,14 @@ class Inference:
 def infer(
     noise: NoiseModel, maxima: Sequence[Floats], count: int, seed: int, work: Executor
 ) -> Inference:
-    """Return what follows from the posterior with maxima (p,), the greatest first, by draws."""
-    draws, theta = draw_models(noise, maxima, count, seed, work), maxima[0]
+    """Return what follows from the posterior with maxima (p,), the greatest first, by draws.
+
+    Chains have one round where the model cannot be used.
+    """
+    theta = maxima[0]
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
     return Inference(
-        draws,
+        draw_models(noise, maxima, count, seed, work, 1 if fit.is_refused else None),
         fit,
         freed(noise, theta, work),
         unfixed(noise, theta, fit.misfit, work),

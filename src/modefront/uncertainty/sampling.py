@@ -257,10 +257,19 @@ def extent(count: int) -> tuple[int, int]:
     return 2 * CHAINS * ROUND, WARM * CHAINS * ROUND + LONGEST * count
 
 
+# 6 arguments: what is drawn from, how many, and how.
 def draw_models(
-    noise: NoiseModel, maxima: Sequence[Floats], count: int, seed: int, work: Executor
+    noise: NoiseModel,
+    maxima: Sequence[Floats],
+    count: int,
+    seed: int,
+    work: Executor,
+    rounds: int | None = None,
 ) -> Draws:
-    """Return models drawn from the posterior, of which all known ``maxima`` (p,) are given."""
+    """Return models drawn from the posterior, of which all known ``maxima`` (p,) are given.
+
+    Chains have ``rounds`` at most; None for as many as so many effective draws may take.
+    """
     stage, at = "sample-posterior", Standardised(noise.problem).evaluate
     tasks = [Task((stage, "peak", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
     peaks = _mixture(noise, work.run(tasks))
@@ -268,7 +277,7 @@ def draw_models(
     chains: list[Chain | None] = [None] * CHAINS
     kept: list[list[Chain]] = []
     warm, settled = True, False
-    rounds = -(-LONGEST * count // (CHAINS * ROUND))
+    rounds = rounds or -(-LONGEST * count // (CHAINS * ROUND))
     for turn in range(WARM + rounds):
         steps = [
             Task(
@@ -293,7 +302,7 @@ def draw_models(
         ratio, size = agreement(np.array([_joined(x, "z") for x in zip(*kept, strict=True)]))
         settled = ratio < AGREE and size >= count / 2
         stuck = 2 * len(kept) >= rounds and size <= 2 * CHAINS
-        if stuck or (settled and size >= count):
+        if stuck or len(kept) == rounds or (settled and size >= count):
             break
     every = [x for chain in zip(*kept, strict=True) for x in chain]
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
