@@ -74,9 +74,9 @@ def test_clicks_write_the_lines_for_the_test_file(written: Path) -> None:
             }"""
         )
         assert re.match(r"\[identify\]\ndrop = \[2", lines.inner_text())
-        dot = page.locator(".stage circle").first
-        before = dot.get_attribute("cx")
-        page.wait_for_timeout(300)
-        assert dot.get_attribute("cx") != before
+        before = page.locator(".stage circle").first.get_attribute("cx")
+        page.wait_for_function(  # the shape moves
+            "x => document.querySelector('.stage circle').getAttribute('cx') !== x", arg=before
+        )
         browser.close()
     assert said == []
