@@ -222,17 +222,23 @@ def reversal(case: Case) -> Case | None:
     return case.spoilt(("reversed-sensor", case.data.sensors[s]), data={"shape": shape})
 
 
-def exchange(case: Case) -> Case | None:
-    """Return the study with two sensors exchanged that do not move alike."""
+def _unlike(case: Case) -> tuple[int, int] | None:
+    """Return two sensors that do not move alike, of which nothing is wrong so far."""
     s, psi = _sensor(case), _psi(case)
     if s is None:
         return None
     unlike = ((psi - psi[:, :, [s]]) ** 2).mean(axis=(0, 1)) > 0.5
     blamed = {name for claim in case.made for name in claim}
     fit = [t for t in np.flatnonzero(unlike).tolist() if case.data.sensors[t] not in blamed]
-    if not fit:
+    return (s, int(case.rng.choice(fit))) if fit else None
+
+
+def exchange(case: Case) -> Case | None:
+    """Return the study with two sensors exchanged that do not move alike."""
+    pair = _unlike(case)
+    if pair is None:
         return None
-    t, shape = int(case.rng.choice(fit)), case.data.shape.copy()
+    (s, t), shape = pair, case.data.shape.copy()
     shape[:, :, [s, t]] = shape[:, :, [t, s]]
     names = sorted([case.data.sensors[s], case.data.sensors[t]])
     return case.spoilt(("exchanged-sensors", *names), data={"shape": shape})
@@ -353,15 +359,10 @@ def calibration(case: Case) -> Case | None:
 
 def pasted(case: Case) -> Case | None:
     """Return the study with the column of a sensor in the place of one that moves otherwise."""
-    s, psi = _sensor(case), _psi(case)
-    if s is None:
+    pair = _unlike(case)
+    if pair is None:
         return None
-    unlike = ((psi - psi[:, :, [s]]) ** 2).mean(axis=(0, 1)) > 0.5
-    blamed = {name for claim in case.made for name in claim}
-    fit = [t for t in np.flatnonzero(unlike).tolist() if case.data.sensors[t] not in blamed]
-    if not fit:
-        return None
-    t, shape = int(case.rng.choice(fit)), case.data.shape.copy()
+    (s, t), shape = pair, case.data.shape.copy()
     shape[:, :, t] = shape[:, :, s]
     return case.spoilt(("copied-sensor", case.data.sensors[t]), data={"shape": shape})
 
