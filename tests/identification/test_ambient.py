@@ -191,7 +191,7 @@ def test_close_modes_are_found_and_a_machine_is_none() -> None:
         assert abs(mode.frequency - f) < 4 * mode.frequency_std
         assert abs(mode.damping - zeta) < 4 * mode.damping_std
     assert [pole.frequency for pole in result.rejected] == pytest.approx([3.4], abs=0.002)
-    assert result.rejected[0].reason == "a harmonic: its lines are those of a sine"
+    assert result.rejected[0].reason == "a harmonic: as narrow as the lines of the record"
 
 
 @pytest.mark.slow(4)

@@ -8,6 +8,7 @@ with the amplitude of a machine is none: with :math:`a(t)` the modal response to
 harmonic; over n samples whose response has the correlations :math:`\rho` at all lags, its variance
 is :math:`4 \sum |\rho|^4 / n`. One whose lines are rather those of a sine is none either: of
 :math:`c / (\omega_0 - \omega_k)`, which is its transform, with any amplitudes c of the sensors.
+Where a pole is narrower than the lines, the record cannot tell: it is taken for a harmonic too.
 """
 
 from __future__ import annotations
@@ -538,6 +539,8 @@ def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
     """Return why a mode is the harmonic of a machine; empty where it is none."""
     if any(mode.held for _, mode in having):
         return ""
+    if np.median([mode.half / setup.spacing for setup, mode in having]) < 0.5:
+        return "a harmonic: as narrow as the lines of the record"
     if sum(mode.sine for _, mode in having) > 0:
         return "a harmonic: its lines are those of a sine"
     z = np.array([(mode.kurtosis[0] - 2) / mode.kurtosis[1] for _, mode in having])
