@@ -1,6 +1,8 @@
 """Ambient tests: the likelihood and its derivatives, shapes of setups, modes and harmonics."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ import scipy.signal as signal
 from modefront._typing import Complexes, Floats
 from modefront.data.records import Records
 from modefront.identification import spectral_density
-from modefront.identification.methods.ambient import identify
+from modefront.identification.methods.ambient import _harmonic, identify
 from modefront.identification.sets import merged_shape
 from modefront.identification.spectral_density import Band, Density
 
@@ -220,3 +222,23 @@ def test_noise_alone_has_no_modes() -> None:
 def test_a_record_that_is_too_short_is_an_error() -> None:
     with pytest.raises(ValueError, match="expected 40 lines in the band, found 18"):
         identify([Records("short", ("a",), 10.0, np.ones((1, 90)))], (1, 3))
+
+
+@pytest.mark.parametrize(
+    ("half", "sine", "kurtosis", "says"),
+    [
+        (0.4, -5.0, 2.0, "as narrow as the lines"),
+        (3.0, 5.0, 2.0, "its lines are those of a sine"),
+        (3.0, -5.0, 1.0, "its amplitude is steady"),
+        (3.0, -5.0, 2.0, ""),
+    ],
+)
+def test_a_harmonic_is_narrow_like_a_sine_or_steady(
+    half: float, sine: float, kurtosis: float, says: str
+) -> None:
+    """A sine fits no better than a mode without damping: of a narrow pole it says nothing."""
+    mode = SimpleNamespace(held=False, half=half, sine=sine, kurtosis=(kurtosis, 0.1))
+    having: Any = [(SimpleNamespace(spacing=1.0), mode)] * 3
+    reason = _harmonic(having)
+    assert says in reason
+    assert bool(says) == bool(reason)

@@ -26,6 +26,7 @@ from modefront.errors import InputError
 from modefront.models.dofs import DofTable, write_dofs
 from modefront.programs import PROGRAMS
 from modefront.programs.base import Job, JobOptions
+from modefront.programs.bulk import read_bulk
 
 K, M = structure()
 
@@ -367,6 +368,15 @@ def test_a_node_of_nastran_says_what_holds_it_and_its_directions(
     job = read("nastran", tmp_path / "a.op4")
     assert [job.dofs.label(k) for k in range(job.size)] == ["node 2 x"]
     assert any("nodes' own systems at node " in note and "2" in note for note in job.notes)
+
+
+def test_a_constraint_of_nastran_joins_the_nodes_of_all_its_lines(tmp_path: Path) -> None:
+    grids = "".join(f"GRID,{n},,{n}.,0.,0.\n" for n in (1, 2, 3, 4))
+    lines = "MPC,8,1,2,1.,2,3,-1.\n,,3,1,-2.,4,2,7\nENDDATA\n"
+    (tmp_path / "a.bdf").write_text(f"MPC = 8\nBEGIN BULK\n{grids}{lines}")
+    content = read_bulk(tmp_path / "a.bdf")
+    assert [sorted(nodes) for nodes in content.links] == [[1, 2, 3, 4]]
+    assert content.followers == {(1, 2)}
 
 
 @pytest.mark.parametrize(

@@ -158,10 +158,10 @@ class Whole(NamedTuple):
     Phi: Floats
 
 
-def point_of(state: State, whole: Whole, index: Ints | None = None) -> Point:
-    """Return the state beside a model, with the best pairs, or with those of an ``index``."""
+def point_of(state: State, whole: Whole) -> Point:
+    """Return the state beside a model, with the best pairs."""
     phi = whole.Phi if state.selection is None else state.selection @ whole.Phi
-    return point(state, whole.theta, whole.frequency, phi, index)
+    return point(state, whole.theta, whole.frequency, phi)
 
 
 def point(

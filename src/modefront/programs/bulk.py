@@ -267,13 +267,14 @@ def _take(content: Bulk, card: list[str], default: list[str]) -> None:
         _rigid(content, card)
     elif name in ("SPCADD", "MPCADD"):
         content.added.setdefault((name[:3], int(card[1])), []).extend(_listed(card[2:]))
-    elif name in ("SPC", "SPC1", "MPC"):
+    elif name in ("SPC", "SPC1"):
         held = _all_of(card[2], card[3:]) if name == "SPC1" else _pairs(card[:8], 2, 3)
-        if name == "MPC":
-            held = {(int(card[2]), _whole(card[3]))}
-            terms = (*card[2::8], *card[5::8])  # two in a line of 8 fields: G, C, A, G, C, A
-            content.links.append(tuple(int(x) for x in terms if x.isdigit()))
-        content.sets.setdefault((name[:3], int(card[1])), set()).update(held)
+        content.sets.setdefault(("SPC", int(card[1])), set()).update(held)
+    elif name == "MPC":
+        terms = (*card[2::8], *card[5::8])  # two in a line of 8 fields: G, C, A, G, C, A
+        content.links.append(tuple(int(x) for x in terms if x.isdigit()))
+        follower = int(card[2]), _whole(card[3])
+        content.sets.setdefault(("MPC", int(card[1])), set()).add(follower)
     elif name in ("ASET1", "OMIT1", "ASET", "OMIT"):
         target = content.kept if name.startswith("ASET") else content.omitted
         target |= _all_of(card[1], card[2:]) if name.endswith("1") else _pairs(card, 1, 2)
