@@ -12,7 +12,7 @@ from modefront._typing import Floats
 from modefront.cli.layout import BLANK, Line, Screen, number, plural
 from modefront.front.point import INTERNAL, Kind, position, preferred
 from modefront.predictions import ResultVariable
-from modefront.predictions.registry import Quantity, predictions_in, quantity
+from modefront.predictions.base import Quantity, predictions_in, quantity
 from modefront.results.remarks import findings_of
 
 FEWEST = 3

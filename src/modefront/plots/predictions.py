@@ -10,7 +10,7 @@ import xarray as xr
 from modefront.front.point import position
 from modefront.plots.along import Along, at_reference, panels_along
 from modefront.plots.canvas import COLOURS, Picture, plain, short, shown, single
-from modefront.predictions.registry import RecordedPrediction, predictions_in
+from modefront.predictions.base import RecordedPrediction, predictions_in
 
 
 def predictions(data: xr.Dataset) -> Picture:

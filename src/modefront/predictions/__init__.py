@@ -1,6 +1,7 @@
 """Predictions of updated models, one class a file; others are registered as these are."""
 
 from modefront.predictions.base import (
+    CLASSES,
     NumericalCheck,
     Prediction,
     PredictionKind,
@@ -9,7 +10,6 @@ from modefront.predictions.base import (
 )
 from modefront.predictions.first_passage import Passage, SoilFilter
 from modefront.predictions.peak_response import PeakResponse
-from modefront.predictions.registry import CLASSES
 
 CLASSES.add(PeakResponse)
 CLASSES.add(Passage)

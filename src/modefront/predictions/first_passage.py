@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -26,7 +26,15 @@ from modefront.options import (
     whole,
 )
 from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVariable, Setting
-from modefront.predictions.load_model import (
+from modefront.predictions.reliability import (
+    LARGEST_ANGLE,
+    METHODS,
+    FirstPassage,
+    Prepare,
+    estimate,
+    step_effect,
+)
+from modefront.predictions.system import (
     ABOVE,
     EITHER,
     MEASURED,
@@ -34,22 +42,14 @@ from modefront.predictions.load_model import (
     Damping,
     Forces,
     ModalLoadModel,
+    ModalSystem,
     ModeCount,
     Name,
     Response,
-    complete_modes,
-    contradictions,
     filled,
     highest_frequency,
-    load_case_of,
-    load_faults,
-    nominal_system,
 )
-from modefront.reliability.estimate import Prepare, estimate, step_effect
-from modefront.reliability.methods import METHODS
-from modefront.reliability.problem import LARGEST_ANGLE, FirstPassage
 from modefront.residuals.problem import UpdatingProblem
-from modefront.response.system import ModalSystem
 from modefront.rounding import ACCUMULATED
 
 MOST_WORKERS = 8
@@ -212,7 +212,7 @@ class Passage:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        faults = list(contradictions(self.loads))
+        faults = list(self.loads.contradictions())
         steps = 1.0 if self.step is None else self.duration / self.step
         if steps > MOST_STEPS:
             faults.append(Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}"))
@@ -224,8 +224,8 @@ class Passage:
     @property
     def loads(self) -> ModalLoadModel:
         """Load case, outputs, modes and damping."""
-        load_case = load_case_of(self.response, self.force, self.base)
-        return ModalLoadModel(load_case, self.modes, self.damping, static=False)
+        forces: Any = self.force or ()
+        return ModalLoadModel.of(self, forces, static=False)
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -264,7 +264,7 @@ class Passage:
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""
-        yield from load_faults(self.loads, model, data)
+        yield from self.loads.faults(model, data)
         number_known = self.modes is not None or isinstance(self.damping, tuple)
         if highest_frequency(data) is None and not number_known:
             yield Fault("", "modes", "how many modes, as no frequency was measured", "nothing")
@@ -276,8 +276,8 @@ class Passage:
         """
         refuse(self.faults(problem.model, problem.data))
         top = ABOVE * (highest_frequency(problem.data) or 0.0)
-        out = replace(self, modes=complete_modes(self.loads, problem, top))
-        return replace(out, step=out._step(nominal_system(out.loads, problem)))
+        out = replace(self, modes=self.loads.complete_modes(problem, top))
+        return replace(out, step=out._step(out.loads.nominal(problem)))
 
     def _step(self, system: ModalSystem) -> float:
         """Return the time step.

@@ -21,7 +21,7 @@ from modefront._version import __version__
 from modefront.findings.catalogue import Severity
 from modefront.front.methods import METHODS
 from modefront.front.point import front_points, position
-from modefront.predictions.registry import Quantity, RecordedPrediction, predictions_in
+from modefront.predictions.base import Quantity, RecordedPrediction, predictions_in
 from modefront.results.compare import short_names
 from modefront.results.remarks import findings_of, verdict
 

@@ -19,8 +19,8 @@ from modefront.findings.record import Finding, found, from_text
 from modefront.front.point import position, preferred
 from modefront.optim.lexicographic import RANK
 from modefront.predictions import Prediction, PredictionKind
+from modefront.predictions.base import ATTRIBUTE, as_text, kinds_in
 from modefront.predictions.ranges import Sampled
-from modefront.predictions.registry import ATTRIBUTE, as_text, kinds_in
 from modefront.predictions.runner import PredictionRunner
 from modefront.results.analysis import ALL, Values, left_open
 from modefront.results.findings import as_values

@@ -15,7 +15,7 @@ from modefront.findings.catalogue import Severity
 from modefront.findings.record import Finding, found, from_text, in_order
 from modefront.front.point import Kind, front_points, preferred
 from modefront.optim.problem import at_bounds
-from modefront.predictions.registry import predictions_in
+from modefront.predictions.base import predictions_in
 from modefront.rounding import ACCUMULATED
 
 CHANGED = "changed"

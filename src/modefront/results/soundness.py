@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from modefront.front.point import REFERENCES, Kind, preferred
-from modefront.predictions.registry import ATTRIBUTE, kinds_from
+from modefront.predictions.base import ATTRIBUTE, kinds_from
 from modefront.results.schema import ATTRIBUTES, DIMENSIONS, VARIABLES, variables_in, variables_of
 from modefront.text import NAME, clean
 from modefront.variables import Values, Variable
