@@ -40,7 +40,7 @@ from modefront import fem
 from modefront.models.mesh import mesh_model
 from modefront.study import session
 from modefront.study.examples import write_example
-from modefront.work.run import Run
+from modefront.work.store import Run
 from modefront.work.task import R, Task
 from modefront.work.workers import Workers, backend
 

@@ -13,8 +13,8 @@ import modefront
 
 LAYERS = (
     ("_lazy", "_typing", "_version", "brief", "outputs", "rounding", "text"),
-    ("errors", "variables"),
-    ("complete", "families", "inputs", "hdf5", "json_schema"),
+    ("errors",),
+    ("complete", "families", "inputs", "hdf5"),
     ("isolated", "options"),
     ("linalg", "work"),
     ("data", "fem", "modes", "optim"),

@@ -13,8 +13,7 @@ from rich.console import Console
 
 import modefront as mf
 from modefront.cli.layout import Screen
-from modefront.cli.lists import LISTS
-from modefront.cli.show import print_comparison, print_results
+from modefront.cli.show import LISTS, print_comparison, print_results
 from modefront.results.compare import Apart, Comparison, Spread, Summary
 from modefront.results.remarks import headlines, remarks
 

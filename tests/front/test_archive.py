@@ -15,10 +15,8 @@ from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.state import Counted, State
 from modefront.optim.problem import Evaluation, Problem, Wrapped
-from modefront.work.costs import Costs
-from modefront.work.run import Run
-from modefront.work.store import Store
-from modefront.work.task import IMMEDIATE, Executor, Task
+from modefront.work.store import Run, Store
+from modefront.work.task import IMMEDIATE, Costs, Executor, Task
 
 
 def dominated(J: Floats, others: Floats) -> bool:

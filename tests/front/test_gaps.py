@@ -15,7 +15,7 @@ from modefront.front.gaps import Gap, branch_numbers, gaps
 from modefront.front.simplex import Payoff
 from modefront.front.subproblems import Point
 from modefront.optim.sqp import Solution, begin
-from modefront.work.costs import Costs
+from modefront.work.task import Costs
 
 
 def f(x: float) -> float:

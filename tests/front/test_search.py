@@ -44,8 +44,7 @@ from modefront.front.subproblems import Point as LatticePoint
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.optim.sqp import given as given_model
-from modefront.work.costs import counted
-from modefront.work.task import IMMEDIATE
+from modefront.work.task import IMMEDIATE, counted
 
 ONES = np.ones(2)
 TOLERANCE = Search().tolerance

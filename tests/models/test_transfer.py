@@ -14,7 +14,7 @@ from modefront.models.matrices import MatrixModel, SensorSpec, affine, matrices,
 from modefront.models.mesh import mesh_model
 from modefront.predictions.peak_response import derivatives
 from modefront.predictions.system import ModalSystem, modes_reaching
-from modefront.work.costs import Costs
+from modefront.work.task import Costs
 
 N = 60
 PLACES: dict[str, SensorSpec] = {"low": 3, "pair": [(40, 0.5), (41, 0.5)]}

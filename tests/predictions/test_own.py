@@ -26,7 +26,7 @@ from modefront.models.base import Model
 from modefront.options import check_fields, text, whole
 from modefront.predictions import ResultVariable, Setting
 from modefront.predictions.base import kinds_in
-from modefront.reports.payload import payload, topics
+from modefront.reports.page import payload, topics
 from modefront.results.files import read_dataset
 from modefront.results.soundness import faults
 

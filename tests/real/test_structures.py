@@ -22,7 +22,7 @@ from modefront.results.remarks import remarks
 from modefront.study.check import check
 from modefront.study.file import load
 from modefront.study.session import run
-from modefront.work.costs import Costs
+from modefront.work.task import Costs
 
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason=f"there is no folder {FOLDER}")
 

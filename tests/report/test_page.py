@@ -18,8 +18,7 @@ import modefront as mf
 from modefront.cli.main import main
 from modefront.front.point import front_points
 from modefront.models.base import geometry_of
-from modefront.reports.page import page
-from modefront.reports.payload import payload, topics
+from modefront.reports.page import page, payload, topics
 from modefront.results.files import FILE, write
 from modefront.results.shapes import drawing, mode_shapes
 from modefront.results.soundness import faults

@@ -15,7 +15,7 @@ from faultless import DATA, STUDY
 from refusals import command
 
 import modefront as mf
-from modefront.reports.payload import topics
+from modefront.reports.page import topics
 from modefront.results.files import FILE, checksum, read_dataset, write
 
 pytestmark = pytest.mark.slow(2)

@@ -288,8 +288,7 @@ def test_the_scatter_of_three_groups_runs_on_with_the_same_digits(tmp_path: Path
 def test_a_study_runs_on_with_the_same_digits_and_shows_all(
     tolerance: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from modefront.cli.lists import LISTS
-    from modefront.cli.show import print_results
+    from modefront.cli.show import LISTS, print_results
 
     write_data(tmp_path)
     text = STUDY.replace("points = 3", f"points = 3\ntolerance = {tolerance}")

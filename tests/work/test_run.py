@@ -17,11 +17,19 @@ from problems import Known, box, circles
 from modefront._typing import Floats
 from modefront.front.archive import Archive, Outcome, Recorder, recorded
 from modefront.optim.problem import Problem, Wrapped
-from modefront.work.costs import Costs, counted, spend, uncounted
 from modefront.work.progress import Plan, Progress, State
-from modefront.work.run import Run
-from modefront.work.store import Store
-from modefront.work.task import IMMEDIATE, R, Task, Within, seed_sequence
+from modefront.work.store import Run, Store
+from modefront.work.task import (
+    IMMEDIATE,
+    Costs,
+    R,
+    Task,
+    Within,
+    counted,
+    seed_sequence,
+    spend,
+    uncounted,
+)
 
 CALLS: list[int] = []
 

@@ -34,10 +34,8 @@ from modefront.front.front import Front
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.search import Search
-from modefront.work.costs import counted
-from modefront.work.run import Run
-from modefront.work.store import Store
-from modefront.work.task import Executor, InTurn, Task, seed_sequence
+from modefront.work.store import Run, Store
+from modefront.work.task import Executor, InTurn, Task, counted, seed_sequence
 from modefront.work.workers import QUEUED, Workers, backend
 
 orders = st.lists(st.integers(0, 3), min_size=1, max_size=5)

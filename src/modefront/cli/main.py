@@ -91,7 +91,7 @@ def cli(context: click.Context) -> None:
 def init(directory: Path, example: str) -> None:
     """Write a study that runs at once into DIRECTORY."""
     from modefront.study.examples import write_example
-    from modefront.study.schema import add_schema
+    from modefront.study.file import add_schema
 
     files = write_example(example, directory)
     studies = [path for path in files if path.name.startswith("study") and path.suffix == ".toml"]
@@ -103,7 +103,7 @@ def init(directory: Path, example: str) -> None:
 @cli.command()
 def schema() -> None:
     """Print the JSON Schema of study files, for editors."""
-    from modefront.study.schema import as_text
+    from modefront.study.file import as_text
 
     click.echo(as_text(), nl=False)
 

@@ -31,7 +31,7 @@ from modefront.models.parameters import (
 from modefront.modes import dense, sparse
 from modefront.modes.result import FullModes, Modes
 from modefront.rounding import LARGEST, SYMMETRY
-from modefront.work.costs import Costs, spend
+from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 
 DENSE = 180

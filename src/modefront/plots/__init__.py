@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from modefront.plots.canvas import Picture
 
 PLOTS: Mapping[str, tuple[str, tuple[str, ...], str]] = {
-    "front": ("front", (), ""),
+    "front": ("quantities", (), ""),
     "parameters": ("quantities", (), ""),
     "frequencies": ("quantities", (), ""),
     "mac": ("quantities", (), ""),

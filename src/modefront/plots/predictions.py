@@ -8,8 +8,17 @@ import numpy as np
 import xarray as xr
 
 from modefront.front.point import position
-from modefront.plots.along import Along, at_reference, panels_along
-from modefront.plots.canvas import COLOURS, Picture, plain, short, shown, single
+from modefront.plots.canvas import (
+    COLOURS,
+    Along,
+    Picture,
+    at_reference,
+    panels_along,
+    plain,
+    short,
+    shown,
+    single,
+)
 from modefront.predictions.base import RecordedPrediction, predictions_in
 
 

@@ -13,15 +13,19 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
-from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, NUMBER, array, pair
 from modefront.models.base import Model
 from modefront.options import (
+    ABOVE_ZERO,
+    NOT_NEGATIVE,
+    NUMBER,
     Requirement,
+    array,
     check_fields,
     nested,
     number,
     numbers,
     one_of,
+    pair,
     rising,
     whole,
 )

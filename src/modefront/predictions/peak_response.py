@@ -34,9 +34,16 @@ from numpy.polynomial import chebyshev
 from modefront._typing import Complexes, Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
-from modefront.json_schema import NOT_NEGATIVE, array
 from modefront.models.base import Model
-from modefront.options import TRUE_OR_FALSE, check_fields, numbers, one_of, rising
+from modefront.options import (
+    NOT_NEGATIVE,
+    TRUE_OR_FALSE,
+    array,
+    check_fields,
+    numbers,
+    one_of,
+    rising,
+)
 from modefront.predictions.base import PredictionKind, ResultVariable, Setting
 from modefront.predictions.system import (
     ABOVE,

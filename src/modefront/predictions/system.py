@@ -34,18 +34,21 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, ModelError, suggestion, wrong
-from modefront.json_schema import (
+from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
+from modefront.options import (
     ABOVE_ZERO,
     BELOW_ZERO,
     NAME,
+    Requirement,
     Schema,
     any_of,
     array,
     either,
+    is_name,
     table_of,
+    text,
+    whole,
 )
-from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
-from modefront.options import Requirement, is_name, text, whole
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 

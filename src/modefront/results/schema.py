@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 
 from modefront.errors import Fault, InputError
-from modefront.predictions.base import PredictionKind, kinds_in
-from modefront.variables import Values, Variable
+from modefront.predictions.base import PredictionKind, Values, Variable, kinds_in
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -30,9 +30,8 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
 from modefront.uncertainty.most_probable import STARTS as MAXIMA
 from modefront.uncertainty.sampling import DRAWS, extent
-from modefront.work.costs import uncounted
 from modefront.work.progress import Plan, Span
-from modefront.work.task import seed_sequence
+from modefront.work.task import seed_sequence, uncounted
 
 NEAR = 0.4, 2.0
 """Time of a search from a known model over that of one from anywhere, from and to."""

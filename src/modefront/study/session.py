@@ -39,8 +39,7 @@ from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress
-from modefront.work.run import Run
-from modefront.work.store import FOLDER, NOTE, Store, locked
+from modefront.work.store import FOLDER, NOTE, Run, Store, locked
 from modefront.work.task import Backend, Task, Within
 from modefront.work.workers import backend
 

@@ -30,8 +30,7 @@ from threadpoolctl import threadpool_limits
 
 from modefront.errors import Fault, InputError, UnfinishedError, wrong
 from modefront.inputs import available_memory
-from modefront.work.costs import spend
-from modefront.work.task import Backend, Done, InTurn, Key, Task, computed
+from modefront.work.task import Backend, Done, InTurn, Key, Task, computed, spend
 from modefront.work.transfer import Message, Reply, Sender, work
 
 SHORT, TINY = 0.02, 0.005

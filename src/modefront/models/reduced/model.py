@@ -32,7 +32,7 @@ from modefront.models.reduced.basis import (
 from modefront.modes import dense
 from modefront.modes.result import FullModes, Modes
 from modefront.modes.sparse import lowest
-from modefront.work.costs import Costs, counted, spend, uncounted
+from modefront.work.task import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
 
 SPARE = 2

@@ -14,13 +14,12 @@ from typing import Annotated, Literal
 import numpy as np
 
 from modefront.data.modal import ModalData
-from modefront.json_schema import any_of
 from modefront.linalg.affine import SparseAffine
 from modefront.models.base import Model, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.model import MEMORY, TOLERANCE, ReducedModel
-from modefront.options import Requirement, check_fields, number
+from modefront.options import Requirement, any_of, check_fields, number
 from modefront.pairing.match import Pairing, modes_needed
 
 SMALLEST = 100

@@ -7,10 +7,19 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from modefront.errors import suggestion
-from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, array, table_of
 from modefront.models.base import Model
 from modefront.models.chain import chain
-from modefront.options import Requirement, Table, check_fields, entries, numbers
+from modefront.options import (
+    ABOVE_ZERO,
+    NOT_NEGATIVE,
+    Requirement,
+    Table,
+    array,
+    check_fields,
+    entries,
+    numbers,
+    table_of,
+)
 from modefront.study.kinds.sensors import WEIGHTED, ModelKind, read_places
 
 MASSES = numbers("a list of masses above 0", array(ABOVE_ZERO, 1))

@@ -12,14 +12,25 @@ import scipy.sparse
 
 from modefront.errors import suggestion
 from modefront.fem.structure import DIRECTIONS
-from modefront.json_schema import any_of, array, closed, file_name, table_of
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
 from modefront.models.files import READERS, read_matrix
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import matrices
 from modefront.models.parameters import BASE, exponents_of, form_of
-from modefront.options import TRUE_OR_FALSE, Option, Table, check_fields, entries, text
+from modefront.options import (
+    TRUE_OR_FALSE,
+    Option,
+    Table,
+    any_of,
+    array,
+    check_fields,
+    closed,
+    entries,
+    file_name,
+    table_of,
+    text,
+)
 from modefront.programs.base import ProgramMesh, read_mesh
 from modefront.study.kinds.sensors import BY_NODE, DOF, WEIGHTED, ModelKind, read_places
 

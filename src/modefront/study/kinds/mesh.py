@@ -17,27 +17,24 @@ from modefront.diagnosis.notes import unused_groups
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Group, Quantity
-from modefront.json_schema import (
-    ABOVE_ZERO,
-    NOT_NEGATIVE,
-    NUMBER,
-    TABLE,
-    Schema,
-    any_of,
-    array,
-    chosen,
-    closed,
-    table_of,
-)
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
 from modefront.options import (
+    ABOVE_ZERO,
+    NOT_NEGATIVE,
+    NUMBER,
     PAIR,
+    TABLE,
     TRUE_OR_FALSE,
     Option,
     Requirement,
+    Schema,
     Table,
+    any_of,
+    array,
     check_fields,
+    chosen,
+    closed,
     entries,
     is_name,
     keys,
@@ -45,6 +42,7 @@ from modefront.options import (
     numbers,
     of_options,
     one_of,
+    table_of,
     text,
     whole,
 )

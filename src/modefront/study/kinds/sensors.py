@@ -13,11 +13,24 @@ import numpy as np
 from modefront.data.csv import is_reserved
 from modefront.fem.check import ALONG, axes_of, unit_vector
 from modefront.fem.structure import DIRECTIONS
-from modefront.json_schema import NUMBER, WHOLE, any_of, array, closed, fits, pair, whole_number
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
-from modefront.options import Requirement, Table, is_name, shown, whole
+from modefront.options import (
+    NUMBER,
+    WHOLE,
+    Requirement,
+    Table,
+    any_of,
+    array,
+    closed,
+    fits,
+    is_name,
+    pair,
+    shown,
+    whole,
+    whole_number,
+)
 
 
 @dataclass(frozen=True)
