@@ -63,37 +63,30 @@ class PredictionRunner:
     work: Executor
     file: Path
 
-    def at_points(
-        self, prediction: Prediction, points: Sequence[tuple[str, Floats]]
-    ) -> list[Arrays]:
-        """Return a prediction at labelled models (p,).
+    def at_models(
+        self,
+        prediction: Prediction,
+        thetas: Sequence[Floats] | Floats,
+        name: str,
+        labels: Sequence[str] = (),
+        method: Literal["evaluate", "check"] = "evaluate",
+    ) -> list[Predicted]:
+        """Return a prediction at models (m, p), or the kind's comparison with finer numerics.
 
-        Raises InputError where an option does not suit one of them, and UnfinishedError where one
-        has not the modes that are needed.
+        Models with ``labels`` raise InputError where an option does not suit them, and
+        UnfinishedError where they have not the modes that are needed; others have NaN then.
         """
-        file = str(self.file)
-        tasks = [
-            self._task(prediction, ("point", label), _labelled, (file, label, theta, "evaluate"))
-            for label, theta in points
-        ]
-        return [predicted.values for predicted in self.work.run(tasks)]
-
-    def checked(self, prediction: Prediction, label: str, theta: Floats) -> Arrays:
-        """Return the kind's comparison with finer numerics at a labelled model."""
-        name = prediction.kind.check.name if prediction.kind.check else ""
-        arguments = (str(self.file), label, theta, "check")
-        (predicted,) = self.work.run([self._task(prediction, (name, label), _labelled, arguments)])
-        return predicted.values
-
-    def at_models(self, prediction: Prediction, thetas: Floats, name: str) -> list[Predicted]:
-        """Return a prediction at other models (m, p), also where they cannot be solved."""
-        tasks = [
-            self._task(
-                prediction, (name, i, hash_text(f"{theta.tolist()}")[:8]), _at_model, (theta,)
-            )
-            for i, theta in enumerate(thetas, start=1)
-        ]
-        return self.work.run(tasks)
+        parts: list[tuple[Part, ...]] = [(name, label) for label in labels]
+        if not labels:
+            marks = (hash_text(f"{theta.tolist()}")[:8] for theta in thetas)
+            parts = [(name, i, mark) for i, mark in enumerate(marks, start=1)]
+        file = str(self.file) if labels else ""
+        return self.work.run(
+            [
+                self._task(prediction, part, _predicted, (theta, method, file, part[-1]))
+                for part, theta in zip(parts, thetas, strict=True)
+            ]
+        )
 
     def extremes(self, prediction: Prediction, front: Sampled, values: Arrays) -> dict[str, Floats]:
         """Return least and greatest values over a front, and over all models that are equivalent.
@@ -141,40 +134,30 @@ class PredictionRunner:
 
 
 # 7 arguments: the problem and the prediction, and the model with its label.
-def _labelled(
+def _predicted(
     problem: UpdatingProblem,
     prediction: Prediction,
     numbers: np.random.SeedSequence,
-    file: str,
-    label: str,
     theta: Floats,
-    method: Literal["evaluate", "check"],
+    method: Literal["evaluate", "check"] = "evaluate",
+    file: str = "",
+    label: str = "",
 ) -> Predicted:
+    """Return a prediction at a model; without a file, NaN where it cannot be solved."""
     try:
         return Predicted(getattr(prediction, method)(problem, theta, numbers))
-    except InputError as error:
+    except (InputError, ModelError) as error:
+        if not file:
+            unknown = np.full(len(prediction.places), np.nan)
+            return Predicted({x.key: unknown for x in prediction.kind.variables}, solved=False)
+        if isinstance(error, ModelError):
+            text = f"no prediction '{prediction.name}' of '{label}': {error}"
+            raise UnfinishedError(text) from None
         place = f"[[predict.{prediction.kind.table}]] ({prediction.name!r})"
         raise InputError(
             Fault(file, f"{place} {fault.place}", f"{fault.expected} of '{label}'", fault.found)
             for fault in error.faults
         ) from None
-    except ModelError as error:
-        raise UnfinishedError(f"no prediction '{prediction.name}' of '{label}': {error}") from None
-
-
-def _at_model(
-    problem: UpdatingProblem,
-    prediction: Prediction,
-    numbers: np.random.SeedSequence,
-    theta: Floats,
-) -> Predicted:
-    """Return a prediction at any model; NaN where it cannot be solved."""
-    try:
-        return Predicted(prediction.evaluate(problem, theta, numbers))
-    except (InputError, ModelError):
-        unknown = np.full(len(prediction.places), np.nan)
-        values = {variable.key: unknown for variable in prediction.kind.variables}
-        return Predicted(values, solved=False)
 
 
 End = tuple[ResultVariable, int, float]
@@ -195,7 +178,7 @@ def _ends(
     def at(theta: Floats) -> Arrays:
         key = theta.tobytes()
         if key not in known:
-            known[key] = _at_model(problem, prediction, numbers, theta).values
+            known[key] = _predicted(problem, prediction, numbers, theta).values
         return known[key]
 
     own = replace(front, between={})  # the same work, whatever was done before in this process

@@ -7,7 +7,6 @@ drawn.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain, compress
 
 import numpy as np
@@ -41,11 +40,6 @@ RANGE = ("minimum", "maximum", "spread")
 """Over the Pareto-optimal models and all that are equivalent; the spread is greatest over least."""
 
 
-def extent(predictions: Sequence[Prediction], models: int) -> dict[str, int]:
-    """Return the expected number of tasks of the predictions of so many models, and of ranges."""
-    return {"predict": sum(models + 1 + (each.kind.check is not None) for each in predictions)}
-
-
 def _by_kind(
     predictions: Sequence[Prediction],
 ) -> Iterator[tuple[PredictionKind, list[Prediction]]]:
@@ -54,24 +48,61 @@ def _by_kind(
         yield kind, [each for each in predictions if each.kind == kind]
 
 
-def with_predictions(data: xr.Dataset, runner: PredictionRunner, slack: float) -> xr.Dataset:
-    """Return results with the predictions of every point.
+# 6 arguments: the results and their predictions, and models drawn from the posterior.
+def with_predictions(
+    data: xr.Dataset,
+    runner: PredictionRunner,
+    slack: float,
+    posterior: Posterior | None,
+    draws: int,
+    drawn: Floats | None = None,
+) -> xr.Dataset:
+    """Return results with the predictions of every point, and their scatter by the posterior.
 
     ``slack`` is the share by which objectives of models may be greater that count in ranges.
-    Raises what `PredictionRunner.at_points` raises.
+    ``drawn`` (draws or more, p) are models of the posterior; so many are drawn around the reference
+    where it is None. Raises what `PredictionRunner.at_models` raises.
     """
     if not runner.predictions:
         return data
+    samples = np.empty((0, runner.problem.start.size)) if drawn is None else drawn[:draws]
+    differences, samples, limits = _around(data, runner, posterior, draws, samples)
+    models = data.sizes["point"] + 2 * len(differences.theta if differences else ()) + len(samples)
+    count = sum(models + 1 + (each.kind.check is not None) for each in runner.predictions)
+    runner.work.expect({"predict": count})
+    data = _at_points(data, runner, slack)
+    values: Values = {}
+    coordinates: dict[str, object] = {}
+    for kind, predictions in _by_kind(runner.predictions):
+        if differences is not None:
+            values |= _to_first_order(data, runner, differences, predictions, limits)
+            coordinates[f"{kind.dimension}_other"] = data[kind.dimension].values
+        if len(samples):
+            values |= _of_samples(data, runner, samples, predictions, limits)
+    if len(samples):
+        values["draw_theta"] = samples
+        coordinates["statistic"] = np.array(SUMMARY)
+    kept = zip(data["finding"].values.tolist(), data["finding_record"].values, strict=True)
+    values |= as_values([*(from_text(str(text), each) for each, text in kept), *limits])
+    data = data.drop_vars(["finding", "finding_record"])
+    return data.assign(described(values, kinds_in(data))).assign_coords(coordinates)
+
+
+def _at_points(data: xr.Dataset, runner: PredictionRunner, slack: float) -> xr.Dataset:
+    """Return results with the predictions of every point, and their ranges."""
     optimal = data["pareto"].values
     values: Values = {"frequency_range": _range(data["frequency"].values, optimal)}
     coordinates = {"range": list(RANGE)}
-    points = list(zip(map(str, data["label"].values), data["theta"].values, strict=True))
-    reference = next(point for point in points if point[0] == preferred(data.attrs))
+    labels, thetas = list(map(str, data["label"].values)), data["theta"].values
+    reference = [preferred(data.attrs)]
     theta, J = (data[name].values[optimal] for name in ("theta", "objective"))
     front = Sampled(theta, J, slack > 0 or _leaves_open(data), slack)
     kinds = []
     for kind, predictions in _by_kind(runner.predictions):
-        rows = [runner.at_points(each, points) for each in predictions]
+        rows = [
+            [x.values for x in runner.at_models(each, thetas, "point", labels)]
+            for each in predictions
+        ]
         best = [list(compress(row, optimal)) for row in rows]
         ends = [
             runner.extremes(each, front, {key: np.array([x[key] for x in row]) for key in row[0]})
@@ -94,10 +125,13 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner, slack: float) -
             values[f"{kind.dimension}_{name}"] = list(chain.from_iterable(every))
         coordinates[kind.dimension] = list(chain.from_iterable(x.places for x in predictions))
         if kind.check:
-            checks = [runner.checked(each, *reference) for each in predictions]
+            here, name = thetas[[position(data)]], kind.check.name
+            checks = [
+                runner.at_models(each, here, name, reference, "check")[0] for each in predictions
+            ]
             for variable in kind.check.variables:
-                values[variable.name] = np.concatenate([x[variable.key] for x in checks])
-            values[kind.check.label.name] = [reference[0]] * len(coordinates[kind.dimension])
+                values[variable.name] = np.concatenate([x.values[variable.key] for x in checks])
+            values[kind.check.label.name] = reference * len(coordinates[kind.dimension])
         kinds.append(kind)
     out = data.assign(described(values, kinds)).assign_coords(coordinates)
     return out.assign_attrs({ATTRIBUTE: as_text(kinds)})
@@ -122,47 +156,21 @@ def _range(values: Floats, optimal: Bools) -> Floats:
     return np.array([least, greatest, ratio])
 
 
-@dataclass(frozen=True)
-class PosteriorModels:
-    """Models around the reference.
-
-    Attributes
-    ----------
-    differences : finite-difference models along the axes of the posterior; None for none
-    samples : (draws, p) samples of the posterior
-    limits : what limits them
-    """
-
-    differences: Stencil | None
-    samples: Floats
-    limits: Sequence[Finding]
-
-    @property
-    def count(self) -> int:
-        """Number of models."""
-        along = 2 * len(self.differences.theta) if self.differences else 0
-        return along + len(self.samples)
-
-
-def posterior_models(
+def _around(
     data: xr.Dataset,
     runner: PredictionRunner,
     posterior: Posterior | None,
     draws: int,
-    drawn: Floats | None = None,
-) -> PosteriorModels:
-    """Return the models around the reference at which predictions are evaluated.
+    samples: Floats,
+) -> tuple[Stencil | None, Floats, list[Finding]]:
+    """Return models around the reference: differences along the axes of the posterior, and draws.
 
-    ``drawn`` (draws or more, p) are models of the posterior; they are drawn around the reference
-    where it is None.
+    Beside them is what limits them.
     """
-    problem, limits = runner.problem, []
-    samples = np.empty((0, problem.start.size)) if drawn is None else drawn[:draws]
-    if not runner.predictions:
-        return PosteriorModels(None, samples[:0], [])
+    problem = runner.problem
     if posterior is None:
-        limits = [found("no-posterior")] if draws and not len(samples) else []
-        return PosteriorModels(None, samples, limits)
+        return None, samples, [found("no-posterior")] if draws and not len(samples) else []
+    limits = []
     theta, best = data["theta"].values[position(data)], preferred(data.attrs)
     names = list(compress(problem.model.parameters, left_open(posterior.free)))
     if names:
@@ -170,40 +178,14 @@ def posterior_models(
     differences = stencil(theta, posterior.axes, problem.lower, problem.upper)
     if differences is None:
         limits.append(found("no-room", str(best)))
-    if draws and drawn is None:
+    if draws and not len(samples):
         rng = np.random.default_rng(seed_sequence(runner.seed, "posterior"))
         bounds = problem.lower, problem.upper
         try:
             samples = draw(theta, posterior.axes, rng, draws, bounds)
         except TruncationError as error:
             limits.append(found("no-draws", str(error)))
-    return PosteriorModels(differences, samples, limits)
-
-
-def with_posterior(
-    data: xr.Dataset, runner: PredictionRunner, models: PosteriorModels
-) -> xr.Dataset:
-    """Return results that have predictions with the scatter of these by the posterior."""
-    values: Values = {}
-    limits = list(models.limits)
-    coordinates: dict[str, object] = {}
-    for kind, predictions in _by_kind(runner.predictions):
-        if models.differences is not None:
-            variables, more = _to_first_order(data, runner, models.differences, predictions)
-            values |= variables
-            limits += more
-            coordinates[f"{kind.dimension}_other"] = data[kind.dimension].values
-        if len(models.samples):
-            variables, more = _of_samples(data, runner, models.samples, predictions)
-            values |= variables
-            limits += more
-    if len(models.samples):
-        values["draw_theta"] = models.samples
-        coordinates["statistic"] = np.array(SUMMARY)
-    kept = zip(data["finding"].values.tolist(), data["finding_record"].values, strict=True)
-    values |= as_values([*(from_text(str(text), each) for each, text in kept), *limits])
-    data = data.drop_vars(["finding", "finding_record"])
-    return data.assign(described(values, kinds_in(data))).assign_coords(coordinates)
+    return differences, samples, limits
 
 
 def _stacked(
@@ -221,8 +203,12 @@ def _to_first_order(
     runner: PredictionRunner,
     differences: Stencil,
     predictions: Sequence[Prediction],
-) -> tuple[Values, list[Finding]]:
-    """Return standard deviations and covariances, of the logarithms where these are linearised."""
+    limits: list[Finding],
+) -> Values:
+    """Return standard deviations and covariances, of the logarithms where these are linearised.
+
+    What limits them is added to ``limits``.
+    """
     kind = predictions[0].kind
     m, _, p = differences.theta.shape
     thetas = differences.theta.reshape(2 * m, p)
@@ -247,10 +233,11 @@ def _to_first_order(
         else:
             out |= {f"{name}_std": std, f"{name}_covariance": C}
     best = preferred(data.attrs)
-    return out, [
+    limits += [
         found("no-deviation", str(name), reference=best, undefined=kind.undefined)
         for name in data[kind.dimension].values[unknown]
     ]
+    return out
 
 
 def _of_samples(
@@ -258,7 +245,9 @@ def _of_samples(
     runner: PredictionRunner,
     samples: Floats,
     predictions: Sequence[Prediction],
-) -> tuple[Values, list[Finding]]:
+    limits: list[Finding],
+) -> Values:
+    """Return values at draws and their statistics; what limits them is added to ``limits``."""
     kind, n = predictions[0].kind, len(samples)
     rows = [runner.at_models(each, samples, "draw") for each in predictions]
     values = _stacked(kind, [[x.values for x in row] for row in rows])
@@ -267,7 +256,7 @@ def _of_samples(
         out[f"draw_{variable.name}"] = values[variable.key]
         out[f"posterior_{variable.name}"] = summary(values[variable.key])
     failed = [sum(not x.solved for x in row) for row in rows]
-    limits = [
+    limits += [
         found("unsolved-draws", each.name, count=count, drawn=n, what="cannot be solved")
         for each, count in zip(predictions, failed, strict=True)
         if count
@@ -281,4 +270,4 @@ def _of_samples(
         for name, count in zip(data[kind.dimension].values, missing, strict=True)
         if count > 0
     ]
-    return out, limits
+    return out

@@ -1,6 +1,7 @@
 r"""Import of jobs of a program as a study.
 
-The jobs of a CalculiX deck are made from it, and run. A parameter multiplies what the deck says of a name:
+The jobs of a CalculiX deck are made from it, and run. A parameter multiplies what the deck says of
+a name:
 
 ===================  ==========================================================  ================
 what                 numbers                                                     matrices

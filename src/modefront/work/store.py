@@ -1,7 +1,7 @@
-"""The executor of a run, and results of tasks in a folder, so that an interrupted run loses only one.
+"""The executor of a run, and results of tasks, so that an interrupted run loses only one.
 
-There is one small file a task. It ends with a checksum, which alone says whether it is whole;
-arrays are stored exactly.
+There is one small file a task in a folder. It ends with a checksum, which alone says whether it is
+whole; arrays are stored exactly.
 """
 
 from __future__ import annotations
