@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Any
@@ -27,11 +26,6 @@ def brief_model(model: Any) -> str:
         f"{type(model).__name__}({p} parameter{'s' * (p != 1)}, {model.size} degrees of freedom, "
         f"{k} sensor{'s' * (k != 1)})"
     )
-
-
-def as_html(record: Any) -> str:
-    """Return the representation of a record for a notebook, as its ``_repr_html_``."""
-    return f"<pre>{html.escape(repr(record))}</pre>"
 
 
 def _short(value: Any) -> str:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.brief import as_html, brief
+from modefront.brief import brief
 from modefront.errors import suggestion
 
 MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std")
@@ -69,7 +69,6 @@ class ModalData:
     pairs: Pairs = ()
 
     __repr__ = brief
-    _repr_html_ = as_html
 
     @cached_property
     def mean_frequency(self) -> Floats:

@@ -22,7 +22,7 @@ from numpy.exceptions import ComplexWarning
 from numpy.typing import NDArray
 
 from modefront._typing import Floats
-from modefront.brief import as_html, brief_model
+from modefront.brief import brief_model
 from modefront.errors import InputError, ModelError, refuse, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.models.base import LoadCase, Transfer, passed_on
@@ -169,7 +169,6 @@ class FunctionModel:
     nominal: MatrixModel
 
     __repr__ = brief_model
-    _repr_html_ = as_html
 
     unused = ()  # on which parameters a function does not depend is not known
     parameters = passed_on("nominal", "parameters")

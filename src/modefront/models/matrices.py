@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.brief import as_html, brief_model
+from modefront.brief import brief_model
 from modefront.errors import Fault, InputError, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Pencil, pencil
@@ -89,7 +89,6 @@ class MatrixModel:
     geometry: Geometry | None = None
 
     __repr__ = brief_model
-    _repr_html_ = as_html
 
     @property
     def size(self) -> int:

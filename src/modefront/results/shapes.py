@@ -22,7 +22,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats, Ints
-from modefront.brief import as_html, brief
+from modefront.brief import brief
 from modefront.errors import Fault, InputError, ModelError, writing
 from modefront.models.base import full_of, geometry_of, shapes_at
 from modefront.models.geometry import Cells, Geometry
@@ -81,7 +81,6 @@ class PairedShapes:
     geometry: Geometry | None
 
     __repr__ = brief
-    _repr_html_ = as_html
 
 
 def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:

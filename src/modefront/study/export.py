@@ -17,7 +17,7 @@ import scipy.io
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.brief import as_html, brief
+from modefront.brief import brief
 from modefront.data.uff import dataset_55
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError, suggestion, writing
 from modefront.front.point import preferred
@@ -57,7 +57,6 @@ class Exported:
     missing: tuple[str, ...]
 
     __repr__ = brief
-    _repr_html_ = as_html
 
 
 def export(

@@ -37,7 +37,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.brief import as_html, brief
+from modefront.brief import brief
 from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion, writing
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import fortran
@@ -126,7 +126,6 @@ class Imported:
                 return [Path(shutil.move(file, directory / file.name)) for file in files]
 
     __repr__ = brief
-    _repr_html_ = as_html
 
 
 # 9 arguments and many lines: the jobs, and each option of the command by keyword, in turn.

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse.linalg
 
 from modefront._typing import Floats
-from modefront.brief import as_html, brief_model
+from modefront.brief import brief_model
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
 from modefront.models.base import passed_on
@@ -123,7 +123,6 @@ class ReducedModel:
     _small: _Projected | None = None
 
     __repr__ = brief_model
-    _repr_html_ = as_html
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state with the projected matrices, and without basis and factor.
