@@ -2,9 +2,9 @@
 
 An option is a field of a frozen dataclass. Its annotation has its requirement: a ``Literal``, or
 ``Annotated`` with a `Requirement`, or with a function that returns one when it is needed; ``None``
-besides, where the annotation has it. `check_fields`, called from ``__post_init__``, compares all
-fields with their requirements and brings their values into plain Python: the same record is made
-from TOML, from literals and from numpy scalars.
+besides, where the annotation has it. `check_fields`, called from ``__post_init__`` or by a class
+that is `checked`, compares all fields with their requirements and brings their values into plain
+Python: the same record is made from TOML, from literals and from numpy scalars.
 
 A `Table` of a TOML file reads its keys by the same requirements, and collects the faults. A
 requirement has a JSON Schema (draft 7).
@@ -25,7 +25,16 @@ from dataclasses import MISSING, dataclass, field, fields, replace
 from enum import Enum
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    Literal,
+    TypeVar,
+    dataclass_transform,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 
@@ -368,6 +377,13 @@ def check_fields(record: Any) -> None:
     for each, value in given:
         # The record is frozen for everybody else; it is not finished before this.
         object.__setattr__(record, each.name, each.requirement.convert(plain(value)))
+
+
+@dataclass_transform(frozen_default=True)
+def checked(record: type[T]) -> type[T]:
+    """Make a class a frozen dataclass of options, which raises InputError for wrong fields."""
+    record.__post_init__ = check_fields  # type: ignore[attr-defined]
+    return dataclass(frozen=True)(record)
 
 
 def each_once(place: str, names: Iterable[str]) -> list[Fault]:

@@ -16,7 +16,7 @@ from typing import Annotated
 from modefront.front.archive import limited
 from modefront.front.proposers.base import USUAL, Offer, Proposer
 from modefront.front.state import State
-from modefront.options import check_fields, number, whole
+from modefront.options import checked, number, whole
 from modefront.work.task import Executor, Key, Task
 
 BATCH = 6
@@ -33,7 +33,7 @@ SEARCHING = 0.9
 weights and the ends of its branches."""
 
 
-@dataclass(frozen=True)
+@checked
 class Search:
     """How far the search for global minima goes.
 
@@ -49,9 +49,6 @@ class Search:
     evaluations: Annotated[int, whole(1, 10**9)] = 20_000
     tolerance: Annotated[float, SHARE] = 1e-3
     doubt: Annotated[float, SHARE] = 0.05
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 @dataclass

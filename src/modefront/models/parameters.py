@@ -22,6 +22,7 @@ from modefront.options import (
     TRUE_OR_FALSE,
     Requirement,
     check_fields,
+    checked,
     each_once,
     nested,
     number,
@@ -33,7 +34,7 @@ from modefront.options import (
 BOUNDS = numbers("[lower, upper], two finite numbers with lower < upper", PAIR, rising)
 
 
-@dataclass(frozen=True)
+@checked
 class Prior:
     """What is expected of a parameter before the data are seen: it lies about its nominal value.
 
@@ -45,9 +46,6 @@ class Prior:
 
     kind: Literal["normal", "lognormal"] = "normal"
     std: Annotated[float, number("a number above 0", above=0)] = 0.2
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from modefront.data.modal import ModalData
 from modefront.errors import Fault, InputError, refuse
 from modefront.families import Family
 from modefront.models.base import Model
-from modefront.options import TRUE_OR_FALSE, Requirement, check_fields, each_once, text
+from modefront.options import TRUE_OR_FALSE, Requirement, check_fields, checked, each_once, text
 from modefront.residuals.problem import UpdatingProblem
 from modefront.text import NAME, clean
 
@@ -77,7 +77,7 @@ def _all_of(record: type, words: str) -> Requirement:
     )
 
 
-@dataclass(frozen=True)
+@checked
 class ResultVariable:
     """A variable of the results that a prediction has one value of for each model and place.
 
@@ -103,9 +103,6 @@ class ResultVariable:
     symbol: Annotated[str, ANY_WORDS] = ""
     mean: Annotated[str, ANY_WORDS] = ""
 
-    def __post_init__(self) -> None:
-        check_fields(self)
-
     @property
     def logarithmic(self) -> bool:
         """Whether its logarithm is linearised."""
@@ -117,7 +114,7 @@ class ResultVariable:
         return f"{self.key}, {self.unit}" if self.unit else self.key
 
 
-@dataclass(frozen=True)
+@checked
 class Setting:
     """An option of predictions, as a variable of the results.
 
@@ -138,15 +135,12 @@ class Setting:
     unit: Annotated[str, ANY_WORDS] = ""
     dimensions: Annotated[tuple[str, ...], _all_of(str, "names of dimensions")] = ()
 
-    def __post_init__(self) -> None:
-        check_fields(self)
-
 
 VARIABLES = _all_of(ResultVariable, "ResultVariable")
 SETTINGS = _all_of(Setting, "Setting")
 
 
-@dataclass(frozen=True)
+@checked
 class NumericalCheck:
     """A comparison with finer numerics, made at the reference model.
 
@@ -162,9 +156,6 @@ class NumericalCheck:
     name: Annotated[str, WORDS]
     variables: Annotated[tuple[ResultVariable, ...], VARIABLES]
     label: ResultVariable
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 @dataclass(frozen=True)

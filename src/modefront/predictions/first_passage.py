@@ -21,6 +21,7 @@ from modefront.options import (
     Requirement,
     array,
     check_fields,
+    checked,
     nested,
     number,
     numbers,
@@ -92,7 +93,7 @@ MODULATION = Requirement(
 )
 
 
-@dataclass(frozen=True)
+@checked
 class SoilFilter:
     """A filter of white noise by a layer of soil, after Kanai and Tajimi.
 
@@ -106,9 +107,6 @@ class SoilFilter:
 
     frequency: Annotated[float, SOIL_FREQUENCY]
     damping: Annotated[float, SOIL_DAMPING]
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
     @property
     def omega(self) -> float:

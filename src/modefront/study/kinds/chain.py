@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Annotated, Any
 
 from modefront.errors import suggestion
@@ -15,7 +14,7 @@ from modefront.options import (
     Requirement,
     Table,
     array,
-    check_fields,
+    checked,
     entries,
     numbers,
     table_of,
@@ -39,7 +38,7 @@ OF_MASSES = Requirement(
 PLACES = entries("a table, name = degree of freedom", table_of(WEIGHTED))
 
 
-@dataclass(frozen=True)
+@checked
 class Chain:
     """Lumped masses joined by springs, the first one to the ground; SI or any consistent units.
 
@@ -63,9 +62,6 @@ class Chain:
     mass_parameters: Annotated[Sequence[str], OF_MASSES] | None = None
     sensors: Annotated[Mapping[str, Any], PLACES] | None = None
     outputs: Annotated[Mapping[str, Any], PLACES] | None = None
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from modefront.options import (
     Table,
     any_of,
     array,
-    check_fields,
+    checked,
     closed,
     entries,
     file_name,
@@ -54,7 +54,7 @@ MOVING = any_of(
 )
 
 
-@dataclass(frozen=True)
+@checked
 class Matrices:
     """Matrices from files: K = base + sum_j c_j K_j, M likewise; c_j is a parameter or a product.
 
@@ -85,9 +85,6 @@ class Matrices:
     base: (
         Annotated[Mapping[str, Any], entries("a table of directions", table_of(MOVING))] | None
     ) = None
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Any, get_args
 
 from modefront import fem
@@ -32,7 +32,7 @@ from modefront.options import (
     Table,
     any_of,
     array,
-    check_fields,
+    checked,
     chosen,
     closed,
     entries,
@@ -234,7 +234,7 @@ SCALES = entries("a table, parameter = { quantity, of }", table_of(of_options(SC
 
 
 # 13 fields: the tables of a structure.
-@dataclass(frozen=True)
+@checked
 class MeshModel:
     """Finite elements on a mesh from a file that meshio reads.
 
@@ -273,9 +273,6 @@ class MeshModel:
     outputs: (
         Annotated[Mapping[str, Any], entries("a table of outputs", table_of(PLACES))] | None
     ) = None
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 @contextmanager
