@@ -35,7 +35,7 @@ from modefront.predictions.reliability import (
     LARGEST_ANGLE,
     METHODS,
     FirstPassage,
-    Prepare,
+    Share,
     estimate,
     step_effect,
 )
@@ -337,7 +337,7 @@ class Passage:
 
     def _sampled(
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
-    ) -> tuple[Prepare, FirstPassage, Floats, int, np.random.SeedSequence, int]:
+    ) -> tuple[Share | None, FirstPassage, Floats, int, np.random.SeedSequence, int]:
         """Return what estimates at a model take."""
         method, passage = METHODS[self.method], self.problem(problem, theta)
         # How many threads there are changes no digit, only memory and time.

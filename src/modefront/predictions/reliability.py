@@ -48,7 +48,7 @@ nothing.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from queue import SimpleQueue
@@ -153,7 +153,7 @@ class Convolution:
     def __init__(self, response: GaussianResponse, samples: int) -> None:
         size = _fft_size(response.n_steps)
         load = (samples, response.n_inputs)
-        self._response = response
+        self.response = response
         self._padded = np.zeros((*load, size))
         self._spectrum = np.empty((*load, size // 2 + 1), dtype=np.complex128)
         self._product = np.empty((2, samples, size // 2 + 1), dtype=np.complex128)
@@ -165,14 +165,14 @@ class Convolution:
         One output at a time, so that memory does not grow with their number; each is overwritten
         by the next.
         """
-        count, n = z.shape[0], self._response.n_steps
+        count, n = z.shape[0], self.response.n_steps
         padded, load, x = self._padded[:count], self._spectrum[:count], self._x[:count]
         product, term = self._product[:, :count]
-        np.multiply(z, self._response.modulation, out=padded[..., :n])
+        np.multiply(z, self.response.modulation, out=padded[..., :n])
         np.fft.rfft(padded, out=load)
-        for spectrum in self._response.spectrum:
+        for spectrum in self.response.spectrum:
             np.multiply(load[:, 0], spectrum[0], out=product)
-            for i in range(1, self._response.n_inputs):
+            for i in range(1, self.response.n_inputs):
                 product += np.multiply(load[:, i], spectrum[i], out=term)
             np.fft.irfft(product, x.shape[-1], out=x)
             yield np.abs(x[:, :n], out=x[:, :n])
@@ -300,27 +300,25 @@ Share = Callable[[Failed, float, Iterator[Floats]], Floats]
 """(samples, level, |x| by output) → the part of ΣP that each sample stands for, (samples,)."""
 
 
-def conditional(share: Share) -> Prepare:
-    """Return the weights ΣP · share, with the same normal numbers at every level."""
-
-    def prepare(response: GaussianResponse, levels: Floats) -> Weigh:
-        sums = [elementary_failures(response, level) for level in levels.tolist()]
-
-        def weigh(convolution: Convolution, rng: np.random.Generator, count: int) -> Floats:
-            z = rng.standard_normal((count, response.n_inputs, response.n_steps))
-            uniform = rng.random((2, count))
-            weights = np.zeros((levels.size, count))
-            for row, level, cumulative in zip(weights, levels.tolist(), sums, strict=True):
-                # At a barrier so high that P is below the smallest float, the estimate is zero;
-                # its coefficient of variation, infinite, says that there were no samples.
-                if cumulative[-1] > 0:
-                    failed = given_failure(response, level, cumulative, z, uniform)
-                    row[:] = cumulative[-1] * share(failed, level, convolution.magnitudes(failed.z))
-            return weights
-
-        return weigh
-
-    return prepare
+# 6 arguments: the levels with what belongs to them, and the samples.
+def _given_failures(
+    share: Share,
+    levels: Floats,
+    sums: Sequence[Floats],
+    convolution: Convolution,
+    z: Floats,
+    rng: np.random.Generator,
+) -> Floats:
+    """Return the weights ΣP · share (n_levels, samples), of the same numbers z at every level."""
+    uniform = rng.random((2, len(z)))
+    weights = np.zeros((levels.size, len(z)))
+    for row, level, cumulative in zip(weights, levels.tolist(), sums, strict=True):
+        # At a barrier so high that P is below the smallest float, the estimate is zero;
+        # its coefficient of variation, infinite, says that there were no samples.
+        if cumulative[-1] > 0:
+            failed = given_failure(convolution.response, level, cumulative, z, uniform)
+            row[:] = cumulative[-1] * share(failed, level, convolution.magnitudes(failed.z))
+    return weights
 
 
 def _one_of_all(failed: Failed, level: float, magnitudes: Iterator[Floats]) -> Floats:
@@ -362,23 +360,12 @@ def _any_radius(failed: Failed, level: float, magnitudes: Iterator[Floats]) -> F
     return np.asarray(shortest / total, dtype=np.float64)
 
 
-def _counted(response: GaussianResponse, levels: Floats) -> Weigh:
-    def weigh(convolution: Convolution, rng: np.random.Generator, count: int) -> Floats:
-        z = rng.standard_normal((count, response.n_inputs, response.n_steps))
-        largest = np.zeros(count)
-        for x in convolution.magnitudes(z):
-            np.maximum(largest, x.max(axis=1), out=largest)
-        return (largest > levels[:, None]).astype(np.float64)
-
-    return weigh
-
-
-METHODS: Final = MappingProxyType(
+METHODS: Final[Mapping[str, Share | None]] = MappingProxyType(
     {
-        "importance": conditional(_one_of_all),
-        "directional": conditional(_any_radius),
-        "additive": conditional(_first),
-        "monte-carlo": _counted,
+        "importance": _one_of_all,
+        "directional": _any_radius,
+        "additive": _first,
+        "monte-carlo": None,  # failures are counted
     }
 )
 """The methods by the names that a user gives them."""
@@ -390,12 +377,6 @@ LARGEST_CHUNK = 32
 LARGEST_BLOCK = 2**20
 """Normal numbers in a chunk, 8 MB: bounds the memory of a worker to some 100 MB."""
 
-Weigh = Callable[[Convolution, np.random.Generator, int], Floats]
-"""(a worker's convolution, generator, samples) → weights, (n_levels, samples)."""
-
-Prepare = Callable[[GaussianResponse, Floats], Weigh]
-"""(response, levels) → what weighs samples at these levels."""
-
 
 def spawn(seed: np.random.SeedSequence, number: int) -> np.random.SeedSequence:
     """Return the child of that number; unlike `seed.spawn`, the same one whenever asked for."""
@@ -405,7 +386,7 @@ def spawn(seed: np.random.SeedSequence, number: int) -> np.random.SeedSequence:
 
 # 6 arguments: the method, what is asked of it, and how.
 def estimate(
-    prepare: Prepare,
+    method: Share | None,
     problem: FirstPassage,
     levels: Floats,
     samples: int,
@@ -414,10 +395,10 @@ def estimate(
 ) -> tuple[Floats, Floats]:
     """Return P and the coefficient of variation of its estimate at barriers, (n_levels,) each.
 
-    ``prepare`` is one of `METHODS`. Where no sample failed, P is zero and the coefficient infinite.
+    ``method`` is one of `METHODS`. Where no sample failed, P is zero and the coefficient infinite.
     """
     response = gaussian_response(problem)
-    weigh = prepare(response, levels)
+    sums = [elementary_failures(response, level) for level in levels.tolist()]
     largest = LARGEST_BLOCK // (response.n_inputs * response.n_steps)
     chunk = min(max(largest, 1), LARGEST_CHUNK)
     free: SimpleQueue[Convolution] = SimpleQueue()
@@ -426,9 +407,13 @@ def estimate(
 
     def weights_of(number: int) -> Floats:
         count = min(chunk, samples - number * chunk)
-        convolution = free.get()
+        rng, convolution = np.random.default_rng(spawn(seed, number)), free.get()
+        z = rng.standard_normal((count, response.n_inputs, response.n_steps))
         try:
-            return weigh(convolution, np.random.default_rng(spawn(seed, number)), count)
+            if method is not None:
+                return _given_failures(method, levels, sums, convolution, z, rng)
+            greatest = np.max([x.max(axis=1) for x in convolution.magnitudes(z)], axis=0)
+            return (greatest > levels[:, None]).astype(np.float64)
         finally:
             free.put(convolution)
 
@@ -442,7 +427,7 @@ def estimate(
 
 
 def step_effect(
-    prepare: Prepare,
+    method: Share | None,
     problem: FirstPassage,
     levels: Floats,
     samples: int,
@@ -457,7 +442,7 @@ def step_effect(
     """
     finer = replace(problem, time_step=problem.time_step / 2)
     (P, own), (halved, other) = (
-        estimate(prepare, each, levels, samples, spawn(seed, k), workers)
+        estimate(method, each, levels, samples, spawn(seed, k), workers)
         for k, each in enumerate((problem, finer))
     )
     ratio = np.divide(halved, P, out=np.full(P.size, np.nan), where=P > 0)
