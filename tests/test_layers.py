@@ -12,7 +12,7 @@ import pytest
 import modefront
 
 LAYERS = (
-    ("_lazy", "_typing", "_version", "brief", "outputs", "rounding", "text"),
+    ("_lazy", "_typing", "_version", "outputs", "rounding", "text"),
     ("errors",),
     ("complete", "families", "inputs", "hdf5"),
     ("isolated", "options"),

@@ -73,15 +73,12 @@ def whole_number(least: int, most: int) -> Schema:
     return {"type": "integer", "minimum": least, "maximum": most}
 
 
-def array(items: Schema, least: int = 0, most: int | None = None, *, once: bool = False) -> Schema:
-    """Return the schema of a list of a number of items from ``least`` to ``most``."""
+def array(
+    items: Schema | list[Schema], least: int = 0, most: int | None = None, *, once: bool = False
+) -> Schema:
+    """Return the schema of a list of ``least`` to ``most`` items: alike, or one after another."""
     ends = {"minItems": least} | ({} if most is None else {"maxItems": most})
     return {"type": "array", "items": items} | ends | ({"uniqueItems": True} if once else {})
-
-
-def pair(first: Schema, second: Schema) -> Schema:
-    """Return the schema of a list of two."""
-    return {"type": "array", "items": [first, second], "minItems": 2, "maxItems": 2}
 
 
 def table_of(entries: Schema, least: int = 0) -> Schema:
@@ -104,11 +101,6 @@ def file_name(endings: Iterable[str], *, any_case: bool = False) -> Schema:
     """Return the schema of the name of a file, by its endings, in capitals or not."""
     known = ["".join(f"[{x}{x.upper()}]" if any_case else f"[{x}]" for x in y) for y in endings]
     return {"type": "string", "pattern": f"({'|'.join(known)})$"}
-
-
-def either(*keys: str) -> Schema:
-    """Return what a schema says in addition of a table that has one of several keys, not more."""
-    return {"oneOf": [{"required": [key]} for key in keys]}
 
 
 def chosen(key: str, schemas: Mapping[str, Schema]) -> Schema:

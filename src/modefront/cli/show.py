@@ -74,11 +74,9 @@ def models_in(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Li
 
 def _first_models(data: xr.Dataset) -> list[int]:
     """Return the positions of the nominal model, the reference and the edges."""
-    of = (
-        np.flatnonzero(data["kind"].values == x.value).tolist() for x in (Kind.NOMINAL, Kind.EDGE)
-    )
-    nominal, edges = of
-    return list(dict.fromkeys([*nominal, position(data), *edges]))
+    kinds = data["kind"].values
+    nominal, edges = (np.flatnonzero(kinds == x.value) for x in (Kind.NOMINAL, Kind.EDGE))
+    return list(dict.fromkeys([*nominal.tolist(), position(data), *edges.tolist()]))
 
 
 def _table(screen: Screen, data: xr.Dataset) -> list[Line]:
@@ -389,26 +387,20 @@ def as_json(data: xr.Dataset) -> str:
     found = findings_of(data, full=True)
     sections = {
         "verdict": verdict(data),
-        "attributes": {str(k): as_plain(np.asarray(value)) for k, value in data.attrs.items()},
+        "attributes": {str(k): np.asarray(value).tolist() for k, value in data.attrs.items()},
         "variables": {
-            str(name): {"dimensions": list(map(str, x.dims)), "values": as_plain(x.values)}
+            str(name): {"dimensions": list(map(str, x.dims)), "values": x.values.tolist()}
             for name, x in {**data.coords, **data.data_vars}.items()
         },
         "remarks": [str(finding) for finding in found],
         "findings": [finding.as_plain() for finding in found],
     }
-    return json.dumps(sections, indent=1)
+    return json.dumps(as_plain(sections), indent=1)
 
 
 def as_plain(values: Any) -> Any:
-    """Return what JSON has: arrays as lists, records as objects, null for what is no number."""
-    if isinstance(values, dict):
-        return {key: as_plain(value) for key, value in values.items()}
-    if isinstance(values, np.ndarray):
-        values = values.tolist()
-    if isinstance(values, list | tuple):
-        return [as_plain(value) for value in values]
-    return None if isinstance(values, float) and not np.isfinite(values) else values
+    """Return what JSON has: null for what is no number."""
+    return json.loads(json.dumps(values), parse_constant=lambda _: None)
 
 
 SHOWN = 6

@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.brief import brief
 from modefront.errors import suggestion
+from modefront.text import brief
 
 MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std")
 """Arrays of modal data, of which data sets are the first axis."""

@@ -22,7 +22,6 @@ from numpy.exceptions import ComplexWarning
 from numpy.typing import NDArray
 
 from modefront._typing import Floats
-from modefront.brief import brief_model
 from modefront.errors import InputError, ModelError, refuse, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.models.base import LoadCase, Transfer, passed_on
@@ -37,6 +36,7 @@ from modefront.models.matrices import (
 from modefront.models.parameters import Parameter
 from modefront.modes.result import FullModes, Modes
 from modefront.options import each_once
+from modefront.text import brief_model
 from modefront.work.transfer import shared
 
 Matrix: TypeAlias = Any

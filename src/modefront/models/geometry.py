@@ -11,9 +11,9 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.brief import brief
 from modefront.fem.structure import Cells as Cells
 from modefront.linalg.affine import sparse_rows
+from modefront.text import brief
 
 
 @dataclass(frozen=True, eq=False, repr=False)

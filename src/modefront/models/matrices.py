@@ -13,7 +13,6 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.brief import brief_model
 from modefront.errors import Fault, InputError, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Pencil, pencil
@@ -31,6 +30,7 @@ from modefront.models.parameters import (
 from modefront.modes import dense, sparse
 from modefront.modes.result import FullModes, Modes
 from modefront.rounding import LARGEST, SYMMETRY
+from modefront.text import brief_model
 from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 

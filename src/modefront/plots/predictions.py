@@ -82,13 +82,14 @@ def _page(data: xr.Dataset, of: RecordedPrediction) -> Picture:
     quantities = [x for x in of.quantities if x.variable == variable]
     values = np.column_stack([x.values for x in quantities])
     std = [x.std for x in quantities if x.std is not None]
+    places = [x.place for x in quantities]
     if variable.logarithmic:
         values = np.where(values > 0, values, np.nan)
         figure, axes = single(4.8, 3.3)
         axes.set(yscale="log", ylabel=variable.title)
         along = Along(data)
         bars = at_reference(data, np.log(values), std)
-        for k, place in enumerate(of.places):
+        for k, place in enumerate(places):
             colour = COLOURS[k % len(COLOURS)]
             along.draw(axes, values[:, k], colour, short(place))
             if bars is not None:
@@ -96,6 +97,6 @@ def _page(data: xr.Dataset, of: RecordedPrediction) -> Picture:
         along.finish(figure, [axes], 1)
     else:
         bars = at_reference(data, values, std)
-        figure = panels_along(data, values, of.places, variable.title, bars)
+        figure = panels_along(data, values, places, variable.title, bars)
     figure.suptitle(plain(of.name + f" ({of.load})" * bool(of.load)), x=0.01, ha="left")
     return figure

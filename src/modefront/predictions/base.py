@@ -440,7 +440,6 @@ class RecordedPrediction:
     heading : its load case and options
     load : its load; empty where the kind has no such setting
     positions : of its values along the dimension of the kind
-    places : names of these values, without that of the prediction
     quantities : of each place in turn, one a variable
     """
 
@@ -449,7 +448,6 @@ class RecordedPrediction:
     heading: str
     load: str
     positions: tuple[int, ...]
-    places: tuple[str, ...]
     quantities: tuple[Quantity, ...]
 
 
@@ -471,6 +469,5 @@ def predictions_in(data: xr.Dataset) -> Iterator[RecordedPrediction]:
                 str(data[f"{start}_heading"].values[positions[0]]),
                 "" if load is None else str(load.values[positions[0]]),
                 positions,
-                tuple(dict.fromkeys(x.place for x in quantities)),
                 quantities,
             )

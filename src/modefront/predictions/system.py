@@ -43,7 +43,6 @@ from modefront.options import (
     Schema,
     any_of,
     array,
-    either,
     is_name,
     table_of,
     text,
@@ -108,7 +107,7 @@ NAMED = "the name of a sensor or output, or a table of them with weights that ar
 
 
 WEIGHTS = any_of(NAME, table_of(any_of(ABOVE_ZERO, BELOW_ZERO), 1))
-EITHER = either("force", "base")
+EITHER: Schema = {"oneOf": [{"required": [key]} for key in ("force", "base")]}
 """What the schema of a prediction says of its loads."""
 
 RATIO: Schema = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}

@@ -15,7 +15,6 @@ import scipy.sparse
 import xarray as xr
 
 from modefront._typing import Floats
-from modefront.brief import brief
 from modefront.errors import ModelError
 from modefront.front.point import Kind, front_points, position, preferred
 from modefront.models.base import matrices_at
@@ -25,6 +24,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.remarks import CHANGED, headlines, verdict
 from modefront.results.shapes import PairedShapes, paired_shapes, write_vtu
+from modefront.text import brief
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -22,7 +22,6 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats, Ints
-from modefront.brief import brief
 from modefront.errors import Fault, InputError, ModelError, writing
 from modefront.models.base import full_of, geometry_of, shapes_at
 from modefront.models.geometry import Cells, Geometry
@@ -32,6 +31,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values
 from modefront.results.schema import described
 from modefront.rounding import TINY
+from modefront.text import brief
 from modefront.work.codec import record
 
 TOLERANCE = 1e-3
@@ -120,12 +120,8 @@ def _scaled(
     at the nodes is 1, with the sign of the first measured shape. A model without geometry has
     nothing at nodes, and a greatest component of 1.
     """
-    geometry, computed, displacement, measured = (
-        geometry_of(problem.model),
-        phi.T,
-        None,
-        problem.data.shape,
-    )
+    geometry, measured = geometry_of(problem.model), problem.data.shape
+    computed, displacement = phi.T, None
     size = np.abs(computed).max(axis=1)
     if geometry is not None and Phi is not None:
         displacement = geometry.displacement(Phi)

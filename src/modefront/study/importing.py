@@ -37,7 +37,6 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.brief import brief
 from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion, writing
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import fortran
@@ -60,7 +59,7 @@ from modefront.programs.changes import (
 from modefront.programs.differences import Differences, Term, Terms, condensed
 from modefront.programs.inp import DEEPEST, keyword_of
 from modefront.study.file import add_schema
-from modefront.text import file_name, one_line
+from modefront.text import brief, file_name, one_line
 
 QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
 

@@ -12,7 +12,6 @@ import numpy as np
 import scipy.sparse.linalg
 
 from modefront._typing import Floats
-from modefront.brief import brief_model
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
 from modefront.models.base import passed_on
@@ -32,6 +31,7 @@ from modefront.models.reduced.basis import (
 from modefront.modes import dense
 from modefront.modes.result import FullModes, Modes
 from modefront.modes.sparse import lowest
+from modefront.text import brief_model
 from modefront.work.task import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
 

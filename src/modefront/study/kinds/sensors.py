@@ -26,10 +26,8 @@ from modefront.options import (
     closed,
     fits,
     is_name,
-    pair,
     shown,
     whole,
-    whole_number,
 )
 
 
@@ -56,8 +54,8 @@ class ModelKind:
 NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
 """Directions by their names."""
 
-DOF = whole_number(0, WHOLE)
-WEIGHTED = any_of(DOF, array(pair(DOF, NUMBER), 1))
+DOF = whole(0, WHOLE).schema
+WEIGHTED = any_of(DOF, array(array([DOF, NUMBER], 2, 2), 1))
 """A degree of freedom, or weights of several."""
 
 VECTOR = array(NUMBER, 3, 3)
