@@ -12,6 +12,7 @@ import gzip
 import hashlib
 import html
 import json
+import re
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
@@ -96,27 +97,18 @@ class _Arrays:
         return out
 
 
-POINTS = ("theta", "objective", "error", "frequency", "mac")
-"""Variables that every point has."""
-
-OPTIONAL: Mapping[str, str] = {
-    "thetaStd": "theta_std",
-    "frequencyStd": "frequency_std",
-    "macStd": "mac_std",
-    "macMatrix": "mac_matrix",
-    "pairedMode": "paired_mode",
-    "modelFrequency": "model_frequency",
-    "shape": "shape",
-    "measuredShape": "measured_shape",
-}
-"""Further variables, by their names on the page."""
+VARIABLES = (
+    *("theta", "objective", "error", "frequency", "mac", "theta_std", "frequency_std", "mac_std"),
+    *("mac_matrix", "paired_mode", "model_frequency", "shape", "measured_shape"),
+)
+"""Variables of the page, which has other capitals in their names; null where there are none."""
 
 POSTERIOR: Mapping[str, str] = {
     "theta": "posterior_std",
     "frequency": "posterior_frequency_std",
     "mac": "posterior_mac_std",
 }
-"""Variables of the posterior likewise: all or none."""
+"""Variables of the posterior, by their names on the page: all or none."""
 
 
 def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
@@ -150,8 +142,7 @@ def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
         "converged": data["converged"].values.astype(bool).tolist(),
         "piece": list(map(int, data["piece"].values)) if "piece" in data else [1] * len(kinds),
         "order": front_points(data).tolist() or reported or [0],
-        **{name: plain(data[name].values) for name in POINTS},
-        **{key: known(of) for key, of in OPTIONAL.items()},
+        **{re.sub("_(.)", lambda x: x[1].upper(), name): known(name) for name in VARIABLES},
         "posterior": None if None in posterior.values() else posterior,
         "bounds": plain(data["bounds"].values),
         "interval": None if interval is None else plain(interval.values[:, [0, -1]]),

@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import MISSING, fields, replace
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -23,9 +23,6 @@ from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found
 from modefront.front.given import Weighted
 from modefront.front.methods import METHODS
-from modefront.front.options import Pareto
-from modefront.front.search import Search
-from modefront.identifiability.options import Identifiability
 from modefront.models.base import Model, full_of
 from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter
@@ -66,19 +63,12 @@ from modefront.study.kinds.sensors import ModelKind
 from modefront.study.measured import FILE, PLACE, READERS, read_data
 from modefront.text import NAME as LENGTH
 from modefront.text import clean
-from modefront.uncertainty.options import Uncertainty
-from modefront.uncertainty.prior import NoisePrior
 
 GROUP_NAME = text("the name of the group")
 SCALE = one_of(*get_args(Scale))
 
-OF_OPTIONS: Mapping[str, type] = {
-    "pareto": Pareto,
-    "pairing": Pairing,
-    "search": Search,
-    "identifiability": Identifiability,
-    "uncertainty": Uncertainty,
-    "noise": NoisePrior,
+OF_OPTIONS: Mapping[str, Any] = {"pairing": Pairing} | {
+    each.name: each.default_factory for each in fields(Study) if each.default_factory is not MISSING
 }
 """Tables that are records of options, all of which have defaults."""
 
