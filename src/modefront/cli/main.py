@@ -22,7 +22,7 @@ from modefront.errors import InputError, UnfinishedError, reason
 from modefront.text import one_line
 
 if TYPE_CHECKING:
-    from modefront.work.task import Backend
+    from modefront.work.workers import Workers
 
 PATH = click.Path(path_type=Path)
 
@@ -164,7 +164,7 @@ def run(
     from modefront.work.workers import backend
 
     directory = directory or study.with_name(f"{study.stem}-results")
-    carrier: AbstractContextManager[Backend] = backend(workers, scheduler)
+    carrier: AbstractContextManager[Workers] = backend(workers, scheduler)
     with ExitStack() as early:
         if scheduler is None:  # they start while the study is read
             carrier = nullcontext(early.enter_context(carrier))

@@ -40,8 +40,8 @@ from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress
 from modefront.work.store import FOLDER, NOTE, Run, Store, locked
-from modefront.work.task import Backend, Task, Within
-from modefront.work.workers import backend
+from modefront.work.task import Task, Within
+from modefront.work.workers import Workers, backend
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -96,7 +96,7 @@ def run(
     fresh: bool = False,
     refined: float | None = None,
     progress: Progress | None = None,
-    workers: int | AbstractContextManager[Backend] = 1,
+    workers: int | AbstractContextManager[Workers] = 1,
     scheduler: str | None = None,
 ) -> Results:
     """Return the results of a study or a problem, and write them to ``results.nc`` in a folder.

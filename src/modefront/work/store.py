@@ -28,7 +28,8 @@ from modefront.outputs import write_bytes, write_text
 from modefront.text import NAME, clean
 from modefront.work.codec import decode, encode
 from modefront.work.progress import Progress
-from modefront.work.task import Backend, Costs, InTurn, Key, R, Task
+from modefront.work.task import Costs, Key, R, Task
+from modefront.work.workers import Workers
 
 FOLDER, NOTE = "tasks", "study"
 """Folder of the kept results within that of a run's results, and the file in it with the path of
@@ -145,7 +146,7 @@ class Run:
 
     store: Store | None = None
     progress: Progress = field(default_factory=Progress)
-    backend: Backend = field(default_factory=InTurn)
+    backend: Workers = field(default_factory=Workers)
     costs: dict[tuple[Key, Key], Costs] = field(default_factory=dict)
 
     def expect(self, stages: Mapping[str, int]) -> None:
@@ -169,22 +170,15 @@ class Run:
                 results[k], self.costs[names[k]] = kept
                 self.progress.end(task.stage, None)
         left = [k for k in range(len(tasks)) if k not in results]
-        here = [k for k in left if tasks[k].in_process]
-        elsewhere = [k for k in left if not tasks[k].in_process]
-        for ks, backend in ((elsewhere, self.backend), (here, InTurn())):
-            chosen = [tasks[k] for k in ks]
-
-            def started(position: int, chosen: Sequence[Task[R]] = chosen) -> None:
-                self.progress.start(chosen[position].stage)
-
-            for position, done in backend.compute(chosen, started):
-                task = chosen[position]
-                results[ks[position]] = done.result
-                self.costs[task.identity] = done.costs
-                self.progress.spent.add(done.costs)
-                if self.store:
-                    self.store.write(task, done.result, done.costs)
-                self.progress.end(task.stage, done.seconds)
+        chosen = [tasks[k] for k in left]
+        for position, done in self.backend.compute(chosen, self.progress.start):
+            task = chosen[position]
+            results[left[position]] = done.result
+            self.costs[task.identity] = done.costs
+            self.progress.spent.add(done.costs)
+            if self.store:
+                self.store.write(task, done.result, done.costs)
+            self.progress.end(task.stage, done.seconds)
         return [results[k] for k in range(len(tasks))]
 
     def total(self, chosen: Callable[[str], bool] = lambda _: True) -> Costs:

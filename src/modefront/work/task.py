@@ -186,37 +186,9 @@ class Done:
     seconds: float
 
 
-class Backend(Protocol):
-    """Computes tasks."""
-
-    @property
-    def workers(self) -> int:
-        """Number of tasks that are computed at the same time."""
-
-    def compute(
-        self, tasks: Sequence[Task[Any]], begun: Callable[[int], None], /
-    ) -> Iterator[tuple[int, Done]]:
-        """Yield positions and results of tasks as they end; ``begun`` is called at their start."""
-
-
 def computed(task: Task[Any]) -> Done:
     """Return the result of a task, computed here and now."""
     began = time.perf_counter()
     with counted() as costs:
         result = task()
     return Done(result, costs, time.perf_counter() - began)
-
-
-@dataclass(frozen=True)
-class InTurn:
-    """Computes one task after another in the calling process."""
-
-    workers: int = 1
-
-    def compute(
-        self, tasks: Sequence[Task[Any]], begun: Callable[[int], None], /
-    ) -> Iterator[tuple[int, Done]]:
-        """Yield the results in the order of the tasks, each as it is wanted."""
-        for k, task in enumerate(tasks):
-            begun(k)
-            yield k, computed(task)
