@@ -29,8 +29,8 @@ from modefront.identifiability.options import Identifiability
 from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text
 from modefront.predictions import Prediction
-from modefront.predictions.runner import PredictionRunner
 from modefront.residuals.problem import UpdatingProblem
+from modefront.results.predictions import PredictionRunner
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
 from modefront.uncertainty.inference import infer
