@@ -91,11 +91,6 @@ def findings_of(data: xr.Dataset, *, full: bool = False) -> list[Finding]:
     return in_order(x for x in out if full or x.severity is not Severity.DETAIL)
 
 
-def remarks(data: xr.Dataset) -> list[str]:
-    """Return the sentences of all findings of results."""
-    return [str(finding) for finding in findings_of(data, full=True)]
-
-
 def headlines(data: xr.Dataset) -> list[str]:
     """Return the sentences of the first findings: without details, and with few names."""
     return [str(finding) for finding in findings_of(data)]
