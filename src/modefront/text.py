@@ -59,16 +59,13 @@ def shortened(text: str, most: int) -> str:
     return f"{text[: most - 3 - tail]} … {text[len(text) - tail :]}"
 
 
-def one_line(text: object, most: int | None = None) -> str:
-    r"""Return the output of another program on one line, clean.
+def one_line(text: object, most: int) -> str:
+    r"""Return the output of another program on one line, clean, with ``most`` characters.
 
-    >>> one_line("cannot be read:\n   line 3")
+    >>> one_line("cannot be read:\n   line 3", 80)
     'cannot be read: line 3'
     """
-    given = str(text)
-    if most is not None:
-        given = given[: 20 * most]
-    return clean(" ".join(given.split()), most)
+    return clean(" ".join(str(text)[: 20 * most].split()), most)
 
 
 def file_name(name: str, taken: Iterable[str] = ()) -> str:

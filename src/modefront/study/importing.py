@@ -275,10 +275,10 @@ def _runs(
     return out
 
 
-def model_of(terms: Terms, floating: bool = True) -> MatrixModel:
+def model_of(terms: Terms) -> MatrixModel:
     """Return the model of terms, without sensors that mean anything."""
     K, M = ({name: whole(A) for name, A in terms.of(x).items()} for x in QUANTITIES)
-    return matrices(terms.parameters, K, M, {"first": 0}, floating=floating)
+    return matrices(terms.parameters, K, M, {"first": 0}, floating=True)
 
 
 def _frequencies(
