@@ -141,7 +141,7 @@ def test_everything_shows_it(
     assert axes.get_yticklabels()[0].get_text().startswith("slow, mode 1: period")
     compared = mf.compare([folder, folder]).fronts[0].predictions
     assert "period_length slow: mode 1" in [spread.name for spread in compared]
-    assert any("period of slow" in x for topic in topics(data) for x in topic.sentences)
+    assert any("period of slow" in x for said in topics(data).values() for x in said)
 
 
 def test_files_that_describe_kinds_wrongly_are_refused(data: xr.Dataset) -> None:

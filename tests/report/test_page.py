@@ -198,7 +198,7 @@ def test_only_the_surface_of_solids_is_drawn() -> None:
 
 
 def test_words_say_what_was_found_and_what_is_open() -> None:
-    text = {topic.heading: " ".join(topic.sentences) for topic in topics(chain())}
+    text = {heading: " ".join(said) for heading, said in topics(chain()).items()}
     assert "3 measured modes in 2 groups" in text["What was studied"]
     assert "normal-boundary intersection" in text["What was studied"]
     assert text[""].startswith("Use most-probable: its errors over those expected are ")
@@ -214,7 +214,7 @@ def test_what_did_not_converge_is_named() -> None:
     converged = data["converged"].values.copy()
     converged[2] = False
     spoiled = data.assign(converged=("point", converged))
-    messages = [text for topic in topics(spoiled) for text in topic.sentences]
+    messages = [text for said in topics(spoiled).values() for text in said]
     assert f"Not converged: {data['label'].values[2]}." in messages
 
 

@@ -16,7 +16,7 @@ import re
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -157,7 +157,7 @@ def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
             for x in each.quantities
             if x.variable.ranged
         ],
-        "words": [topic._asdict() for topic in topics(data)],
+        "words": [{"heading": x, "sentences": said} for x, said in topics(data).items()],
     }
 
 
@@ -232,15 +232,8 @@ def plain(values: Any) -> Any:
     return value
 
 
-class Topic(NamedTuple):
-    """Sentences on one question; those of the first answer have no heading."""
-
-    heading: str
-    sentences: tuple[str, ...]
-
-
-def topics(data: xr.Dataset) -> list[Topic]:
-    """Return the sentences: the first answer, then those on each question."""
+def topics(data: xr.Dataset) -> dict[str, tuple[str, ...]]:
+    """Return the sentences on each question by its heading, which the first answer has none of."""
     found = findings_of(data)
 
     def of(*severities: Severity) -> tuple[str, ...]:
@@ -250,14 +243,14 @@ def topics(data: xr.Dataset) -> list[Topic]:
         )
 
     failed = of(Severity.FAILURE) or ("All models that were solved for converged.",)
-    all_topics = (
-        Topic("", tuple(verdict(data))),
-        Topic("How well the best models do", of(Severity.FIT)),
-        Topic("What to beware of", (*failed, *of(Severity.CAUTION))),
-        Topic("What the data leave open", of(Severity.OPEN)),
-        Topic("What was studied", (_study(data),)),
-    )
-    return [topic for topic in all_topics if topic.sentences]
+    every = {
+        "": tuple(verdict(data)),
+        "How well the best models do": of(Severity.FIT),
+        "What to beware of": (*failed, *of(Severity.CAUTION)),
+        "What the data leave open": of(Severity.OPEN),
+        "What was studied": (_study(data),),
+    }
+    return {heading: sentences for heading, sentences in every.items() if sentences}
 
 
 def _study(data: xr.Dataset) -> str:
