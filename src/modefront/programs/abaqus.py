@@ -19,7 +19,14 @@ from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.programs.base import JobOptions, Matrix
 from modefront.programs.inp import deck_of
-from modefront.programs.reading import Entries, Listed, columns, existing, given_table, unlabelled
+from modefront.programs.reading import (
+    Listed,
+    columns,
+    entries_of,
+    existing,
+    given_table,
+    unlabelled,
+)
 
 ADVICE = "*MATRIX GENERATE, STIFFNESS, MASS with *MATRIX OUTPUT, STIFFNESS, MASS writes them"
 
@@ -43,7 +50,7 @@ def read(path: Path, options: JobOptions) -> Listed:
         used[off.row[beside]] = used[off.col[beside]] = True  # those of Lagrange multipliers too
         return used & (K.diagonal() < 0.9e36)  # supports are diagonal entries of 1e36
 
-    return Listed(files, (K, M), dofs, free, counted=False, mesh=mesh, notes=notes)
+    return Listed(files, (K, M), dofs, free=free, counted=False, mesh=mesh, notes=notes)
 
 
 def _files(path: Path) -> tuple[Path, Path]:
@@ -81,7 +88,7 @@ def _first(path: Path) -> tuple[int, str]:
     return len(fields), "," if "," in line else r"\s+"
 
 
-def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[Entries]]:
+def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[scipy.sparse.coo_array]]:
     """Return the table of all labels, nodes made by the program last, and rows and columns."""
     parts, slots = [], 32  # more than the greatest number of a direction
     for file in files:
@@ -92,15 +99,17 @@ def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[Entries]]:
     order = np.argsort(used < slots, kind="stable")  # nodes made by the program are below 1
     place = np.empty(used.size, np.intp)
     place[order] = np.arange(used.size)
-    entries = [
-        Entries(place[np.searchsorted(used, row)], place[np.searchsorted(used, column)], value)
-        for row, column, value in parts
-    ]
+    entries = []
+    for row, column, value in parts:
+        i, j = (place[np.searchsorted(used, key)] for key in (row, column))
+        entries.append(entries_of(i, j, value, used.size))
     node, direction = used[order] // slots, used[order] % slots
     return DofTable(node, direction, (node > 0).astype(float)), entries
 
 
-def _by_rows(files: tuple[Path, Path], options: JobOptions) -> tuple[DofTable, list[Entries]]:
+def _by_rows(
+    files: tuple[Path, Path], options: JobOptions
+) -> tuple[DofTable, list[scipy.sparse.coo_array]]:
     """Return what files in the format COORDINATE list; rows below 0 are nodes of the program."""
     parts = []
     for file in files:
@@ -117,5 +126,5 @@ def _by_rows(files: tuple[Path, Path], options: JobOptions) -> tuple[DofTable, l
     entries = []
     for *places, value in parts:
         row, column = (np.where(x > 0, x - 1, highest - 1 - x) for x in places)
-        entries.append(Entries(row, column, value))
+        entries.append(entries_of(row, column, value, dofs.size))
     return dofs, entries

@@ -24,7 +24,7 @@ from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.programs.base import JobOptions
 from modefront.programs.inp import Deck, deck_of
-from modefront.programs.reading import Entries, Listed, columns, existing
+from modefront.programs.reading import Listed, columns, entries_of, existing
 
 SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
 
@@ -42,11 +42,19 @@ def read(path: Path, options: JobOptions) -> Listed:
         existing(file, "a matrix or table of CalculiX", ADVICE)
     labels = columns(files[".dof"], ".", "ii", comment="#")
     node, direction = (column.astype(np.intp) for column in labels)
-    entries = {}
+    matrices = []
     for suffix in (".sti", ".mas"):
         row, column, value = columns(files[suffix], r"\s+", "iif", comment="#")
-        entries[suffix] = Entries(row - 1, column - 1, value, precision=1e-13)
-    _refuse_cut_off(files, entries, node.size)
+        last = max(int(row.max(initial=0)), int(column.max(initial=0)))
+        if last != node.size:
+            expected = f"entries up to row {node.size}, as '{files['.dof'].name}' has"
+            raise wrong(files[suffix], expected, f"entries up to row {last}; is it cut off?")
+        matrices.append(entries_of(row - 1, column - 1, value, node.size))
+    K, M = matrices
+    if not (np.array_equal(K.row, M.row) and np.array_equal(K.col, M.col)):
+        expected = f"entries at the places of '{files['.sti'].name}', one after the other"
+        found = f"{M.nnz} in place of {K.nnz}, or others; is one of them cut off?"
+        raise wrong(files[".mas"], expected, found)
     own, notes = job.with_name(job.name + ".inp"), list[str]()
     missing = ", and held nodes of shells and beams cannot be told from others"
     deck = deck_of(options.deck or own, notes, missing)
@@ -61,24 +69,8 @@ def read(path: Path, options: JobOptions) -> Listed:
     nodes = np.unique(dofs.node[dofs.node > 0])
     if dead := np.setdiff1d(nodes, dofs.node[dofs.weight != 0]).size:
         notes.append(f"{dead} nodes are held: there are no sensors at them")
-    pair = entries[".sti"], entries[".mas"]
     mesh = deck.mesh if deck else None
-    return Listed((files[".sti"], files[".mas"]), pair, dofs, mesh=mesh, notes=notes)
-
-
-def _refuse_cut_off(files: dict[str, Path], entries: dict[str, Entries], size: int) -> None:
-    """Refuse matrices that do not reach their last row, or have different patterns."""
-    for suffix, matrix in entries.items():
-        last = int(max(matrix.row.max(initial=-1), matrix.column.max(initial=-1))) + 1
-        if last != size:
-            expected = f"entries up to row {size}, as '{files['.dof'].name}' has"
-            raise wrong(files[suffix], expected, f"entries up to row {last}; is it cut off?")
-    first, second = entries.values()
-    pairs = (first.row, second.row), (first.column, second.column)
-    if not all(np.array_equal(a, b) for a, b in pairs):
-        expected = f"entries at the places of '{files['.sti'].name}', one after the other"
-        sizes = f"{second.row.size} in place of {first.row.size}"
-        raise wrong(files[".mas"], expected, f"{sizes}, or others; is one of them cut off?")
+    return Listed((files[".sti"], files[".mas"]), (K, M), dofs, 1e-13, mesh=mesh, notes=notes)
 
 
 def _table(labels: DofTable, deck: Deck | None) -> DofTable:

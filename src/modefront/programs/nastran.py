@@ -12,15 +12,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import reason
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
-from modefront.programs.base import JobOptions, Matrix, ProgramMesh, whole
+from modefront.programs.base import JobOptions, Matrix, ProgramMesh
 from modefront.programs.bulk import Bulk, read_bulk
 from modefront.programs.nastran_files import read_dmig, read_op4
-from modefront.programs.reading import Entries, Listed, existing, given_table, unlabelled
+from modefront.programs.reading import Listed, entries_of, existing, given_table, unlabelled
 
 DECKS = (".dat", ".bdf", ".nas", ".inp")
 MATRICES = (".op4", ".pch")
@@ -75,15 +76,16 @@ def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
 def _from_op4(path: Path, options: JobOptions) -> Listed:
     matrices = read_op4(path)
     names = _pair(path, matrices, options)
-    K, M = (matrices[name] for name in names)
-    size, _ = K.shape or (0, 0)
-    for name in names:
-        if (shape := matrices[name].shape) != (size, size):
-            expected = f"'{name}' with {size} rows and columns"
-            raise wrong(path, expected, " x ".join(map(str, shape or ())))
+    (K, _), (M, _) = pair = [matrices[name] for name in names]
+    size = K.shape[0]
+    for name, (A, _) in zip(names, pair, strict=True):
+        if A.shape != (size, size) or not size:
+            expected = f"'{name}' with {size or 'some'} rows and columns"
+            raise wrong(path, expected, " x ".join(map(str, A.shape)))
     deck = _deck(path, options, notes := list[str]())
     dofs = given_table(options, size) or unlabelled(size)
-    listed = Listed((path, path), (K, M), dofs, notes=notes)
+    precision = max(each for _, each in pair)
+    listed = Listed((path, path), (K, M), dofs, precision, notes=notes)
     return listed if deck is None or options.dofs else _labelled(listed, deck, notes)
 
 
@@ -122,13 +124,13 @@ def _drawn(deck: Bulk, notes: list[str]) -> ProgramMesh | None:
     return None
 
 
-def _check_labels(path: Path, deck: Bulk, triangle: Matrix, dofs: DofTable, free: Bools) -> None:
+def _check_labels(path: Path, deck: Bulk, K: Matrix, dofs: DofTable, free: Bools) -> None:
     moving = set(zip(dofs.node[free].tolist(), dofs.direction[free].tolist(), strict=True))
     held = {n for n in deck.mesh.number.tolist() if any((n, c) not in moving for c in (1, 2, 3))}
     held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)
     for _ in range(2 if deck.followers else 1):  # followers join elements of their masters
         held |= {n for link in deck.joined if held.intersection(link) for n in link}
-    K, strained = whole(triangle), free & ~np.isin(dofs.node, list(held))
+    strained = free & ~np.isin(dofs.node, list(held))
     for direction in (1, 2, 3):
         r = (free & (dofs.direction == direction)).astype(float)
         force, size = K @ r, abs(K) @ r
@@ -149,15 +151,16 @@ def _from_dmig(path: Path, options: JobOptions) -> Listed:
     table = np.unique(np.concatenate([K[0].reshape(-1, 2), M[0].reshape(-1, 2)]), axis=0)
     keys = table @ [10, 1]
 
-    def numbered(labels: Ints, value: Floats, precision: float) -> Entries:
+    def numbered(labels: Ints, value: Floats, _: float) -> scipy.sparse.coo_array:
         row, column = np.searchsorted(keys, labels.reshape(-1, 2, 2) @ [10, 1]).T
-        return Entries(row, column, value, precision=precision)
+        return entries_of(row, column, value, keys.size)
 
     deck = _deck(path, options, notes := list[str]())
     return Listed(
         (path, path),
         (numbered(*K), numbered(*M)),
         DofTable(table[:, 0], table[:, 1], np.ones(len(table))),
+        K[2],
         counted=False,
         mesh=_drawn(deck, notes) if deck else None,
         notes=notes,
