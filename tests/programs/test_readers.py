@@ -26,7 +26,7 @@ from modefront.errors import InputError
 from modefront.models.dofs import DofTable, write_dofs
 from modefront.programs import PROGRAMS
 from modefront.programs.base import Job, JobOptions, read_job
-from modefront.programs.bulk import read_bulk
+from modefront.programs.nastran import read_bulk
 
 K, M = structure()
 

@@ -46,17 +46,21 @@ class ProgramMesh:
     cells: Mapping[str, Ints]
 
 
-def mesh_of(nodes: Mapping[int, Floats], elements: Mapping[str, list[list[int]]]) -> ProgramMesh:
-    """Return the mesh of nodes and of elements, of which those with unknown nodes are left out."""
+def mesh_of(nodes: Mapping[int, Floats], elements: Iterable[tuple[str, list[int]]]) -> ProgramMesh:
+    """Return the mesh of nodes and of elements, each a type of cell and nodes, corners first.
+
+    Elements with unknown nodes, or fewer than corners, are left out.
+    """
     number = np.array(sorted(nodes), dtype=np.intp)
     coordinates = np.array([nodes[n] for n in number.tolist()], dtype=float).reshape(-1, 3)
-    cells: dict[str, Ints] = {}
-    for kind, rows in elements.items():
-        table = np.array(rows, dtype=np.intp).reshape(-1, CORNERS[kind])
-        table = table[np.isin(table, number).all(axis=1)]
-        if len(table):
-            cells[kind] = table
-    return ProgramMesh(number, coordinates, cells)
+    cells: dict[str, list[list[int]]] = {}
+    for kind, members in elements:
+        corners = members[: CORNERS[kind]]
+        if len(corners) == CORNERS[kind] and nodes.keys() >= set(corners):
+            cells.setdefault(kind, []).append(corners)
+    return ProgramMesh(
+        number, coordinates, {kind: np.array(x, np.intp) for kind, x in cells.items()}
+    )
 
 
 def refuse_unknown_nodes(path: Path, known: Collection[int], nodes: Iterable[int]) -> None:

@@ -54,8 +54,7 @@ def _mesh(path: Path) -> ProgramMesh | None:
         raise wrong(nodes, expected, reason(error)) from None
     refuse_unknown_nodes(elements, points, (n for row in rows for n in row[1:]))
     kinds = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
-    cells = {cell: [x[1:] for x in rows if len(x) == 1 + k] for k, cell in kinds.items()}
-    return mesh_of(points, cells)
+    return mesh_of(points, ((kinds[len(x)], x) for _, *x in rows if len(x) in kinds))
 
 
 def _rows(path: Path, number: type) -> list[list[Any]]:
