@@ -45,7 +45,7 @@ from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.parameters import exponents_of, form_of
 from modefront.outputs import output, write_text
 from modefront.programs import PROGRAMS
-from modefront.programs.base import Job, JobOptions, Quantity, whole, write_mesh
+from modefront.programs.base import Job, JobOptions, Quantity, read_job, write_mesh
 from modefront.programs.changes import (
     CHANGES,
     KEPT,
@@ -172,14 +172,14 @@ def import_model(
         found = suggestion(program, list(PROGRAMS))
         raise InputError(Fault("", "program", f"one of {', '.join(PROGRAMS)}", found))
 
-    form, nominal_path, options = PROGRAMS[program], Path(base), options or JobOptions()
+    nominal_path, options = Path(base), options or JobOptions()
     names = tuple(parameters)
     terms = _term_names(names, functions or {})
     runs = _runs(parameters, factors or {}, checks)
 
     def read(path: Path, doing: str = "reading") -> Job:
         progress(f"{doing} {path}")
-        return form.job(path, options)
+        return read_job(program, path, options)
 
     nominal = read(nominal_path)
     differences = Differences(nominal, names, terms)
@@ -192,7 +192,7 @@ def import_model(
         job = read(Path(other), "checking with")
         errors.append(differences.check(identified, str(other), job, theta))
     notes = list(nominal.notes)
-    if form.eliminates:
+    if program == "abaqus":  # nodes that others make move with the model, or are not told
         identified, gone, stayed = condensed(identified)
         text = f"{gone} massless degrees of freedom of the program are eliminated exactly"
         notes += [text] * bool(gone)
@@ -277,7 +277,7 @@ def _runs(
 
 def model_of(terms: Terms) -> MatrixModel:
     """Return the model of terms, without sensors that mean anything."""
-    K, M = ({name: whole(A) for name, A in terms.of(x).items()} for x in QUANTITIES)
+    K, M = (terms.of(x) for x in QUANTITIES)
     return matrices(terms.parameters, K, M, {"first": 0}, floating=True)
 
 
@@ -320,7 +320,7 @@ def _study(imported: Imported, folder: Path) -> str:
         for name, A in imported.terms.of(quantity).items():
             files[name] = file_name(f"{quantity}-{name}", files.values())
             with output(folder / f"{files[name]}.npz") as stream:
-                scipy.sparse.save_npz(stream, whole(A), compressed=False)
+                scipy.sparse.save_npz(stream, A, compressed=False)
         pairs = (f"{quoted(name)} = {quoted(f'{file}.npz')}" for name, file in files.items())
         quantities.append(f"{quantity} = {{ {', '.join(pairs)} }}")
     lines = [
