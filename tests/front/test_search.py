@@ -25,7 +25,7 @@ from problems import (
 import modefront as mf
 from modefront._typing import Bools, Floats
 from modefront.errors import InputError
-from modefront.front.archive import Archive, Outcome, recorded
+from modefront.front.archive import Outcome, recorded
 from modefront.front.dominance import undominated
 from modefront.front.front import Front
 from modefront.front.options import Pareto
@@ -37,7 +37,7 @@ from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.rivals import Rivals
 from modefront.front.proposers.starts import SURE, Minima, Starts, unseen
 from modefront.front.search import Loop, Search
-from modefront.front.simplex import lattice, spanned
+from modefront.front.simplex import lattice, payoff
 from modefront.front.state import Place, State
 from modefront.front.subproblems import SAMPLE, Least, Subproblem, Weights
 from modefront.front.subproblems import Point as LatticePoint
@@ -45,7 +45,7 @@ from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.optim.sqp import given as given_model
 from modefront.work.costs import counted
-from modefront.work.task import IMMEDIATE
+from modefront.work.task import Task
 
 ONES = np.ones(2)
 TOLERANCE = Search().tolerance
@@ -316,7 +316,7 @@ def test_where_nothing_is_dominated_both_programmes_agree() -> None:
 
 def state_of(problem: Known, subproblems: list[Subproblem], thetas: list[list[float]]) -> State:
     """Return a state in which models at some parameters are known, with derivatives."""
-    state = State(problem, TOLERANCE, Archive(problem.lower.size, len(problem.objectives)))
+    state = State(problem, TOLERANCE)
     for theta in thetas:
         solution = begin(problem.evaluate(np.array(theta)))
         state.archive.add(solution.theta, solution.J)
@@ -326,7 +326,7 @@ def state_of(problem: Known, subproblems: list[Subproblem], thetas: list[list[fl
 
 
 def run(state: State, *proposers: Proposer, search: Search | None = None) -> Loop:
-    loop = Loop(state, list(proposers), search or Search(), IMMEDIATE)
+    loop = Loop(state, list(proposers), search or Search())
     loop.run("test")
     return loop
 
@@ -340,7 +340,7 @@ def anchors(problem: Known) -> list[Subproblem]:
 def points_between(problem: Known, corners: list[list[float]], points: int) -> list[Subproblem]:
     edges = [given_model(problem.evaluate(np.array(theta))) for theta in corners]
     n = len(edges)
-    target = spanned(edges, (), np.ones(n))
+    target = payoff(edges, np.ones(n))
     assert target is not None
     counts = lattice(n, points - 1)
     return [LatticePoint(row / (points - 1), tuple(row.tolist()), target) for row in counts]
@@ -534,9 +534,8 @@ def test_evolution_alone_comes_close_to_an_edge() -> None:
         for place in state.places:
             place.closed = True
         (offer,) = evolution.offers(state, 6)
-        state.tell(
-            -1, offer.start, False, recorded(offer.function, None, problem, *offer.arguments)
-        )
+        (outcome,) = state.run([Task(("children",), offer.function, (problem, *offer.arguments))])
+        state.tell(-1, offer.start, False, outcome)
     assert np.abs(state.places[0].incumbent.theta).max() < 0.5
 
 
