@@ -13,7 +13,6 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.front.proposers.polish import Polish
-from modefront.front.proposers.rivals import Rivals
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import Payoff, lattice, payoff
 from modefront.front.state import State, distinct_points
@@ -109,7 +108,7 @@ def identifiable_part(
     counts = lattice(len(edges), divisions)
     subproblems = [Point(row / divisions, tuple(row.tolist()), target) for row in counts]
     state.add(subproblems)
-    Loop(state, [Polish(), Rivals()], Search()).run("identifiable")
+    Loop(state, [Polish()], Search()).run("identifiable")
     along = distinct_points([place.incumbent for place in state.places], target.scale)
     floor = np.where(flat > 0, (1 - TIE) * target.utopia, 0.0)
     above = [solution for solution in along if (floor <= solution.J).all()]

@@ -18,10 +18,9 @@ from modefront.front.gaps import Gap, gaps
 from modefront.front.methods import METHODS
 from modefront.front.options import MOST, Pareto
 from modefront.front.point import Kind, Point, label
-from modefront.front.proposers.base import Proposer, Rate, at, evaluated
+from modefront.front.proposers.base import Proposer, at, evaluated
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
-from modefront.front.proposers.rivals import Rivals
 from modefront.front.proposers.starts import SURE, Starts
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import (
@@ -99,11 +98,11 @@ class _Run:
         self.weighted = [*named, (Kind.EQUAL, "", np.ones(self.n))]
         self.state, self.cut = State(self.problem, self.search.tolerance, self.work), False
         rng = np.random.default_rng(seed_sequence(self.seed, "search"))
-        self.starts, self.rivals = Starts(rng), Rivals()
+        self.starts = Starts(rng)
         proposers: list[Proposer] = [Polish()]
         if self.known is None:
             others = np.random.default_rng(seed_sequence(self.seed, "evolution"))
-            proposers += [self.rivals, self.starts, Evolution(others, self.starts)]
+            proposers += [self.starts, Evolution(others, self.starts)]
         self.loop = Loop(self.state, proposers, self.search)
 
     def front(self) -> Front:
@@ -223,7 +222,6 @@ class _Run:
             more = (self._beyond(), self._apart(target, len(counts)), self._halfway(target))
             for new_points in chain([counts], *more):
                 self._add_points(target, new_points)
-                self.rivals.rate = Rate()
                 self.loop.run("front")
         return target
 

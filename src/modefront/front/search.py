@@ -92,7 +92,7 @@ class Loop:
             ]
             outcomes = self.state.run(tasks, max(left, len(tasks)))
             for (proposer, offer), outcome in zip(chosen, outcomes, strict=True):
-                gain = self.state.tell(offer.place, offer.start, offer.final, outcome)
+                gain = self.state.tell(offer.place, offer.start, outcome)
                 if outcome.result is not None:
                     proposer.learn(self.state, offer, outcome, gain)
                 spent = self.costs.setdefault(proposer.name, [0, 0])

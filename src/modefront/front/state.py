@@ -31,13 +31,11 @@ class Place:
     ----------
     incumbent : the best model
     closed : whether the search from the incumbent itself leads nowhere better
-    compared : number of known models that were compared with the incumbent as rivals
     """
 
     subproblem: Subproblem
     incumbent: Solution
     closed: bool = False
-    compared: int = 0
 
 
 @dataclass
@@ -115,14 +113,14 @@ class State:
         for theta, J in zip(outcome.theta, outcome.J, strict=True):
             self.archive.add(theta, J)
 
-    def tell(self, k: int, start: Solution, final: bool, outcome: Outcome) -> float:
+    def tell(self, k: int, start: Solution, outcome: Outcome) -> float:
         """Let what a search led to compete; return the greatest gain of a subproblem.
 
-        It is a solution of the place ``k`` where it is ``final``.
+        It is a solution of the place ``k``, or of none where that is -1.
         """
         solution: Solution | None = outcome.result
         gain = 0.0
-        if final and solution:
+        if k >= 0 and solution:
             place = self.places[k]
             is_incumbent, own = start is place.incumbent, 0.0
             if solution.feasible:

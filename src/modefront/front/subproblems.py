@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Bools, Floats
 from modefront.front.simplex import Payoff
 from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
 from modefront.optim.problem import Problem
@@ -188,11 +188,6 @@ class Point:
         w = self.weights(known)
         fall = float(self.order.value(known.J) - self.order.value(J))
         return fall / min(max(float(w @ known.J), EXACT), 1.0)
-
-    def near(self, J: Floats) -> Ints:
-        """Return which rows of J (models, n) lie within a step of the lattice from the normal."""
-        steps = np.abs(self.target.place(J) - self.beta) * abs(sum(self.place))
-        return np.flatnonzero(steps.max(axis=1) <= 1)
 
     def weights(self, known: Solution) -> Floats:
         """Return the multipliers of the excess at a solution, or of the greatest one at others."""
