@@ -51,7 +51,7 @@ from modefront.front.weights import (
     least_along,
     optimal_minimum,
 )
-from modefront.optim.lexicographic import EXACT, TIE
+from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
 from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
@@ -112,7 +112,7 @@ class _Run:
         starts = [at(x.theta) for x in self.state.distinct(models)]
         self.state.models += [x for x in self._evaluated(("known",), starts) if x.feasible]
         anchors: list[Subproblem] = [
-            Least(i, sizes, name) for i, name in enumerate(self.problem.objectives)
+            Least(Lexicographic(i, sizes), x) for i, x in enumerate(self.problem.objectives)
         ]
         for kind, name, w in self.weighted:
             anchors.append(Weights(w, ("weights", kind.value, name), EXACT * float(w @ sizes)))
@@ -125,8 +125,8 @@ class _Run:
         self._complete()
         edges = self._edges()
         weighted = [
-            Point(kind, self.place("weights", kind.value, name).incumbent, name)
-            for kind, name, _ in self.weighted
+            Point(kind, place.incumbent, name)
+            for (kind, name, _), place in zip(self.weighted, self.places[self.n :], strict=False)
         ]
         bests = self._reported(sizes, "last")
         points, places, beta = self._points(target, bests)
@@ -136,9 +136,8 @@ class _Run:
             extent = (options.population, options.evaluations)
             points = evolve_front(self.problem, options.method, *extent, rng, self._needed)
         optimal = self._optimal(weighted, bests, points, sizes)
+        arguments = (self.problem, self.a, sizes, weighted[-1].solution)
         weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
-        equal = self.place("weights", Kind.EQUAL.value, "").incumbent
-        arguments = (self.problem, self.a, sizes, equal)
         (iterated,) = self._run([Task(("iterated-weights",), iterate_weights, arguments)])
         method, ends = self.options.method, zip(self.problem.objectives, bests, strict=True)
         along = [Point(Kind.FRONT, x, method, i + 1) for i, x in enumerate(points)]
@@ -179,12 +178,8 @@ class _Run:
 
     @property
     def places(self) -> list[Place]:
-        """The places of all subproblems."""
+        """The places of all subproblems: edges and weighted models come first."""
         return self.state.places
-
-    def place(self, *key: str | int) -> Place:
-        """Return the place of a subproblem."""
-        return next(x for x in self.places if x.subproblem.key == key)
 
     def _sizes(self) -> Floats:
         """Return the typical size of each objective, (n,), of random models, unless it is known."""
@@ -232,15 +227,15 @@ class _Run:
         """
         if not is_flat(bests, sizes):
             return []
-        keys = [("others", name) for name in self.problem.objectives]
-        if not any(x.subproblem.key == keys[0] for x in self.places):
+        if not any(x.subproblem.key[0] == "others" for x in self.places):
             new = []
-            for i, key in enumerate(keys):
+            for i, name in enumerate(self.problem.objectives):
                 w = np.where(np.arange(self.n) == i, TIE, 1.0) / sizes
-                new.append(Weights(w, key, EXACT * self.n))
+                new.append(Weights(w, ("others", name), EXACT * self.n))
             self.state.add(new)
             self.loop.run("ranges")
-        models = [*bests, *(self.place(*key).incumbent for key in keys)]
+        others = (x.incumbent for x in self.places if x.subproblem.key[0] == "others")
+        models = [*bests, *others]
         return [max(models, key=lambda x: float(x.J[i])) for i in range(self.n)]
 
     def _add_points(self, target: Payoff, counts: Sequence[tuple[int, ...]]) -> None:
@@ -373,20 +368,15 @@ class _Run:
     def _reported(self, sizes: Floats, turn: int | str) -> list[Solution]:
         """Return the edges, those within the tolerance that are best in the others if wanted."""
         names = self.problem.objectives
-        bests = [self.place("edge", name).incumbent for name in names]
+        bests = [place.incumbent for place in self.places[: self.n]]
         tolerance = self.options.tolerance
         if tolerance == 0:
             return bests
         starts = [place.incumbent for place in self.places]
-        tasks = [
-            Task(
-                ("near", name),
-                near_best,
-                (self.problem, x, i, tolerance, sizes, starts),
-                turn=("near", turn),
-            )
-            for i, (name, x) in enumerate(zip(names, bests, strict=True))
-        ]
+        tasks = []
+        for i, name in enumerate(names):
+            arguments = (self.problem, bests[i], i, tolerance, sizes, starts)
+            tasks.append(Task(("near", name), near_best, arguments, turn=("near", turn)))
         found = self._run(tasks)
         return [x or best for x, best in zip(found, bests, strict=True)]
 

@@ -85,16 +85,10 @@ def _linear(w: Floats) -> Order:
 
 @dataclass(frozen=True)
 class Least:
-    """The lexicographic minimum of one objective; ``sizes`` (n,) are typical ones."""
+    """The lexicographic minimum of one objective, and the name of that."""
 
-    objective: int
-    sizes: Floats
+    search: Lexicographic
     name: str
-
-    @cached_property
-    def search(self) -> Lexicographic:
-        """The search for it."""
-        return Lexicographic(self.objective, self.sizes)
 
     @property
     def key(self) -> Key:
@@ -108,7 +102,7 @@ class Least:
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the share by which J_i falls, or where that is tied, the others, if any do."""
-        i, before, search = self.objective, known.J, self.search
+        i, before, search = self.search.objective, known.J, self.search
         if not search.ties(J, before):
             return 1 - search.level(J[i]) / search.level(before[i])
         others = search.others
@@ -123,7 +117,7 @@ class Least:
 
     def solve(self, problem: Problem, start: Solution, known: Floats | None = None) -> Solution:
         """Return the lexicographic minimum below a start, if J_i may be as small as known."""
-        least = np.inf if known is None else float(known[self.objective])
+        least = np.inf if known is None else float(known[self.search.objective])
         return self.search.solve(problem, start, _TIGHT, least)
 
 

@@ -184,7 +184,7 @@ def _within(
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
     S = evaluation.H - evaluation.gauss_newton
     trusted, escaped = evaluation.exact, False
-    region, penalty = _Region(options.radius), PENALTY
+    radius, penalty = options.radius, PENALTY
     multipliers: Multipliers | None = None
     rejected: Evaluation | None = None
     proposal = np.inf  # length of the last step that the trust region did not hold back
@@ -197,10 +197,10 @@ def _within(
             ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
             return Solution(evaluation, local.df, 0.0, ended, count), None
         H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
-        qp, step, multipliers = local.step(H, region.radius, multipliers)
+        qp, step, multipliers = local.step(H, radius, multipliers)
         s, w = step.s, multipliers.weights(programme, evaluation.J)
         violation, far = length(local.c), length(s)
-        held = far >= region.radius
+        held = far >= radius
         proposal = proposal if held else far
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
@@ -210,7 +210,7 @@ def _within(
         status: Status | None = None
         if still and violation <= options.constraint:
             status = Status.CONVERGED
-        elif far <= np.finfo(float).eps or region.radius <= options.step:
+        elif far <= np.finfo(float).eps or radius <= options.step:
             met = violation <= 10 * options.constraint
             # Steps that were not held back were below the tolerance: rounding of J stops it here.
             near = Status.CONVERGED if proposal <= options.step else Status.JUMP
@@ -229,8 +229,7 @@ def _within(
             calm = (far, here) if rests else None
         new = local.after(s)
         if not new.feasible:
-            region.refused(far, 0.0)
-            rejected = new
+            radius, rejected = far / 4, new
             continue
         merit = Merit(programme, multipliers, penalty)
         actual = merit.at(evaluation) - merit.at(new)
@@ -241,16 +240,18 @@ def _within(
             S = learned_from(S, evaluation, new, local.span)
         if actual < POOR * predicted:
             H = new.H if trusted else new.gauss_newton
-            new, more = _second_step(problem, merit, evaluation, new, H, region.radius)
+            new, more = _second_step(problem, merit, evaluation, new, H, radius)
             actual, count = merit.at(evaluation) - merit.at(new), count + more
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
             evaluation, rejected = new, None
             S = evaluation.H - evaluation.gauss_newton if evaluation.exact else S
-            region.taken(far, ratio)
+            if ratio < POOR:
+                radius = far / 2
+            elif ratio > GOOD and far >= radius:
+                radius = min(2 * radius, 1.0)
         else:
-            region.refused(far, abs(miss) if predicted > noise else 0.0)
-            rejected = new
+            radius, rejected = far / 4, new
 
 
 def _second_step(
@@ -269,33 +270,6 @@ def _second_step(
     if not promised < min(merit.at(here), merit.at(new)):
         return new, 0
     return min(new, local.after(step.s), key=merit.at), 1
-
-
-@dataclass
-class _Region:
-    """The trust region, of which ``radius`` is the half width.
-
-    Of smooth objectives, the ``error`` of a prediction falls faster than the step. Where it does
-    not, the radius falls ever faster, by a quarter, a sixteenth and so on: to a jump.
-    """
-
-    radius: float
-    error: float = np.inf
-    fall: float = 4.0
-
-    def taken(self, step: float, ratio: float) -> None:
-        """Adapt it to a step that is taken, with its actual over predicted reduction."""
-        self.error, self.fall = np.inf, 4.0
-        if ratio < POOR:
-            self.radius = step / 2
-        elif ratio > GOOD and step >= self.radius:
-            self.radius = min(2 * self.radius, 1.0)
-
-    def refused(self, step: float, miss: float) -> None:
-        """Shorten the next step after one that is not taken, by which its prediction is missed."""
-        before, self.error = self.error, miss / step
-        self.fall = self.fall**2 if self.error > before else 4.0
-        self.radius = step / self.fall
 
 
 def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:
