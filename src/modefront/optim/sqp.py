@@ -16,8 +16,7 @@ judged by the augmented Lagrangian (`modefront.optim.linearised`, which has the 
 curved valley a long step ends on its side, from where another one leads to the floor, far ahead:
 where a step is poor, but the derivatives at its end promise that, the two are judged as one (the
 watchdog; Nocedal & Wright 2006, section 15.6). One attempt is made to leave a stationary point with
-clearly negative curvature. Where the objectives jump, a solution ends, and another one is sought
-from the other side.
+clearly negative curvature.
 """
 
 from __future__ import annotations
@@ -141,44 +140,18 @@ def begin(evaluation: Evaluation) -> Solution:
     return Solution(evaluation, np.zeros(evaluation.J.size), np.inf, status, 0)
 
 
+# More than 60 lines: one step, with all that it changes.
 def solve(
     problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
 ) -> Solution:
     """Solve a programme from the point at which ``start`` ended.
 
     The start itself is not evaluated again where its second derivatives are known. Steps to points
-    at which the objectives are not defined are shortened. Where a solution ends at a jump of the
-    objectives, another one is sought from the other side of it, as long as these become better and
-    iterations are left.
+    at which the objectives are not defined are shortened.
     """
     options = options or Options()
-    best, beyond = _within(problem, programme, start, options)
-    spent = best.evaluations
-    while beyond is not None and spent < options.iterations:
-        other, beyond = _within(problem, programme, begin(beyond), options)
-        spent += other.evaluations
-        if not _total(programme, other.J) < _total(programme, best.J):
-            break
-        best = other
-    return replace(best, evaluations=spent)
-
-
-def _total(programme: Scalarisation, J: Floats) -> float:
-    """Return what is minimised, at objectives (n,)."""
-    y = programme.maximised.at(J)
-    return programme.value(J) + (float(y.max()) if y.size else 0.0)
-
-
-# More than 60 lines: one step, with all that it changes.
-def _within(
-    problem: Problem, programme: Scalarisation, start: Solution, options: Options
-) -> tuple[Solution, Evaluation | None]:
-    """Return the solution within the piece of a start, and the model behind the jump it ends at.
-
-    The objectives are smooth within a piece; None where the solution is not at the end of one.
-    """
     if not start.feasible:
-        return replace(start, status=Status.INFEASIBLE, evaluations=0), None
+        return replace(start, status=Status.INFEASIBLE, evaluations=0)
     evaluation, count = start.evaluation, -1
     if evaluation.derivatives is None:
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
@@ -186,7 +159,7 @@ def _within(
     trusted, escaped = evaluation.exact, False
     radius, penalty = options.radius, PENALTY
     multipliers: Multipliers | None = None
-    rejected: Evaluation | None = None
+    rejected = False  # whether the last step was
     proposal = np.inf  # length of the last step that the trust region did not hold back
     calm: tuple[float, Solution] | None = None  # where, and how long, steps promised only rounding
     while True:
@@ -195,7 +168,7 @@ def _within(
         local = Linearised(problem, programme, evaluation)
         if local.free and local.f <= options.negligible:
             ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
-            return Solution(evaluation, local.df, 0.0, ended, count), None
+            return Solution(evaluation, local.df, 0.0, ended, count)
         H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
         qp, step, multipliers = local.step(H, radius, multipliers)
         s, w = step.s, multipliers.weights(programme, evaluation.J)
@@ -217,19 +190,19 @@ def _within(
             status = near if met else Status.STALLED
         here = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
         if status or count >= options.iterations:
-            return here, rejected if status is Status.JUMP else None
+            return here
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         noise = local.noise(multipliers)
         rests = predicted <= noise
         if calm and rests and far >= calm[0]:  # the objectives tell no more
             if calm[1].violation <= options.constraint:
-                return replace(calm[1], status=Status.CONVERGED, evaluations=count), None
+                return replace(calm[1], status=Status.CONVERGED, evaluations=count)
         else:
             calm = (far, here) if rests else None
         new = local.after(s)
         if not new.feasible:
-            radius, rejected = far / 4, new
+            radius, rejected = far / 4, True
             continue
         merit = Merit(programme, multipliers, penalty)
         actual = merit.at(evaluation) - merit.at(new)
@@ -244,14 +217,14 @@ def _within(
             actual, count = merit.at(evaluation) - merit.at(new), count + more
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
-            evaluation, rejected = new, None
+            evaluation, rejected = new, False
             S = evaluation.H - evaluation.gauss_newton if evaluation.exact else S
             if ratio < POOR:
                 radius = far / 2
             elif ratio > GOOD and far >= radius:
                 radius = min(2 * radius, 1.0)
         else:
-            radius, rejected = far / 4, new
+            radius, rejected = far / 4, True
 
 
 def _second_step(
