@@ -24,6 +24,7 @@ from modefront.identifiability.combinations import LEAST
 from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.options import estimate as reduced_cost
+from modefront.optim.lexicographic import Lexicographic
 from modefront.optim.sqp import Solution, begin
 from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
@@ -168,7 +169,10 @@ def _search(study: Study) -> tuple[float, float] | None:
     ends: list[Solution] = []
     for k in range(TIMED if seconds < WITHIN else 0):
         if sum(spent for spent, _ in found) < WITHIN:
-            edge, theta = Least(k % n, sizes, ""), rng.uniform(problem.lower, problem.upper)
+            edge, theta = (
+                Least(Lexicographic(k % n, sizes), ""),
+                rng.uniform(problem.lower, problem.upper),
+            )
             began = time.process_time()
             start = begin(problem.evaluate(theta, second=True))
             if start.feasible:
