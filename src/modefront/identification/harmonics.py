@@ -21,7 +21,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import correlate1d
 from scipy.optimize import minimize_scalar
-from scipy.stats import chi2, f
+from scipy.stats import beta, chi2
 
 from modefront._typing import Complexes, Floats
 from modefront.identification.spectra import Transforms
@@ -30,8 +30,8 @@ from modefront.identification.spectral_density import Band, Density
 NEAR = 5
 """Lines on either side of a sine that tell its amplitudes."""
 
-NEIGHBOURS = 64
-"""Lines on either side of a sine that tell how much more there is than the model has."""
+BLOCK = 128
+"""Lines that tell how much more there is about them than the model has."""
 
 
 def without_sine(
@@ -59,9 +59,16 @@ def without_sine(
         if 2 * gain > least and (narrow or likely):
             return taken, r
     near = slice(*np.searchsorted(lines.omega, band.omega[[0, -1]]))
-    inverse, freedom = _of_neighbours(lines.F[:, near].T, _likelihood(lines, near, model)[1])
-    gains = _gains(lines.F[:, near].T, inverse)
-    if gains.max() < (2 * n + 1) * f.isf(chance, 2 * n + 1, freedom):
+    F, inverse = lines.F[:, near].T, _likelihood(lines, near, model)[1]
+    root = np.linalg.cholesky(inverse)
+    white = np.einsum("kji,kj->ki", root.conj(), F)
+    M, blocks = [], max(len(F) // BLOCK, 1)
+    for part in np.array_split(white, blocks):  # the model counts as n lines beside each block
+        known = (part.T @ part.conj() + n * np.eye(n)) / (len(part) + n)
+        M += [np.linalg.inv(known)] * len(part)
+    gains = _gains(F, root @ np.array(M) @ root.conj().swapaxes(1, 2))
+    count = len(F) // blocks
+    if gains.max() < 2 * (count + n) * beta.isf(chance, n + 0.5, count):
         return None
     return _taken(lines, near, inverse, int(gains.argmax()) / 2)[0], None
 
@@ -94,28 +101,6 @@ def _likelihood(
     inverse: Complexes = np.linalg.inv(E)
     misfit = np.einsum("ki,kij,kj->", F.conj(), inverse, F, optimize=True).real
     return float(lines.share[near] @ np.linalg.slogdet(E)[1] + misfit), inverse, half
-
-
-def _of_neighbours(F: Complexes, inverse: Complexes) -> tuple[Complexes, int]:
-    """Return inverses of E by the neighbours of each line, which know E as by the model, and N.
-
-    They are of N / 2 lines, beside which those of the model count as many as sensors.
-    """
-    K, n = F.shape
-    root = np.linalg.cholesky(inverse)
-    white = np.einsum("kji,kj->ki", root.conj(), F)
-    parts = [white[:, :, None] * white[:, None].conj(), np.ones((K, 1, 1))]
-    k, around = np.arange(K), []
-    for part in parts:
-        total = np.concatenate([np.zeros((1, *part.shape[1:])), np.cumsum(part, axis=0)])
-        wide, own = (
-            total[np.minimum(k + reach + 1, K)] - total[np.maximum(k - reach, 0)]
-            for reach in (NEIGHBOURS, NEAR)
-        )
-        around.append(wide - own)
-    M = (around[0] + n * np.eye(n)) / (around[1] + n)
-    out: Complexes = root @ np.linalg.inv(M) @ root.conj().swapaxes(1, 2)
-    return out, 2 * int(around[1].min())
 
 
 def _gains(F: Complexes, inverse: Complexes) -> Floats:
