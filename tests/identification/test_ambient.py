@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -235,18 +236,18 @@ def test_a_sine_is_taken_off_with_one_line_and_a_mode_is_left(place: float) -> N
     F = np.einsum("kij,kj->ik", root, _circular(rng, len(k), SENSORS)) / np.sqrt(2)
     alone = Transforms(omega, F, 2, np.ones(len(k)))
     lines = replace(alone, F=F + np.outer(100 * np.array([1, 1j, -1, 0.5]), d))
-    assert without_sine(alone, band, model, [False, False], 1e-3) is None
-    taken = without_sine(lines, band, model, [False, False], 1e-3)
+    assert without_sine(alone, band, model, np.zeros(2, bool), 1e-3) is None
+    taken = without_sine(lines, band, model, np.zeros(2, bool), 1e-3)
     assert taken is not None
     left, mode = taken
     assert mode is None
     assert left.sines == pytest.approx([9 + 2 * place / 119], abs=0.01 * 2 / 119)
     assert left.share.sum() == pytest.approx(len(k) - 1)
     assert np.abs(left.F - F).max() < 3 * np.abs(F[:, 55:66]).max()
-    assert without_sine(left, band, model, [False, False], 1e-3) is None
+    assert without_sine(left, band, model, np.zeros(2, bool), 1e-3) is None
     # a narrow mode in its place is none
     narrow = replace(model, omega=np.array([9.8, left.sines[0], 12.0]), zeta=model.zeta / 1e4)
-    taken = without_sine(lines, band, narrow, [True, False], 1e-3)
+    taken = without_sine(lines, band, narrow, np.array([True, False]), 1e-3)
     assert taken is not None
     assert taken[1] == 1
 
@@ -254,6 +255,7 @@ def test_a_sine_is_taken_off_with_one_line_and_a_mode_is_left(place: float) -> N
 @pytest.mark.parametrize(("kurtosis", "says"), [(1.0, "its amplitude is steady"), (2.0, "")])
 def test_a_machine_that_drifts_is_steady(kurtosis: float, says: str) -> None:
     mode = SimpleNamespace(held=False, kurtosis=(kurtosis, 0.1))
-    reason = _harmonic([(SimpleNamespace(), mode)] * 3)
+    having: Any = [(SimpleNamespace(), mode)] * 3
+    reason = _harmonic(having)
     assert says in reason
     assert bool(says) == bool(reason)

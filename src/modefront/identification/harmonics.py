@@ -1,11 +1,8 @@
 r"""Harmonics of machines in ambient records: sines beside the random part of the likelihood.
 
-A sine at the place p, counted in lines, adds :math:`c\,d_k` to the transforms, with any complex
-amplitudes c of the sensors and :math:`d_k = (-1)^k \operatorname{sinc}(k - p)`. The most likely
-are :math:`c = A^{-1} b`, with :math:`A = \sum_k d_k^2 E_k^{-1}` and :math:`b = \sum_k d_k E_k^{-1}
-F_k`; they gain :math:`\Delta J = b^* A^{-1} b`. With c integrated out, as in restricted likelihood,
-the rest :math:`F_k - c\,d_k` counts as :math:`1 - d_k^2 \operatorname{tr}(A^{-1} E_k^{-1}) / n`
-lines, one less in all: none of the leakage stays, and nothing else is lost to a machine.
+Symbols are those of docs/methods/identification.md. With the amplitudes c integrated out, as in
+restricted likelihood, the rest :math:`F_k - c\,d_k` counts as :math:`1 - d_k^2
+\operatorname{tr}(A^{-1} E_k^{-1}) / n` lines, :math:`A = \sum_k d_k^2 E_k^{-1}`: one less in all.
 
 The amplitude of a machine that drifts is steadier than a random one. With :math:`a(t)` the modal
 response to lines about a mode, :math:`\kappa = \overline{|a|^4} / \overline{|a|^2}^2` is 2 for a
@@ -15,7 +12,6 @@ normal response and 1 for a harmonic; over n samples whose response has the corr
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +19,7 @@ from scipy.ndimage import correlate1d
 from scipy.optimize import minimize_scalar
 from scipy.stats import beta, chi2
 
-from modefront._typing import Complexes, Floats
+from modefront._typing import Bools, Complexes, Floats
 from modefront.identification.spectra import Transforms
 from modefront.identification.spectral_density import Band, Density
 
@@ -35,7 +31,7 @@ BLOCK = 128
 
 
 def without_sine(
-    lines: Transforms, band: Band, model: Density, held: Sequence[bool], false: float
+    lines: Transforms, band: Band, model: Density, held: Bools, false: float
 ) -> tuple[Transforms, int | None] | None:
     """Return transforms without one sine, and the mode in whose place it is; None for no sine.
 
@@ -48,7 +44,7 @@ def without_sine(
     least = chi2.isf(chance, 2 * n + 1)
     wide = replace(model, zeta=np.maximum(model.zeta, spacing / 2 / model.omega))
     like_lines = model.zeta * model.omega < NEAR * spacing
-    for r in np.flatnonzero(like_lines[: model.free] & ~np.asarray(held)).tolist():
+    for r in np.flatnonzero(like_lines[: model.free] & ~held).tolist():
         middle = int(np.searchsorted(lines.omega, model.omega[r]))
         near = slice(max(middle - 2 * NEAR, 0), middle + 2 * NEAR)
         root = model.root * (np.arange(len(model.root)) != r)[:, None]
@@ -98,7 +94,7 @@ def _likelihood(
     half, F = model.lifted(lines.omega[near], lines.order) @ model.root, lines.F[:, near].T
     moved = model.columns @ half
     E = moved @ moved.conj().swapaxes(1, 2) + model.background
-    inverse: Complexes = np.linalg.inv(E)
+    inverse: Complexes = np.asarray(np.linalg.inv(E), complex)
     misfit = np.einsum("ki,kij,kj->", F.conj(), inverse, F, optimize=True).real
     return float(lines.share[near] @ np.linalg.slogdet(E)[1] + misfit), inverse, half
 

@@ -181,14 +181,11 @@ def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float])
     while True:
         data = spectra.with_lines(records, all_lines.omega, lines.F - all_lines.F)
         diagram, modes = _starts(data, low, high)
-        for f in seeds:
-            half = DAMPING[0] * 2 * np.pi * f
-            if not any(abs(mode.omega - 2 * np.pi * f) < max(mode.half, half) for mode in modes):
-                modes.append(_seeded(lines, 2 * np.pi * f))
-        seeded = {
-            min(range(len(modes)), key=lambda k: abs(modes[k].omega - 2 * np.pi * f)) for f in seeds
-        }
-        modes = [replace(mode, held=k in seeded) for k, mode in enumerate(modes)]
+        for omega in 2 * np.pi * np.array(seeds):
+            apart = np.array([abs(mode.omega - omega) for mode in modes])
+            if not (apart < [max(mode.half, DAMPING[0] * omega) for mode in modes]).any():
+                modes, apart = [*modes, _seeded(lines, omega)], np.append(apart, 0.0)
+            modes[apart.argmin()] = replace(modes[apart.argmin()], held=True)
         setup = _fitted(_Setup(records, lines, diagram, ()), modes, least)
         if setup.lines.sines == lines.sines:
             return _fitted(setup, setup.modes, least, last=True)
