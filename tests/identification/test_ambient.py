@@ -11,8 +11,10 @@ import scipy.signal as signal
 from modefront._typing import Complexes, Floats
 from modefront.data.records import Records
 from modefront.identification import spectral_density
+from modefront.identification.harmonics import without_sine
 from modefront.identification.methods.ambient import _harmonic, identify
 from modefront.identification.sets import merged_shape
+from modefront.identification.spectra import Transforms
 from modefront.identification.spectral_density import Band, Density
 
 SENSORS, LINES = 4, 30
@@ -193,7 +195,7 @@ def test_close_modes_are_found_and_a_machine_is_none() -> None:
         assert abs(mode.frequency - f) < 4 * mode.frequency_std
         assert abs(mode.damping - zeta) < 4 * mode.damping_std
     assert [pole.frequency for pole in result.rejected] == pytest.approx([3.4], abs=0.002)
-    assert result.rejected[0].reason == "a harmonic: as narrow as the lines of the record"
+    assert result.rejected[0].reason == "a harmonic: its lines are those of a sine"
 
 
 @pytest.mark.slow(4)
@@ -224,21 +226,36 @@ def test_a_record_that_is_too_short_is_an_error() -> None:
         identify([Records("short", ("a",), 10.0, np.ones((1, 90)))], (1, 3))
 
 
-@pytest.mark.parametrize(
-    ("half", "sine", "kurtosis", "says"),
-    [
-        (0.4, -5.0, 2.0, "as narrow as the lines"),
-        (3.0, 5.0, 2.0, "its lines are those of a sine"),
-        (3.0, -5.0, 1.0, "its amplitude is steady"),
-        (3.0, -5.0, 2.0, ""),
-    ],
-)
-def test_a_harmonic_is_narrow_like_a_sine_or_steady(
-    half: float, sine: float, kurtosis: float, says: str
-) -> None:
-    """A sine fits no better than a mode without damping: of a narrow pole it says nothing."""
-    mode = SimpleNamespace(held=False, half=half, sine=sine, kurtosis=(kurtosis, 0.1))
-    having: Any = [(SimpleNamespace(spacing=1.0), mode)] * 3
+@pytest.mark.parametrize("place", [60.0, 60.37])
+def test_a_sine_is_taken_off_with_one_line_and_a_mode_is_left(place: float) -> None:
+    rng, k = np.random.default_rng(7), np.arange(120)
+    model = replace(_model(rng), omega=np.array([9.8, 10.4, 12.0]))
+    omega, d = np.linspace(9, 11, len(k)), np.sinc(k - place) * (-1.0) ** k
+    band = replace(_band(rng), omega=omega)
+    root = np.linalg.cholesky(_density(band, model))
+    F = np.einsum("kij,kj->ik", root, _circular(rng, len(k), SENSORS)) / np.sqrt(2)
+    alone = Transforms(omega, F, 2, np.ones(len(k)))
+    lines = replace(alone, F=F + np.outer(100 * np.array([1, 1j, -1, 0.5]), d))
+    assert without_sine(alone, band, model, np.zeros(2, bool), 1e-3) is None
+    taken = without_sine(lines, band, model, np.zeros(2, bool), 1e-3)
+    assert taken is not None
+    left, mode = taken
+    assert mode is None
+    assert left.sines == pytest.approx([9 + 2 * place / 119], abs=0.01 * 2 / 119)
+    assert left.share.sum() == pytest.approx(len(k) - 1)
+    assert np.abs(left.F - F).max() < 3 * np.abs(F[:, 55:66]).max()
+    assert without_sine(left, band, model, np.zeros(2, bool), 1e-3) is None
+    # a narrow mode in its place is none
+    narrow = replace(model, omega=np.array([9.8, left.sines[0], 12.0]), zeta=model.zeta / 1e4)
+    taken = without_sine(lines, band, narrow, np.array([True, False]), 1e-3)
+    assert taken is not None
+    assert taken[1] == 1
+
+
+@pytest.mark.parametrize(("kurtosis", "says"), [(1.0, "its amplitude is steady"), (2.0, "")])
+def test_a_machine_that_drifts_is_steady(kurtosis: float, says: str) -> None:
+    mode = SimpleNamespace(held=False, kurtosis=(kurtosis, 0.1))
+    having: Any = [(SimpleNamespace(), mode)] * 3
     reason = _harmonic(having)
     assert says in reason
     assert bool(says) == bool(reason)

@@ -6,7 +6,7 @@ of the records.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.fft
@@ -33,6 +33,9 @@ LEFT = 0.05
 ROUNDING = 1e-9
 """Least background over the greatest power of a band."""
 
+LEAST_SHARE = 1e-9
+"""Share of a line that is left where a sine takes all of it, for rounding."""
+
 SMOOTH = 0.02
 """Share of the lines over which the size of half spectra is averaged for their weights."""
 
@@ -46,11 +49,15 @@ class Transforms:
     omega : (lines,) rad/s
     F : (sensors, lines), scaled so that the mean of F F^* is a two-sided spectral density
     order : differentiations of the displacement in the records
+    share : (lines,) how much of a line there is beside the sines that were taken off
+    sines : rad/s, of these
     """
 
     omega: Floats
     F: Complexes
     order: int
+    share: Floats
+    sines: tuple[float, ...] = ()
 
     def part(self, low: float, high: float, width: float) -> Band:
         """Return a band, low and high in rad/s, of blocks that are at most so wide, in rad/s.
@@ -61,12 +68,14 @@ class Transforms:
         omega, F = self.omega[kept], self.F[:, kept]
         size = max(int(width / (self.omega[1] - self.omega[0])), 1)
         first = np.arange(0, len(omega), size)
-        count = np.diff(np.append(first, len(omega))).astype(float)
+        lines = np.diff(np.append(first, len(omega)))
+        count = np.maximum(np.add.reduceat(self.share[kept], first), LEAST_SHARE)
         products = F.T[:, :, None] * F.T[:, None].conj() if size == 1 else None
         if products is None:
             parts = [F[:, k : k + size] for k in first]
-            products = np.array([part @ part.conj().T for part in parts]) / count[:, None, None]
-        middle = np.add.reduceat(omega, first) / count
+            products = np.array([part @ part.conj().T for part in parts])
+        products /= count[:, None, None]
+        middle = np.add.reduceat(omega, first) / lines
         value = np.linalg.eigvalsh(np.tensordot(count, products, 1).real / count.sum())
         floor = np.full(len(F), max(value[0], ROUNDING * value[-1]))
         return Band(middle, count, products, self.order, floor)
@@ -79,7 +88,16 @@ def transforms(records: Records, low: float, high: float) -> Transforms:
     f = scipy.fft.rfftfreq(samples, 1 / records.rate)
     kept = (f >= low) & (f <= high) & (f > 0)
     F = scipy.fft.rfft(y, axis=1)[:, kept] / np.sqrt(samples * records.rate)
-    return Transforms(2 * np.pi * f[kept], F, ORDERS[records.quantity])
+    return Transforms(2 * np.pi * f[kept], F, ORDERS[records.quantity], np.ones(F.shape[1]))
+
+
+def with_lines(records: Records, omega: Floats, change: Complexes) -> Records:
+    """Return records whose transforms at lines in rad/s are changed, (sensors, lines)."""
+    samples = records.values.shape[1]
+    F = np.zeros((len(change), samples // 2 + 1), complex)
+    F[:, np.rint(omega * records.duration / (2 * np.pi)).astype(int)] = change
+    y = scipy.fft.irfft(F * np.sqrt(samples * records.rate), samples, axis=1)
+    return replace(records, values=records.values + y)
 
 
 def half_spectra(records: Records, low: float, high: float) -> tuple[FrequencyResponses, Floats]:

@@ -338,20 +338,6 @@ def evaluate(band: Band, model: Density, known: _Matrices | None = None) -> Fit:
     return Fit(model, x.cost, gradient, information, _bending(whole.T))
 
 
-def modal_responses(
-    omega: Floats, F: Complexes, order: int, model: Density
-) -> tuple[Complexes, Floats]:
-    """Return the expected modal responses at all lines, (modes, lines), given transforms F.
-
-    Also returns their spectral densities by the model, which are those of Q.
-    """
-    h, psi = model.lifted(omega, order), model.columns
-    hat = la.solve(model.background, psi, assume_a="pos")
-    N, D, _ = _of_responses(h @ model.root, psi.T @ hat)
-    Q = np.einsum("krr->rk", N - D).real
-    return np.einsum("krs,sk->rk", D, hat.T @ F), Q
-
-
 def _changes(band: Band, model: Density) -> Complexes:
     """Return the changes of ln h by ln omega and by ln zeta of free modes, (blocks, 2 free)."""
     zeta, x = model.zeta[: model.free], band.omega[:, None] / model.omega[: model.free]

@@ -2,13 +2,8 @@ r"""Ambient tests: from the records of all setups to modes, by the likelihood of
 
 Half spectra of each setup give poles to start from; modes that overlap share a band, in which the
 likelihood is maximised (`spectral_density`). A mode is accepted where it gains more than noise
-makes somewhere in the band; in other setups, where the pole is known, than noise makes there. One
-with the amplitude of a machine is none: with :math:`a(t)` the modal response to lines about it,
-:math:`\kappa = \overline{|a|^4} / \overline{|a|^2}^2` is 2 for a normal response and 1 for a
-harmonic; over n samples whose response has the correlations :math:`\rho` at all lags, its variance
-is :math:`4 \sum |\rho|^4 / n`. One whose lines are rather those of a sine is none either: of
-:math:`c / (\omega_0 - \omega_k)`, which is its transform, with any amplitudes c of the sensors.
-Where a pole is narrower than the lines, the record cannot tell: it is taken for a harmonic too.
+makes somewhere in the band; in other setups, where the pole is known, than noise makes there.
+Harmonics of machines are taken off as sines; those that drift are too steady (`harmonics`).
 """
 
 from __future__ import annotations
@@ -17,13 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 from scipy.stats import chi2, norm
 
-from modefront._typing import Complexes, Floats
+from modefront._typing import Bools, Complexes, Floats
 from modefront.data.records import Records
 from modefront.data.responses import FrequencyResponses
-from modefront.identification import selection, spectra, spectral_density
+from modefront.identification import harmonics, selection, spectra, spectral_density
 from modefront.identification.lscf import Poles
 from modefront.identification.record import (
     Evidence,
@@ -37,7 +31,7 @@ from modefront.identification.selection import FALSE, LEAST_ORDERS
 from modefront.identification.sets import between, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
 from modefront.identification.spectra import Transforms
-from modefront.identification.spectral_density import Band, Density
+from modefront.identification.spectral_density import Band, Density, Fit
 from modefront.identification.stabilisation import (
     StabilisationDiagram,
     diagram_of,
@@ -72,9 +66,6 @@ DAMPING = 0.002, 0.05
 TRIAL_STEPS = 8
 """Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
 
-SINE_LINES = 4
-"""Lines on either side of a mode where it may be a sine."""
-
 HARMONIC = 1e-3
 """Share of the modes that would be taken for harmonics by chance."""
 
@@ -100,7 +91,6 @@ class Local:
     covariance : of ln omega, ln zeta and phi
     share : its greatest share in the density of a sensor, at its frequency
     kurtosis : kappa, and its standard deviation for a mode
-    sine : gain of the likelihood where a sine takes the place of the mode, less its parameters more
     held : whether it stays whatever its gain
     """
 
@@ -111,7 +101,6 @@ class Local:
     covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     share: float = np.nan
     kurtosis: tuple[float, float] = (2.0, 1.0)
-    sine: float = -np.inf
     held: bool = False
 
     @property
@@ -186,20 +175,21 @@ def needed(lines: int, sensors: int) -> float:
 
 
 def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float]) -> _Setup:
-    lines = spectra.transforms(records, low, high)
-    diagram, modes = _starts(records, low, high)
-    setup = _Setup(records, lines, diagram, ())
-    for f in seeds:
-        half = DAMPING[0] * 2 * np.pi * f
-        if not any(abs(mode.omega - 2 * np.pi * f) < max(mode.half, half) for mode in modes):
-            modes.append(_seeded(lines, 2 * np.pi * f))
-    seeded = {
-        min(range(len(modes)), key=lambda k: abs(modes[k].omega - 2 * np.pi * f)) for f in seeds
-    }
-    modes = [replace(mode, held=k in seeded) for k, mode in enumerate(modes)]
+    """Return the setup; poles are looked for again where machines may have hidden some."""
+    all_lines = lines = spectra.transforms(records, low, high)
     least = needed(len(lines.omega), len(records.sensors))
-    modes = _fitted(setup, _fitted(setup, modes, least), least, last=True)
-    return replace(setup, modes=tuple(modes))
+    while True:
+        data = spectra.with_lines(records, all_lines.omega, lines.F - all_lines.F)
+        diagram, modes = _starts(data, low, high)
+        for omega in 2 * np.pi * np.array(seeds):
+            apart = np.array([abs(mode.omega - omega) for mode in modes])
+            if not (apart < [max(mode.half, DAMPING[0] * omega) for mode in modes]).any():
+                modes, apart = [*modes, _seeded(lines, omega)], np.append(apart, 0.0)
+            modes[apart.argmin()] = replace(modes[apart.argmin()], held=True)
+        setup = _fitted(_Setup(records, lines, diagram, ()), modes, least)
+        if setup.lines.sines == lines.sines:
+            return _fitted(setup, setup.modes, least, last=True)
+        lines = setup.lines
 
 
 def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDiagram, list[Local]]:
@@ -239,13 +229,13 @@ def _seeded(lines: Transforms, omega: float, phi: Floats | None = None) -> Local
 
 def _fitted(
     setup: _Setup, modes: Sequence[Local], least: float, *, last: bool = False, first: int = 0
-) -> list[Local]:
-    """Return the modes that data need, each fitted with those that it overlaps.
+) -> _Setup:
+    """Return the setup with the modes that data need, each fitted with those that it overlaps.
 
     The ``last`` fit has the background that their forces move; no mode is judged by it. Modes that
     overlap none from number ``first`` on are left out.
     """
-    found = []
+    found: list[Local] = []
     for group in _overlapping(modes):
         if max(group) < first:
             continue
@@ -253,15 +243,16 @@ def _fitted(
         reach = [max(REACH * mode.half, LEAST_LINES / 2 * setup.spacing) for mode in chosen]
         low = min(mode.omega - x for mode, x in zip(chosen, reach, strict=True))
         high = max(mode.omega + x for mode, x in zip(chosen, reach, strict=True))
-        band = setup.lines.part(low, high, BLOCK * min(mode.half for mode in chosen))
+        limits = low, high, BLOCK * min(mode.half for mode in chosen)
         others = [mode for k, mode in enumerate(modes) if k not in group]
         rest = sorted(others, key=lambda mode: mode.omega)
         start, end = np.searchsorted([mode.omega for mode in rest], [low, high])
         told = max((len(setup.records.sensors) - len(group)) // 2, 1)
         nearest = min(told, BESIDE) if last else 1
         beside = rest[max(start - nearest, 0) : end + nearest]
-        found += _of_group(setup, band, chosen, beside, least, last)
-    return found
+        lines, of_group = _of_group(setup, limits, chosen, beside, least, last)
+        setup, found = replace(setup, lines=lines), found + of_group
+    return replace(setup, modes=tuple(found))
 
 
 def _overlapping(modes: Sequence[Local]) -> list[list[int]]:
@@ -281,18 +272,22 @@ def _overlapping(modes: Sequence[Local]) -> list[list[int]]:
 
 def _of_group(
     setup: _Setup,
-    band: Band,
+    limits: tuple[float, float, float],
     modes: Sequence[Local],
     beside: Sequence[Local],
     least: float,
     last: bool,
-) -> list[Local]:
-    """Return the modes of a band without those that gain less, the weakest first.
+) -> tuple[Transforms, list[Local]]:
+    """Return the lines of a setup without sines in a band, and its modes.
 
-    A fit that explains less than one without a mode has not reached its maximum.
+    Without those that gain less, the weakest first. A fit that explains less than one without a
+    mode has not reached its maximum.
     """
-    fit = spectral_density.maximise(band, _first(band, [*modes, *beside], len(modes)), TRIAL_STEPS)
-    held, tried = np.array([mode.held for mode in modes]), False
+    band, tried = setup.lines.part(*limits), False
+    start = _first(band, [*modes, *beside], len(modes))
+    lines, band, fit, held = _without_sines(setup.lines, limits, start, [x.held for x in modes])
+    if lines is not setup.lines and not last:
+        return lines, []  # poles are looked for again
     while fit.model.free:
         models = [fit.model.without(r, band) for r in range(fit.model.free)]
         without = [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
@@ -301,8 +296,10 @@ def _of_group(
             x[..., : len(held)] for x in (fit.model.omega, fit.model.zeta, fit.model.phi)
         )
         low, high = band.omega[[0, -1]]
-        # a mode that left the band, is as flat as it, or doubles a stronger one explains nothing
+        # a mode that left the band, is as flat as it, narrower than a line, or doubles a stronger
+        # one explains nothing
         astray = (omega < low) | (omega > high) | (4 * zeta * omega > high - low)
+        astray |= 2 * zeta * omega < setup.spacing
         astray |= selection.doubles(omega * (1j - zeta), phi.T.astype(complex), gain)
         worth = np.where(held, np.inf, np.where(astray, 0.0, gain))
         enough = worth.min() >= least
@@ -318,11 +315,11 @@ def _of_group(
             model = model.without(r, band)
         fit = spectral_density.maximise(band, model, TRIAL_STEPS)
     else:
-        return []
+        return lines, []
     if last:
         fit = spectral_density.maximise(band, fit.model.with_coherent(band))
     model, visible = fit.model, _shares(band, fit.model)
-    return [
+    return lines, [
         Local(
             float(model.omega[r]),
             float(model.zeta[r]),
@@ -330,12 +327,27 @@ def _of_group(
             float(gain[r]),
             fit.covariance(r),
             float(visible[r]),
-            _kurtosis(setup, model, r),
-            _sine(setup, model, r),
+            harmonics.kurtosis(lines, model, r, REACH),
             bool(held[r]),
         )
         for r in range(model.free)
     ]
+
+
+def _without_sines(
+    lines: Transforms, limits: tuple[float, float, float], model: Density, held: Sequence[bool]
+) -> tuple[Transforms, Band, Fit, Bools]:
+    """Return lines and band without sines, the fit, and which of its modes are held."""
+    kept = np.array(held)
+    while True:
+        band = lines.part(*limits)
+        fit = spectral_density.maximise(band, model, TRIAL_STEPS)
+        taken = harmonics.without_sine(lines, band, fit.model, kept, FALSE)
+        if taken is None:
+            return lines, band, fit, kept
+        (lines, place), model = taken, fit.model
+        if place is not None:
+            model, kept = model.without(place, band), np.delete(kept, place)
 
 
 def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
@@ -367,43 +379,6 @@ def _shares(band: Band, model: Density) -> Floats:
     shares = own / (all_modes + np.diag(model.background)[:, None])
     out: Floats = np.minimum(shares.max(axis=0), 1.0)
     return out
-
-
-def _kurtosis(setup: _Setup, model: Density, mode: int) -> tuple[float, float]:
-    """Return kappa of the modal response, and its standard deviation for a normal one."""
-    half = model.zeta[mode] * model.omega[mode]
-    near = np.abs(setup.lines.omega - model.omega[mode]) <= max(REACH * half, 4 * setup.spacing)
-    response, power = spectral_density.modal_responses(
-        setup.lines.omega[near], setup.lines.F[:, near], setup.lines.order, model
-    )
-    size = 4 * int(near.sum())
-    a = np.abs(np.fft.ifft(response[mode], size)) ** 2
-    rho = np.abs(np.fft.ifft(power[mode], size))
-    std = 2 * np.sqrt(np.mean((rho / rho[0]) ** 4))
-    return float(np.mean(a**2) / np.mean(a) ** 2), float(std)
-
-
-def _sine(setup: _Setup, model: Density, mode: int) -> float:
-    """Return the gain of the likelihood by a sine in place of a mode, less its parameters more."""
-    line = (setup.lines.omega - model.omega[mode]) / setup.spacing
-    near = np.flatnonzero(np.abs(line) <= SINE_LINES)
-    F, h = setup.lines.F[:, near].T, model.lifted(setup.lines.omega[near], setup.lines.order)
-    costs, inverses = [], []
-    for kept in (np.ones(len(model.omega)), np.arange(len(model.omega)) != mode):
-        half = model.columns @ h @ (kept[:, None] * model.root)
-        E = half @ half.conj().swapaxes(1, 2) + model.background
-        inverses.append(np.linalg.inv(E))
-        misfit = np.einsum("ki,kij,kj->", F.conj(), inverses[-1], F).real
-        costs.append(float(np.linalg.slogdet(E)[1].sum() + misfit))
-
-    def loss(place: float) -> float:
-        D = np.sinc(line[near] - place) * (-1.0) ** np.arange(len(near))
-        A, b = (inverses[1].T @ D**2).T, np.einsum("k,kij,kj->i", D, inverses[1], F)
-        return -float((b.conj() @ np.linalg.solve(A, b)).real)
-
-    first = min(np.arange(-1.5, 1.5, 0.1), key=loss)
-    best = minimize_scalar(loss, bounds=(first - 0.1, first + 0.1), method="bounded")
-    return costs[0] - costs[1] - float(best.fun) - (F.shape[1] - 1)
 
 
 def _estimate(
@@ -441,9 +416,9 @@ def _completed(
             tried = [_tried(setup, setups, groups[r]) for r in lacking]
             known = [row for row in rows if row is not None]
             least = float(chi2.isf(FALSE, len(setup.records.sensors)))
-            found = _fitted(setup, [*known, *tried], least, last=True, first=len(known))
+            setup = _fitted(setup, [*known, *tried], least, last=True, first=len(known))
             omega = np.array([mode.omega for mode in (*tried, *known)])
-            for mode in found:
+            for mode in setup.modes:
                 nearest = int(np.abs(omega - mode.omega).argmin())
                 reach = 2 * max(mode.half, tried[nearest].half) if nearest < len(tried) else 0.0
                 if abs(omega[nearest] - mode.omega) < reach:
@@ -471,7 +446,11 @@ def _combined(
     count: int | None,
 ) -> Identification:
     """Return the modes of the structure, and what is none."""
-    modes, rejected = [], []
+    modes = []
+    rejected = [
+        Rejected(f, 0.0, "a harmonic: its lines are those of a sine")
+        for f in _sines([x for x, _ in setups])
+    ]
     for r in range(len(setups[0][1])):
         having = [(setup, row) for setup, rows in setups if (row := rows[r]) is not None]
         mode, why = _of_structure(having, sensors, len(setups)), _harmonic(having)
@@ -539,10 +518,6 @@ def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
     """Return why a mode is the harmonic of a machine; empty where it is none."""
     if any(mode.held for _, mode in having):
         return ""
-    if np.median([mode.half / setup.spacing for setup, mode in having]) < 0.5:
-        return "a harmonic: as narrow as the lines of the record"
-    if sum(mode.sine for _, mode in having) > 0:
-        return "a harmonic: its lines are those of a sine"
     z = np.array([(mode.kurtosis[0] - 2) / mode.kurtosis[1] for _, mode in having])
     if z.sum() / np.sqrt(len(z)) < norm.ppf(HARMONIC):
         mean = np.mean([mode.kurtosis[0] for _, mode in having])
@@ -550,6 +525,13 @@ def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
             f"a harmonic: its amplitude is steady (kurtosis {mean:.2f}; 2 for a mode, 1 for a sine)"
         )
     return ""
+
+
+def _sines(setups: Sequence[_Setup]) -> list[float]:
+    """Return the frequencies in Hz of sines in any setup, once where within a line."""
+    found = np.sort([omega for setup in setups for omega in setup.lines.sines]) / (2 * np.pi)
+    apart = np.diff(found, prepend=-np.inf) > max(1 / setup.records.duration for setup in setups)
+    return list(found[apart].tolist())
 
 
 def _functions(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FittedFunctions:
