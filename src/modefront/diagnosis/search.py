@@ -221,10 +221,11 @@ class Search:
         """Return the mistakes of the best explanation without which no other one comes near it.
 
         Another one is no rival that has more mistakes and fits no better: all sensors but one
-        reversed are the same as that one, as a mode shape has no sign.
+        reversed are the same as that one, as a mode shape has no sign. Bounds only explain here:
+        whether one is to blame is judged as in a run.
         """
         out = {}
-        for one in best.mistakes:
+        for one in [each for each in best.mistakes if each.kind != "bound"]:
             rivals = [
                 each
                 for each in self.known.values()
@@ -241,7 +242,7 @@ class Search:
                 for each in near
                 if each.claims > rest and len(each.claims) == len(best.claims)
                 for other in each.mistakes
-                if other.claim not in rest
+                if other.claim not in rest and other.kind != "bound"
             ]
             alike = {other.claim for other in swaps}
             if len(swaps) >= EITHER or not all(each.claims & alike for each in near):
