@@ -89,11 +89,14 @@ def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Pat
     few, many = (sum(x) for x in zip(*short.plan.searches.values(), strict=True))
     assert 20 < few < 85 < many < 1000, "a run makes about 85 searches"
     assert not short.plan.other, "with weight = 0 there is no posterior to draw from"
-    assert short.range == pytest.approx((few * short.plan.search, many * short.plan.search))
+    least, most = short.range
+    assert few * short.plan.search < least < most < many * short.plan.search, "not all at an end"
     assert "searches of" in short.text
     started = estimate(study, 10.0)  # seconds until the study was read
     assert started is not None
-    assert started.range == pytest.approx(np.add(started.plan.seconds, (10.0, 20.0)))
+    before, after = np.subtract(started.range, started.plan.seconds)
+    assert before > 10.0
+    assert after < 20.0
     small = estimate(replace(study, search=Search(evaluations=100)))
     assert small is not None
     assert small.plan.searches["edges"][1] < short.plan.searches["edges"][1]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 
@@ -21,8 +21,8 @@ CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
 BEAM, FITTED, VARIANTS, MOST = 6, 10, 2, 8
-"""Explanations that are extended at a time, claims by which each is, mistakes of a claim that are
-fitted, and most mistakes."""
+"""Single mistakes to which others are added, claims by which each explanation is extended, mistakes
+of a claim that are fitted, and most mistakes."""
 
 FOLLOWED = 2
 """Steps of a fit after which mistakes that move the parameters are compared with others."""
@@ -32,6 +32,9 @@ EITHER = 3
 
 WINDOW = 1.5
 """Window of frequencies that is advised."""
+
+LEFT = 1.0
+"""Difference of costs that fits leave."""
 
 SEEN = 0.02
 """Increase of a MAC value that is worth its name."""
@@ -76,20 +79,29 @@ class Explanation:
         """What is claimed."""
         return frozenset(each.claim for each in self.mistakes)
 
+    @property
+    def is_ordered(self) -> bool:
+        """Whether values are moved back to their sensors first, so that others name these."""
+        return not any(b.moves > a.moves for a, b in pairwise(self.mistakes))
+
+    @property
+    def key(self) -> tuple[frozenset[tuple[str, ...]], bool]:
+        """What tells the explanation from others."""
+        return frozenset((*x.claim, str(x.numbers)) for x in self.mistakes), self.is_ordered
+
 
 @dataclass(eq=False)
 class Search:
     """Explanations of a comparison: those ``known`` were fitted, those ``extended`` also added to.
 
-    Of explanations with the same claims, the best one is kept; ``plain`` are data and model as they
-    are.
+    Each is kept with its best fit; ``plain`` are data and model as they are.
     """
 
     comparison: Comparison
     model: Quick
     plain: State
-    known: dict[Claims, Explanation] = field(default_factory=dict)
-    extended: set[Claims] = field(default_factory=set)
+    known: dict[object, Explanation] = field(default_factory=dict)
+    extended: set[object] = field(default_factory=set)
 
     @classmethod
     def of(cls, comparison: Comparison) -> Search:
@@ -120,21 +132,21 @@ class Search:
             return None
         cost = at.cost + sum(each.price for each in mistakes)
         new = Explanation(tuple(mistakes), state, at, cost)
-        self.known[new.claims] = min(
-            self.known.get(new.claims, new), new, key=lambda each: each.cost
-        )
-        return self.known[new.claims]
+        known = self.known.setdefault(new.key, new)
+        if new.cost < known.cost:
+            self.known[new.key] = new
+        return self.known[new.key]
 
     def _cost(self, state: State, theta: Floats) -> float:
         """Return the cost of a state at parameters; infinite where the model has no modes."""
         whole = self.model.everywhere(theta)
         return np.inf if whole is None else point_of(state, whole).cost
 
-    def extend(self, old: Explanation) -> list[Explanation]:
-        """Return the most promising explanations with a mistake more, after a fit of each."""
-        if old.claims in self.extended:
-            return []
-        self.extended.add(old.claims)
+    def extend(self, old: Explanation) -> None:
+        """Fit the most promising explanations with a mistake more."""
+        if old.key in self.extended:
+            return
+        self.extended.add(old.key)
         thetas = [old.point.theta] if old.mistakes else [old.state.start, old.point.theta]
         wholes = [x for theta in thetas if (x := self.model.everywhere(theta)) is not None]
         points = [point_of(old.state, whole) for whole in wholes]
@@ -161,8 +173,8 @@ class Search:
                 for a, b in pairs
             ]
             added += [pairs[k] for k in np.argsort(costs, kind="stable")[:FITTED]]
-        out = [self.fitted((*old.mistakes, *new), [old.point.theta]) for new in added]
-        return [each for each in out if each is not None]
+        for new in added:
+            self.fitted((*old.mistakes, *new), [old.point.theta])
 
     def _screened(self, new: State, old: State, wholes: Sequence[Whole]) -> float:
         """Return the least cost of a state at the parameters that are at hand."""
@@ -194,14 +206,16 @@ class Search:
         plain = self.fitted((), [])
         if plain is None:
             return None
-        beam = [plain]
-        for width in (BEAM, *[1] * (MOST - 1)):
-            least, fits = min((old.cost, old.point.cost) for old in beam)
-            children = {each.claims: each for old in beam for each in self.extend(old)}
-            better = [each for each in children.values() if each.point.cost < fits - 1]
-            beam = sorted(better, key=lambda each: each.cost)[:width]
-            if not beam or (width == 1 and beam[0].cost > least):
+        self.extend(plain)
+        least = plain.cost
+        for size in range(1, MOST + 1):
+            of_size = [x for x in self.bests().values() if len(x.mistakes) == size]
+            level = [x for x in of_size if x.point.cost < plain.point.cost - LEFT]
+            if not level or (size > 1 and level[0].cost > least):
                 break
+            least = min(least, level[0].cost)
+            for each in level[: BEAM if size == 1 else 1]:
+                self.extend(each)
         while True:
             best = min(self.known.values(), key=lambda each: each.cost)
             theta = [best.point.theta]
@@ -215,7 +229,20 @@ class Search:
                 if self._cost(each.state, inside) < each.point.cost:
                     self.fitted(each.mistakes, theta)
             if min(each.cost for each in self.known.values()) >= best.cost:
-                return best
+                break
+        ordered = {key: each for key, each in self.known.items() if each.is_ordered}
+        first = min(ordered.values(), key=lambda each: each.cost)
+        if first.cost > best.cost + LEFT:
+            return best
+        self.known = ordered
+        return first
+
+    def bests(self) -> dict[Claims, Explanation]:
+        """Return the best explanation of each set of claims, the best one first."""
+        out: dict[Claims, Explanation] = {}
+        for each in sorted(self.known.values(), key=lambda each: each.cost):
+            out.setdefault(each.claims, each)
+        return out
 
     def named(self, best: Explanation) -> dict[Mistake, Finding]:
         """Return the mistakes of the best explanation without which no other one comes near it.
@@ -224,15 +251,15 @@ class Search:
         reversed are the same as that one, as a mode shape has no sign. Bounds only explain here:
         whether one is to blame is judged as in a run.
         """
-        out = {}
+        out, bests = {}, self.bests()
         for one in [each for each in best.mistakes if each.kind != "bound"]:
             rivals = [
                 each
-                for each in self.known.values()
+                for each in bests.values()
                 if one.claim not in each.claims
                 and (
                     len(each.mistakes) <= len(best.mistakes)
-                    or each.point.cost <= best.point.cost - 1
+                    or each.point.cost <= best.point.cost - LEFT
                 )
             ]
             near = [each for each in rivals if each.cost - best.cost < CLEAR]
@@ -251,7 +278,7 @@ class Search:
             out[one] = replace(
                 one.finding,
                 others=tuple(other.finding for other in swaps),
-                evidence=self._evidence(self.known.get(rest, self.known[frozenset()]), best),
+                evidence=self._evidence(bests.get(rest, bests[frozenset()]), best),
                 gain=float(gain - best.cost),
             )
         return out

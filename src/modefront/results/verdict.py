@@ -108,7 +108,8 @@ def _use(data: xr.Dataset) -> str:
 
 
 def _at_bounds(data: xr.Dataset) -> Iterator[str]:
-    best, names = _row(data, Kind.MOST_PROBABLE), data["parameter"].values
+    best = _row(data, Kind.MOST_PROBABLE)
+    names, groups = (list(map(str, data[name].values)) for name in ("parameter", "group"))
     sides, theta = best["at_bound"].values, best["theta"].values
     if not sides.any():
         return
@@ -117,7 +118,7 @@ def _at_bounds(data: xr.Dataset) -> Iterator[str]:
         yield _say("at-bound", at=at, it="it" if np.count_nonzero(sides) == 1 else "them")
         return
     free = Freed(data["freed_theta"].values, data["freed_misfit"].values, data.attrs["freed_less"])
-    wrong = bound(names, data["group"].values, sides, theta, data["misfit"].values, free)
+    wrong = bound(names, groups, sides, theta, data["misfit"].values, free)
     if wrong is None:
         yield _say("at-harmless-bound", at=at, gain=100 * GAIN)
     else:

@@ -31,7 +31,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
 from modefront.uncertainty.most_probable import STARTS as MAXIMA
 from modefront.uncertainty.sampling import DRAWS, extent
-from modefront.work.progress import Plan, Span
+from modefront.work.progress import Plan, Span, together
 from modefront.work.task import seed_sequence, uncounted
 
 NEAR = 0.4, 2.0
@@ -72,8 +72,7 @@ class Estimate:
     @property
     def range(self) -> Span:
         """Seconds in all, by one process."""
-        least, most = self.plan.seconds
-        return least + self.start[0], most + self.start[1]
+        return together([self.plan.seconds, self.start])
 
     @property
     def text(self) -> str:

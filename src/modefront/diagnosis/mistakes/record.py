@@ -37,6 +37,8 @@ class Mistake:
     change : returns a state without it
     price : negative logarithm of the probability that a study has it
     numbers : names and numbers of its sentence
+    moves : whether it has moved values to other sensors or modes: it is undone before others, which
+        are said of the right ones
     """
 
     kind: str
@@ -44,6 +46,7 @@ class Mistake:
     change: Change
     price: float
     numbers: Mapping[str, Any] = field(default_factory=dict)
+    moves: bool = False
 
     @property
     def claim(self) -> tuple[str, ...]:

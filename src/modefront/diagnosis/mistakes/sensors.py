@@ -130,7 +130,7 @@ def exchanged_sensors(setting: Setting) -> Iterator[Mistake]:
             names = setting.names.sensors[s], setting.names.sensors[t]
             numbers = {"sensors": enumeration(names), "where": name}
             change = changed("shape", partial(_exchanged, sets=sets, s=s, t=t))
-            one = Mistake("exchanged-sensors", (*names, name), change, price, numbers)
+            one = Mistake("exchanged-sensors", (*names, name), change, price, numbers, True)
             found.append((float(gain[i, j]), one))
     yield from promising(found)
 
@@ -189,7 +189,7 @@ def shifted_values(setting: Setting) -> Iterator[Mistake]:
             for start in np.argsort(-likeness[:-1])[:NEAREST].tolist():
                 numbers = {"where": name, "sensor": names.sensors[start], "what": what}
                 change = changed("shape", partial(_moved, rows=rows, start=start, by=by))
-                one = Mistake("shifted-values", (name,), change, price, numbers)
+                one = Mistake("shifted-values", (name,), change, price, numbers, True)
                 found.append((float(likeness[start] - likeness[-1]), one))
     yield from promising(found)
 

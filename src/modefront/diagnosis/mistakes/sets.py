@@ -87,7 +87,8 @@ def other_numbers(setting: Setting) -> Iterator[Mistake]:
             )
             numbers = {"set": sets[k], "other": _others(sets, k), "modes": wrong, "of": right}
             change = partial(_renumbered, k=k, index=index)
-            yield Mistake("set-numbers", (sets[k],), change, one_of(USUAL, len(sets)), numbers)
+            price = one_of(USUAL, len(sets))
+            yield Mistake("set-numbers", (sets[k],), change, price, numbers, True)
 
 
 def _renumbered(state: State, k: int, index: Ints) -> State:
