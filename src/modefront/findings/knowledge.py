@@ -47,12 +47,6 @@ def measured_noun(groups: Sequence[Group]) -> str:
     return kinds.pop() if len(kinds) == 1 else "residual"
 
 
-def determined(combinations: Sequence[Combination]) -> tuple[int, int]:
-    """Return how many combinations are determined, and how many of those only weakly."""
-    shares = np.array([combination.share for combination in combinations])
-    return int((shares > NONE).sum()), int(((shares > NONE) & (shares < WEAK)).sum())
-
-
 # 8 arguments: the data, what they determine, and how the sentence begins.
 def summary(
     subject: str,
@@ -70,11 +64,11 @@ def summary(
     parameters without effect on any data, which are left out. Without a ``scale``, changes are
     relative to the parameters. ``where`` begins the sentence.
     """
-    rank, weak = determined(combinations)
+    rank = sum(each.share > NONE for each in combinations)
+    hardly = [each for each in combinations if NONE < each.share < WEAK]
     p = len(names) - len(idle)
     text = " that have an effect" if idle else ""
-    if weak:
-        hardly = [each for each in combinations if NONE < each.share < WEAK]
+    if hardly:
         parts = list(dict.fromkeys(in_words(each, names) for each in hardly[::-1]))
         text += f", and say little about {_listed(parts)}"
     if rank < p:

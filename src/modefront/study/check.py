@@ -185,12 +185,12 @@ def excluding_bounds(study: Study) -> tuple[Finding, ...]:
     noise = study.noise.of(problem, study.uncertainty.of(problem.data))
     if noise is None:
         return ()
-    theta, J = (best := maximum(noise, problem.start)).theta, best.J[:-1]
-    free = freed(noise, theta) if best.converged else None
-    if free is None:
+    best = maximum(noise, problem.start)
+    if not best.converged or (free := freed(noise, best.theta)) is None:
         return ()
-    names, sides = problem.model.parameters, at_bounds(theta, problem.lower, problem.upper)
-    wrong = bound(names, problem.objectives, sides, theta, noise.over_expected(J), free)
+    sides = at_bounds(best.theta, problem.lower, problem.upper)
+    of = problem.model.parameters, problem.objectives
+    wrong = bound(*of, sides, best.theta, noise.over_expected(best.J[:-1]), free)
     return () if wrong is None else (wrong,)
 
 

@@ -186,11 +186,10 @@ def freed(noise: NoiseModel, theta: Floats) -> Freed | None:
 
 
 def excluding(sides: Ints, theta: Floats, misfit: Floats, free: Freed) -> list[int]:
-    """Return the parameters whose bounds exclude what fits the data.
+    """Return the parameters whose bounds ``sides`` (p,), see `at_bounds`, exclude what fits.
 
     None unless -2 ln p becomes less without bounds by more than right ones may, and the errors of a
-    group by a tenth. ``sides`` (p,) are the bounds that hold the model theta (p,), see `at_bounds`,
-    and ``misfit`` (n,) its errors.
+    group, which are ``misfit`` (n,) at the model theta (p,), by a tenth.
     """
     beyond = np.flatnonzero(sides * (free.theta - theta) > 0).tolist()
     i = int(np.argmax(misfit - free.misfit))

@@ -36,9 +36,6 @@ def together(spans: Iterable[Span]) -> Span:
     """Return the seconds of several independent parts, which are not all short, or long, at once.
 
     Geometric middles add up, and so do the squares of the distances of the ends from them.
-
-    >>> [round(x, 2) for x in together([(1.0, 4.0), (1.0, 4.0)])]
-    [2.59, 6.83]
     """
     least, most = np.array([*spans, (0.0, 0.0)]).T
     middle = np.sqrt(least * np.where(np.isfinite(most), most, least))

@@ -54,6 +54,11 @@ class Mistake:
         return (self.kind, *self.subject)
 
     @property
+    def variant(self) -> tuple[str, ...]:
+        """What tells it from others with the same claim too."""
+        return (*self.claim, str(self.numbers))
+
+    @property
     def finding(self) -> Finding:
         """Its record among all that is found."""
         return Finding(self.kind, ", ".join(self.subject), self.numbers)
@@ -96,9 +101,10 @@ def mismatch(x: Floats, target: Floats, scale: Floats) -> Floats:
 
 def promising(found: Iterable[tuple[float, Mistake]]) -> Iterator[Mistake]:
     """Yield the mistakes that promise most, of pairs with the fall of the cost by each, once."""
-    ordered = sorted(found, key=lambda pair: -pair[0])
-    once = {(each.claim, str(each.numbers)): each for _, each in reversed(ordered)}
-    yield from list(reversed(once.values()))[:TRIED]
+    once: dict[tuple[str, ...], Mistake] = {}
+    for _, each in sorted(found, key=lambda pair: -pair[0]):
+        once.setdefault(each.variant, each)
+    yield from list(once.values())[:TRIED]
 
 
 def one_of(probability: float, count: float) -> float:
