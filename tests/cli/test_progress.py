@@ -14,7 +14,7 @@ from modefront.cli.progress import _Lines, _Log
 from modefront.front.search import Search
 from modefront.study.estimate import SHORT, duration, estimate
 from modefront.study.examples import write_example
-from modefront.work.progress import State, listening, note, note_iteration
+from modefront.work.progress import State, listening, note, note_iteration, together
 from modefront.work.task import Costs
 
 
@@ -124,3 +124,10 @@ def test_predictions_are_timed_with_few_samples(tmp_path: Path) -> None:
 
 def test_durations_are_in_the_unit_that_suits_them() -> None:
     assert [duration(x) for x in (0.0123, 0.5, 45.0, 240.0)] == ["12 ms", "0.5 s", "45 s", "4 min"]
+
+
+def test_parts_that_take_from_one_to_four_seconds_are_not_all_short_or_long_at_once() -> None:
+    assert np.allclose(together([(1.0, 4.0)]), (1.0, 4.0))
+    assert np.allclose(together([(1.0, 4.0)] * 4), (6.0, 12.0))
+    assert np.allclose(together([(3.0, 3.0), (0.0, np.inf)]), (3.0, np.inf))
+    assert together([]) == (0.0, 0.0)
