@@ -198,9 +198,9 @@ class Search:
         for size in range(1, MOST + 1):
             of_size = [x for x in self.bests().values() if len(x.mistakes) == size]
             level = [x for x in of_size if x.point.cost < plain.point.cost - LEFT]
-            if not level or (size > 1 and level[0].cost > least):
+            if size > 1 and not (level and level[0].cost <= least):
                 break
-            least = min(least, level[0].cost)
+            least = min([least, *(each.cost for each in level[:1])])
             for each in level[: BEAM if size == 1 else 1]:
                 self.extend(each)
         while True:
