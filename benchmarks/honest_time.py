@@ -9,8 +9,9 @@ parameters (trusses, towers, grillages, buildings, beams, chains), the others la
 degrees of freedom, half of which may be solved in a reduced basis. Points of the front, the budget
 of the search, predictions and samples of the bootstrap are drawn as well.
 
-Times are those of the processor, whatever else the machine does: all clocks of the process are. A
-line a study has
+Every study has a process of its own, as the command has, whose start counts: `check` and `run` know
+how long it took until the study was read. Times are those of the processor, whatever else the
+machine does: all clocks of the process are. A line a study has
 
 - the range that ``check`` foretells, the time that the run took, and whether that is in the range;
 - ``shown``: how many of the times that progress shows after the first tenth of the run are right,
@@ -24,6 +25,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import multiprocessing
 import signal
 import time
 from pathlib import Path
@@ -105,13 +107,15 @@ def drawn(seed: int) -> mf.Study:
 
 def measured(seed: int, limit: int) -> dict[str, Any]:
     """Return what is foretold of a study and what it takes."""
+    time.perf_counter = time.process_time  # tasks, and searches that are timed
     study = drawn(seed)
     problem = study.problem
     row: dict[str, Any] = {
         "seed": seed, "size": problem.model.size, "p": len(problem.start),
         "n": len(problem.groups), "budget": study.search.evaluations, "failure": "",
     }  # fmt: skip
-    expected = estimate(study)
+    started = time.process_time()
+    expected = estimate(study, started)
     assert expected is not None
     row |= {"range": [*expected.range], "text": expected.text}
     notes: list[tuple[float, str, Span | None, int]] = []
@@ -131,9 +135,9 @@ def measured(seed: int, limit: int) -> dict[str, Any]:
     except (mf.InputError, mf.UnfinishedError) as error:
         row["failure"] = str(error)
     signal.setitimer(signal.ITIMER_VIRTUAL, 0)
-    row["seconds"] = time.process_time() - began
+    row["seconds"] = time.process_time() - began + started
     row["solved"] = progress.spent.model_evaluations
-    row["notes"] = [(at - began, *rest) for at, *rest in notes]
+    row["notes"] = [(at - began + started, *rest) for at, *rest in notes]
     return row
 
 
@@ -195,15 +199,16 @@ def main() -> None:
     parser.add_argument("--limit", type=int, default=600)
     parser.add_argument("--judge", type=Path)
     given = parser.parse_args()
-    time.perf_counter = time.process_time  # tasks, and searches that are timed
     rows: list[dict[str, Any]] = []
     if given.judge:
         rows = [json.loads(line) for line in given.judge.read_text().splitlines()]
         for row in rows:
             say(row)
     else:
+        spawn = multiprocessing.get_context("spawn")
         for seed in range(*map(int, given.seeds.split(":"))):
-            rows.append(measured(seed, given.limit))
+            with spawn.Pool(1) as pool:
+                rows.append(pool.apply(measured, (seed, given.limit)))
             say(rows[-1])
             if given.save:
                 with given.save.open("a") as file:

@@ -75,7 +75,7 @@ def test_a_fit_finds_the_structure_from_which_the_data_come() -> None:
     state = State(
         data, np.zeros(4, dtype=bool), 4, model.selection, None, unit, 0.2 * unit, 5 * unit
     )
-    result = quick(model, model, 4, unit, (0.2 * unit, 5 * unit)).fit(state, unit)
+    result = quick(model, model, 4, state).fit(state, unit)
     assert result is not None
     np.testing.assert_allclose(result.theta, theta, rtol=0.03)
     selection = model.selection.toarray()

@@ -53,3 +53,21 @@ def test_the_table_is_said_to_be_wrong_and_where(
     (found,) = diagnose(compare(UpdatingProblem(model, data, groups, one / 5, 5 * one, one)))
     assert kind in {each.kind for each in (found, *found.others)}
     assert text in str(found)
+
+
+@pytest.mark.slow(3)
+def test_a_reversed_sensor_beside_a_lost_cell_is_named_by_the_column_that_is_mended() -> None:
+    """All shapes lack a value and the rest moved: the column with the wrong sign is another's."""
+    names = ["k1"] * 4 + ["k2"] * 4
+    model = chain(["k1", "k2"], [1.0] * 8, [2000.0] * 8, stiffness_parameters=names)
+    modes, rng = model.modes(np.array([1.1, 0.9]), 5, derivatives=False), np.random.default_rng(3)
+    shape = modes.phi.T * (1 + 0.02 * rng.standard_normal((5, 8)))
+    shape[:, 5] *= -1
+    shape[:, 2:-1], shape[:, -1] = shape[:, 3:].copy(), np.nan
+    data, one = modal_data(modes.frequency, shape, model.sensors), np.ones(2)
+    groups = (Group("f", frequency="all"),)
+    found = diagnose(compare(UpdatingProblem(model, data, groups, one / 5, 5 * one, one)))
+    assert {(x.kind, x.subject) for x in found} == {
+        ("shifted-values", "all data"),
+        ("reversed-sensor", "floor6, all data"),
+    }

@@ -11,7 +11,7 @@ import pytest
 import scipy.sparse
 from smu import FOLDER, Structure, frequencies_and_shapes, read
 
-from modefront import ModalData, Pairing
+from modefront import ModalData, Pairing, Study
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.search import diagnose
 from modefront.linalg.affine import SparseAffine
@@ -19,7 +19,7 @@ from modefront.optim.scalarisation import weighted
 from modefront.optim.sqp import begin
 from modefront.optim.sqp import solve as descend
 from modefront.results.remarks import findings_of
-from modefront.study.check import check
+from modefront.study.check import check, excluding_bounds
 from modefront.study.file import load
 from modefront.study.session import run
 from modefront.work.task import Costs
@@ -44,18 +44,17 @@ def test_random_starts_find_the_true_concrete_frame(costs: Costs) -> None:
 def test_small_sensors_of_the_steel_bridge_that_are_reversed() -> None:
     """At ``dof887`` it lowers MAC 5 from 0.90 to 0.81: a mode must not be left out for that.
 
-    All eleven parameters of the best fit are at bounds; beyond one of them it is clearly better.
+    Eleven parameters of the most probable model are at bounds, and none of these is to blame: wider
+    ones lower no error by a tenth, which `check` and the verdict of a run judge by one measure.
     """
     problem = frequencies_and_shapes(read("steel_bridge_exp"))
-    assert [(x.kind, x.subject) for x in diagnose(compare(problem))] == [
-        ("bound", "K_Frame, lower")
-    ]
+    assert diagnose(compare(problem)) == []
+    assert excluding_bounds(Study(problem)) == ()
     for name in ("dof936", "dof818", "dof300", "dof893", "dof887", "dof886", "dof851"):
         shape = problem.data.shape.copy()
         shape[..., problem.data.sensors.index(name)] *= -1
         data = replace(problem.data, shape=shape)
-        bound, result = diagnose(compare(replace(problem, data=data)))
-        assert bound.kind == "bound"
+        (result,) = diagnose(compare(replace(problem, data=data)))
         assert f"sensor {name} is reversed in all data" in str(result)
 
 

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from modefront.diagnosis.notes import unused_groups
 from modefront.errors import InputError
 from modefront.fem.mesh import read_mesh
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
 from modefront.study.examples import write_example
 from modefront.study.file import load
+from modefront.study.kinds.mesh import unused_groups
 
 meshio = pytest.importorskip("meshio")
 

@@ -13,7 +13,16 @@ import pytest
 from click.testing import CliRunner
 from written import write
 
-from modefront import Group, ModalData, UpdatingProblem, chain, modal_data
+from modefront import (
+    Group,
+    ModalData,
+    NoisePrior,
+    Study,
+    UpdatingProblem,
+    chain,
+    modal_data,
+    updating_problem,
+)
 from modefront.cli.main import cli
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.search import diagnose
@@ -361,13 +370,20 @@ def test_a_nominal_value_off_by_a_thousand(tmp_path: Path) -> None:
     assert "the nominal value of theta2 is 1000, and the data say about 1" in str(result)
 
 
-def test_a_bound_that_excludes_what_fits() -> None:
+@pytest.mark.parametrize("weight", [4.0, 0.0])
+def test_a_bound_that_excludes_what_fits(weight: float) -> None:
+    """Nothing is said where nothing is expected of the errors, as in the verdict of a run."""
     model, structure = long_chain()
     data = modal_data(structure.frequency, structure.phi.T, model.sensors)
-    groups, unit = (Group("frequencies", frequency="all"),), np.ones(3)
-    upper = np.array([5.0, 1.2, 5.0])
-    (result,) = diagnose(compare(UpdatingProblem(model, data, groups, 0.2 * unit, upper, unit)))
-    assert "the upper bound 1.2 of k2 excludes the values that fit the data" in str(result)
+    groups, bounds = (
+        [Group("frequencies", frequency="all")],
+        dict.fromkeys(model.parameters, (0.2, 5.0)),
+    )
+    bounds["k2"] = (0.2, 1.2)
+    problem = updating_problem(model, data, groups, bounds, dict.fromkeys(bounds, 1.0))
+    said = check(Study(problem, noise=NoisePrior(weight=weight))).mistakes
+    assert [(x.kind, x.subject) for x in said] == [("bound", "k2")] * (weight > 0)
+    assert all("k2 is at its upper bound 1.2. With k2 = 2.5, errors of" in str(x) for x in said)
 
 
 def long_chain() -> tuple[MatrixModel, Modes]:

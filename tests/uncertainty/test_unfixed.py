@@ -1,11 +1,11 @@
-"""Fixed parameters that are wrong are named, and those that are right are not."""
+"""Fixed parameters and bounds that are wrong are named, and those that are right are not."""
 
 import numpy as np
 import pytest
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.uncertainty.inference import unfixed
+from modefront.uncertainty.inference import Freed, excluding, unfixed
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work.task import IMMEDIATE
@@ -67,3 +67,21 @@ def test_a_problem_without_fixed_parameters_has_no_other_model() -> None:
     groups = [mf.Group("frequencies", frequency="all")]
     problem = mf.updating_problem(model, data, groups, {"k": (0.3, 3.0)}, {"k": 1.0})
     assert problem.whole is None
+
+
+@pytest.mark.parametrize(
+    ("theta", "misfit", "less", "wrong"),
+    [
+        ([0.2, 1.0, 3.5], [1.1, 2.0], 40.0, [0, 2]),
+        ([0.4, 1.0, 3.5], [1.1, 2.0], 40.0, [2]),  # the first one turns back
+        ([0.2, 1.0, 3.5], [1.9, 2.0], 40.0, []),  # no error is a tenth less
+        ([0.2, 1.0, 3.5], [1.1, 2.0], 6.0, []),  # -2 ln p falls by no more than by chance
+    ],
+)
+def test_bounds_are_to_blame_where_wider_ones_lower_errors_beyond_chance(
+    theta: list[float], misfit: list[float], less: float, wrong: list[int]
+) -> None:
+    """Of two bounds right ones let -2 ln p fall by 7.9 in one of a hundred cases."""
+    free = Freed(np.array(theta), np.array(misfit), less)
+    sides, at = np.array([-1, 0, 1]), np.array([0.3, 1.0, 3.0])
+    assert excluding(sides, at, np.array([2.0, 2.0]), free) == wrong

@@ -70,7 +70,7 @@ def _print_modes(screen: Screen, beside: Comparison) -> None:
 
 def _print_sensors(screen: Screen, beside: Comparison, most: int | None) -> None:
     """Print the COMAC of the sensors, of many those of the worst ones."""
-    if not beside.view.has_shape.any():
+    if not (beside.view.seen.sum(axis=2) > 1).any():
         return
     values = comac(beside.view, beside.phi[:, beside.pairs.index])
     order = np.argsort(np.where(np.isnan(values), 2.0, values), kind="stable").tolist()

@@ -41,7 +41,6 @@ from modefront.linalg.affine import DenseAffine, SparseAffine
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
-from modefront.modes.result import Modes
 from modefront.pairing.match import assigned
 from modefront.rounding import ACCUMULATED
 
@@ -202,16 +201,6 @@ class Quick:
     basis: Floats | None
     count: int
 
-    def modes(self, theta: Floats, selection: scipy.sparse.csr_array | None) -> Modes | None:
-        """Return the modes at sensors; None where there are none."""
-        model = self.model
-        if isinstance(model, MatrixModel) and selection is not None:
-            rows = selection if self.basis is None else selection @ self.basis
-            model = replace(model, selection=scipy.sparse.csr_array(rows))
-        with suppress(ModelError):
-            return model.modes(theta, self.count)
-        return None
-
     def everywhere(self, theta: Floats) -> Whole | None:
         """Return the modes at all degrees of freedom; None where there are none."""
         with suppress(ModelError):
@@ -244,7 +233,12 @@ class Quick:
 
     def _linear(self, state: State, theta: Floats) -> tuple[Point, Floats, Floats] | None:
         """Return the point at ``theta`` with gradient and Gauss-Newton matrix of its cost in x."""
-        modes = self.modes(theta, state.selection)
+        modes, model = None, self.model
+        if isinstance(model, MatrixModel) and state.selection is not None:
+            rows = state.selection if self.basis is None else state.selection @ self.basis
+            model = replace(model, selection=scipy.sparse.csr_array(rows))
+        with suppress(ModelError):
+            modes = model.modes(theta, self.count)
         if modes is None or not (np.isfinite(modes.dlam).all() and np.isfinite(modes.dphi).all()):
             return None
         at, data = point(state, theta, modes.frequency, modes.phi), state.data
@@ -275,25 +269,20 @@ class Quick:
         return at, J.T @ (w * r), J.T @ (w[:, None] * J)
 
 
-def quick(
-    model: Model,
-    matrices: MatrixModel | None,
-    count: int,
-    theta: Floats,
-    bounds: tuple[Floats, Floats],
-) -> Quick:
+def quick(model: Model, matrices: MatrixModel | None, count: int, state: State) -> Quick:
     """Return a model that is quickly solved: a large one in the space of modes at some parameters.
 
-    ``matrices`` are those that the model has at ``theta``, ``bounds`` those of the parameters.
+    ``matrices`` are those that the model has at the nominal parameters of ``state``.
     """
     if matrices is None or matrices.size <= max(LARGE, 4 * count):
         return Quick(model if matrices is None else matrices, None, count)
     rng = np.random.default_rng(0)
-    factors = np.exp(rng.uniform(-OFF, OFF, (SAMPLES, theta.size)) * 2)
-    shapes = [matrices.full_modes(theta, count).Phi]
+    factors = np.exp(rng.uniform(-OFF, OFF, (SAMPLES, state.start.size)) * 2)
+    shapes = [matrices.full_modes(state.start, count).Phi]
     for factor in factors:
         with suppress(ModelError):
-            shapes.append(matrices.full_modes(np.clip(theta * factor, *bounds), count).Phi)
+            theta = np.clip(state.start * factor, state.lower, state.upper)
+            shapes.append(matrices.full_modes(theta, count).Phi)
     V, size, _ = np.linalg.svd(np.hstack(shapes), full_matrices=False)
     V = V[:, size > 1e-7 * size[0]]
     K, M = (_projected(A, V) for A in (matrices.stiffness, matrices.mass))

@@ -183,11 +183,6 @@ class Measured:
             total += float(np.log(unit[several]) @ weight)
         return total
 
-    @property
-    def has_shape(self) -> Bools:
-        """Which modes have a shape at two sensors at least, shape (modes,)."""
-        return np.asarray((self.seen.sum(axis=2) > 1).any(axis=0))
-
 
 def measured(data: ModalData) -> Measured:
     """Return the modes of ``data`` as arrays."""

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import combinations
+from functools import lru_cache
+from itertools import combinations, pairwise
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.diagnosis.comparison import Comparison, compare, of_few_sets
-from modefront.diagnosis.evidence import Point, Quick, State, Whole, places, point, point_of, quick
-from modefront.diagnosis.mistakes import sensors, sets, values
+from modefront.diagnosis.evidence import Point, State, Whole, places, point, point_of, quick
+from modefront.diagnosis.mistakes import sensors, values
 from modefront.diagnosis.mistakes.record import TRIED, Mistake, Setting
 from modefront.findings.record import Finding, found
 from modefront.pairing.match import match
@@ -21,11 +21,14 @@ CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
 BEAM, FITTED, VARIANTS, MOST = 6, 10, 2, 8
-"""Explanations that are extended at a time, claims by which each is, mistakes of a claim that are
-fitted, and most mistakes."""
+"""Single mistakes to which others are added, claims by which each explanation is extended, mistakes
+of a claim that are fitted, and most mistakes."""
 
 FOLLOWED = 2
 """Steps of a fit after which mistakes that move the parameters are compared with others."""
+
+KEPT = 16
+"""Models that are kept, as many explanations are compared at the same parameters."""
 
 EITHER = 3
 """Explanations that the data cannot tell apart and that are named nevertheless, at most."""
@@ -33,14 +36,17 @@ EITHER = 3
 WINDOW = 1.5
 """Window of frequencies that is advised."""
 
+LEFT = 1.0
+"""Difference of costs that fits leave."""
+
 SEEN = 0.02
 """Increase of a MAC value that is worth its name."""
 
 MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
     values.frequency_factor,
     values.other_quantity,
-    sets.set_factor,
-    sets.other_numbers,
+    values.set_factor,
+    values.other_numbers,
     sensors.wrong_factor,
     sensors.exchanged_sensors,
     sensors.copied_sensor,
@@ -50,12 +56,12 @@ MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
     sensors.wrong_place,
     values.wrong_nominal_value,
     values.excluding_bound,
-    sets.odd_frequency,
-    sets.odd_shape,
+    values.odd_frequency,
+    values.odd_shape,
     values.wrong_frequency,
     values.damping_in_percent,
-    sets.foreign_mode,
-    sets.later_mode,
+    values.foreign_mode,
+    values.later_mode,
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
 
@@ -76,37 +82,42 @@ class Explanation:
         """What is claimed."""
         return frozenset(each.claim for each in self.mistakes)
 
+    @property
+    def is_ordered(self) -> bool:
+        """Whether values are moved back to their sensors first, so that others name these."""
+        return not any(b.moves > a.moves for a, b in pairwise(self.mistakes))
+
+    @property
+    def key(self) -> tuple[frozenset[tuple[str, ...]], bool]:
+        """What tells the explanation from others."""
+        return frozenset(each.variant for each in self.mistakes), self.is_ordered
+
 
 @dataclass(eq=False)
 class Search:
     """Explanations of a comparison: those ``known`` were fitted, those ``extended`` also added to.
 
-    Of explanations with the same claims, the best one is kept; ``plain`` are data and model as they
-    are.
+    Each is kept with its best fit; ``plain`` are data and model as they are.
     """
 
     comparison: Comparison
-    model: Quick
-    plain: State
-    known: dict[Claims, Explanation] = field(default_factory=dict)
-    extended: set[Claims] = field(default_factory=set)
+    known: dict[object, Explanation] = field(default_factory=dict)
+    extended: set[object] = field(default_factory=set)
 
-    @classmethod
-    def of(cls, comparison: Comparison) -> Search:
-        """Return the search that begins with a comparison."""
-        problem, matrices = comparison.problem, comparison.matrices
-        count = min(problem.model.size, comparison.frequency.size)
-        bounds = problem.lower, problem.upper
-        plain = State(
-            comparison.view,
+    def __post_init__(self) -> None:
+        problem, matrices = self.comparison.problem, self.comparison.matrices
+        count = min(problem.model.size, self.comparison.frequency.size)
+        self.plain = State(
+            self.comparison.view,
             np.zeros(len(problem.data.modes), dtype=bool),
-            comparison.candidates,
+            self.comparison.candidates,
             None if matrices is None else matrices.selection,
             None if matrices is None else places(matrices),
-            problem.start,
-            *bounds,
+            *(problem.start, problem.lower, problem.upper),
         )
-        return cls(comparison, quick(problem.model, matrices, count, problem.start, bounds), plain)
+        self.model = quick(problem.model, matrices, count, self.plain)
+        solve = self.model.everywhere
+        self.whole = lru_cache(KEPT)(lambda theta: solve(np.frombuffer(theta)))
 
     def fitted(self, mistakes: Sequence[Mistake], starts: Sequence[Floats]) -> Explanation | None:
         """Return the explanation by some mistakes, after a fit from the best of some parameters."""
@@ -120,88 +131,78 @@ class Search:
             return None
         cost = at.cost + sum(each.price for each in mistakes)
         new = Explanation(tuple(mistakes), state, at, cost)
-        self.known[new.claims] = min(
-            self.known.get(new.claims, new), new, key=lambda each: each.cost
-        )
-        return self.known[new.claims]
+        known = self.known.setdefault(new.key, new)
+        if new.cost < known.cost:
+            self.known[new.key] = new
+        return self.known[new.key]
 
     def _cost(self, state: State, theta: Floats) -> float:
         """Return the cost of a state at parameters; infinite where the model has no modes."""
-        whole = self.model.everywhere(theta)
+        whole = self.whole(theta.tobytes())
         return np.inf if whole is None else point_of(state, whole).cost
 
-    def extend(self, old: Explanation) -> list[Explanation]:
-        """Return the most promising explanations with a mistake more, after a fit of each."""
-        if old.claims in self.extended:
-            return []
-        self.extended.add(old.claims)
+    def extend(self, old: Explanation) -> None:
+        """Fit the most promising explanations with a mistake more."""
+        if old.key in self.extended:
+            return
+        self.extended.add(old.key)
         thetas = [old.point.theta] if old.mistakes else [old.state.start, old.point.theta]
-        wholes = [x for theta in thetas if (x := self.model.everywhere(theta)) is not None]
+        wholes = [x for theta in thetas if (x := self.whole(theta.tobytes())) is not None]
         points = [point_of(old.state, whole) for whole in wholes]
         names, parameters = self.comparison.data, self.comparison.problem.model.parameters
         setting = Setting(old.state, wholes, points, names, parameters)
-        promising: list[tuple[float, int, Mistake]] = []
-        for find in MISTAKES:
-            for one in find(setting):
-                if one.claim not in old.claims:
-                    cost = self._screened(one.change(old.state), old.state, wholes) + one.price
-                    promising.append((cost, len(promising), one))
-        count: Counter[tuple[str, ...]] = Counter()
-        added: list[tuple[Mistake, ...]] = []
-        firsts: dict[tuple[str, ...], Mistake] = {}
-        for _, _, one in sorted(self._followed(promising, old.state, wholes)):
-            firsts.setdefault(one.claim, one)
-            count[one.claim] += 1
-            if count[one.claim] <= VARIANTS and len(count) <= FITTED:
-                added.append((one,))
+        found = [one for find in MISTAKES for one in find(setting) if one.claim not in old.claims]
+        screened = [self._screened((one,), old.state, wholes) for one in found]
+        # Others have made up for a wrong parameter: what it costs where they are says little.
+        order = np.argsort(screened, kind="stable").tolist()
+        moved = [k for k in order if found[k].change(old.state).start is not old.state.start]
+        for k in moved[:TRIED]:
+            screened[k] = self._screened((found[k],), old.state, wholes, FOLLOWED)
+        claims: dict[tuple[str, ...], list[Mistake]] = {}
+        for k in np.argsort(screened, kind="stable").tolist():
+            claims.setdefault(found[k].claim, []).append(found[k])
+        some = list(claims.values())
+        added: list[tuple[Mistake, ...]] = [
+            (one,) for variants in some[:FITTED] for one in variants[:VARIANTS]
+        ]
         if not old.mistakes:
-            pairs = list(combinations(list(firsts.values())[:TRIED], 2))
-            costs = [
-                self._screened(b.change(a.change(old.state)), old.state, wholes) + a.price + b.price
-                for a, b in pairs
-            ]
+            pairs = list(combinations([variants[0] for variants in some[:TRIED]], 2))
+            costs = [self._screened(pair, old.state, wholes) for pair in pairs]
             added += [pairs[k] for k in np.argsort(costs, kind="stable")[:FITTED]]
-        out = [self.fitted((*old.mistakes, *new), [old.point.theta]) for new in added]
-        return [each for each in out if each is not None]
+        for new in added:
+            self.fitted((*old.mistakes, *new), [old.point.theta])
 
-    def _screened(self, new: State, old: State, wholes: Sequence[Whole]) -> float:
-        """Return the least cost of a state at the parameters that are at hand."""
-        if new.start is not old.start:
-            return min(self._cost(new, new.theta(old.x(whole.theta))) for whole in wholes)
-        return min(point_of(new, whole).cost for whole in wholes)
-
-    def _followed(
-        self, screened: list[tuple[float, int, Mistake]], old: State, wholes: Sequence[Whole]
-    ) -> list[tuple[float, int, Mistake]]:
-        """Return mistakes with their costs, after some steps where they move the parameters.
-
-        The others have made up for a wrong one, so what it costs where they are says little.
-        """
-        out, followed = [], 0
-        for cost, place, one in sorted(screened):
-            new = one.change(old)
-            if new.start is not old.start and followed < TRIED:
-                followed += 1
-                thetas = [new.theta(old.x(whole.theta)) for whole in wholes]
-                best = min(thetas, key=lambda theta: self._cost(new, theta))
-                at = self.model.fit(new, best, FOLLOWED)
-                cost = cost if at is None else at.cost + one.price
-            out.append((cost, place, one))
-        return out
+    def _screened(
+        self, mistakes: Sequence[Mistake], old: State, wholes: Sequence[Whole], steps: int = 0
+    ) -> float:
+        """Return the least cost without more mistakes, at parameters at hand or some steps away."""
+        new = old
+        for each in mistakes:
+            new = each.change(new)
+        price = sum(each.price for each in mistakes)
+        if new.start is old.start:
+            return min(point_of(new, whole).cost for whole in wholes) + price
+        thetas = [new.theta(old.x(whole.theta)) for whole in wholes]
+        costs = [self._cost(new, theta) for theta in thetas]
+        k = int(np.argmin(costs))
+        at = self.model.fit(new, thetas[k], steps) if steps else None
+        return (costs[k] if at is None else at.cost) + price
 
     def best(self) -> Explanation | None:
         """Return the best explanation, by extending the best ones, and by leaving mistakes out."""
         plain = self.fitted((), [])
         if plain is None:
             return None
-        beam = [plain]
-        for width in (BEAM, *[1] * (MOST - 1)):
-            least, fits = min((old.cost, old.point.cost) for old in beam)
-            children = {each.claims: each for old in beam for each in self.extend(old)}
-            better = [each for each in children.values() if each.point.cost < fits - 1]
-            beam = sorted(better, key=lambda each: each.cost)[:width]
-            if not beam or (width == 1 and beam[0].cost > least):
+        self.extend(plain)
+        least = plain.cost
+        for size in range(1, MOST + 1):
+            of_size = [x for x in self.bests().values() if len(x.mistakes) == size]
+            level = [x for x in of_size if x.point.cost < plain.point.cost - LEFT]
+            if size > 1 and not (level and level[0].cost <= least):
                 break
+            least = min([least, *(each.cost for each in level[:1])])
+            for each in level[: BEAM if size == 1 else 1]:
+                self.extend(each)
         while True:
             best = min(self.known.values(), key=lambda each: each.cost)
             theta = [best.point.theta]
@@ -215,25 +216,36 @@ class Search:
                 if self._cost(each.state, inside) < each.point.cost:
                     self.fitted(each.mistakes, theta)
             if min(each.cost for each in self.known.values()) >= best.cost:
-                return best
+                break
+        ordered = {key: each for key, each in self.known.items() if each.is_ordered}
+        first = min(ordered.values(), key=lambda each: each.cost)
+        if first.cost > best.cost + LEFT:
+            return best
+        self.known = ordered
+        return first
+
+    def bests(self) -> dict[Claims, Explanation]:
+        """Return the best explanation of each set of claims, the best one first."""
+        out: dict[Claims, Explanation] = {}
+        for each in sorted(self.known.values(), key=lambda each: each.cost):
+            out.setdefault(each.claims, each)
+        return out
 
     def named(self, best: Explanation) -> dict[Mistake, Finding]:
         """Return the mistakes of the best explanation without which no other one comes near it.
 
         Another one is no rival that has more mistakes and fits no better: all sensors but one
-        reversed are the same as that one, as a mode shape has no sign.
+        reversed are the same as that one, as a mode shape has no sign. Bounds only explain here:
+        whether one is to blame is judged as in a run.
         """
-        out = {}
-        for one in best.mistakes:
-            rivals = [
-                each
-                for each in self.known.values()
-                if one.claim not in each.claims
-                and (
-                    len(each.mistakes) <= len(best.mistakes)
-                    or each.point.cost <= best.point.cost - 1
-                )
-            ]
+        out, bests, most = {}, self.bests(), best.point.cost - LEFT
+        serious = [
+            each
+            for each in bests.values()
+            if len(each.mistakes) <= len(best.mistakes) or each.point.cost <= most
+        ]
+        for one in [each for each in best.mistakes if each.kind != "bound"]:
+            rivals = [each for each in serious if one.claim not in each.claims]
             near = [each for each in rivals if each.cost - best.cost < CLEAR]
             rest = best.claims - {one.claim}
             swaps = [
@@ -241,7 +253,7 @@ class Search:
                 for each in near
                 if each.claims > rest and len(each.claims) == len(best.claims)
                 for other in each.mistakes
-                if other.claim not in rest
+                if other.claim not in rest and other.kind != "bound"
             ]
             alike = {other.claim for other in swaps}
             if len(swaps) >= EITHER or not all(each.claims & alike for each in near):
@@ -250,7 +262,7 @@ class Search:
             out[one] = replace(
                 one.finding,
                 others=tuple(other.finding for other in swaps),
-                evidence=self._evidence(self.known.get(rest, self.known[frozenset()]), best),
+                evidence=self._evidence(bests.get(rest, bests[frozenset()]), best),
                 gain=float(gain - best.cost),
             )
         return out
@@ -272,7 +284,7 @@ def diagnose(comparison: Comparison) -> list[Finding]:
     Pairs are looked at without these mistakes.
     """
     comparison = of_few_sets(comparison)
-    search = Search.of(comparison)
+    search = Search(comparison)
     best = search.best()
     if best is None:
         return []

@@ -54,8 +54,8 @@ wrong-place | sensor {sensor} fits the data at {place} and not at {given}{too}; 
     {sensor} was in the test, and write its place in [model.sensors]
 nominal-value | the nominal value of {name} is {given:.4g}, and the data say about {better:.4g};
     check the unit of {name}, its nominal value and its bounds
-bound | the {side} bound {bound:.4g} of {name} excludes the values that fit the data; widen the
-    bounds of {name}, or find what else differs between model and structure
+bound | {at}. With {where}, errors of {group} are {after:.2g} of those expected instead of
+    {before:.2g}; widen {its} bounds, or ask what the model lacks
 odd-frequency | {who} in the frequency of mode {mode}: {f:.5g} and {other:.5g} Hz, {percent:+.1f}
     %; {look} value
 odd-shape | {who} in the shape of mode {mode}; {look} shape
@@ -216,8 +216,6 @@ not-judged | How sure it is, or whether to use no model, is not judged with weig
 lacks | They are larger than noise: the model lacks something.
 at-bound | {at}: widen {it}, or ask what the model lacks.
 at-harmless-bound | {at}: wider bounds lower no errors by more than {gain:.0f} %.
-at-wrong-bound | {at}. With {where}, errors of {group} are {after:.2g} of those expected instead of
-    {before:.2g}: widen {its} bounds, or ask what the model lacks.
 wrong-fixed | With {name} = {value:.3g}, which is fixed, errors of {group} are {after:.2g} of those
     expected instead of {before:.2g}: write fixed = false in its [[parameter]].
 assumed | Assumed: {assumed}; say yours in [noise].

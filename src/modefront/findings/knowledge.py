@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.findings.record import Finding, found
 from modefront.identifiability.combinations import NONE, WEAK, Combination, pairs
 from modefront.identifiability.scale import Scale
 from modefront.identifiability.sparse import SAME, sparse_basis
 from modefront.residuals.groups import Group
+from modefront.uncertainty.inference import Freed, excluding
 
 PARTS, NAMED, TOGETHER, SHOWN = 5, 20, 3, 3
 """Numbers of what is named one by one, at most: parameters of a combination, parameters that change
@@ -46,12 +47,6 @@ def measured_noun(groups: Sequence[Group]) -> str:
     return kinds.pop() if len(kinds) == 1 else "residual"
 
 
-def determined(combinations: Sequence[Combination]) -> tuple[int, int]:
-    """Return how many combinations are determined, and how many of those only weakly."""
-    shares = np.array([combination.share for combination in combinations])
-    return int((shares > NONE).sum()), int(((shares > NONE) & (shares < WEAK)).sum())
-
-
 # 8 arguments: the data, what they determine, and how the sentence begins.
 def summary(
     subject: str,
@@ -69,11 +64,11 @@ def summary(
     parameters without effect on any data, which are left out. Without a ``scale``, changes are
     relative to the parameters. ``where`` begins the sentence.
     """
-    rank, weak = determined(combinations)
+    rank = sum(each.share > NONE for each in combinations)
+    hardly = [each for each in combinations if NONE < each.share < WEAK]
     p = len(names) - len(idle)
     text = " that have an effect" if idle else ""
-    if weak:
-        hardly = [each for each in combinations if NONE < each.share < WEAK]
+    if hardly:
         parts = list(dict.fromkeys(in_words(each, names) for each in hardly[::-1]))
         text += f", and say little about {_listed(parts)}"
     if rank < p:
@@ -198,3 +193,37 @@ def _named(members: Sequence[int], ratio: Floats, names: Sequence[str]) -> str:
     most = sorted(np.argsort(-np.abs(ratio), kind="stable")[:PARTS].tolist())
     named = enumeration([names[members[i]] for i in most])
     return f"{len(members)} parameters, {'among them' if _equal(ratio) else 'most of all'} {named},"
+
+
+def held(names: Sequence[str], sides: Ints, theta: Floats) -> str:
+    """Return which bounds hold a model theta (p,), from ``sides`` (p,) as of `at_bounds`."""
+    which = {1: "upper", -1: "lower"}
+    some = np.flatnonzero(sides).tolist()
+    said = [f"{names[j]} is at its {which[int(sides[j])]} bound {theta[j]:.4g}" for j in some]
+    return enumeration(said, SHOWN)
+
+
+# 6 arguments: whose bounds they are, the most probable model, and that between wider ones.
+def bound(
+    names: Sequence[str],
+    groups: Sequence[str],
+    sides: Ints,
+    theta: Floats,
+    misfit: Floats,
+    free: Freed,
+) -> Finding | None:
+    """Return which bounds exclude what fits the data; None where none does. See `excluding`."""
+    wrong = excluding(sides, theta, misfit, free)
+    if not wrong:
+        return None
+    i = int(np.argmax(misfit - free.misfit))
+    return found(
+        "bound",
+        enumeration([names[j] for j in wrong]),
+        at=held(names, sides, theta),
+        where=enumeration([f"{names[j]} = {free.theta[j]:.3g}" for j in wrong], SHOWN),
+        group=str(groups[i]),
+        after=float(free.misfit[i]),
+        before=float(misfit[i]),
+        its="its" if len(wrong) == 1 else "their",
+    )

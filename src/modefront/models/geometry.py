@@ -15,6 +15,11 @@ from modefront.fem.structure import Cells as Cells
 from modefront.linalg.affine import sparse_rows
 from modefront.text import brief
 
+ALONG = 0.99
+"""Component of a direction from which on it is one along an axis."""
+
+SIX = ("x", "y", "z", "rx", "ry", "rz")
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Geometry:
@@ -69,3 +74,11 @@ def chain_geometry(masses: int, sensors: scipy.sparse.csr_array) -> Geometry:
     directions = np.zeros((len(weights), 3))
     directions[:, 0] = np.sign(weights[np.arange(len(weights)), greatest])
     return Geometry(nodes, (Cells("chain", "line", lines),), motion, greatest + 1, directions)
+
+
+def axis_name(direction: Floats) -> str:
+    """Return a direction, (3,) or (6,), in words: an axis with its sign, or a vector."""
+    greatest = int(np.argmax(np.abs(direction)))
+    if abs(direction[greatest]) > ALONG:
+        return ("-" if direction[greatest] < 0 else "") + SIX[greatest]
+    return "(" + ", ".join(f"{x:.2g}" for x in direction[:3]) + ")"

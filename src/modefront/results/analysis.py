@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -244,9 +245,10 @@ def with_intervals(data: xr.Dataset, inference: Inference) -> xr.Dataset:
         "candidate_sensor": list(fit.candidates.sensor),
         "candidate_gain": fit.candidates.gain,
     }
+    attributes: dict[str, Any] = {"assumed": inference.assumed, "settled": int(draws.settled)}
     if freed is not None:
         values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
-    attributes = {"assumed": inference.assumed, "settled": int(draws.settled)}
+        attributes["freed_less"] = freed.less
     if unfixed is not None:
         attributes |= {"fixed_parameter": unfixed.name, "fixed_value": unfixed.value}
         values["unfixed_misfit"] = unfixed.misfit

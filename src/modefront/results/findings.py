@@ -14,7 +14,6 @@ from modefront.analysis.manifold import Extent, Manifold
 from modefront.findings.knowledge import (
     PARTS,
     alike,
-    determined,
     enumeration,
     measured_noun,
     no_effect,
@@ -23,6 +22,7 @@ from modefront.findings.knowledge import (
 from modefront.findings.record import Finding, as_text, found, in_order
 from modefront.front.front import Front
 from modefront.front.point import Kind, label, of_kind
+from modefront.identifiability.combinations import WEAK
 from modefront.optim.problem import AT_BOUND
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Determination, Values
@@ -95,7 +95,8 @@ def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iter
     for i, (name, combinations) in enumerate(reference.combinations):
         whole = i == len(groups)
         noun = measured_noun(groups if whole else [groups[i]])
-        full = determined(combinations) == (len(names) - len(reference.idle), 0)
+        known = sum(each.share >= WEAK for each in combinations)
+        full = known == len(names) - len(reference.idle)
         kind = "determined" if full else "all-data" if whole else "group-data"
         of = (reference.scale, reference.idle)
         yield summary(name, noun, combinations, names, *of, kind=kind, where=where)

@@ -16,21 +16,15 @@ import xarray as xr
 
 from modefront._typing import Floats
 from modefront.findings.catalogue import VERDICT
-from modefront.findings.knowledge import enumeration
+from modefront.findings.knowledge import SHOWN, bound, enumeration, held
 from modefront.front.point import Kind, front_points, preferred
 from modefront.predictions.base import predictions_in
 from modefront.results.analysis import TRUST
 from modefront.results.remarks import fit_of
-from modefront.uncertainty.inference import LARGE, WORSE, refused
+from modefront.uncertainty.inference import GAIN, LARGE, WORSE, Freed, refused
 
 SMALL = 0.5
 """Change of errors along a front, over those expected, below which the compromise hardly counts."""
-
-GAIN = 0.1
-"""Share of its errors that a group loses without bounds, from which these are worth widening."""
-
-NAMED = 3
-"""Parameters and groups of a kind that are named."""
 
 LINES, COLUMNS = 11, 78
 """Lines of the first answer, of which each has so many columns: a dozen with the title."""
@@ -58,7 +52,7 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     said += [_say("assumed", assumed=assumed)] if assumed else []
     said += _pairs(data)
     if why:
-        said.insert(0, _say("do-not-use", why=enumeration(why, NAMED)))
+        said.insert(0, _say("do-not-use", why=enumeration(why, SHOWN)))
         data = data.assign_attrs(reference="")
     else:
         if not data.attrs.get("settled", 1):
@@ -77,7 +71,7 @@ def _unjudged(data: xr.Dataset) -> Iterator[str]:
     error, before = (data["error"].values[x][0] for x in (chosen, nominal))
     worse = [_say("worse", group=x) for x in data["group"].values[error > WORSE * before]]
     if worse:
-        yield _say("bought", why=enumeration(worse, NAMED))
+        yield _say("bought", why=enumeration(worse, SHOWN))
     yield _say("not-judged")
 
 
@@ -107,39 +101,28 @@ def refusals(groups: Sequence[str], misfit: Floats, nominal: Floats) -> list[str
 def _use(data: xr.Dataset) -> str:
     """Return that the reference can be used, and how well it fits."""
     misfit, groups = data["misfit"].values, data["group"].values
-    worst = np.argsort(-misfit) if misfit.size > NAMED else np.arange(misfit.size)
-    size = enumeration([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], NAMED)
+    worst = np.argsort(-misfit) if misfit.size > SHOWN else np.arange(misfit.size)
+    size = enumeration([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], SHOWN)
     use = _say("use", reference=data.attrs["reference"], errors=size)
     return f"{use} {_say('lacks')}" if (misfit > LARGE).any() else use
 
 
 def _at_bounds(data: xr.Dataset) -> Iterator[str]:
-    best, names = _row(data, Kind.MOST_PROBABLE), data["parameter"].values
-    sides, values = best["at_bound"].values, best["theta"].values
-    held = np.flatnonzero(sides).tolist()
-    if not held:
+    best = _row(data, Kind.MOST_PROBABLE)
+    names, groups = (list(map(str, data[name].values)) for name in ("parameter", "group"))
+    sides, theta = best["at_bound"].values, best["theta"].values
+    if not sides.any():
         return
-    which = {1: "upper", -1: "lower"}
-    said = [f"{names[j]} is at its {which[int(sides[j])]} bound {values[j]:.4g}" for j in held]
-    at = enumeration(said, NAMED)
+    at = held(names, sides, theta)
     if "freed_theta" not in data:
-        yield _say("at-bound", at=at, it="it" if len(held) == 1 else "them")
+        yield _say("at-bound", at=at, it="it" if np.count_nonzero(sides) == 1 else "them")
         return
-    free, before, after = (data[name].values for name in ("freed_theta", "misfit", "freed_misfit"))
-    beyond = [j for j in held if sides[j] * (free[j] - values[j]) > 0]
-    i = int(np.argmax(before - after))
-    if not beyond or before[i] - after[i] < GAIN * before[i]:
+    free = Freed(data["freed_theta"].values, data["freed_misfit"].values, data.attrs["freed_less"])
+    wrong = bound(names, groups, sides, theta, data["misfit"].values, free)
+    if wrong is None:
         yield _say("at-harmless-bound", at=at, gain=100 * GAIN)
-        return
-    yield _say(
-        "at-wrong-bound",
-        at=at,
-        where=enumeration([f"{names[j]} = {free[j]:.3g}" for j in beyond], NAMED),
-        group=data["group"].values[i],
-        after=after[i],
-        before=before[i],
-        its="its" if len(beyond) == 1 else "their",
-    )
+    else:
+        yield f"{wrong}."
 
 
 def _fixed(data: xr.Dataset) -> Iterator[str]:
@@ -175,7 +158,7 @@ def _parameters(data: xr.Dataset) -> Iterator[str]:
             f"{data['parameter'].values[j]} {_interval(theta[j], low[j], high[j])}" for j in own
         ]
         if own:
-            yield _say(trust, parameters=enumeration(parts, NAMED))
+            yield _say(trust, parameters=enumeration(parts, SHOWN))
 
 
 def _interval(value: float, low: float, high: float) -> str:
@@ -235,7 +218,7 @@ def _next(data: xr.Dataset) -> Iterator[str]:
         yield _say("measure", what=what, name=name, gain=100 * gain[c])
     lines = _closed(data["parameter"].values.tolist(), data["sample_theta"].values, trust.tolist())
     if lines:
-        yield _say("leave-open-less", lines=enumeration(lines, NAMED))
+        yield _say("leave-open-less", lines=enumeration(lines, SHOWN))
 
 
 def _closed(names: Sequence[str], samples: Floats, trust: Sequence[str]) -> list[str]:

@@ -29,6 +29,7 @@ from modefront.errors import Fault, ModelError, refuse
 from modefront.findings.knowledge import (
     SHOWN,
     alike,
+    bound,
     enumeration,
     in_words,
     measured_noun,
@@ -49,11 +50,13 @@ from modefront.identifiability.scale import scale_at
 from modefront.inputs import available_memory
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel
-from modefront.optim.problem import Evaluation
+from modefront.optim.problem import Evaluation, at_bounds
 from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import TINY
 from modefront.study.definition import Study
+from modefront.uncertainty.inference import freed
+from modefront.uncertainty.most_probable import maximum
 
 AGREEMENT = 1e-5
 """Greatest relative error of derivatives that finite differences explain."""
@@ -148,10 +151,12 @@ def check(study: Study) -> Findings:
         refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
         nominal, beside = problem.evaluate(problem.start), compare(problem)
         mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
+        spoilt = any(each.kind not in HARMLESS for each in mistakes)
+        mistakes += () if spoilt else excluding_bounds(study)
         agreement = compared(problem)
         agrees = agreement.error <= AGREEMENT
         known, left_open = determined(problem, nominal)
-        if spoilt := any(each.kind not in HARMLESS for each in mistakes):
+        if spoilt:
             left_open = [each for each in left_open if each.kind == "no-effect"]
         derivatives = found(
             "derivatives",
@@ -169,6 +174,24 @@ def check(study: Study) -> Findings:
             sensitivities(problem),
             spoilt,
         )
+
+
+def excluding_bounds(study: Study) -> tuple[Finding, ...]:
+    """Return the bounds that exclude what fits the data, if any, as the verdict of a run does.
+
+    The most probable model is the one to which the nominal one leads.
+    """
+    problem = study.problem
+    noise = study.noise.of(problem, study.uncertainty.of(problem.data))
+    if noise is None:
+        return ()
+    best = maximum(noise, problem.start)
+    if not best.converged or (free := freed(noise, best.theta)) is None:
+        return ()
+    sides = at_bounds(best.theta, problem.lower, problem.upper)
+    of = problem.model.parameters, problem.objectives
+    wrong = bound(*of, sides, best.theta, noise.over_expected(best.J[:-1]), free)
+    return () if wrong is None else (wrong,)
 
 
 def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[Finding]:

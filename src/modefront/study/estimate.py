@@ -31,14 +31,11 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
 from modefront.uncertainty.most_probable import STARTS as MAXIMA
 from modefront.uncertainty.sampling import DRAWS, extent
-from modefront.work.progress import Plan, Span
+from modefront.work.progress import Plan, Span, together
 from modefront.work.task import seed_sequence, uncounted
 
 NEAR = 0.4, 2.0
 """Time of a search from a known model over that of one from anywhere, from and to."""
-
-MINIMA = 1, USUAL
-"""Minima of a group or of given weights, from and to: as many as starts cover the box together."""
 
 SHORT = 30.0
 """Seconds up to which no advice on a shorter run is given."""
@@ -72,8 +69,7 @@ class Estimate:
     @property
     def range(self) -> Span:
         """Seconds in all, by one process."""
-        least, most = self.plan.seconds
-        return least + self.start[0], most + self.start[1]
+        return together([self.plan.seconds, self.start])
 
     @property
     def text(self) -> str:
@@ -194,8 +190,8 @@ def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
 
     n, pareto, points = len(study.problem.groups), study.pareto, _points(study)
     edges, budget = n + len(study.weighted) + 1, study.search.evaluations / evaluations
-    # The starts after which w(w + 1) / N(N - 1) is the doubt.
-    few, many = ((1 + np.sqrt(1 + 4 * w * (w + 1) / study.search.doubt)) / 2 for w in MINIMA)
+    # The starts N after which w(w + 1) / N(N - 1) is the doubt, of one minimum and of usual ones.
+    few, many = ((1 + np.sqrt(1 + 4 * w * (w + 1) / study.search.doubt)) / 2 for w in (1, USUAL))
     text = f"fewer evaluations of the search ([search] evaluations, now {study.search.evaluations})"
     out = {"edges": ((float(min(few * edges, budget)), float(min(many * edges, budget))), text)}
     if pareto.method in ("nbi", "weights"):

@@ -13,7 +13,6 @@ from modefront._typing import Floats
 from modefront.data.csv import read_csv
 from modefront.data.modal import ModalData
 from modefront.data.uff import NodalModes, is_universal, read_uff55
-from modefront.diagnosis.notes import axis_name
 from modefront.errors import InputError, reason, suggestion
 from modefront.families import Family
 from modefront.fem.check import unit_vector
@@ -21,7 +20,7 @@ from modefront.fem.section import FemError
 from modefront.findings.record import found
 from modefront.inputs import file_size, wrong
 from modefront.models.base import Model
-from modefront.models.geometry import Geometry
+from modefront.models.geometry import Geometry, axis_name
 from modefront.models.matrices import MatrixModel
 from modefront.options import NAME, Requirement, Table, any_of, closed, keys, text, whole
 

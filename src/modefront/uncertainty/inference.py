@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtri
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools, Floats, Ints
 from modefront.optim.problem import at_bounds
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.most_probable import maximum
@@ -25,7 +25,7 @@ from modefront.work.codec import record
 from modefront.work.task import Executor, Task
 
 CHANCE = 0.01
-"""Probability that a fixed parameter is named where all of them are right."""
+"""Probability that a fixed parameter, or a bound, is named where all of them are right."""
 
 LARGE, FAR = 2.0, 10.0
 """Errors over those expected, from which they are said to be larger, and from which no model is
@@ -36,6 +36,9 @@ WORSE = 1.1
 
 TRIED = 3
 """Fixed parameters that are tried at most."""
+
+GAIN = 0.1
+"""Share of its errors that a group loses without bounds, from which these are worth widening."""
 
 
 @record
@@ -145,10 +148,11 @@ def infer(
     """
     theta = maxima[0]
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
+    (free,) = work.run([Task(("most-probable", "freed"), freed, (noise, theta))])
     return Inference(
         draw_models(noise, maxima, count, seed, work, 1 if fit.is_refused else None),
         fit,
-        freed(noise, theta, work),
+        free,
         unfixed(noise, theta, fit.misfit, work),
         prior_widths(noise.problem),
         noise.assumed,
@@ -163,7 +167,7 @@ def _fit(noise: NoiseModel, theta: Floats) -> Fit:
     return Fit(misfit, before, found.quantities["paired_mode"], candidates(noise, found))
 
 
-def freed(noise: NoiseModel, theta: Floats, work: Executor) -> Freed | None:
+def freed(noise: NoiseModel, theta: Floats) -> Freed | None:
     """Return the most probable model without the bounds that hold theta (p,).
 
     None where no bound holds it, and where the search without them does not converge.
@@ -178,11 +182,19 @@ def freed(noise: NoiseModel, theta: Floats, work: Executor) -> Freed | None:
         lower=np.where(sides < 0, wider_lower, lower),
         upper=np.where(sides > 0, wider_upper, upper),
     )
-    (found,) = work.run(
-        [Task(("most-probable", "freed"), _freed, (replace(noise, problem=problem), theta))]
-    )
-    out: Freed | None = found
-    return out
+    return _lower(replace(noise, problem=problem), theta)
+
+
+def excluding(sides: Ints, theta: Floats, misfit: Floats, free: Freed) -> list[int]:
+    """Return the parameters whose bounds ``sides`` (p,), see `at_bounds`, exclude what fits.
+
+    None unless -2 ln p becomes less without bounds by more than right ones may, and the errors of a
+    group, which are ``misfit`` (n,) at the model theta (p,), by a tenth.
+    """
+    beyond = np.flatnonzero(sides * (free.theta - theta) > 0).tolist()
+    i = int(np.argmax(misfit - free.misfit))
+    is_chance = free.less < chdtri(1, CHANCE / np.count_nonzero(sides))
+    return [] if is_chance or misfit[i] - free.misfit[i] < GAIN * misfit[i] else beyond
 
 
 def unfixed(noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor) -> Unfixed | None:
@@ -206,7 +218,7 @@ def unfixed(noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor) ->
     for k, name in enumerate(tried):
         one = replace(noise, problem=problem.with_free([name]))
         start = _placed(one, known, theta)
-        tasks.append(Task(("most-probable", "unfixed", k + 1), _freed, (one, start)))
+        tasks.append(Task(("most-probable", "unfixed", k + 1), _lower, (one, start)))
     found = [(x, name) for x, name in zip(work.run(tasks), tried, strict=True) if x is not None]
     best, name = max(found, key=lambda x: x[0].less, default=(None, ""))
     if best is None or best.less < least:
@@ -245,7 +257,7 @@ def wider(lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
     return below, above
 
 
-def _freed(noise: NoiseModel, theta: Floats) -> Freed | None:
+def _lower(noise: NoiseModel, theta: Floats) -> Freed | None:
     """Return the model to which theta (p,) leads; None where the search does not converge."""
     start, found = noise.target.evaluate(theta, derivatives=False), maximum(noise, theta)
     if not found.converged:

@@ -1,18 +1,20 @@
 """Progress of a run: its stage, tasks done, and the time that is left, as a range.
 
 A stage ends when a task of another one starts. A plan says from and to how many searches each
-stage takes; a search takes as long as those of edges and front so far, and as planned before there
-are many.
+stage takes, whatever the others take; a search takes as long as those of edges and front so far,
+and as planned before there are many.
 """
 
 from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+
+import numpy as np
 
 from modefront.work.task import Costs
 
@@ -30,6 +32,17 @@ MANY, SIMILAR = 8, (0.6, 1.6)
 of those before, from and to."""
 
 
+def together(spans: Iterable[Span]) -> Span:
+    """Return the seconds of several independent parts, which are not all short, or long, at once.
+
+    Geometric middles add up, and so do the squares of the distances of the ends from them.
+    """
+    least, most = np.array([*spans, (0.0, 0.0)]).T
+    middle = np.sqrt(least * np.where(np.isfinite(most), most, least))
+    low, high = middle.sum() - np.linalg.norm(middle - least), np.linalg.norm(most - middle)
+    return float(low), float(middle.sum() + high)
+
+
 @dataclass(frozen=True)
 class Plan:
     """Seconds of a search, searches of each stage from and to, and seconds of other stages."""
@@ -41,8 +54,7 @@ class Plan:
     @property
     def seconds(self) -> Span:
         """Seconds of all stages."""
-        spans = [self.of(stage, self.search) for stage in (*self.searches, *self.other)]
-        return sum(x[0] for x in spans), sum(x[1] for x in spans)
+        return together(self.of(stage, self.search) for stage in (*self.searches, *self.other))
 
     def of(self, stage: str, search: float) -> Span:
         """Return the seconds of a stage, where a search takes so many."""
@@ -133,7 +145,7 @@ class Progress:
             return None
         count = MANY + sum(self._computed[stage] for stage in SEARCHES)
         taken = MANY * self.plan.search + sum(self._seconds[stage] for stage in SEARCHES)
-        least = most = 0.0
+        spans: list[Span] = []
         for stage in {*self.plan.searches, *self.plan.other} - self._ended:
             low, high = self.plan.of(stage, taken / count)
             spent, done = self._seconds[stage], self._computed[stage]
@@ -143,7 +155,8 @@ class Progress:
             else:
                 high = high - spent if high > spent else math.inf
                 low = 0.0 if self._done[stage] > done else max(low - spent, 0.0)
-            least, most = least + low, most + high
+            spans.append((low, high))
+        least, most = together(spans)
         return least / self.workers, most / self.workers
 
 

@@ -37,6 +37,8 @@ class Mistake:
     change : returns a state without it
     price : negative logarithm of the probability that a study has it
     numbers : names and numbers of its sentence
+    moves : whether it has moved values to other sensors or modes: it is undone before others, which
+        are said of the right ones
     """
 
     kind: str
@@ -44,11 +46,17 @@ class Mistake:
     change: Change
     price: float
     numbers: Mapping[str, Any] = field(default_factory=dict)
+    moves: bool = False
 
     @property
     def claim(self) -> tuple[str, ...]:
         """What is claimed: the kind, and whom it blames."""
         return (self.kind, *self.subject)
+
+    @property
+    def variant(self) -> tuple[str, ...]:
+        """What tells it from others with the same claim too."""
+        return (*self.claim, str(self.numbers))
 
     @property
     def finding(self) -> Finding:
@@ -93,9 +101,10 @@ def mismatch(x: Floats, target: Floats, scale: Floats) -> Floats:
 
 def promising(found: Iterable[tuple[float, Mistake]]) -> Iterator[Mistake]:
     """Yield the mistakes that promise most, of pairs with the fall of the cost by each, once."""
-    ordered = sorted(found, key=lambda pair: -pair[0])
-    once = {(each.claim, str(each.numbers)): each for _, each in reversed(ordered)}
-    yield from list(reversed(once.values()))[:TRIED]
+    once: dict[tuple[str, ...], Mistake] = {}
+    for _, each in sorted(found, key=lambda pair: -pair[0]):
+        once.setdefault(each.variant, each)
+    yield from list(once.values())[:TRIED]
 
 
 def one_of(probability: float, count: float) -> float:

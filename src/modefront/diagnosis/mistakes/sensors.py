@@ -28,9 +28,8 @@ from modefront.diagnosis.mistakes.record import (
     promising,
     without,
 )
-from modefront.diagnosis.notes import ALONG, axis_name
 from modefront.findings.knowledge import enumeration
-from modefront.models.geometry import Geometry
+from modefront.models.geometry import ALONG, Geometry, axis_name
 from modefront.rounding import ACCUMULATED
 
 FACTORS = (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 9.81, 1 / 9.81, 2.0, 0.5)
@@ -51,8 +50,8 @@ def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
     every = list(range(len(sets)))
     some = [[k] for k in every] if len(sets) > 1 else []
     some += [[j for j in every if j != k] for k in every] if len(sets) == 3 else []
-    named = [(part, enumeration([sets[k] for k in part], MANY)) for part in some]
-    of_sets = [(part, f"set{'s' * (len(part) > 1)} {names}") for part, names in named]
+    name = "set{} {}".format
+    of_sets = [(x, name("s" * (len(x) > 1), enumeration([sets[k] for k in x]))) for x in some]
     return [(every, "all data"), *of_sets]
 
 
@@ -130,7 +129,7 @@ def exchanged_sensors(setting: Setting) -> Iterator[Mistake]:
             names = setting.names.sensors[s], setting.names.sensors[t]
             numbers = {"sensors": enumeration(names), "where": name}
             change = changed("shape", partial(_exchanged, sets=sets, s=s, t=t))
-            one = Mistake("exchanged-sensors", (*names, name), change, price, numbers)
+            one = Mistake("exchanged-sensors", (*names, name), change, price, numbers, True)
             found.append((float(gain[i, j]), one))
     yield from promising(found)
 
@@ -189,7 +188,7 @@ def shifted_values(setting: Setting) -> Iterator[Mistake]:
             for start in np.argsort(-likeness[:-1])[:NEAREST].tolist():
                 numbers = {"where": name, "sensor": names.sensors[start], "what": what}
                 change = changed("shape", partial(_moved, rows=rows, start=start, by=by))
-                one = Mistake("shifted-values", (name,), change, price, numbers)
+                one = Mistake("shifted-values", (name,), change, price, numbers, True)
                 found.append((float(likeness[start] - likeness[-1]), one))
     yield from promising(found)
 
@@ -210,10 +209,10 @@ def relocated(state: State, sensors: Sequence[int], **changed: Any) -> State:
         values[sensors] = changed[name]
     geometry, chosen = replace(state.geometry, **parts), list(sensors)
     rows = geometry.weights(geometry.sensor_nodes[chosen], geometry.sensor_directions[chosen])
-    ones = np.ones(len(chosen)), (chosen, np.arange(len(chosen)))
-    place = scipy.sparse.csr_array(ones, shape=(state.selection.shape[0], len(chosen)))
-    selection = state.selection + place @ (rows - state.selection[chosen])
-    return replace(state, geometry=geometry, selection=selection.tocsr())
+    order = np.arange(state.selection.shape[0])
+    order[chosen] = order.size + np.arange(len(chosen))
+    selection = scipy.sparse.csr_array(scipy.sparse.vstack([state.selection, rows]).tocsr()[order])
+    return replace(state, geometry=geometry, selection=selection)
 
 
 def _gain(setting: Setting, s: int, rows: scipy.sparse.csr_array) -> Floats:
@@ -235,21 +234,19 @@ def wrong_place(setting: Setting) -> Iterator[Mistake]:
     selection, geometry = setting.state.selection, setting.state.geometry
     if selection is None or geometry is None:
         return
-    found: list[tuple[float, int, int]] = []
-    count, nodes = 0, np.arange(len(geometry.nodes))
+    products = (selection @ selection.T).toarray()
+    squares, names = np.diag(products), setting.names.sensors
+    is_same = np.abs(squares[:, None] + squares - 2 * products) <= ACCUMULATED * squares
+    found, count, nodes = [], 0, np.arange(len(geometry.nodes))
     for s in setting.measured:
         rows = geometry.weights(nodes, np.tile(geometry.sensor_directions[s], (nodes.size, 1)))
         moves = abs(rows).sum(axis=1) > 0
-        if moves.any():
-            count = max(count, int(moves.sum()))
-            gains = np.where(moves, _gain(setting, s, rows), -np.inf)
-            gains[geometry.sensor_nodes[s]] = -np.inf
-            best = np.argsort(-gains)[:NEAREST]
-            found += [(float(gains[k]), s, k) for k in best[gains[best] > -np.inf].tolist()]
-    products = (selection @ selection.T).toarray()
-    squares = np.diag(products)
-    is_same = np.abs(squares[:, None] + squares - 2 * products) <= ACCUMULATED * squares
-    price, names = one_of(USUAL, count * len(setting.measured)), setting.names.sensors
+        count = max(count, int(moves.sum()))
+        gains = np.where(moves, _gain(setting, s, rows), -np.inf)
+        gains[geometry.sensor_nodes[s]] = -np.inf
+        best = np.argsort(-gains)[:NEAREST]
+        found += [(float(gains[k]), s, k) for k in best[gains[best] > -np.inf].tolist()]
+    price = one_of(USUAL, count * len(setting.measured))
     for _, s, k in sorted(found, key=lambda each: -each[0])[:TRIED]:
         others = [names[t] for t in np.flatnonzero(is_same[s]).tolist() if t != s]
         numbers = {
@@ -258,8 +255,7 @@ def wrong_place(setting: Setting) -> Iterator[Mistake]:
             "place": _place(geometry, k),
             "too": f", where the model has {enumeration(others, MANY)} too" if others else "",
         }
-        change = partial(relocated, sensors=[s], sensor_nodes=k)
-        less = OFTEN_SHARED if others else 0.0
+        change, less = partial(relocated, sensors=[s], sensor_nodes=k), OFTEN_SHARED * bool(others)
         yield Mistake("wrong-place", (names[s],), change, price - less, numbers)
 
 
@@ -277,46 +273,31 @@ def wrong_direction(setting: Setting) -> Iterator[Mistake]:
     given, axes = geometry.sensor_directions, geometry.axes
     along = np.where(np.abs(given).max(axis=1) > ALONG, np.abs(given).argmax(axis=1), -1)
     members = {a: np.flatnonzero(along == a).tolist() for a in axes}
+    found: list[tuple[float, list[int], Floats, str]] = []
+    for (a, b), sign in product(permutations(axes, 2), (1.0, -1.0)):
+        turned = sign * np.eye(3)[b] * given[members[a], a, None]
+        if len(members[a]) > 1:
+            found.append((np.inf, members[a], turned, ""))
+        for s, new in zip(members[a], turned, strict=True):
+            rows = geometry.weights(geometry.sensor_nodes[[s]], new[None])
+            found.append((float(_gain(setting, s, rows)[0]), [s], new[None], ""))
+        if a < b and sign > 0 and members[a] and members[b]:
+            both, swap = members[a] + members[b], np.eye(3)
+            swap[[a, b]] = swap[[b, a]]
+            found.append((np.inf, both, given[both] @ swap, f"{'xyz'[a]} and {'xyz'[b]}"))
     single, several = one_of(OFTEN, 2 * len(axes) * len(setting.measured)), one_of(OFTEN, 12)
-    found = []
-    for a, b in [(a, b) for a in axes for b in axes if a != b and members[a]]:
-        for new in (np.eye(3)[b], -np.eye(3)[b]):
-            turned = new * given[members[a], a, None]
-            if len(members[a]) > 1:
-                yield _turned(setting, members[a], turned, several)
-            for s, direction in zip(members[a], turned, strict=True):
-                rows = geometry.weights(geometry.sensor_nodes[[s]], direction[None])
-                one = _turned(setting, [s], direction[None], single)
-                found.append((float(_gain(setting, s, rows)[0]), one))
-    yield from promising(found)
-    for a, b in [(a, b) for a in axes for b in axes if a < b and members[a] and members[b]]:
-        both, swap = members[a] + members[b], np.eye(3)
-        swap[[a, b]] = swap[[b, a]]
-        names = f"{'xyz'[a]} and {'xyz'[b]}", f"{'xyz'[b]} and {'xyz'[a]}"
-        yield _turned(setting, both, given[both] @ swap, several, names)
-
-
-def _turned(
-    setting: Setting,
-    some: list[int],
-    new: Floats,
-    price: float,
-    names: tuple[str, str] | None = None,
-) -> Mistake:
-    """Return the mistake of sensors that measure along ``new`` (sensors, 3) in truth."""
-    assert setting.state.geometry is not None
-    given = setting.state.geometry.sensor_directions
-    before, after = names or (axis_name(given[some[0]]), axis_name(new[0]))
-    sensors = tuple(setting.names.sensors[s] for s in some)
-    numbers = {
-        "sensors": enumeration(sensors, MANY),
-        "given": before,
-        "better": after,
-        "s": "s" * (len(some) == 1),
-        "turn": " in turn" if names else "",
-    }
-    change = partial(relocated, sensors=some, sensor_directions=new)
-    return Mistake("wrong-direction", sensors, change, price, numbers)
+    for gain, some, new, two in sorted(found, key=lambda each: -each[0])[: 2 * TRIED]:
+        sensors = tuple(setting.names.sensors[s] for s in some)
+        numbers = {
+            "sensors": enumeration(sensors, MANY),
+            "given": two or axis_name(given[some[0]]),
+            "better": " and ".join(two.split(" and ")[::-1]) or axis_name(new[0]),
+            "s": "s" * (len(some) == 1),
+            "turn": " in turn" * bool(two),
+        }
+        change = partial(relocated, sensors=some, sensor_directions=new)
+        price = several if np.isinf(gain) else single
+        yield Mistake("wrong-direction", sensors, change, price, numbers)
 
 
 def counted_from_one(setting: Setting) -> Iterator[Mistake]:

@@ -6,17 +6,17 @@ Each key of a table of members is the argument of a class of `modefront.fem`.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Annotated, Any, get_args
 
 from modefront import fem
 from modefront.data.csv import is_reserved
-from modefront.diagnosis.notes import unused_groups
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Group, Quantity
+from modefront.findings.record import Finding, found
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
 from modefront.options import (
@@ -421,3 +421,19 @@ def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:
 
 
 MESH = ModelKind("mesh", read_mesh_model, table=MeshModel)
+
+
+def unused_groups(mesh: Mesh, elements: Iterable[str], nodes: Iterable[str]) -> list[Finding]:
+    """Return the groups that the model uses neither for ``elements`` nor for ``nodes``.
+
+    A group that shares all of its cells with those that have elements is another name for them.
+    """
+    used, cells = {*elements}, [{tuple(sorted(x)) for x in b.nodes.tolist()} for b in mesh.blocks]
+    made = set().union(*(x for b, x in zip(mesh.blocks, cells, strict=True) if b.group in used))
+    out: dict[str, Finding] = {}
+    known = used.union(nodes)
+    for block, own in zip(mesh.blocks, cells, strict=True):
+        if block.group not in known and not own <= made:
+            unused = found("unused-group", block.group, type=block.type, cells=len(block.nodes))
+            out.setdefault(block.group, unused)
+    return list(out.values())
