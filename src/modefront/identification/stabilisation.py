@@ -42,18 +42,15 @@ class StabilisationDiagram:
     order : (poles,) order at which each was found
     pole : (poles,) rad/s
     participation : (poles, references)
-    distance : (poles,) distance to the nearest pole of the order below; inf at the first order
-    stable : (poles,) whether that distance belongs to the stable group
-    cluster : (poles,) number of the cluster, -1 for none
+    stable : (poles,) whether the distance to the nearest pole of the order below belongs to the
+        stable group
     orders : all orders
     """
 
     order: Ints
     pole: Complexes
     participation: Complexes
-    distance: Floats
     stable: Bools
-    cluster: Ints
     orders: tuple[int, ...]
 
     @property
@@ -127,25 +124,14 @@ def diagram_of(
     pole = np.concatenate([poles.value for poles in kept])
     order = np.concatenate([np.full(len(poles.value), poles.order) for poles in kept])
     stable, cut = _split(distance)
-    cluster = np.full(len(pole), -1)
-    members = np.flatnonzero(stable)
-    if len(members) > 1:
-        psi = np.concatenate(shapes)[members]
-        d = _distances(pole[members], psi, pole[members], psi)
-        tree = linkage(squareform((d + d.T) / 2, checks=False), "average")
-        cluster[members] = fcluster(tree, cut, "distance") - 1
-    elif len(members):
-        cluster[members] = 0
     diagram = StabilisationDiagram(
         order,
         pole,
         np.concatenate([poles.participation for poles in kept]),
-        distance,
         stable,
-        cluster,
         tuple(poles.order for poles in estimates),
     )
-    return diagram, _clusters(diagram)
+    return diagram, _clusters(diagram, np.concatenate(shapes), cut)
 
 
 def shapes_of(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:
@@ -201,10 +187,15 @@ def _split(distance: Floats) -> tuple[Bools, float]:
     return stable, float(np.clip(inside.mean() + 2 * inside.std(), *CUT))
 
 
-def _clusters(diagram: StabilisationDiagram) -> list[Cluster]:
+def _clusters(diagram: StabilisationDiagram, psi: Complexes, cut: float) -> list[Cluster]:
+    stable, number = np.flatnonzero(diagram.stable), np.ones(diagram.stable.sum(), int)
+    if len(stable) > 1:
+        pole, psi = diagram.pole[stable], psi[stable]
+        d = _distances(pole, psi, pole, psi)
+        tree = linkage(squareform((d + d.T) / 2, checks=False), "average")
+        number = fcluster(tree, cut, "distance")
     out = []
-    for number in range(diagram.cluster.max(initial=-1) + 1):
-        members = np.flatnonzero(diagram.cluster == number)
+    for members in (stable[number == k] for k in np.unique(number)):
         poles = diagram.pole[members]
         middle = np.median(poles.real) + 1j * np.median(poles.imag)
         best = members[np.abs(poles - middle).argmin()]
