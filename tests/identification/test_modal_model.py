@@ -8,7 +8,13 @@ from simulation import THREE_STORY, THREE_STORY_DAMPING, accelerance, circular, 
 from modefront._typing import Complexes, Ints
 from modefront.data.responses import frequency_responses
 from modefront.identification.lscf import ARC, moments, poles
-from modefront.identification.modal_model import evaluate, free_factors, leverage, maximise
+from modefront.identification.modal_model import (
+    evaluate,
+    free_factors,
+    leverage,
+    maximise,
+    thinned,
+)
 from modefront.identification.problem import Problem, gram, primitives, problem
 from modefront.identification.statistics import correlated_gram, windowed_correlation
 
@@ -85,6 +91,21 @@ def test_leverage_sums_to_half_the_number_of_parameters() -> None:
     fit = maximise(task, *_somewhere(omega)[:2])
     parameters = len(fit.gradient) + 3 * fit.inverse.shape[1]
     assert 2 * leverage(fit).sum() == pytest.approx(parameters, rel=1e-6)
+
+
+def test_means_of_residuals_have_nearly_the_maximum_of_all_lines() -> None:
+    f = np.arange(1.0, 30.0, 0.02)
+    H = accelerance(f, THREE_STORY, THREE_STORY_DAMPING, three_story_shapes(), [0, 2])
+    noise = 1e-3 * np.abs(H).std() * circular(np.random.default_rng(1), H.shape)
+    data = frequency_responses(f, H + noise)
+    task, omega, _ = problem(data, np.full(H.shape, (1e-3 * np.abs(H).std()) ** 2), 1)
+    fit = maximise(task, *_somewhere(omega)[:2])
+    few = thinned(fit, fit.model.lam)
+    assert 3 * len(few.s) < len(task.s)
+    again = maximise(few, 1.0005 * fit.model.lam, fit.model.L)
+    moved = again.model.lam - fit.model.lam
+    deviation = np.sqrt(fit.inverted(fit.observed).diagonal()[:6] / 2)
+    assert (np.abs(moved.view(float)) < 0.3 * deviation).all()
 
 
 def test_exact_data_give_exact_modes() -> None:

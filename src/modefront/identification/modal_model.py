@@ -54,9 +54,6 @@ TINY = float(np.finfo(float).tiny)
 BEND = 1 / 8
 """Width of a block of lines over the distance of the nearest pole."""
 
-PORTION = 1 << 16
-"""Complex numbers in an intermediate array of residuals, which then stay in the cache."""
-
 
 @dataclass(frozen=True)
 class ModalModel:
@@ -340,18 +337,12 @@ def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[
 
     The residuals are those of combinations of the first primitives, or the data themselves.
     """
-    H = task.H.reshape(-1, len(task.s))
-    weight = task.weights.reshape(H.shape)
-    rho, cost = np.empty((len(H), len(E))), 0.0
-    C = None if coefficients is None else coefficients.reshape(len(H), -1)
-    rows = max(PORTION // len(task.s), 1)
-    for start in range(0, len(H), rows):
-        part = slice(start, start + rows)
-        r = H[part] if C is None else H[part] - combined(C[part], E[: C.shape[1]])
-        weighted = weight[part] * r
-        rho[part] = weighted.view(float) @ E.view(float).T
-        cost += float(np.vdot(r, weighted).real)
-    return rho.reshape(*task.H.shape[:2], -1), cost
+    r = task.H
+    if coefficients is not None:
+        r = r - combined(coefficients, E[: coefficients.shape[-1]])
+    weighted = task.weight * r
+    rho: Floats = weighted.view(float) @ E.view(float).T
+    return rho, float(np.vdot(r, weighted).real)
 
 
 def _inverse(G: Floats) -> Floats:

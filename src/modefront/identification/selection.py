@@ -152,9 +152,11 @@ def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
     """
     task, few = fit.task, thinned(fit, lam)
     while True:
-        fit = maximise(few, lam, L, MOST_EVALUATIONS, COARSE)
         if fine:
-            fit = maximise(task, fit.model.lam, fit.model.L)
+            fit = maximise(few, lam, L)
+            fit = fit if few is task else maximise(task, fit.model.lam, fit.model.L)
+        else:
+            fit = maximise(few, lam, L, MOST_EVALUATIONS, COARSE)
         lam, L = fit.model.lam, fit.model.L
         over = -lam.real > OVERDAMPED * np.abs(lam)
         over |= fit.unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
@@ -205,47 +207,36 @@ def with_weak(gone: Bools, gain: Floats, least: float, lam: Complexes) -> Bools:
 def grow(fit: Fit, count: int | None = None) -> Fit:
     """Return the fit with the modes that stand out of its residuals, until none does.
 
-    A pole that is not needed after all is not tried again.
+    A pole that is not needed after all is not tried again. Where the ``count`` of modes is given,
+    as many are tried as lack.
     """
     blocked: Complexes = np.zeros(0, complex)
     for _ in range(MOST_ROUNDS):
-        lam, L = standing_out(fit, blocked, count)
-        if not len(lam):
+        task, model, lam, gain = fit.task, fit.model, fit.found.lam, fit.found.gain
+        least = needed(task, EVEN) if count is None else 0.0
+        most = len(lam) if count is None else count - len(model)
+        new: list[int] = []
+        for c in gain.argsort()[::-1]:
+            if gain[c] < least or len(new) >= most:
+                break
+            of_others = np.sum(gain[new] * alike(lam[c], lam[new]))
+            if gain[c] > TRACES * of_others and (alike(lam[c], blocked) < ALONE).all():
+                new.append(int(c))
+        if not new:
             break
-        task, model = fit.task, fit.model
-        trial = refit(fit, np.append(model.lam, lam), np.vstack([model.L, L]))
-        trial = backward(trial, count)
-        gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise_of(lam))
-        stays = [_near(pole, trial.model.lam) > _near(pole, model.lam) for pole in lam]
+        L = np.vstack([model.L, fit.found.L[new]])
+        trial = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
+        gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise[new])
+        stays = [_near(pole, trial.model.lam) > _near(pole, model.lam) for pole in lam[new]]
         if len(trial.model) > len(model) or gained > needed(task):
             fit = trial
-        blocked = np.append(blocked, lam[~np.array(stays)])
+        blocked = np.append(blocked, lam[new][~np.array(stays)])
     return fit
 
 
 def _near(pole: complex, others: Complexes) -> int:
     """Return how many poles are hardly told apart from one."""
     return int(np.count_nonzero(alike(pole, others) > ALONE))
-
-
-def standing_out(
-    fit: Fit, blocked: Complexes, count: int | None = None
-) -> tuple[Complexes, Complexes]:
-    """Return poles that explain more of the residuals than noise would, and their factors.
-
-    Where the ``count`` of modes is given, they are as many as lack.
-    """
-    lam, gain, L = fit.found.lam, fit.found.gain, fit.found.L
-    least = needed(fit.task, EVEN) if count is None else 0.0
-    most = len(lam) if count is None else count - len(fit.model)
-    chosen: list[int] = []
-    for c in gain.argsort()[::-1]:
-        if gain[c] < least or len(chosen) >= most:
-            break
-        of_others = np.sum(gain[chosen] * alike(lam[c], lam[chosen]))
-        if gain[c] > TRACES * of_others and (alike(lam[c], blocked) < ALONE).all():
-            chosen.append(int(c))
-    return lam[chosen], L[chosen]
 
 
 def paired(fit: Fit, among: Bools) -> Fit:

@@ -1,10 +1,9 @@
 r"""Standard deviations of frequencies, damping ratios and shapes.
 
-Errors of the data reach the parameters by the equations of docs/methods/deviations.md, with the
-projected Gauss–Newton matrix A of `modefront.identification.modal_model` and
-:math:`Z = G^{-1}\Phi^T D`. Two things break the independence of errors, and are measured on the
-residuals: noise of the force channel, which all responses of a reference share, and correlation of
-neighbouring lines, by windows and zero padding.
+Errors of the data reach the parameters by the equations of docs/methods/deviations.md. Two things
+break the independence of errors, and are measured on the residuals: noise of the force channel,
+which all responses of a reference share, and correlation of neighbouring lines, by windows and zero
+padding.
 """
 
 from __future__ import annotations
@@ -139,15 +138,18 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
     scale = max(residuals.chi2, 1.0)
     C, variance = C * scale, variance * scale
     variance[:, ~fit.task.weight.any(axis=(0, 2)) | _silent(model.phi, linear, scale)] = np.nan
-    return [
-        _estimate(
-            complex(model.lam[r]),
-            C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2],
-            omega,
-            *rest,
-        )
-        for r, rest in enumerate(zip(shapes, np.sqrt(variance), model.L, strict=True))
-    ]
+    out = []
+    for r, (lam, shape, std) in enumerate(zip(model.lam, shapes, np.sqrt(variance), strict=True)):
+        size = float(abs(lam))
+        df = np.array([lam.real, lam.imag]) / size
+        both = np.array([df, np.array([-1 / size, 0.0]) + lam.real / size**2 * df])
+        f_std, zeta_std = np.sqrt(
+            np.einsum("ka,ab,kb->k", both, C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2], both)
+        ).tolist()
+        hertz, zeta = omega / (2 * np.pi), float(-lam.real) / size
+        known = complex(lam) * omega, size * hertz, zeta, f_std * hertz, zeta_std
+        out.append(ModeEstimate(*known, shape, std, model.L[r]))
+    return out
 
 
 def _silent(phi: Complexes, linear: Floats, scale: float) -> Bools:
@@ -218,24 +220,6 @@ def _roots_of_responses(fit: Fit, residuals: Residuals) -> tuple[Floats, Floats]
     value, vector = np.linalg.eigh(Q / scale[:, :, None] / scale[:, None, :])
     roots = scale[:, :, None] * vector * np.sqrt(np.maximum(value, 0))[:, None, :]
     return roots[:, : 2 * n], roots[:, 2 * n :]
-
-
-def _estimate(
-    lam: complex, C: Floats, omega: float, shape: RealShape, shape_std: Floats, L: Complexes
-) -> ModeEstimate:
-    size, hertz = abs(lam), omega / (2 * np.pi)
-    df = np.array([lam.real, lam.imag]) / size
-    dzeta = np.array([-1 / size, 0.0]) + lam.real / size**2 * df
-    return ModeEstimate(
-        lam * omega,
-        size * hertz,
-        -lam.real / size,
-        float(np.sqrt(df @ C @ df)) * hertz,
-        float(np.sqrt(dzeta @ C @ dzeta)),
-        shape,
-        shape_std,
-        L,
-    )
 
 
 def _force_influence(fit: Fit, force: Floats) -> Iterator[tuple[Floats, Complexes]]:

@@ -86,9 +86,12 @@ def identify(
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
         small, shared = data, first
     task, omega, _ = problem(small, shared, 1)
-    fit = _choice(selection.start(task, clusters, omega), kind, modes)
-    level = RESIDUALS.index(fit.task.powers)
-    task, omega, size = problem(data, first, level)
+    fit = selection.start(task, clusters, omega)
+    for _ in range(2):
+        fit = selection.refit(selection.choose_level(fit), fit.model.lam, fit.model.L)
+        fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
+        fit = selection.grow(selection.backward(fit, modes), modes)
+    task, omega, size = problem(data, first, RESIDUALS.index(fit.task.powers))
     fit = modal_model.evaluate(task, fit.model.lam, fit.model.L, fit.model.held)
     for _ in range(2):
         fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
@@ -144,15 +147,6 @@ def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyRes
         H = (U.T @ flat).view(complex).reshape(PRINCIPAL, n_in, lines).transpose(1, 0, 2)
         names = tuple(f"principal {i + 1}" for i in range(PRINCIPAL))
     return replace(data, H=H, responses=names, variance=None), shared
-
-
-def _choice(fit: Fit, kind: Weighting, modes: int | None) -> Fit:
-    """Return the fit with the residual terms, the variance and the modes that data need."""
-    for _ in range(2):
-        fit = selection.refit(selection.choose_level(fit), fit.model.lam, fit.model.L)
-        fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
-        fit = selection.grow(selection.backward(fit, modes), modes)
-    return fit
 
 
 def _reweighted(fit: Fit, kind: Weighting) -> Fit:
@@ -296,15 +290,10 @@ def _evidence(
 def _visibility(fit: Fit) -> Floats:
     """Return the greatest share of every mode, over all functions, at its own frequency."""
     task, model = fit.task, fit.model
-    out = np.zeros(len(model))
-    if not len(model):
-        return out
     resonances = replace(task, s=1j * np.abs(model.lam) + task.s[0].real, powers=())
     E = primitives(resonances, model.lam, squares=False)
-    a = model.L.T[:, None, :] * model.phi.T[None]  # (references, responses, modes)
-    measured = task.weight.any(axis=2)
-    for r in range(len(model)):
-        parts = np.abs(a.real * E[::2, r] + a.imag * E[1::2, r])
-        share = parts[..., r] / np.maximum(parts.sum(axis=-1), np.finfo(float).tiny)
-        out[r] = share[measured].max(initial=0.0)
+    a = (model.L.T[:, None, :] * model.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
+    parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
+    shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), np.finfo(float).tiny)
+    out: Floats = np.einsum("irr->ir", shares).max(axis=0, initial=0.0)
     return out
