@@ -92,17 +92,17 @@ def needed(task: Problem, expected: float = FALSE) -> float:
 
 
 def choose_level(fit: Fit) -> Fit:
-    """Return the fit with the number of residual terms of the least BIC, poles held.
+    """Return the fit with the number of residual terms of the least AIC, poles held.
 
-    Source: Schwarz, Ann. Stat. 6 (1978) 461-464, doi:10.1214/aos/1176344136.
+    A term too few shifts frequencies, one too many costs next to nothing. Source: Akaike, IEEE
+    Trans. Autom. Control 19 (1974) 716-723, doi:10.1109/TAC.1974.1100705.
     """
     few, model, found = thinned(fit, fit.model.lam), fit.model, fit.found
     measured = int(np.count_nonzero(fit.task.weights.any(axis=2)))
     noise = float(np.median(found.noise[found.lam.real == found.lam.real.min()]))
-    price = measured * np.log(fit.task.count)
     best = min(
         (evaluate(replace(few, powers=p), model.lam, model.L, model.held) for p in RESIDUALS),
-        key=lambda trial: 2 * trial.cost / noise + price * len(trial.task.powers),
+        key=lambda trial: 2 * trial.cost / noise + 2 * measured * len(trial.task.powers),
     )
     return of_all_lines(best, replace(fit.task, powers=best.task.powers))
 
@@ -152,11 +152,9 @@ def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
     """
     task, few = fit.task, thinned(fit, lam)
     while True:
+        fit = maximise(few, lam, L, MOST_EVALUATIONS, COARSE)
         if fine:
-            fit = maximise(few, lam, L)
-            fit = fit if few is task else maximise(task, fit.model.lam, fit.model.L)
-        else:
-            fit = maximise(few, lam, L, MOST_EVALUATIONS, COARSE)
+            fit = maximise(task, fit.model.lam, fit.model.L)
         lam, L = fit.model.lam, fit.model.L
         over = -lam.real > OVERDAMPED * np.abs(lam)
         over |= fit.unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
