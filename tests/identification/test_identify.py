@@ -15,9 +15,9 @@ from modefront._typing import Floats
 from modefront.data.modal_test import ModalTest
 from modefront.data.responses import Channel, assemble, frequency_responses
 from modefront.identification.methods.hammer import identify
-from modefront.identification.modal_model import problem, synthesise
+from modefront.identification.modal_model import evaluate
 from modefront.identification.modal_test import IdentifiedTest
-from modefront.identification.selection import refit, scan
+from modefront.identification.problem import problem
 from modefront.identification.sets import combine
 
 F = np.arange(0.1, 30.05, 0.1)
@@ -150,8 +150,8 @@ def test_what_poles_explain_of_residuals_is_that_of_sums_over_lines() -> None:
     data = frequency_responses(f, blows(H, 0.05, np.random.default_rng(0)))
     assert data.variance is not None
     task, _, _ = problem(data, data.variance, 1)
-    fit = refit(task, np.zeros(0, complex), np.zeros((0, 2), complex))
-    found, r = scan(task, fit), task.H - synthesise(task, fit.model)
+    fit = evaluate(task, np.zeros(0, complex), np.zeros((0, 2), complex), np.zeros(0, int))
+    found, r = fit.found, fit.residual
     for k in range(0, len(found.lam), 37):
         e = task.s**2 / (task.s - found.lam[k])
         products = np.sum(task.weight * r * e.conj(), axis=2)

@@ -33,19 +33,15 @@ Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import product
 
 import numpy as np
 import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats, Ints
-from modefront.data.responses import ORDERS, ForceNoise, FrequencyResponses
-
-RESIDUALS: tuple[tuple[int, ...], ...] = ((), (-2, 0), (-3, -2, 0, 1), (-4, -3, -2, 0, 1, 2))
-"""Powers of s of the residual terms, by the number of terms on either side."""
+from modefront.identification.problem import Problem, combined, gram, primitives, products
+from modefront.identification.scan import Scan, scan
 
 FINE, COARSE = 1e-4, 1e-2
 """Squared steps in standard deviations that end an iteration: for results, and for choices."""
@@ -55,54 +51,8 @@ MOST_EVALUATIONS = 40
 
 TINY = float(np.finfo(float).tiny)
 
-CHUNK = 1 << 20
-"""Numbers in an intermediate array of products."""
-
-FEW = 16
-"""Functions up to which a Gram matrix of each is faster than the products of all pairs."""
-
-PORTION = 1 << 16
-"""Complex numbers in an intermediate array of residuals, which then stay in the cache."""
-
-
-@dataclass(frozen=True)
-class Problem:
-    """Data and weights, with frequencies over the highest one and functions over their size.
-
-    Attributes
-    ----------
-    s : (lines,) (i omega + decay) / omega_max
-    H : (references, responses, lines), 0 where not measured
-    weight : of the shape of ``H``, 1/v, 0 where not measured; or (references, 1, lines) where all
-        responses share it, which makes their equations one
-    order : q
-    powers : powers of s of the residual terms
-    decay : what an exponential window has decayed by at the end of the record, d T
-    force_noise : noise of the force channel, where it is known; times in the unit of 1 / s
-    """
-
-    s: Complexes
-    H: Complexes
-    weight: Floats
-    order: int
-    powers: tuple[int, ...]
-    decay: float = 0.0
-    force_noise: ForceNoise | None = None
-
-    @cached_property
-    def count(self) -> int:
-        """Number of real equations."""
-        return 2 * int(np.count_nonzero(self.weights))
-
-    @property
-    def weights(self) -> Floats:
-        """The weights, of the shape of ``H``."""
-        return np.broadcast_to(self.weight, self.H.shape)
-
-    @property
-    def correlation(self) -> float:
-        """Sum of the correlations of the noise of a line with all lines, x coth x for x = d T."""
-        return self.decay / math.tanh(self.decay) if self.decay else 1.0
+BEND = 1 / 8
+"""Width of a block of lines over the distance of the nearest pole."""
 
 
 @dataclass(frozen=True)
@@ -130,24 +80,28 @@ class ModalModel:
         return len(self.lam)
 
 
+# 12 fields: a model, what was fitted, and the equations of linear and nonlinear parameters there.
 @dataclass(frozen=True)
 class Fit:
     """A model with the cost and the curvature there; linear parameters are eliminated.
 
     Attributes
     ----------
+    task : what was fitted
     model : the parameters
     cost : J, sum of squared weighted residuals
     gradient : (alphas,) half the gradient of J
     information : (alphas, alphas) projected Gauss-Newton matrix without the term in U
     curvature : (alphas, alphas) with it
     inverse : (responses, linear, linear) inverse of G; one where the responses share their weights
-    Z : (responses, linear, alphas), -dc/dalpha
+    Z : (responses, linear, alphas), G^-1 Phi^T D
+    U : (responses, linear, alphas), derivatives of the columns of Phi on the residual
     unlike : (alphas,) share of each column of D, squared, that no linear parameter can make up
     evaluations : number of evaluations of the model
     converged : whether the iteration met its tolerance
     """
 
+    task: Problem
     model: ModalModel
     cost: float
     gradient: Floats
@@ -155,68 +109,68 @@ class Fit:
     curvature: Floats
     inverse: Floats
     Z: Floats
+    U: Floats
     unlike: Floats
     evaluations: int = 1
     converged: bool = False
 
+    @cached_property
+    def functions(self) -> Complexes:
+        """Functions of the model, (references, responses, lines)."""
+        return synthesise(self.task, self.model)
 
-def problem(data: FrequencyResponses, variance: Floats, level: int) -> tuple[Problem, float, float]:
-    """Return the scaled problem with the units of frequency (rad/s) and of H.
+    @cached_property
+    def residual(self) -> Complexes:
+        """The data without them, 0 where not measured."""
+        return np.where(self.task.weight > 0, self.task.H - self.functions, 0)
 
-    ``level`` is the number of residual terms on either side of the band. The variance is of the
-    shape of H, or (references, 1, lines); lines where it is not a positive number have no weight.
-    """
-    omega = 2 * np.pi * data.frequency[-1]
-    measured = data.measured
-    power = np.where(measured, data.H.real**2 + data.H.imag**2, 0.0).sum()
-    size = float(np.sqrt(power / np.count_nonzero(measured)))
-    used = measured & np.isfinite(variance) & (variance > 0)
-    if variance.shape == used.shape:
-        variance = np.where(used, variance, np.inf)
-    weight: Floats = np.ascontiguousarray(size**2 / variance)
-    s = (2j * np.pi * data.frequency + data.decay) / omega
-    H: Complexes = np.ascontiguousarray(np.where(used, data.H, 0) / size)
-    lag = data.decay / float(np.median(np.diff(data.frequency)))
-    order, noise = ORDERS[data.quantity], data.force_noise
-    if noise is not None:
-        noise = replace(noise, times=tuple(t * omega for t in noise.times))
-    return Problem(s, H, weight, order, RESIDUALS[level], lag, noise), omega, size
+    @cached_property
+    def observed(self) -> Floats:
+        """Half the second derivatives of J by alpha, (alphas, alphas)."""
+        task, model, n = self.task, self.model, len(self.model)
+        weighted = task.s**task.order * (task.weight * self.residual).conj()
+        upper, lower = (1 / (task.s - lam[:, None]) for lam in (model.lam, model.lam.conj()))
+        # products of the residuals with squares and cubes of the functions of poles
+        second, third = ((weighted @ (upper**p).T).conj() + weighted @ (lower**p).T for p in (2, 3))
+        by_pole = 2 * np.einsum("rj,ri,jir->r", model.L.conj(), model.phi.conj(), third)
+        by_factor = np.einsum("ri,jir->rj", model.phi.conj(), second)
+        factors = free_factors(model.held, model.L.shape[1])
+        both = [(r, r, z) for r, z in enumerate(by_pole)]
+        both += [(r, k, by_factor[r, j]) for k, (r, j) in enumerate(factors, start=n)]
+        out = _rows(self.U).T @ _rows(self.Z - self.inverse @ self.U / 2)
+        out = self.information + out + out.T
+        for r, k, z in both:
+            for row, column in {(r, k), (k, r)}:
+                block = out[2 * row : 2 * row + 2, 2 * column : 2 * column + 2]
+                block -= [[z.real, z.imag], [z.imag, -z.real]]
+        return out
 
+    def inverted(self, A: Floats) -> Floats:
+        """Return A^-1 in the directions in which alpha is free; large where it is singular."""
+        free = directions(self.model)
+        A = free.T @ A @ free
+        least = 1e-30 * A.diagonal().max(initial=0.0) + TINY
+        scale = 1 / np.sqrt(np.maximum(A.diagonal(), least))
+        value, vector = np.linalg.eigh(A * np.outer(scale, scale))
+        half = free @ (scale[:, None] * vector / np.sqrt(np.maximum(value, 1e-13)))
+        out: Floats = half @ half.T
+        return out
 
-def windowed_correlation(decay: float, lines: int) -> Complexes:
-    r"""Return the correlations of a line with the next ones after an exponential window, (lines,).
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom of the residuals."""
+        linear = self.task.live[1] * self.inverse.shape[1]
+        return max(self.task.count - linear - len(self.gradient), 1)
 
-    ``decay`` is that of the window over the length T of the record, :math:`x = dT`. White noise of
-    the record has the correlations
+    @property
+    def misfit(self) -> float:
+        """Variance of the residuals in units of that of the data."""
+        return 2 * self.cost / self.freedom
 
-    .. math:: \rho_k = \int_0^T w^2 e^{-2\pi\mathrm{i}kt/T}\,\mathrm{d}t \Big/
-              \int_0^T w^2\,\mathrm{d}t = \frac{1}{1 + \pi\mathrm{i}k/x},\qquad w = e^{-dt}.
-
-    >>> windowed_correlation(2.0, 2).round(3)
-    array([1.   +0.j   , 0.288-0.453j])
-    """
-    return np.asarray(1 / (1 + 1j * np.pi * np.arange(lines) / max(decay, TINY)), complex)
-
-
-def primitives(task: Problem, lam: Complexes, squares: bool = True) -> Complexes:
-    """Return E, (2 modes + powers + 2 modes, lines); without the last ones unless ``squares``."""
-    front, n, powers = task.s**task.order, len(lam), len(task.powers)
-    E = np.empty((2 * n + powers + 2 * n * squares, len(task.s)), complex)
-    for r, pole in enumerate(lam):
-        upper, lower = 1 / (task.s - pole), 1 / (task.s - pole.conjugate())
-        _pair(front, upper, lower, E[2 * r : 2 * r + 2])
-        if squares:
-            base = 2 * n + powers + 2 * r
-            _pair(front, upper * upper, lower * lower, E[base : base + 2])
-    for row, power in enumerate(task.powers, start=2 * n):
-        E[row] = front * task.s**power
-    return E
-
-
-def _pair(front: Complexes, first: Complexes, second: Complexes, out: Complexes) -> None:
-    """Write the sum of two functions and i times their difference."""
-    np.multiply(front, first + second, out=out[0])
-    np.multiply(1j * front, first - second, out=out[1])
+    @cached_property
+    def found(self) -> Scan:
+        """What poles all over the band explain of the residuals."""
+        return scan(self.task, self.residual, self.misfit)
 
 
 def evaluate(
@@ -262,6 +216,7 @@ def evaluate(
     information = direct - _rows(cross).T @ _rows(Z)
     slope = (rho[..., row] * coefficient).sum(axis=(0, 1, 3))
     return Fit(
+        task,
         model,
         cost - float(np.sum(lost * right)),
         -slope,
@@ -269,8 +224,41 @@ def evaluate(
         information + _rows(U).T @ _rows(inverse @ U),
         inverse,
         Z,
+        U,
         information.diagonal() / np.maximum(direct.diagonal(), TINY),
     )
+
+
+def synthesise(task: Problem, model: ModalModel) -> Complexes:
+    """Return the functions of a model, (references, responses, lines)."""
+    E = primitives(task, model.lam, squares=False)
+    a = model.L.T[:, None, :] * model.phi.T[None]
+    modal = np.stack([a.real, a.imag], axis=-1).reshape(*a.shape[:2], -1)
+    return combined(np.concatenate([modal, model.residual.transpose(1, 2, 0)], axis=-1), E)
+
+
+def thinned(fit: Fit, lam: Complexes) -> Problem:
+    """Return the problem of a fit with means of lines over which functions of poles bend little.
+
+    They are poles of the fit and those that come, ``lam``. Means are those of the residuals, which
+    bend less than the functions, and vanish with them.
+    """
+    task, first = fit.task, [0]
+    f = task.s.imag
+    distance = np.abs(task.s - np.concatenate([fit.model.lam, lam, [0]])[:, None]).min(axis=0)
+    beyond = np.searchsorted(f, f + BEND * distance).tolist()
+    while first[-1] < len(f):
+        first.append(max(beyond[first[-1]], first[-1] + 1))
+    if 2 * len(first) > len(f):
+        return task
+    blocks = first[:-1]
+    s = np.asarray(np.add.reduceat(task.s, blocks) / np.diff(first), complex)
+    weight = np.add.reduceat(task.weight, blocks, axis=-1)
+    mean = np.add.reduceat(task.weight * fit.residual, blocks, axis=-1)
+    mean /= np.where(weight > 0, weight, np.inf)
+    out = replace(task, s=s, weight=weight)
+    H = synthesise(out, fit.model) + mean
+    return replace(out, H=np.where(weight > 0, H, 0))
 
 
 def _rows(values: Floats) -> Floats:
@@ -282,20 +270,6 @@ def _best(inverse: Floats, T: Floats, rho: Floats) -> Floats:
     """Return the linear parameters, (responses, linear), from products with the primitives."""
     right = np.einsum("jqa,jiq->ia", T, rho)
     out: Floats = (inverse @ right[..., None])[..., 0]
-    return out
-
-
-def synthesise(task: Problem, model: ModalModel) -> Complexes:
-    """Return the functions of the model, (references, responses, lines)."""
-    E = primitives(task, model.lam, squares=False)
-    a = model.L.T[:, None, :] * model.phi.T[None]
-    modal = np.stack([a.real, a.imag], axis=-1).reshape(*a.shape[:2], -1)
-    return _combined(np.concatenate([modal, model.residual.transpose(1, 2, 0)], axis=-1), E)
-
-
-def _combined(coefficients: Floats, E: Complexes) -> Complexes:
-    """Return real combinations of the primitives; real arithmetic takes half the time."""
-    out: Complexes = (coefficients @ E.view(float)).view(complex)
     return out
 
 
@@ -314,7 +288,7 @@ def maximise(
     evaluations. Modes of ``pairs`` keep one pole.
     """
     held = np.abs(L).argmax(axis=1)
-    L = np.asarray(L, complex) / L[np.arange(len(L)), held][:, None]
+    L = L / L[np.arange(len(L)), held][:, None]
     for pair in map(list, pairs):
         held[pair] = la.qr(L[pair], mode="economic", pivoting=True)[2][:2]
         L[pair] = np.linalg.solve(L[np.ix_(pair, held[pair])], L[pair])
@@ -340,68 +314,22 @@ def maximise(
     return replace(fit, evaluations=evaluations, converged=converged)
 
 
-def gram(task: Problem, E: Complexes) -> Floats:
-    """Return the weighted Gram matrices of the primitives, (references, responses, Q, Q).
-
-    There is one for all responses where they share their weights.
-    """
-    flat = task.weight.reshape(-1, len(task.s))
-    M = np.zeros((len(flat), len(E), len(E)))
-    if len(flat) <= FEW:
-        root, parts = np.sqrt(flat).repeat(2, axis=1), E.view(float)
-        size = max(CHUNK // max(len(E), 1), 1)
-        for start, k in product(range(0, parts.shape[1], size), range(len(M))):
-            lines = slice(start, start + size)
-            weighted = parts[:, lines] * root[k, lines]
-            M[k] += weighted @ weighted.T
-    else:
-        p, q = np.triu_indices(len(E))
-        for lines, products in _products(E):
-            M[:, p, q] += flat[:, lines] @ products.T
-        M[:, q, p] = M[:, p, q]
-    return M.reshape(*task.weight.shape[:2], len(E), len(E))
-
-
-def leverage(task: Problem, fit: Fit) -> Floats:
+def leverage(fit: Fit) -> Floats:
     """Return the share of the noise of each line that the fit takes, of the shape of ``H``.
 
     It is the mean over the real and the imaginary part of the diagonal of the projection on the
     columns of Phi and of the rest of D.
     """
-    model = fit.model
-    E = primitives(task, model.lam)
-    T = design(model.L, len(task.powers))
+    E, T, X = columns(fit)
     first = T.shape[1]
-    X = projected(model, T, fit.Z, len(E))
-    inverse = np.linalg.pinv(fit.information, hermitian=True)
-    S = X @ inverse @ X.swapaxes(2, 3)
+    S = X @ fit.inverted(fit.information) @ X.swapaxes(2, 3)
     S[:, :, :first, :first] += (T[:, None] @ fit.inverse) @ T[:, None].swapaxes(2, 3)
     p, q = np.triu_indices(len(E))
     coefficients = S[..., p, q] * np.where(p == q, 1.0, 2.0)
-    out = np.empty(task.H.shape)
-    for lines, products in _products(E):
-        out[..., lines] = coefficients @ products
-    return task.weight * out / 2
-
-
-def _products(E: Complexes) -> Iterator[tuple[slice, Floats]]:
-    """Yield portions of lines with the real products of all pairs of functions.
-
-    Pairs are in the order of ``np.triu_indices``.
-    """
-    pairs = len(E) * (len(E) + 1) // 2
-    size = max(CHUNK // max(pairs, 1), 1)
-    for start in range(0, E.shape[1], size):
-        portion = E[:, start : start + size]
-        real, imag = portion.real.copy(), portion.imag.copy()
-        products, scratch = np.empty((pairs, real.shape[1])), np.empty_like(real)
-        first = 0
-        for p in range(len(E)):  # the rows of an upper triangle
-            rows = products[first : first + len(E) - p]
-            np.multiply(real[p], real[p:], out=rows)
-            rows += np.multiply(imag[p], imag[p:], out=scratch[p:])
-            first += len(rows)
-        yield slice(start, start + size), products
+    out = np.empty(fit.task.H.shape)
+    for lines, values in products(E):
+        out[..., lines] = coefficients @ values
+    return fit.task.weight * out / 2
 
 
 def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[Floats, float]:
@@ -409,18 +337,12 @@ def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[
 
     The residuals are those of combinations of the first primitives, or the data themselves.
     """
-    H = task.H.reshape(-1, len(task.s))
-    weight = task.weights.reshape(H.shape)
-    rho, cost = np.empty((len(H), len(E))), 0.0
-    C = None if coefficients is None else coefficients.reshape(len(H), -1)
-    rows = max(PORTION // len(task.s), 1)
-    for start in range(0, len(H), rows):
-        part = slice(start, start + rows)
-        r = H[part] if C is None else H[part] - _combined(C[part], E[: C.shape[1]])
-        weighted = weight[part] * r
-        rho[part] = weighted.view(float) @ E.view(float).T
-        cost += float(np.vdot(r, weighted).real)
-    return rho.reshape(*task.H.shape[:2], -1), cost
+    r = task.H
+    if coefficients is not None:
+        r = r - combined(coefficients, E[: coefficients.shape[-1]])
+    weighted = task.weight * r
+    rho: Floats = weighted.view(float) @ E.view(float).T
+    return rho, float(np.vdot(r, weighted).real)
 
 
 def _inverse(G: Floats) -> Floats:
@@ -472,15 +394,19 @@ def derivatives(model: ModalModel, functions: int) -> tuple[Ints, Floats]:
     return row.repeat(2, axis=0), np.stack([turned.real, turned.imag], axis=-1)
 
 
-def projected(model: ModalModel, T: Floats, Z: Floats, functions: int) -> Floats:
-    """Return the columns of D without what Phi makes up, in (references, responses, Q, alphas)."""
-    row, coefficient = derivatives(model, functions)
-    X = np.zeros((*coefficient.shape[:2], functions, len(row)))
-    X[:, :, : T.shape[1]] = -(T[:, None] @ Z)
-    columns = np.arange(len(row))
+def columns(fit: Fit) -> tuple[Complexes, Floats, Floats]:
+    """Return the primitives, T, and X: columns of D without what Phi makes up.
+
+    X is (references, responses, primitives, alphas).
+    """
+    E = primitives(fit.task, fit.model.lam)
+    T = design(fit.model.L, len(fit.task.powers))
+    row, coefficient = derivatives(fit.model, len(E))
+    X = np.zeros((*coefficient.shape[:2], len(E), len(row)))
+    X[:, :, : T.shape[1]] = -(T[:, None] @ fit.Z)
     for k in range(2):
-        X[:, :, row[:, k], columns] += coefficient[..., k]
-    return X
+        X[:, :, row[:, k], np.arange(len(row))] += coefficient[..., k]
+    return E, T, X
 
 
 def _second(model: ModalModel, rho: Floats, powers: int) -> Floats:

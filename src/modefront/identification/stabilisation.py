@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import scipy.linalg as la
@@ -42,18 +43,15 @@ class StabilisationDiagram:
     order : (poles,) order at which each was found
     pole : (poles,) rad/s
     participation : (poles, references)
-    distance : (poles,) distance to the nearest pole of the order below; inf at the first order
-    stable : (poles,) whether that distance belongs to the stable group
-    cluster : (poles,) number of the cluster, -1 for none
+    stable : (poles,) whether the distance to the nearest pole of the order below belongs to the
+        stable group
     orders : all orders
     """
 
     order: Ints
     pole: Complexes
     participation: Complexes
-    distance: Floats
     stable: Bools
-    cluster: Ints
     orders: tuple[int, ...]
 
     @property
@@ -101,12 +99,11 @@ def diagram_of(
     orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
     z: Complexes = np.exp(1j * rate * (omega - omega[0]))
     sums = lscf.moments(data.H, weight / weight.max(), z, max(orders))
-    windowed = [lscf.poles(sums, p, omega[0], rate) for p in orders]
-    estimates = [lscf.without_decay(poles, data.decay) for poles in windowed]
     kept = []
-    for p in estimates:
+    for order in orders:
+        p = lscf.without_decay(lscf.poles(sums, order, omega[0], rate), data.decay)
         good = -p.value.real < MOST_DAMPING * np.abs(p.value)
-        kept.append(Poles(p.order, p.value[good], p.participation[good]))
+        kept.append(Poles(order, p.value[good], p.participation[good]))
     s: Complexes = np.asarray(1j * omega + data.decay, complex)
     # shapes are taken from every n-th line, and from those next to poles
     lines: Bools = np.arange(len(s)) % -(-len(s) // SHAPE_LINES) == 0
@@ -115,37 +112,19 @@ def diagram_of(
     lines[np.clip(nearest, 0, len(s) - 1)] = True
     H, q = data.H[..., lines], ORDERS[data.quantity]
     shapes = [shapes_of(poles, H, s[lines], q) for poles in kept]
-    distance = np.concatenate(
-        [np.full(len(kept[0].value), np.inf)]
-        + [
-            _distances(now.value, psi, below.value, psi_below).min(axis=1, initial=np.inf)
-            for now, psi, below, psi_below in zip(
-                kept[1:], shapes[1:], kept[:-1], shapes[:-1], strict=True
-            )
-        ]
-    )
-    pole = np.concatenate([poles.value for poles in kept])
-    order = np.concatenate([np.full(len(poles.value), poles.order) for poles in kept])
-    stable, cut = _split(distance)
-    cluster = np.full(len(pole), -1)
-    members = np.flatnonzero(stable)
-    if len(members) > 1:
-        psi = np.concatenate(shapes)[members]
-        d = _distances(pole[members], psi, pole[members], psi)
-        tree = linkage(squareform((d + d.T) / 2, checks=False), "average")
-        cluster[members] = fcluster(tree, cut, "distance") - 1
-    elif len(members):
-        cluster[members] = 0
+    distance = [np.full(len(kept[0].value), np.inf)]
+    for (below, psi_below), (now, psi) in pairwise(zip(kept, shapes, strict=True)):
+        d = _distances(now.value, psi, below.value, psi_below)
+        distance.append(d.min(axis=1, initial=np.inf))
+    stable, cut = _split(np.concatenate(distance))
     diagram = StabilisationDiagram(
-        order,
-        pole,
+        np.repeat(orders, [len(poles.value) for poles in kept]),
+        np.concatenate([poles.value for poles in kept]),
         np.concatenate([poles.participation for poles in kept]),
-        distance,
         stable,
-        cluster,
-        tuple(poles.order for poles in estimates),
+        tuple(orders),
     )
-    return diagram, _clusters(diagram)
+    return diagram, _clusters(diagram, np.concatenate(shapes), cut)
 
 
 def shapes_of(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:
@@ -201,10 +180,15 @@ def _split(distance: Floats) -> tuple[Bools, float]:
     return stable, float(np.clip(inside.mean() + 2 * inside.std(), *CUT))
 
 
-def _clusters(diagram: StabilisationDiagram) -> list[Cluster]:
+def _clusters(diagram: StabilisationDiagram, psi: Complexes, cut: float) -> list[Cluster]:
+    stable, number = np.flatnonzero(diagram.stable), np.ones(diagram.stable.sum(), int)
+    if len(stable) > 1:
+        pole, psi = diagram.pole[stable], psi[stable]
+        d = _distances(pole, psi, pole, psi)
+        tree = linkage(squareform((d + d.T) / 2, checks=False), "average")
+        number = fcluster(tree, cut, "distance")
     out = []
-    for number in range(diagram.cluster.max(initial=-1) + 1):
-        members = np.flatnonzero(diagram.cluster == number)
+    for members in (stable[number == k] for k in np.unique(number)):
         poles = diagram.pole[members]
         middle = np.median(poles.real) + 1j * np.median(poles.imag)
         best = members[np.abs(poles - middle).argmin()]

@@ -1,10 +1,9 @@
 r"""Standard deviations of frequencies, damping ratios and shapes.
 
-Errors of the data reach the parameters by the equations of docs/methods/deviations.md, with the
-projected Gauss–Newton matrix A of `modefront.identification.modal_model` and
-:math:`Z = G^{-1}\Phi^T D`. Two things break the independence of errors, and are measured on the
-residuals: noise of the force channel, which all responses of a reference share, and correlation of
-neighbouring lines, by windows and zero padding.
+Errors of the data reach the parameters by the equations of docs/methods/deviations.md. Two things
+break the independence of errors, and are measured on the residuals: noise of the force channel,
+which all responses of a reference share, and correlation of neighbouring lines, by windows and zero
+padding.
 """
 
 from __future__ import annotations
@@ -17,21 +16,10 @@ import scipy.fft
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
-from modefront.identification.modal_model import (
-    CHUNK,
-    Fit,
-    Problem,
-    design,
-    directions,
-    gram,
-    primitives,
-    projected,
-    synthesise,
-    windowed_correlation,
-)
+from modefront.identification.modal_model import Fit, columns
 from modefront.identification.noise import square
+from modefront.identification.problem import CHUNK, Problem, gram
 from modefront.identification.record import ModeEstimate, Residuals
-from modefront.identification.selection import freedom
 from modefront.identification.shapes import TINY, RealShape, real_plane, real_shape
 
 SIGNIFICANT = 3.0
@@ -50,16 +38,14 @@ TOGETHER = 50
 """Samples of the noise of the force whose effects are computed at once."""
 
 
-def residuals(task: Problem, fit: Fit) -> Residuals:
+def residuals(fit: Fit) -> Residuals:
     """Return correlation and size of the errors from the residuals of a fit."""
-    H = synthesise(task, fit.model)
-    r = np.where(task.weight > 0, task.H - H, 0)
-    size = np.where(task.weight > 0, np.abs(task.H) ** 2, 0).sum(axis=2)
-    share = np.sqrt((np.abs(r) ** 2).sum(axis=2) / np.where(size > 0, size, np.nan))
-    misfit = 2 * fit.cost / freedom(task, fit)
+    task, r = fit.task, fit.residual
+    size = np.where(task.weight > 0, square(task.H), 0).sum(axis=2)
+    share = np.sqrt(square(r).sum(axis=2) / np.where(size > 0, size, np.nan))
     noise = task.force_noise
-    force = _force(task, H, r) if noise is None else np.mean(noise.deviation**2, axis=1)
-    return Residuals(misfit, _correlation(task, r), force, share)
+    force = _force(fit) if noise is None else np.mean(noise.deviation**2, axis=1)
+    return Residuals(fit.misfit, _correlation(task, r), force, share)
 
 
 def _correlation(task: Problem, r: Complexes) -> Complexes:
@@ -79,6 +65,21 @@ def _correlation(task: Problem, r: Complexes) -> Complexes:
             break
         out.append(rho)
     return np.array(out)
+
+
+def windowed_correlation(decay: float, lines: int) -> Complexes:
+    r"""Return the correlations of a line with the next ones after an exponential window, (lines,).
+
+    ``decay`` is that of the window over the length T of the record, :math:`x = dT`. White noise of
+    the record has the correlations
+
+    .. math:: \rho_k = \int_0^T w^2 e^{-2\pi\mathrm{i}kt/T}\,\mathrm{d}t \Big/
+              \int_0^T w^2\,\mathrm{d}t = \frac{1}{1 + \pi\mathrm{i}k/x},\qquad w = e^{-dt}.
+
+    >>> windowed_correlation(2.0, 2).round(3)
+    array([1.   +0.j   , 0.288-0.453j])
+    """
+    return np.asarray(1 / (1 + 1j * np.pi * np.arange(lines) / max(decay, TINY)), complex)
 
 
 def correlated_gram(task: Problem, E: Complexes, correlation: Complexes) -> Floats:
@@ -102,9 +103,9 @@ def correlated_gram(task: Problem, E: Complexes, correlation: Complexes) -> Floa
     return M.reshape(*task.weight.shape[:2], len(E), len(E))
 
 
-def _force(task: Problem, H: Complexes, r: Complexes) -> Floats:
+def _force(fit: Fit) -> Floats:
     """Return b of each reference; 0 where it is not significant."""
-    w = task.weight
+    w, H, r = fit.task.weight, fit.functions, fit.residual
     S = np.sum(w * H.conj() * r, axis=1)
     power, squares = w * square(H), w**2 * square(H) * square(r)
     per_line = square(S) - squares.sum(axis=1)
@@ -116,38 +117,39 @@ def _force(task: Problem, H: Complexes, r: Complexes) -> Floats:
     return out
 
 
-def mode_estimates(
-    task: Problem, fit: Fit, residuals: Residuals, omega: float
-) -> list[ModeEstimate]:
+def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEstimate]:
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
     model = fit.model
     shapes = [real_shape(phi) for phi in model.phi]
     for pair in map(list, model.pairs):
         shapes[pair[0]], shapes[pair[1]] = real_plane(model.phi[pair])
-    inverse = _inverse_information(fit)
-    linear, alpha = _roots_of_responses(task, fit, residuals)
+    inverse, follows = fit.inverted(fit.observed), fit.Z - fit.inverse @ fit.U
+    linear, alpha = _roots_of_responses(fit, residuals)
     C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
     variance = np.zeros(model.phi.shape)
     for r, shape in enumerate(shapes):
         rows = slice(2 * r, 2 * r + 2)
-        answer = shape.differential(_as_complex(fit.Z[:, rows] @ inverse))
+        answer = shape.differential(_as_complex(follows[:, rows] @ inverse))
         variance[r] = _shape_variance(shape, _as_complex(linear[:, rows]), answer, alpha)
-    for steps, phi in _force_influence(task, fit, residuals.force):
+    for steps, phi in _force_influence(fit, residuals.force):
         C = C + steps @ steps.T
         for r, shape in enumerate(shapes):
             variance[r] += (shape.differential(phi[:, r]) ** 2).sum(axis=1)
     scale = max(residuals.chi2, 1.0)
     C, variance = C * scale, variance * scale
-    variance[:, ~task.weight.any(axis=(0, 2)) | _silent(model.phi, linear, scale)] = np.nan
-    return [
-        _estimate(
-            complex(model.lam[r]),
-            C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2],
-            omega,
-            *rest,
-        )
-        for r, rest in enumerate(zip(shapes, np.sqrt(variance), model.L, strict=True))
-    ]
+    variance[:, ~fit.task.weight.any(axis=(0, 2)) | _silent(model.phi, linear, scale)] = np.nan
+    out = []
+    for r, (lam, shape, std) in enumerate(zip(model.lam, shapes, np.sqrt(variance), strict=True)):
+        size = float(abs(lam))
+        df = np.array([lam.real, lam.imag]) / size
+        both = np.array([df, np.array([-1 / size, 0.0]) + lam.real / size**2 * df])
+        f_std, zeta_std = np.sqrt(
+            np.einsum("ka,ab,kb->k", both, C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2], both)
+        ).tolist()
+        hertz, zeta = omega / (2 * np.pi), float(-lam.real) / size
+        known = complex(lam) * omega, size * hertz, zeta, f_std * hertz, zeta_std
+        out.append(ModeEstimate(*known, shape, std, model.L[r]))
+    return out
 
 
 def _silent(phi: Complexes, linear: Floats, scale: float) -> Bools:
@@ -190,24 +192,20 @@ def _as_complex(pairs: Floats) -> Complexes:
     return out
 
 
-def _roots_of_responses(task: Problem, fit: Fit, residuals: Residuals) -> tuple[Floats, Floats]:
+def _roots_of_responses(fit: Fit, residuals: Residuals) -> tuple[Floats, Floats]:
     """Return the effects of independent errors of each response, as roots of their covariance.
 
     (responses, 2 modes, errors): G^-1 Phi^T dy of the shapes; (responses, alphas, errors):
     D_perp^T dy. Noise of the force is taken out of the variance: it is not independent.
     """
-    model = fit.model
-    n, powers = len(model), len(task.powers)
-    E = primitives(task, model.lam)
-    T = design(model.L, powers)
-    X, first = projected(model, T, fit.Z, len(E)), T.shape[1]
-    weight = task.weight
+    task, n = fit.task, len(fit.model)
+    E, T, X = columns(fit)
+    first, weight = T.shape[1], task.weight
     if residuals.force.any():
-        H = synthesise(task, model)
         variance = residuals.force[:, None]
         if task.force_noise:
             variance = task.force_noise.deviation**2
-        share = variance[:, None] * weight * square(H)
+        share = variance[:, None] * weight * square(fit.functions)
         weight = weight * np.maximum(1 - share, 0)
     alone = replace(task, weight=weight)
     if len(residuals.correlation) > 1:
@@ -224,57 +222,19 @@ def _roots_of_responses(task: Problem, fit: Fit, residuals: Residuals) -> tuple[
     return roots[:, : 2 * n], roots[:, 2 * n :]
 
 
-def _estimate(
-    lam: complex, C: Floats, omega: float, shape: RealShape, shape_std: Floats, L: Complexes
-) -> ModeEstimate:
-    size, hertz = abs(lam), omega / (2 * np.pi)
-    df = np.array([lam.real, lam.imag]) / size
-    dzeta = np.array([-1 / size, 0.0]) + lam.real / size**2 * df
-    return ModeEstimate(
-        lam * omega,
-        size * hertz,
-        -lam.real / size,
-        float(np.sqrt(df @ C @ df)) * hertz,
-        float(np.sqrt(dzeta @ C @ dzeta)),
-        shape,
-        shape_std,
-        L,
-    )
-
-
-def _inverse_information(fit: Fit) -> Floats:
-    """Return A^-1 in the directions in which alpha is free, (alphas, alphas)."""
-    free = directions(fit.model)
-    out: Floats = free @ _inverse(free.T @ fit.information @ free) @ free.T
-    return out
-
-
-def _inverse(A: Floats) -> Floats:
-    """Return the inverse of a symmetric matrix that may be nearly singular: large, not wrong."""
-    diagonal = A.diagonal()
-    least = 1e-30 * diagonal.max(initial=0.0) + np.finfo(float).tiny
-    scale = 1 / np.sqrt(np.maximum(diagonal, least))
-    value, vector = np.linalg.eigh(A * np.outer(scale, scale))
-    floored = np.maximum(value, 1e-13)
-    out: Floats = ((vector / floored) @ vector.T) * np.outer(scale, scale)
-    return out
-
-
-def _force_influence(task: Problem, fit: Fit, force: Floats) -> Iterator[tuple[Floats, Complexes]]:
+def _force_influence(fit: Fit, force: Floats) -> Iterator[tuple[Floats, Complexes]]:
     """Yield changes of alpha and of the shapes by independent errors of the force, in portions.
 
     The changes of the shapes are (responses, modes, errors).
     """
-    n, powers = len(fit.model), len(task.powers)
-    E = primitives(task, fit.model.lam)
-    T = design(fit.model.L, powers)
-    X, first = projected(fit.model, T, fit.Z, len(E)), T.shape[1]
-    H = synthesise(task, fit.model)
-    inverse = _inverse_information(fit)
+    n = len(fit.model)
+    E, T, X = columns(fit)
+    first, H = T.shape[1], fit.functions
+    inverse, follows = fit.inverted(fit.observed), fit.Z - fit.inverse @ fit.U
     for j in np.flatnonzero(force).tolist():
-        for y in _force_products(task, E, H[j], j, force[j]):
+        for y in _force_products(fit.task, E, H[j], j, force[j]):
             alpha = inverse @ np.einsum("iqa,iqk->ak", X[j], y, optimize=True)
-            c = fit.inverse[:, : 2 * n] @ (T[j].T @ y[:, :first]) - fit.Z[:, : 2 * n] @ alpha
+            c = fit.inverse[:, : 2 * n] @ (T[j].T @ y[:, :first]) - follows[:, : 2 * n] @ alpha
             parts = np.concatenate([c.real, c.imag], axis=2)
             yield np.hstack([alpha.real, alpha.imag]), parts[:, ::2] + 1j * parts[:, 1::2]
 

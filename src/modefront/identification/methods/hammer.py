@@ -8,17 +8,17 @@ of all functions, each with its own variance.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools, Complexes, Floats
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import modal_model, selection
-from modefront.identification.modal_model import Fit, Problem
-from modefront.identification.noise import fitted_variance, variance_from_differences
+from modefront.identification.modal_model import Fit
+from modefront.identification.noise import fitted_variance, square, variance_from_differences
+from modefront.identification.problem import RESIDUALS, primitives, problem
 from modefront.identification.record import (
     Evidence,
     FittedFunctions,
@@ -39,12 +39,6 @@ Weighting = Literal["given", "scaled", "residuals"]
 
 LEAST_LINES = 20
 """Lines of a band, at least: a mode with its residual terms has twelve numbers a function."""
-
-CHOICE_LINES = 4096
-"""Lines from which the modes are chosen where there are more lines, those of sharp peaks apart."""
-
-PEAK_WIDTH = 20.0
-"""Half bandwidths on either side of a sharp peak within which all lines are kept."""
 
 PRINCIPAL = 48
 """Principal responses from which the modes are chosen where there are more responses."""
@@ -91,26 +85,26 @@ def identify(
     diagram, clusters = diagram_of(small, shared)
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
         small, shared = data, first
-    kept = _lines_of_choice(small.frequency, diagram)
-    task, omega, _ = modal_model.problem(small.lines(kept), shared[..., kept], 1)
-    task, fit = _choice(task, selection.start(task, clusters, omega), kind, modes)
-    level = modal_model.RESIDUALS.index(task.powers)
-    task, omega, size = modal_model.problem(data, first, level)
-    model = fit.model
-    task = _reweighted(task, modal_model.evaluate(task, model.lam, model.L, model.held), kind)
-    fit = selection.refit(task, model.lam, model.L)
-    task = _reweighted(task, fit, kind)
-    fit = selection.grow(task, selection.backward(task, fit, selection.needed(task), modes), modes)
-    fine = modal_model.FINE, modal_model.MOST_EVALUATIONS
+    task, omega, _ = problem(small, shared, 1)
+    fit = selection.start(task, clusters, omega)
+    for _ in range(2):
+        fit = selection.refit(selection.choose_level(fit), fit.model.lam, fit.model.L)
+        fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
+        fit = selection.grow(selection.backward(fit, modes), modes)
+    task, omega, size = problem(data, first, RESIDUALS.index(fit.task.powers))
+    fit = modal_model.evaluate(task, fit.model.lam, fit.model.L, fit.model.held)
+    for _ in range(2):
+        fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
+    fit = selection.grow(selection.backward(fit, modes), modes)
     while True:
-        last = selection.refit(task, fit.model.lam, fit.model.L, *fine)
-        fit = selection.backward(task, last, selection.needed(task), modes)
+        last = selection.refit(fit, fit.model.lam, fit.model.L, fine=True)
+        fit = selection.backward(last, modes)
         if fit is last:
             break
     if len(seeds):
-        start = selection.seeded(task, fit, 2 * np.pi * np.array(seeds) / omega)
-        fit = selection.refit(task, *start, *fine)
-    return _result(_Solution(data, task, fit, omega, size, diagram))
+        start = selection.seeded(fit, 2 * np.pi * np.array(seeds) / omega)
+        fit = selection.refit(fit, *start, fine=True)
+    return _result(data, fit, omega, size, diagram)
 
 
 def weighting(data: FrequencyResponses) -> Weighting:
@@ -155,89 +149,40 @@ def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyRes
     return replace(data, H=H, responses=names, variance=None), shared
 
 
-def _lines_of_choice(frequency: Floats, diagram: StabilisationDiagram) -> Bools:
-    """Return the lines from which modes are chosen: every n-th one, and all of sharp peaks.
-
-    Leaving lines out biases nothing, and those between peaks are many that say the same.
-    """
-    stride = -(-len(frequency) // CHOICE_LINES)
-    kept: Bools = np.arange(len(frequency)) % stride == 0
-    if stride == 1:
-        return kept
-    spacing = float(np.median(np.diff(frequency)))
-    for pole in diagram.pole[diagram.stable]:
-        half = max(-pole.real / (2 * np.pi), spacing)
-        if half < PEAK_WIDTH * stride * spacing / 2:
-            kept |= np.abs(frequency - abs(pole) / (2 * np.pi)) < PEAK_WIDTH * half
-    return kept
-
-
-def _choice(task: Problem, fit: Fit, kind: Weighting, modes: int | None) -> tuple[Problem, Fit]:
-    """Return the problem, with its residual terms and variance, and the modes that data need."""
-    for _ in range(2):
-        task = selection.choose_level(task, fit)
-        fit = selection.refit(task, fit.model.lam, fit.model.L)
-        task = _reweighted(task, fit, kind)
-        fit = selection.backward(task, fit, selection.needed(task), modes)
-        fit = selection.grow(task, fit, modes)
-    return task, fit
-
-
-def _reweighted(task: Problem, fit: Fit, kind: Weighting) -> Problem:
-    """Return the problem weighted by the smooth variance of the residuals of a fit.
+def _reweighted(fit: Fit, kind: Weighting) -> Fit:
+    """Return a fit whose data are weighted by the smooth variance of its residuals.
 
     Where the variance is given it stays; where it is known up to a factor it gets that.
     """
+    task, H = fit.task, fit.functions
     if kind == "given":
-        return task
-    H = modal_model.synthesise(task, fit.model)
-    used, raw = task.weight > 0, np.abs(task.H - H) ** 2
+        return fit
+    used, raw = task.weight > 0, square(fit.residual)
     if task.weight.shape == task.H.shape:
-        raw /= np.maximum(1 - modal_model.leverage(task, fit), LEAST_LEFT)
+        raw /= np.maximum(1 - modal_model.leverage(fit), LEAST_LEFT)
     else:
-        raw = raw.mean(axis=1, keepdims=True) * task.count / selection.freedom(task, fit)
-        H = np.sqrt(np.mean(np.abs(H) ** 2, axis=1, keepdims=True))
+        raw = raw.mean(axis=1, keepdims=True) * task.count / fit.freedom
+        H = np.sqrt(np.mean(square(H), axis=1, keepdims=True))
     raw = np.where(used, raw, np.nan)
     if kind == "scaled":
         lines = np.maximum(used.sum(axis=2, keepdims=True), 1)
         factor = np.where(used, raw * task.weight, 0).sum(axis=2, keepdims=True) / lines
-        return replace(task, weight=task.weight / np.where(factor > 0, factor, 1.0))
-    variance = fitted_variance(raw, np.where(used, H, np.nan))
-    return replace(task, weight=np.where(used, 1 / variance, 0.0))
+        weight = task.weight / np.where(factor > 0, factor, 1.0)
+    else:
+        weight = np.where(used, 1 / fitted_variance(raw, np.where(used, H, np.nan)), 0.0)
+    return replace(fit, task=replace(task, weight=weight))
 
 
-@dataclass(frozen=True)
-class _Solution:
-    """The last fit to the data, with its units of frequency and of functions.
+def _result(
+    data: FrequencyResponses, apart: Fit, omega: float, size: float, diagram: StabilisationDiagram
+) -> Identification:
+    """Return the modes of the last fit, in which no two have one pole yet.
 
-    ``apart`` is the fit in which no two modes have one pole.
+    Those outside the band stand for residual terms.
     """
-
-    data: FrequencyResponses
-    task: Problem
-    apart: Fit
-    omega: float
-    size: float
-    diagram: StabilisationDiagram
-
-    @cached_property
-    def found(self) -> selection.Scan:
-        """What poles explain of the residuals."""
-        return selection.scan(self.task, self.apart)
-
-    @cached_property
-    def fit(self) -> Fit:
-        """The fit with pairs."""
-        every = np.ones(len(self.apart.model), bool)
-        return selection.paired(self.task, self.apart, every, self.found)
-
-
-def _result(solution: _Solution) -> Identification:
-    """Return the modes of the last fit; those outside the band stand for residual terms."""
-    task, fit, omega = solution.task, solution.fit, solution.omega
-    misfit = residuals(task, fit)
-    estimates = _with_split(mode_estimates(task, fit, misfit, omega), solution)
-    f = solution.data.frequency
+    fit = selection.paired(apart, np.ones(len(apart.model), bool))
+    task, misfit, f = fit.task, residuals(fit), data.frequency
+    estimates = _with_split(mode_estimates(fit, misfit, omega), fit, apart.model.lam * omega)
     reasons = [_reason(mode, f) for mode in estimates]
     kept = [k for k, why in enumerate(reasons) if not why]
     rejected = [
@@ -245,37 +190,39 @@ def _result(solution: _Solution) -> Identification:
         for mode, why in zip(estimates, reasons, strict=True)
         if why
     ]
-    evidence = _evidence(solution, estimates, kept)
+    gain = selection.gains(apart)
+    shares = support(diagram, fit.model.lam * omega, gain)
+    evidence = _evidence(fit, f, gain / selection.needed(task), shares, estimates, kept)
     modes = [replace(estimates[k], evidence=evidence[k]) for k in kept]
     weight = np.where(task.weight > 0, task.weight, np.nan)
     functions = FittedFunctions(
-        solution.data,
-        modal_model.synthesise(task, fit.model) * solution.size,
-        solution.size**2 / weight,
+        data,
+        fit.functions * size,
+        size**2 / weight,
         misfit,
-        modal_model.RESIDUALS.index(task.powers),
+        RESIDUALS.index(task.powers),
     )
     return Identification(
-        solution.data.responses,
+        data.responses,
         (float(f[0]), float(f[-1])),
         tuple(sorted(modes, key=lambda mode: mode.frequency)),
         tuple(sorted(rejected, key=lambda pole: pole.frequency)),
-        solution.diagram,
+        diagram,
         functions,
         fit.evaluations,
         fit.converged,
     )
 
 
-def _with_split(estimates: Sequence[ModeEstimate], solution: _Solution) -> list[ModeEstimate]:
+def _with_split(estimates: Sequence[ModeEstimate], fit: Fit, lam: Complexes) -> list[ModeEstimate]:
     """Return estimates of which those of pairs deviate by half the difference of their poles, too.
 
-    It is that of the fit in which they are apart: the data do not exclude it.
+    The poles ``lam`` in rad/s are those apart: the data do not exclude them.
     """
-    out, lam = list(estimates), solution.apart.model.lam
-    for pair in solution.fit.model.pairs:
+    out = list(estimates)
+    for pair in fit.model.pairs:
         size = np.abs(lam[list(pair)])
-        split = float(np.ptp(size)) * solution.omega / (4 * np.pi)
+        split = float(np.ptp(size)) / (4 * np.pi)
         of_damping = float(np.ptp(lam[list(pair)].real / size)) / 2
         for r in pair:
             out[r] = replace(
@@ -293,19 +240,22 @@ def _reason(mode: ModeEstimate, frequency: Floats) -> str:
     return "damped too heavily for a mode" if mode.damping > MOST_DAMPING else ""
 
 
+# 6 arguments: what speaks for a mode, and its neighbours.
 def _evidence(
-    solution: _Solution, estimates: Sequence[ModeEstimate], kept: Sequence[int]
+    fit: Fit,
+    frequency: Floats,
+    gain: Floats,
+    shares: Floats,
+    estimates: Sequence[ModeEstimate],
+    kept: Sequence[int],
 ) -> list[Evidence]:
     """Return what speaks for every mode; only those that are ``kept`` are neighbours."""
-    task, fit = solution.task, solution.fit
-    gain, least = selection.gains(task, solution.apart, solution.found), selection.needed(task)
-    shares = support(solution.diagram, fit.model.lam * solution.omega, gain)
-    visible, mac = _visibility(task, fit), auto_mac(fit.model.phi)
-    spacing = float(np.median(np.diff(solution.data.frequency)))
+    visible, mac = _visibility(fit), auto_mac(fit.model.phi)
+    spacing = float(np.median(np.diff(frequency)))
     out = []
     for r, mode in enumerate(estimates):
         flags = []
-        if gain[r] < least:
+        if gain[r] < 1:
             flags.append("kept by hand: noise alone may explain as much")
         if shares[r] < FEW:
             flags.append(f"on {shares[r]:.0%} of the orders")
@@ -328,29 +278,22 @@ def _evidence(
                     f"shape of {other.frequency:.5g} Hz (MAC {mac[r, k]:.2f}): one peak split in "
                     "two, or sensors that cannot tell them apart"
                 )
-            elif len(task.H) == 1 and apart < max(half, other.damping * other.frequency):
+            elif len(fit.task.H) == 1 and apart < max(half, other.damping * other.frequency):
                 flags.append(
                     f"within the half bandwidth of {other.frequency:.5g} Hz: one peak split in "
                     "two, or two modes that one reference cannot tell apart"
                 )
-        out.append(
-            Evidence(float(gain[r] / least), float(shares[r]), float(visible[r]), tuple(flags))
-        )
+        out.append(Evidence(float(gain[r]), float(shares[r]), float(visible[r]), tuple(flags)))
     return out
 
 
-def _visibility(task: Problem, fit: Fit) -> Floats:
+def _visibility(fit: Fit) -> Floats:
     """Return the greatest share of every mode, over all functions, at its own frequency."""
-    model = fit.model
-    out = np.zeros(len(model))
-    if not len(model):
-        return out
+    task, model = fit.task, fit.model
     resonances = replace(task, s=1j * np.abs(model.lam) + task.s[0].real, powers=())
-    E = modal_model.primitives(resonances, model.lam, squares=False)
-    a = model.L.T[:, None, :] * model.phi.T[None]  # (references, responses, modes)
-    measured = task.weight.any(axis=2)
-    for r in range(len(model)):
-        parts = np.abs(a.real * E[::2, r] + a.imag * E[1::2, r])
-        share = parts[..., r] / np.maximum(parts.sum(axis=-1), np.finfo(float).tiny)
-        out[r] = share[measured].max(initial=0.0)
+    E = primitives(resonances, model.lam, squares=False)
+    a = (model.L.T[:, None, :] * model.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
+    parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
+    shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), np.finfo(float).tiny)
+    out: Floats = np.einsum("irr->ir", shares).max(axis=0, initial=0.0)
     return out

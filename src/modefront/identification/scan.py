@@ -1,0 +1,127 @@
+"""What poles all over the band explain of the residuals of a fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+import scipy.fft
+from scipy.ndimage import percentile_filter
+
+from modefront._typing import Complexes, Floats
+from modefront.identification.noise import square
+from modefront.identification.problem import Problem
+
+HEAVIEST = 0.1
+"""Greatest damping ratio of the poles that are looked for in residuals."""
+
+NEIGHBOURHOOD = 32
+"""Half bandwidths on either side of a pole in which poles of the same damping tell the noise."""
+
+UPPER = 0.8
+"""Share of these poles that explain less than the level that tells the noise."""
+
+DRAWS, SEED = 1000, 1
+"""Matrices of noise that tell what poles explain of it, and the seed of their random numbers."""
+
+MOST_PLACES = 1 << 18
+"""Places of the grid of lines, at most."""
+
+PORTION = 32
+"""Responses whose products with poles are computed at once."""
+
+ROUNDING = 1e-12
+"""Share of the greatest energy of a pole's function in the lines below which there is none."""
+
+
+def alike(pole: complex, others: Complexes) -> Floats:
+    """Return the squared correlation of a pole's function with those of others."""
+    out: Floats = 4 * pole.real * others.real / np.abs(pole + others.conj()) ** 2
+    return out
+
+
+@dataclass(frozen=True)
+class Scan:
+    """Poles all over the band, and what each explains of the residuals of a fit.
+
+    Attributes
+    ----------
+    lam : (poles,) half bandwidths go up by factors of two from the distance of lines, as do steps
+    gain : (poles,) 2 Delta J of each in units of its noise
+    L : (poles, references) its participation factors
+    noise : (poles,) variance of the noise, as poles of the same damping find it in the
+        neighbourhood; at least that of the residuals, and 1, the variance of the data
+    """
+
+    lam: Complexes
+    gain: Floats
+    L: Complexes
+    noise: Floats
+
+    def noise_of(self, lam: Complexes) -> Floats:
+        """Return the variance of the noise at other poles, (others,)."""
+        return np.array([self.noise[alike(pole, self.lam).argmax()] for pole in lam])
+
+
+@cache
+def _expected(rows: int, columns: int) -> float:
+    """Return the quantile of the greatest squared singular value of noise of unit variance."""
+    rng = np.random.default_rng(SEED)
+    z = (rng.standard_normal((2, DRAWS, rows, columns)) * [[[[1]]], [[[1j]]]]).sum(axis=0)
+    greatest = np.linalg.eigvalsh(z @ z.conj().swapaxes(1, 2))[:, -1] / 2
+    return float(np.quantile(greatest, UPPER))
+
+
+def scan(task: Problem, r: Complexes, misfit: float) -> Scan:
+    """Return what poles explain of residuals, (references, responses, lines).
+
+    On an even grid of lines, the products of the residuals with a pole are a convolution. The
+    ``misfit`` is the variance of the residuals in units of that of the data.
+    """
+    front, f = task.s**task.order, task.s.imag
+    step = max(float(np.diff(f).min()), float(np.ptp(f)) / MOST_PLACES)
+    place = np.rint((f - f[0]) / step).astype(int)
+    count = int(place[-1]) + 1
+    size = 1 << (2 * count - 1).bit_length()
+    offset = step * scipy.fft.fftfreq(size, 1 / size)
+
+    def on_grid(values: Any) -> Any:
+        out = np.zeros((*values.shape[:-1], size), values.dtype)
+        np.add.at(out.T, place, values.T)
+        return scipy.fft.fft(out)
+
+    def every(stride: int, values: Any) -> Any:
+        # that of a transform is the transform of as many parts on top of each other
+        folded = values.reshape(*values.shape[:-1], stride, -1).mean(axis=-2)
+        return scipy.fft.ifft(folded)[..., : -(-count // stride)]
+
+    weight, n_in = task.weights, len(r)
+    parts = [slice(first, first + PORTION) for first in range(0, r.shape[1], PORTION)]
+    products = [on_grid(weight[:, part] * r[:, part] * front.conj()) for part in parts]
+    own = parts if task.weight.shape == r.shape else [slice(None)] * len(parts)
+    energies = [on_grid(task.weight[:, part] * square(front)) for part in own]
+    out: list[list[Any]] = []
+    widest = int(np.log2(max(HEAVIEST * f[-1] / step, 1)))
+    for m in range(min(widest, count.bit_length()) + 1):
+        half = step * 2**m
+        kernel = 1 / (half + task.s[0].real + 1j * offset)
+        of_pole, of_energy = scipy.fft.fft(kernel), scipy.fft.fft(square(kernel))
+        lam = -half + 1j * (f[0] + step * np.arange(0, count, 2**m))
+        S, total = np.zeros((len(lam), n_in, n_in), complex), np.zeros((n_in, len(lam)))
+        for product, energy in zip(products, energies, strict=True):
+            G = np.maximum(every(2**m, energy * of_energy).real, 0.0)
+            root = np.sqrt(np.where(ROUNDING * G.max(initial=0.0) < G, G, np.inf))
+            z = (every(2**m, product * of_pole) / root).transpose(2, 0, 1)
+            S += z @ z.conj().swapaxes(1, 2)
+            total += G.mean(axis=1)
+        value, vector = np.linalg.eigh(S)
+        factors = vector[:, :, -1] / np.sqrt(np.maximum(total.T, np.finfo(float).tiny))
+        noise = percentile_filter(value[:, -1], 100 * UPPER, 2 * NEIGHBOURHOOD + 1, mode="nearest")
+        kept = half < HEAVIEST * lam.imag
+        out.append([x[kept] for x in (lam, 2 * value[:, -1], factors, noise)])
+    lam, gain, L, noise = (np.concatenate(each) for each in zip(*out, strict=True))
+    least = max(misfit, 1.0) * task.correlation
+    noise = np.maximum(noise / _expected(*task.live), least)
+    return Scan(lam, gain / noise, L, noise)
