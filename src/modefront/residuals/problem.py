@@ -21,8 +21,9 @@ from modefront.brief import as_html
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model
-from modefront.models.matrices import of_free
+from modefront.models.matrices import MatrixModel, of_free
 from modefront.models.parameters import Parameter, Prior, in_order, parameters_of
+from modefront.models.reduced.model import ReducedModel
 from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
@@ -101,12 +102,18 @@ class UpdatingProblem:
         return vars(self) | {"whole": None}
 
     def with_free(self, names: Sequence[str]) -> UpdatingProblem:
-        """Return the problem with more parameters: those of its fixed ones that are named."""
+        """Return the problem with more parameters: those of its fixed ones that are named.
+
+        A reduced model has a basis of its own, in which there is nothing so far.
+        """
         assert self.whole is not None, "no parameter is fixed"
         model, given = self.whole
         given = tuple(replace(x, fixed=x.fixed and x.name not in names) for x in given)
         model, chosen = of_free(model, given)
-        return replace(self, model=model, **_limits(chosen))
+        limits = _limits(chosen)
+        if isinstance(self.model, ReducedModel) and isinstance(model, MatrixModel):
+            model = self.model.of(model, *(limits[x] for x in ("start", "lower", "upper")))
+        return replace(self, model=model, **limits)
 
     @cached_property
     def _stacks(self) -> tuple[tuple[Stack, ...], ...]:

@@ -9,12 +9,16 @@ all others follow (Rao's score); those that promise most are freed and tried, on
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Floats
+from modefront.errors import ModelError
+from modefront.models.base import Model
+from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.optim.problem import at_bounds
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.most_probable import maximum
@@ -206,7 +210,7 @@ def unfixed(noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor) ->
     for k, name in enumerate(tried):
         one = replace(noise, problem=problem.with_free([name]))
         start = _placed(one, known, theta)
-        tasks.append(Task(("most-probable", "unfixed", k + 1), _freed, (one, start)))
+        tasks.append(Task(("most-probable", "unfixed", k + 1), _tried, (one, start)))
     found = [(x, name) for x, name in zip(work.run(tasks), tried, strict=True) if x is not None]
     best, name = max(found, key=lambda x: x[0].less, default=(None, ""))
     if best is None or best.less < least:
@@ -226,6 +230,7 @@ def _placed(noise: NoiseModel, known: Sequence[str], theta: Floats) -> Floats:
 def _promises(noise: NoiseModel, theta: Floats, known: Sequence[str]) -> Floats:
     """Return by how much -2 ln p becomes less with each parameter that is not known so far."""
     problem = noise.problem
+    _columns(problem.model, theta)
     found = problem.evaluate(theta)
     slope, A = noise.programme.logs.gradient(found.J) @ found.dJ / 2, noise.precision(found)
     free = np.isin(problem.model.parameters, known)
@@ -233,6 +238,26 @@ def _promises(noise: NoiseModel, theta: Floats, known: Sequence[str]) -> Floats:
     Q, R = A[np.ix_(moved, moved)], A[np.ix_(moved, ~free)]
     left = np.diag(A)[~free] - (R * np.linalg.solve(Q, R)).sum(axis=0)
     return slope[~free] ** 2 / left
+
+
+def _tried(noise: NoiseModel, theta: Floats) -> Freed | None:
+    """Return the model to which theta (p,) leads, in a basis that lacks nothing of it."""
+    known, at = 0, theta
+    while (columns := _columns(noise.problem.model, at)) > known:
+        known, at = columns, maximum(noise, at).theta
+    return _freed(noise, theta)
+
+
+def _columns(model: Model, theta: Floats) -> int:
+    """Return the columns of a basis that knows the modes at theta (p,); 0 of a model without one.
+
+    Where there are no modes, it is left as it is.
+    """
+    if not isinstance(model, ReducedModel):
+        return 0
+    with suppress(ModelError):
+        model.take(SnapshotRequest(theta, model.count))
+    return model.columns
 
 
 def wider(lower: Floats, upper: Floats) -> tuple[Floats, Floats]:

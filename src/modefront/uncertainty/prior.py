@@ -260,12 +260,12 @@ class Standardised:
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:
-        """Return the objectives at z (p,), always with the derivatives that residuals take."""
-        del derivatives, second
+        """Return the objectives at z (p,), with the derivatives that residuals take."""
+        del second
         parameters, slope = self.theta(theta)
-        found = self.problem.evaluate(parameters)
-        if not found.feasible:
-            return replace(found, theta=theta, J=np.append(found.J, np.inf))
+        found = self.problem.evaluate(parameters, derivatives=derivatives)
+        if not (derivatives and found.feasible):
+            return replace(found, theta=theta, J=np.append(found.J, theta @ theta))
         residuals = (
             *(Residual(x.r, x.dr * slope) for x in found.residuals),
             Residual(theta, np.eye(theta.size)),

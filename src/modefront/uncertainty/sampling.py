@@ -9,12 +9,16 @@ from 1, independent models, as far as is needed. Steps of the stochastic Newton 
 centres of further proposals. Chains go on until they agree and the effective sample is large enough
 (Vehtari et al. 2021, doi:10.1214/20-BA1221). They end at half of their length at most where none of
 their halves is worth more than one draw.
+
+Where modes are those of a reduced basis, steps are taken in a smaller one, and several of them
+together are taken or not by what the basis itself says (Liu 2001, *Monte Carlo Strategies in
+Scientific Computing*, section 9.4.3): a poor one makes chains slow, and draws no less exact.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +26,7 @@ from scipy.special import chdtri, gammainc, gammaln, ndtr, ndtri, softmax
 from scipy.stats import rankdata
 
 from modefront._typing import Floats
+from modefront.models.reduced.model import ReducedModel
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import begin, solve
@@ -50,6 +55,13 @@ APART = 1.0
 
 FAINT = 1e-3
 """Probability of a peak over that of the greatest one, below which it is left out."""
+
+SMALL = 100
+"""Columns of a basis below which steps in a smaller one are not much faster."""
+
+SNAPSHOTS, TOGETHER = 40, 5
+"""Models of which the modes span the smaller basis, and steps in it that are taken together: of an
+odd number, every second one a jump, the kinds are in the same order backwards."""
 
 SOLVED, STEPS = 1e-3, 12
 """Error of the normal variables behind a model, and steps to it at most."""
@@ -94,6 +106,12 @@ class Peak:
         inverse = np.linalg.inv(self.precision(self.expected))
         q = np.einsum("jk,ikj->i", inverse, self.squares) / self.expected
         return np.maximum(self.logs.a - q, 1.0)
+
+    def nearby(self, rng: np.random.Generator) -> Floats:
+        """Return standardised parameters (p,) of the Gaussian about the peak."""
+        L = np.linalg.cholesky(self.precision(self.expected))
+        z = self.at.theta + np.linalg.solve(L.T, rng.normal(size=len(L)))
+        return np.clip(z, -FARTHEST, FARTHEST)
 
     def precision(self, s: Floats) -> Floats:
         """Return A (p, p)."""
@@ -200,6 +218,10 @@ class Model:
         of_s = (logs.a / 2 + 1) * np.log(self.s) + b / (2 * self.s)
         return float(-of_s.sum() - self.found.J[-1] / 2)
 
+    def excess(self, true: Evaluation, logs: LogSum) -> float:
+        """Return ln p of the model with the residuals of another evaluation, over its own."""
+        return Model(true, self.s).log_posterior(logs) - self.log_posterior(logs)
+
     def newton(self, b: float) -> tuple[Floats, Floats]:
         """Return mean (p,) and precision (p, p) of proposals nearby: the stochastic Newton method.
 
@@ -276,6 +298,9 @@ def draw_models(
     work.expect({stage: 3 * CHAINS})
     chains: list[Chain | None] = [None] * CHAINS
     kept: list[list[Chain]] = []
+    rng = np.random.default_rng(seed_sequence(seed, stage, "near"))
+    centres = rng.choice(len(peaks), SNAPSHOTS)
+    near = _nearer(noise, np.array([peaks[k].nearby(rng) for k in centres]), 0, work)
     warm, settled = True, False
     rounds = rounds or -(-LONGEST * count // (CHAINS * ROUND))
     for turn in range(WARM + rounds):
@@ -283,7 +308,7 @@ def draw_models(
             Task(
                 (stage, k + 1, turn + 1),
                 _advanced,
-                (noise, peaks, chain, warm),
+                (noise, near, peaks, chain, warm),
                 seed_sequence(seed, stage, k + 1, turn + 1),
             )
             for k, chain in enumerate(chains)
@@ -297,6 +322,9 @@ def draw_models(
             ]
             more = _mixture(noise, work.run(tasks))
             peaks, warm = [*peaks, *more], bool(more) and turn + 1 < WARM
+            if near:
+                z = _joined(found, "z")
+                near = _nearer(noise, z, turn + 1, work)
             continue
         kept.append(found)
         ratio, size = agreement(np.array([_joined(x, "z") for x in zip(*kept, strict=True)]))
@@ -309,6 +337,21 @@ def draw_models(
     order = rng.permutation(np.linspace(0, len(every) * ROUND - 1, count).round().astype(int))
     theta, frequency, mac = (_joined(every, x)[order] for x in ("theta", "frequency", "mac"))
     return Draws(theta, frequency, mac, settled)
+
+
+def _nearer(noise: NoiseModel, z: Floats, turn: int, work: Executor) -> NoiseModel | None:
+    """Return the posterior in the space of the modes at standardised parameters z (models, p).
+
+    None where the model is not a reduced one, its basis is small, or this space is not much less.
+    """
+    problem = noise.problem
+    if not isinstance(problem.model, ReducedModel):
+        return None
+    theta = np.array([Standardised(problem).theta(x)[0] for x in z])
+    (V,) = work.run([Task(("sample-posterior", "space", turn), problem.model.space, (theta,))])
+    if len(V) < SMALL or 2 * V.shape[1] > len(V):
+        return None
+    return replace(noise, problem=replace(problem, model=problem.model.within(V)))
 
 
 def _joined(rounds: Sequence[Chain], name: str) -> Floats:
@@ -342,6 +385,7 @@ def _mixture(noise: NoiseModel, found: Sequence[Evaluation]) -> list[Peak]:
 
 def _advanced(
     noise: NoiseModel,
+    near: NoiseModel | None,
     peaks: Sequence[Peak],
     chain: Chain | None,
     warm: bool,
@@ -349,25 +393,35 @@ def _advanced(
     rng: np.random.Generator,
 ) -> Chain:
     """Return the next round of a chain; a warm-up adapts the lengths of steps."""
-    target, logs = Standardised(noise.problem), noise.programme.logs
+    target, logs = Standardised((near or noise).problem), noise.programme.logs
     of = Sampler(target, logs, peaks)
     length = np.ones(2) if chain is None or warm else chain.length
     if chain is None:
         peak = peaks[rng.choice(len(peaks))]
-        here = Model(peak.at, peak.expected)
+        z, s = peak.at.theta, peak.expected
     else:
-        here = Model(target.evaluate(chain.z[-1]), chain.s)
-    out = []
-    for t in range(ROUND):
-        across = len(peaks) > 1 and t % 2 == 1
-        here, far = of.across(here, 1.0 if across else length[0], across, rng)
-        b = here.found.J[:-1] + logs.floor
-        here = Model(here.found, b / rng.chisquare(logs.a))
-        here, near = of.nearby(here, length[1], rng)
+        z, s = chain.z[-1], chain.s
+    here = Model(target.evaluate(z), s)
+    exact = Standardised(noise.problem)
+    true = exact.evaluate(z, derivatives=False) if near else here.found
+    out, new = [], here
+    every = TOGETHER if near else 1
+    for t in range(ROUND if warm else ROUND * every):
+        jumps = len(peaks) > 1 and t % 2 == 1
+        new, chances = of.after(new, length, jumps, near is not None and rng.random() < 0.5, rng)
         if warm:
-            better = np.array([0.0 if across else far - ACCEPTED, near - ACCEPTED])
+            better = np.array([0.0 if jumps else chances[0] - ACCEPTED, chances[1] - ACCEPTED])
             length = np.minimum(length * np.exp(better / np.sqrt(1 + t / 4)), 1.0)
-        out.append(here.found)
+        if (t + 1) % every:
+            continue
+        if near is None:
+            here, true = new, new.found
+        else:
+            at = true if new.found is here.found else exact.evaluate(new.z, derivatives=False)
+            change = new.excess(at, logs) - here.excess(true, logs)
+            here, true = (new, at) if rng.random() < np.exp(min(change, 0.0)) else (here, true)
+            new = here
+        out.append(true)
     none = np.empty(0)
     frequency, mac = (
         np.array([x.quantities.get(name, none) for x in out]) for name in ("frequency", "mac")
@@ -390,6 +444,25 @@ class Sampler:
     target: Standardised
     logs: LogSum
     peaks: Sequence[Peak]
+
+    # 6 arguments: where from, how far, and in which order.
+    def after(
+        self, here: Model, b: Floats, jumps: bool, backwards: bool, rng: np.random.Generator
+    ) -> tuple[Model, tuple[float, float]]:
+        """Return the model after both kinds of steps of lengths b (2,), and their probabilities.
+
+        The variances are drawn between them. In an order by chance, they are reversible together.
+        """
+        far = near = 0.0
+        for k in (2, 1, 0) if backwards else (0, 1, 2):
+            if k == 0:
+                here, far = self.across(here, 1.0 if jumps else float(b[0]), jumps, rng)
+            elif k == 1:
+                scale = here.found.J[:-1] + self.logs.floor
+                here = Model(here.found, scale / rng.chisquare(self.logs.a))
+            else:
+                here, near = self.nearby(here, float(b[1]), rng)
+        return here, (far, near)
 
     def across(
         self, here: Model, b: float, jumps: bool, rng: np.random.Generator

@@ -47,6 +47,10 @@ FAR = 30.0
 WORST = 6
 """Models of a snapshot that are corrected at once, the worst ones."""
 
+HARDLY = 1e-3
+"""Length of a direction that a space of modes may lack, root mean square over some models: the
+square is an error of eigenvalues."""
+
 TOLERANCE = 1e-8
 """Default relative error of eigenvalues."""
 
@@ -214,6 +218,29 @@ class ReducedModel:
         Phi = basis.combine(np.ascontiguousarray(pairs.Phi[:, :count]))
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return FullModes(pairs.lam[:count], Phi, None)
+
+    # 5 arguments: the model, and the limits of its parameters.
+    def of(self, full: MatrixModel, nominal: Floats, lower: Floats, upper: Floats) -> ReducedModel:
+        """Return another model, of other parameters (p,), in a basis of as many modes."""
+        limits = full.sparse(), self.count, nominal, lower, upper
+        return ReducedModel(*limits, self.tolerance, self.memory, self.spare)
+
+    def space(self, thetas: Floats) -> Floats:
+        """Return coordinates (columns, n) in the basis that span its modes at some parameters.
+
+        Directions in which modes of unit energy have less than `HARDLY`, root mean square, are left
+        out.
+        """
+        _, K, M, _ = self._projected()
+        X = [dense.decompose(K.at(x), M.at(x), self.count).X[:, : self.count] for x in thetas]
+        U, sizes, _ = np.linalg.svd(np.hstack(X), full_matrices=False)
+        spend(Costs(reduced=len(thetas)))
+        return np.asarray(U[:, sizes > HARDLY * np.sqrt(len(thetas))])
+
+    def within(self, V: Floats) -> ReducedModel:
+        """Return the model in the space of coordinates (columns, n) in its basis."""
+        what, K, M, sensed = self._projected()
+        return replace(self, _small=(what, K.within(V), M.within(V), sensed @ V))
 
     def certifier(self) -> Certifier:
         """Return what judges modes of the basis."""
