@@ -239,7 +239,7 @@ def test_steps_in_a_poor_basis_leave_draws_exact(monkeypatch: pytest.MonkeyPatch
     )
     for name, value in (("_nearer", lambda *_: poor), ("ROUND", 20), ("TOGETHER", 3)):
         monkeypatch.setattr(f"modefront.uncertainty.sampling.{name}", value)
-    draws = draw_models(exact, [np.array([0.1, 0.5])], 150, 8, IMMEDIATE).theta
+    draws = draw_models(exact, [np.array([0.1, 0.5])], 100, 8, IMMEDIATE).theta
     known = scipy.stats.truncnorm(-0.5, 4.5, loc=0.1, scale=0.2)
     assert scipy.stats.kstest(draws[:, 0], known.cdf).pvalue > 0.01
     assert scipy.stats.kstest(draws[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01

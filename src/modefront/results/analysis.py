@@ -220,13 +220,14 @@ def with_intervals(data: xr.Dataset, inference: Inference) -> xr.Dataset:
     """Return results with what the posterior says.
 
     A quantile is such that the next draw is below it with its probability. Of draws that do not
-    settle no parameter is called determined.
+    settle, and of a model that cannot be used, no parameter is called determined.
     """
     draws, fit = inference.draws, inference.fit
     freed, unfixed = inference.freed, inference.unfixed
+    settled = draws.settled and not fit.is_refused
     interval = np.quantile(draws.theta, QUANTILES, axis=0, method="weibull").T
     share = (interval[:, 2] - interval[:, 0]) / inference.widths
-    place = np.where((share < DETERMINED) & draws.settled, 0, np.where(share > OPEN, 2, 1))
+    place = np.where((share < DETERMINED) & settled, 0, np.where(share > OPEN, 2, 1))
     p = inference.widths.size
     values = {
         "sample_theta": draws.theta,
@@ -246,7 +247,7 @@ def with_intervals(data: xr.Dataset, inference: Inference) -> xr.Dataset:
     }
     if freed is not None:
         values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
-    attributes = {"assumed": inference.assumed, "settled": int(draws.settled)}
+    attributes = {"assumed": inference.assumed, "settled": int(settled)}
     if unfixed is not None:
         attributes |= {"fixed_parameter": unfixed.name, "fixed_value": unfixed.value}
         values["unfixed_misfit"] = unfixed.misfit

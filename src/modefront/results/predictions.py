@@ -153,7 +153,7 @@ def posterior_models(
 ) -> PosteriorModels:
     """Return the models around the reference at which predictions are evaluated.
 
-    ``drawn`` (draws or more, p) are models of the posterior; they are drawn around the reference
+    ``drawn`` (models, p) are models of the posterior; they are drawn around the reference
     where it is None.
     """
     problem, limits = runner.problem, []

@@ -290,7 +290,8 @@ def draw_models(
 ) -> Draws:
     """Return models drawn from the posterior, of which all known ``maxima`` (p,) are given.
 
-    Chains have ``rounds`` at most; None for as many as so many effective draws may take.
+    They are as many as asked for, and as the chains have steps at most. Chains have ``rounds`` at
+    most; None for as many as so many effective draws may take.
     """
     stage, at = "sample-posterior", Standardised(noise.problem).evaluate
     tasks = [Task((stage, "peak", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
@@ -334,7 +335,8 @@ def draw_models(
             break
     every = [x for chain in zip(*kept, strict=True) for x in chain]
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
-    order = rng.permutation(np.linspace(0, len(every) * ROUND - 1, count).round().astype(int))
+    last = len(every) * ROUND - 1
+    order = rng.permutation(np.linspace(0, last, min(count, last + 1)).round().astype(int))
     theta, frequency, mac = (_joined(every, x)[order] for x in ("theta", "frequency", "mac"))
     return Draws(theta, frequency, mac, settled)
 
