@@ -42,7 +42,7 @@ def test_one_group_of_linear_residuals_has_students_distribution() -> None:
     exact, (J,), *_ = np.linalg.lstsq(A, y)
     assert best.theta == pytest.approx(exact, abs=1e-5)
     at = Standardised(noise.problem).evaluate(ndtri((best.theta + 3) / 6))
-    of = Peak(at, noise.programme.logs)
+    of = Peak(at, noise.logs)
     assert of.dof == pytest.approx([6 + NU - 2], rel=1e-3)
     assert of.scale == pytest.approx([J + NU], rel=1e-3)
     draws = draw_models(noise, [best.theta], 800, 1, IMMEDIATE).theta
@@ -222,7 +222,7 @@ def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
         return [(steep @ theta, steep)]
 
     noise = noise_of(meet, [-1] * 6, [1] * 6, [40.0])
-    peak = Peak(Standardised(noise.problem).evaluate(np.zeros(6)), noise.programme.logs)
+    peak = Peak(Standardised(noise.problem).evaluate(np.zeros(6)), noise.logs)
     assert np.linalg.eigvalsh(peak.precision(np.ones(1))).min() > 0
 
 

@@ -232,7 +232,7 @@ def _promises(noise: NoiseModel, theta: Floats, known: Sequence[str]) -> Floats:
     problem = noise.problem
     _columns(problem.model, theta)
     found = problem.evaluate(theta)
-    slope, A = noise.programme.logs.gradient(found.J) @ found.dJ / 2, noise.precision(found)
+    slope, A = noise.logs.gradient(found.J) @ found.dJ / 2, noise.precision(found)
     free = np.isin(problem.model.parameters, known)
     moved = free & (at_bounds(theta, problem.lower, problem.upper) == 0)
     Q, R = A[np.ix_(moved, moved)], A[np.ix_(moved, ~free)]

@@ -17,7 +17,7 @@ from scipy.special import ndtr, ndtri
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
-from modefront.optim.scalarisation import LogSum, Rows, no_rows
+from modefront.optim.scalarisation import LogSum
 from modefront.options import check_fields, number
 from modefront.residuals.base import NEGLIGIBLE
 from modefront.residuals.groups import Group
@@ -101,9 +101,16 @@ class NoiseModel:
     assumed: str
 
     @property
-    def programme(self) -> NegativeLogPosterior:
-        """What the most probable model minimises: -2 ln p as a function of J'."""
-        return NegativeLogPosterior(LogSum(self.a + self.weight, self.weight * self.level - self.S))
+    def logs(self) -> LogSum:
+        """-2 ln p of J', without the prior of the parameters."""
+        return LogSum(self.a + self.weight, self.weight * self.level - self.S)
+
+    @property
+    def programme(self) -> LogSum:
+        """What the most probable model minimises, with the distance from the nominal model."""
+        own = zip((self.logs.a, self.logs.floor, 0 * self.a), (0.0, 1.0, 1.0), strict=True)
+        a, floor, linear = (np.append(*x) for x in own)
+        return LogSum(a, floor, linear=linear)
 
     @property
     def target(self) -> Problem:
@@ -114,7 +121,7 @@ class NoiseModel:
 
     def precision(self, evaluation: Evaluation) -> Floats:
         """Return Gauss-Newton's matrix (p, p) of -ln p; a uniform prior has its variance."""
-        w = self.programme.logs.gradient(evaluation.J)
+        w = self.logs.gradient(evaluation.J)
         dr = Distance(self.problem, self.problem.start, 12.0).residuals(evaluation.theta)[1]
         out: Floats = np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
         return out
@@ -122,37 +129,6 @@ class NoiseModel:
     def over_expected(self, J: Floats) -> Floats:
         """Return the root mean square errors (n,) of J' (n,) over those expected."""
         return np.sqrt(np.maximum(J - self.S, 0.0) / (np.maximum(self.a, 1.0) * self.level))
-
-
-@dataclass(frozen=True)
-class NegativeLogPosterior:
-    """-2 ln p of J' (n,) and of the distance from the nominal model; see the module."""
-
-    logs: LogSum
-
-    @property
-    def constraints(self) -> Rows:
-        """No constraints."""
-        return no_rows(self.logs.a.size + 1)
-
-    @property
-    def maximised(self) -> Rows:
-        """No maximum."""
-        return no_rows(self.logs.a.size + 1)
-
-    def value(self, J: Floats) -> float:
-        """Return -2 ln p."""
-        return self.logs.value(J[:-1]) + float(J[-1])
-
-    def gradient(self, J: Floats) -> Floats:
-        """Return its derivatives with respect to the objectives."""
-        return np.append(self.logs.gradient(J[:-1]), 1.0)
-
-    def hessian(self, J: Floats) -> Floats:
-        """Return its second derivatives."""
-        out = np.zeros((J.size, J.size))
-        out[:-1, :-1] = self.logs.hessian(J[:-1])
-        return out
 
 
 @dataclass(frozen=True)

@@ -369,7 +369,7 @@ def _peak(noise: NoiseModel, theta: Floats) -> Evaluation:
 
 def _mixture(noise: NoiseModel, found: Sequence[Evaluation]) -> list[Peak]:
     """Return the peaks that count, each once."""
-    logs = noise.programme.logs
+    logs = noise.logs
     peaks: list[Peak] = []
     for x in sorted(found, key=lambda x: noise.programme.value(x.J)):
         new = Peak(x, logs)
@@ -395,7 +395,7 @@ def _advanced(
     rng: np.random.Generator,
 ) -> Chain:
     """Return the next round of a chain; a warm-up adapts the lengths of steps."""
-    target, logs = Standardised((near or noise).problem), noise.programme.logs
+    target, logs = Standardised((near or noise).problem), noise.logs
     of = Sampler(target, logs, peaks)
     length = np.ones(2) if chain is None or warm else chain.length
     if chain is None:
