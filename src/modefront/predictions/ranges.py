@@ -249,37 +249,28 @@ class _Along:
     problem : the problem
     front : some of its models, and what is known between them
     value : returns the value of a model of the front
-    theta, J, values : of the models
+    known : parameters, objectives and value of each model
     halved : pairs of models between which the front has been solved for
     """
 
     problem: Problem
     front: Sampled
     value: Callable[[Floats], float]
-    theta: list[Floats] = field(default_factory=list)
-    J: list[Floats] = field(default_factory=list)
-    values: list[float] = field(default_factory=list)
+    known: list[tuple[Floats, Floats, float]] = field(default_factory=list)
     halved: set[tuple[int, int]] = field(default_factory=set)
-
-    def add(self, theta: Floats, J: Floats, value: float) -> None:
-        """Add a model."""
-        self.theta.append(theta)
-        self.J.append(J)
-        self.values.append(value)
 
     def least(self) -> float:
         """Return the least value; NaN without any."""
         while pairs := set(self._promising()):
             for pair in sorted(pairs):
                 self._halve(*pair)
-        known = [x for x in self.values if np.isfinite(x)]
-        return min(known, default=np.nan)
+        return min((x for *_, x in self.known if np.isfinite(x)), default=np.nan)
 
     def _promising(self) -> Iterator[tuple[int, int]]:
         """Yield the neighbours between which less than the least value may lie."""
-        values = np.array(self.values)
+        values = np.array([x for *_, x in self.known])
         known = np.isfinite(values)
-        scaled = np.array(self.J) / self.front.ranges
+        scaled = np.array([J for _, J, _ in self.known]) / self.front.ranges
         squares = ((scaled[:, None] - scaled) ** 2).sum(axis=2)
         needed = values.min(where=known, initial=np.inf)
         needed -= SURE * np.abs(values).max(where=known, initial=0.0)
@@ -294,21 +285,20 @@ class _Along:
     def _halve(self, a: int, b: int) -> None:
         """Add the model half-way between two of them, if it is another one."""
         self.halved.add((a, b))
-        one, other = self.theta[a], self.theta[b]
+        one, other = self.known[a][0], self.known[b][0]
         if _apart(self.problem, one, other) <= SURE:
             return
         key = np.append(one, other).tobytes()
         if key not in self.front.between:
             self.front.between[key] = self._between(a, b)
-        found = self.front.between[key]
-        known = np.array(self.J)
+        found, known = self.front.between[key], np.array([J for _, J, _ in self.known])
         if found and undominated(found.J[None], known, self.front.ranges).all():
-            self.add(found.theta, found.J, self.value(found.theta))
+            self.known.append((found.theta, found.J, self.value(found.theta)))
 
     def _between(self, a: int, b: int) -> Solution | None:
         """Return the model half-way between two; None where these are as near to it as any."""
-        one, other, unit = self.theta[a], self.theta[b], self.front.ranges
-        ends = np.array([self.J[a], self.J[b]]) / unit
+        (one, J, _), (other, at, _), unit = self.known[a], self.known[b], self.front.ranges
+        ends = np.array([J, at]) / unit
         middle = ends.mean(axis=0)
         programme = achievement(RHO / unit, np.diag(1 / unit), middle)
         for starts in ([(one + other) / 2], [one, other]):
@@ -344,6 +334,6 @@ def extreme(
 
     along = _Along(problem, front, value)
     for theta, J, known in zip(front.theta, front.J, sign * values, strict=True):
-        if all(_apart(problem, theta, other) > SURE for other in along.theta):
-            along.add(theta, J, value(theta) if front.is_open else float(known))
+        if all(_apart(problem, theta, other) > SURE for other, *_ in along.known):
+            along.known.append((theta, J, value(theta) if front.is_open else float(known)))
     return sign * along.least()

@@ -258,7 +258,7 @@ class Chain:
 
     Attributes
     ----------
-    z, theta : (steps, p) standardised parameters, and parameters
+    z : (steps, p) standardised parameters
     frequency, mac : (steps, modes)
     s : (n,) variances at its end
     length : b of both kinds of proposals
@@ -266,7 +266,6 @@ class Chain:
     """
 
     z: Floats
-    theta: Floats
     frequency: Floats
     mac: Floats
     s: Floats
@@ -293,7 +292,7 @@ def draw_models(
     They are as many as asked for, and as the chains have steps at most. Chains have ``rounds`` at
     most; None for as many as so many effective draws may take.
     """
-    stage, at = "sample-posterior", Standardised(noise.problem).evaluate
+    stage, target = "sample-posterior", Standardised(noise.problem)
     tasks = [Task((stage, "peak", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
     peaks = _mixture(noise, work.run(tasks))
     work.expect({stage: 3 * CHAINS})
@@ -319,7 +318,8 @@ def draw_models(
         if warm:
             beyond = [x.z[-1] for x in found if x.beyond]
             tasks = [
-                Task((stage, "beyond", turn + 1, k + 1), at, (z,)) for k, z in enumerate(beyond)
+                Task((stage, "beyond", turn + 1, k + 1), target.evaluate, (z,))
+                for k, z in enumerate(beyond)
             ]
             more = _mixture(noise, work.run(tasks))
             peaks, warm = [*peaks, *more], bool(more) and turn + 1 < WARM
@@ -337,8 +337,8 @@ def draw_models(
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
     last = len(every) * ROUND - 1
     order = rng.permutation(np.linspace(0, last, min(count, last + 1)).round().astype(int))
-    theta, frequency, mac = (_joined(every, x)[order] for x in ("theta", "frequency", "mac"))
-    return Draws(theta, frequency, mac, settled)
+    z, frequency, mac = (_joined(every, x)[order] for x in ("z", "frequency", "mac"))
+    return Draws(target.parameters(z), frequency, mac, settled)
 
 
 def _nearer(noise: NoiseModel, z: Floats, turn: int, work: Executor) -> NoiseModel | None:
@@ -349,7 +349,7 @@ def _nearer(noise: NoiseModel, z: Floats, turn: int, work: Executor) -> NoiseMod
     problem = noise.problem
     if not isinstance(problem.model, ReducedModel):
         return None
-    theta = np.array([Standardised(problem).theta(x)[0] for x in z])
+    theta = Standardised(problem).parameters(z)
     (V,) = work.run([Task(("sample-posterior", "space", turn), problem.model.space, (theta,))])
     if len(V) < SMALL or 2 * V.shape[1] > len(V):
         return None
@@ -430,7 +430,6 @@ def _advanced(
     )
     return Chain(
         np.array([x.theta for x in out]),
-        np.array([target.theta(x.theta)[0] for x in out]),
         frequency,
         mac,
         here.s,
