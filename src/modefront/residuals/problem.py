@@ -21,7 +21,7 @@ from modefront.brief import as_html
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model
-from modefront.models.matrices import MatrixModel, of_free
+from modefront.models.matrices import of_free
 from modefront.models.parameters import Parameter, Prior, in_order, parameters_of
 from modefront.models.reduced.model import ReducedModel
 from modefront.models.reduced.options import Reduction
@@ -110,10 +110,10 @@ class UpdatingProblem:
         model, given = self.whole
         given = tuple(replace(x, fixed=x.fixed and x.name not in names) for x in given)
         model, chosen = of_free(model, given)
-        limits = _limits(chosen)
-        if isinstance(self.model, ReducedModel) and isinstance(model, MatrixModel):
-            model = self.model.of(model, *(limits[x] for x in ("start", "lower", "upper")))
-        return replace(self, model=model, **limits)
+        if isinstance(self.model, ReducedModel):
+            reduction = Reduction(self.model.tolerance, self.model.memory)
+            model = reduction.of(model, self.data, self.pairing, chosen)
+        return replace(self, model=model, **_limits(chosen))
 
     @cached_property
     def _stacks(self) -> tuple[tuple[Stack, ...], ...]:

@@ -116,13 +116,12 @@ class NoiseModel:
     def target(self) -> Problem:
         """The problem with the distance from the nominal model as a further objective."""
         names = (*self.problem.objectives, "distance from the nominal model")
-        distance = Distance(self.problem, self.problem.start, PULL)
-        return Wrapped(self.problem, distance.evaluation, names)
+        return Wrapped(self.problem, Distance(self.problem, PULL).evaluation, names)
 
     def precision(self, evaluation: Evaluation) -> Floats:
         """Return Gauss-Newton's matrix (p, p) of -ln p; a uniform prior has its variance."""
         w = self.logs.gradient(evaluation.J)
-        dr = Distance(self.problem, self.problem.start, 12.0).residuals(evaluation.theta)[1]
+        dr = Distance(self.problem, 12.0).residuals(evaluation.theta)[1]
         out: Floats = np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
         return out
 
@@ -133,28 +132,24 @@ class NoiseModel:
 
 @dataclass(frozen=True)
 class Distance:
-    """Distance of parameters from others, in the units of their priors.
+    """Distance of parameters from the nominal ones, in the units of their priors.
 
-    Attributes
-    ----------
-    problem : with bounds and priors
-    centre : (p,) parameters from which it is
-    weight : of a distance of one range, for parameters of uniform prior
+    ``weight`` is that of a distance of one range, for parameters of uniform prior.
     """
 
     problem: UpdatingProblem
-    centre: Floats
     weight: float
 
     def residuals(self, theta: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the distances (p,) and their first and second derivatives."""
-        unit = np.sqrt(self.weight) / (self.problem.upper - self.problem.lower)
-        r, dr, d2r = unit * (theta - self.centre), unit.copy(), np.zeros(unit.size)
+        centre, span = self.problem.start, self.problem.upper - self.problem.lower
+        unit = np.sqrt(self.weight) / span
+        r, dr, d2r = unit * (theta - centre), unit.copy(), np.zeros(unit.size)
         for j, prior in enumerate(self.problem.priors):
             if prior and prior.kind == "normal":
-                r[j], dr[j] = (theta[j] - self.centre[j]) / prior.std, 1 / prior.std
+                r[j], dr[j] = (theta[j] - centre[j]) / prior.std, 1 / prior.std
             elif prior:
-                r[j] = np.log(theta[j] / self.centre[j]) / prior.std
+                r[j] = np.log(theta[j] / centre[j]) / prior.std
                 dr[j], d2r[j] = 1 / (theta[j] * prior.std), -1 / (theta[j] ** 2 * prior.std)
         return r, dr, d2r
 

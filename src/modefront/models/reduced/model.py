@@ -219,12 +219,6 @@ class ReducedModel:
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return FullModes(pairs.lam[:count], Phi, None)
 
-    # 5 arguments: the model, and the limits of its parameters.
-    def of(self, full: MatrixModel, nominal: Floats, lower: Floats, upper: Floats) -> ReducedModel:
-        """Return another model, of other parameters (p,), in a basis of as many modes."""
-        limits = full.sparse(), self.count, nominal, lower, upper
-        return ReducedModel(*limits, self.tolerance, self.memory, self.spare)
-
     def space(self, thetas: Floats) -> Floats:
         """Return coordinates (columns, n) in the basis that span its modes at some parameters.
 
