@@ -81,9 +81,9 @@ class Peak:
     logs: LogSum
 
     @cached_property
-    def G(self) -> Floats:
-        """Derivatives of the residuals (rows, p)."""
-        return np.vstack([x.dr for x in self.at.residuals[:-1]])
+    def top(self) -> Model:
+        """The model at the peak."""
+        return Model(self.at, self.expected)
 
     @cached_property
     def squares(self) -> Floats:
@@ -107,26 +107,14 @@ class Peak:
         q = np.einsum("jk,ikj->i", inverse, self.squares) / self.expected
         return np.maximum(self.logs.a - q, 1.0)
 
-    def nearby(self, rng: np.random.Generator) -> Floats:
-        """Return standardised parameters (p,) of the Gaussian about the peak."""
-        L = np.linalg.cholesky(self.precision(self.expected))
-        z = self.at.theta + np.linalg.solve(L.T, rng.normal(size=len(L)))
-        return np.clip(z, -FARTHEST, FARTHEST)
-
     def precision(self, s: Floats) -> Floats:
         """Return A (p, p)."""
         return _definite(np.tensordot(1 / s, self.squares, axes=1))
 
-    def variances(self, eta: Floats) -> Floats:
-        """Return variances (n,) of normal variables (n,)."""
-        out: Floats = self.scale / chdtri(self.dof, ndtr(np.clip(-eta, -FARTHEST, FARTHEST)))
-        return out
-
     def forward(self, model: Model) -> tuple[Floats, Floats]:
         """Return F (p,) of a model and its derivative (p, p)."""
-        over = np.repeat(1 / model.s, model.rows)[:, None]
-        F = model.z + self.G.T @ (over[:, 0] * model.r)
-        return F, np.eye(len(F)) + self.G.T @ (over * model.dr)
+        F = model.z + self.top.dr.T @ (model.over * model.r)
+        return F, np.eye(len(F)) + self.top.dr.T @ (model.over[:, None] * model.dr)
 
     def behind(self, model: Model) -> Floats:
         """Return the normal variables (p + n,) behind a model."""
@@ -150,7 +138,8 @@ class Peak:
         Steps become shorter until the next one does (Deuflhard's natural monotonicity).
         """
         p = self.at.theta.size
-        here = Model(start, self.variances(u[p:]))
+        below = ndtr(np.clip(-u[p:], -FARTHEST, FARTHEST))
+        here = Model(start, self.scale / chdtri(self.dof, below))
         L = np.linalg.cholesky(self.precision(here.s))
         F, slope = self.forward(here)
         missing = L @ u[:p] - F
@@ -198,9 +187,9 @@ class Model:
         return self.found.theta
 
     @cached_property
-    def rows(self) -> list[int]:
-        """Numbers of residuals of the groups."""
-        return [x.r.size for x in self.found.residuals[:-1]]
+    def over(self) -> Floats:
+        """One over the variance of each residual, (rows,)."""
+        return np.repeat(1 / self.s, [x.r.size for x in self.found.residuals[:-1]])
 
     @cached_property
     def r(self) -> Floats:
@@ -227,9 +216,8 @@ class Model:
 
         Of a Gaussian they leave it as it is, whatever b.
         """
-        over = np.repeat(1 / self.s, self.rows)
-        A = _definite(self.dr.T @ (over[:, None] * self.dr))
-        slope = self.z + self.dr.T @ (over * self.r)
+        A = _definite(self.dr.T @ (self.over[:, None] * self.dr))
+        slope = self.z + self.dr.T @ (self.over * self.r)
         return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
 
 
@@ -299,8 +287,8 @@ def draw_models(
     chains: list[Chain | None] = [None] * CHAINS
     kept: list[list[Chain]] = []
     rng = np.random.default_rng(seed_sequence(seed, stage, "near"))
-    centres = rng.choice(len(peaks), SNAPSHOTS)
-    near = _nearer(noise, np.array([peaks[k].nearby(rng) for k in centres]), 0, work)
+    around = [peaks[k].top.newton(1.0) for k in rng.choice(len(peaks), SNAPSHOTS)]
+    near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), 0, work)
     warm, settled = True, False
     rounds = rounds or -(-LONGEST * count // (CHAINS * ROUND))
     for turn in range(WARM + rounds):
@@ -373,9 +361,8 @@ def _mixture(noise: NoiseModel, found: Sequence[Evaluation]) -> list[Peak]:
     peaks: list[Peak] = []
     for x in sorted(found, key=lambda x: noise.programme.value(x.J)):
         new = Peak(x, logs)
-        ways = [new.behind(Model(y.at, new.expected)) for y in peaks]
-        here = new.behind(Model(x, new.expected))
-        if all(np.linalg.norm(way - here) > APART for way in ways):
+        ways = [new.behind(Model(y.at, new.expected)) - new.behind(new.top) for y in peaks]
+        if all(np.linalg.norm(way) > APART for way in ways):
             peaks.append(new)
     if not peaks:
         return []
@@ -399,8 +386,8 @@ def _advanced(
     of = Sampler(target, logs, peaks)
     length = np.ones(2) if chain is None or warm else chain.length
     if chain is None:
-        peak = peaks[rng.choice(len(peaks))]
-        z, s = peak.at.theta, peak.expected
+        top = peaks[rng.choice(len(peaks))].top
+        z, s = top.z, top.s
     else:
         z, s = chain.z[-1], chain.s
     here = Model(target.evaluate(z), s)
@@ -495,8 +482,7 @@ class Sampler:
     def nearby(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
         """Return the model after a step of the stochastic Newton method."""
         mean, precision = here.newton(b)
-        L = np.linalg.cholesky(precision)
-        z = mean + np.linalg.solve(L.T, rng.normal(size=mean.size))
+        z = _drawn(mean, precision, rng)
         new = Model(self.target.evaluate(np.clip(z, -FARTHEST, FARTHEST)), here.s)
         if not new.found.feasible:
             return here, 0.0
@@ -506,6 +492,11 @@ class Sampler:
         ratio += ahead @ precision @ ahead - aback @ behind @ aback
         change = new.log_posterior(self.logs) - here.log_posterior(self.logs) + float(ratio) / 2
         return _taken(here, new, change, rng)
+
+
+def _drawn(mean: Floats, precision: Floats, rng: np.random.Generator) -> Floats:
+    """Return a draw (p,) from a Gaussian."""
+    return mean + np.linalg.solve(np.linalg.cholesky(precision).T, rng.normal(size=mean.size))
 
 
 def _taken(here: Model, new: Model, change: float, rng: np.random.Generator) -> tuple[Model, float]:
