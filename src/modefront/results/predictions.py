@@ -7,7 +7,6 @@ drawn.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain, compress
 
 import numpy as np
@@ -41,11 +40,6 @@ RANGE = ("minimum", "maximum", "spread")
 """Over the Pareto-optimal models and all that are equivalent; the spread is greatest over least."""
 
 
-def extent(predictions: Sequence[Prediction], models: int) -> dict[str, int]:
-    """Return the expected number of tasks of the predictions of so many models, and of ranges."""
-    return {"predict": sum(models + 1 + (each.kind.check is not None) for each in predictions)}
-
-
 def _by_kind(
     predictions: Sequence[Prediction],
 ) -> Iterator[tuple[PredictionKind, list[Prediction]]]:
@@ -54,14 +48,31 @@ def _by_kind(
         yield kind, [each for each in predictions if each.kind == kind]
 
 
-def with_predictions(data: xr.Dataset, runner: PredictionRunner, slack: float) -> xr.Dataset:
-    """Return results with the predictions of every point.
+# 6 arguments: the results so far, who predicts, the range, and the posterior.
+def with_predictions(
+    data: xr.Dataset,
+    runner: PredictionRunner,
+    slack: float,
+    posterior: Posterior | None,
+    draws: int,
+    drawn: Floats | None,
+) -> xr.Dataset:
+    """Return results with the predictions of every point, and their scatter by the posterior.
 
-    ``slack`` is the share by which objectives of models may be greater that count in ranges.
-    Raises what `PredictionRunner.at_points` raises.
+    ``slack`` is the share by which objectives of models may be greater that count in ranges. At
+    most ``draws`` of the models ``drawn`` (models, p) from the posterior count; so many are drawn
+    around the reference where there are none. Raises what `PredictionRunner.at_points` raises.
     """
     if not runner.predictions:
         return data
+    differences, samples, limits = _around(data, runner, posterior, draws, drawn)
+    models = data.sizes["point"] + len(samples) + 2 * len(differences.theta if differences else ())
+    count = sum(models + 1 + (each.kind.check is not None) for each in runner.predictions)
+    runner.work.expect({"predict": count})
+    return _with_posterior(_at_points(data, runner, slack), runner, differences, samples, limits)
+
+
+def _at_points(data: xr.Dataset, runner: PredictionRunner, slack: float) -> xr.Dataset:
     optimal = data["pareto"].values
     values: Values = {"frequency_range": _range(data["frequency"].values, optimal)}
     coordinates = {"range": list(RANGE)}
@@ -122,47 +133,18 @@ def _range(values: Floats, optimal: Bools) -> Floats:
     return np.array([least, greatest, ratio])
 
 
-@dataclass(frozen=True)
-class PosteriorModels:
-    """Models around the reference.
-
-    Attributes
-    ----------
-    differences : finite-difference models along the axes of the posterior; None for none
-    samples : (draws, p) samples of the posterior
-    limits : what limits them
-    """
-
-    differences: Stencil | None
-    samples: Floats
-    limits: Sequence[Finding]
-
-    @property
-    def count(self) -> int:
-        """Number of models."""
-        along = 2 * len(self.differences.theta) if self.differences else 0
-        return along + len(self.samples)
-
-
-def posterior_models(
+def _around(
     data: xr.Dataset,
     runner: PredictionRunner,
     posterior: Posterior | None,
     draws: int,
-    drawn: Floats | None = None,
-) -> PosteriorModels:
-    """Return the models around the reference at which predictions are evaluated.
-
-    ``drawn`` (models, p) are models of the posterior; they are drawn around the reference
-    where it is None.
-    """
+    drawn: Floats | None,
+) -> tuple[Stencil | None, Floats, list[Finding]]:
+    """Return models for differences about the reference, samples (draws, p), and their limits."""
     problem, limits = runner.problem, []
     samples = np.empty((0, problem.start.size)) if drawn is None else drawn[:draws]
-    if not runner.predictions:
-        return PosteriorModels(None, samples[:0], [])
     if posterior is None:
-        limits = [found("no-posterior")] if draws and not len(samples) else []
-        return PosteriorModels(None, samples, limits)
+        return None, samples, [found("no-posterior")] if draws and not len(samples) else []
     theta, best = data["theta"].values[position(data)], preferred(data.attrs)
     names = list(compress(problem.model.parameters, left_open(posterior.free)))
     if names:
@@ -177,28 +159,31 @@ def posterior_models(
             samples = draw(theta, posterior.axes, rng, draws, bounds)
         except TruncationError as error:
             limits.append(found("no-draws", str(error)))
-    return PosteriorModels(differences, samples, limits)
+    return differences, samples, limits
 
 
-def with_posterior(
-    data: xr.Dataset, runner: PredictionRunner, models: PosteriorModels
+def _with_posterior(
+    data: xr.Dataset,
+    runner: PredictionRunner,
+    differences: Stencil | None,
+    samples: Floats,
+    limits: list[Finding],
 ) -> xr.Dataset:
     """Return results that have predictions with the scatter of these by the posterior."""
     values: Values = {}
-    limits = list(models.limits)
     coordinates: dict[str, object] = {}
     for kind, predictions in _by_kind(runner.predictions):
-        if models.differences is not None:
-            variables, more = _to_first_order(data, runner, models.differences, predictions)
+        if differences is not None:
+            variables, more = _to_first_order(data, runner, differences, predictions)
             values |= variables
             limits += more
             coordinates[f"{kind.dimension}_other"] = data[kind.dimension].values
-        if len(models.samples):
-            variables, more = _of_samples(data, runner, models.samples, predictions)
+        if len(samples):
+            variables, more = _of_samples(data, runner, samples, predictions)
             values |= variables
             limits += more
-    if len(models.samples):
-        values["draw_theta"] = models.samples
+    if len(samples):
+        values["draw_theta"] = samples
         coordinates["statistic"] = np.array(SUMMARY)
     kept = zip(data["finding"].values.tolist(), data["finding_record"].values, strict=True)
     values |= as_values([*(from_text(str(text), each) for each, text in kept), *limits])

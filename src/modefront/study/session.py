@@ -191,12 +191,7 @@ def worked(study: Study, work: Run) -> xr.Dataset:
     """
     from modefront.results.analysis import with_intervals
     from modefront.results.assemble import dataset
-    from modefront.results.predictions import (
-        extent,
-        posterior_models,
-        with_posterior,
-        with_predictions,
-    )
+    from modefront.results.predictions import with_predictions
     from modefront.results.shapes import mode_shapes, with_mode_shapes
     from modefront.results.verdict import with_verdict
 
@@ -235,9 +230,8 @@ def worked(study: Study, work: Run) -> xr.Dataset:
         data = with_intervals(data, inference)
         gaussian, drawn = inference.gaussian, inference.draws.theta
     runner = PredictionRunner(problem, study.predictions, seed, work, study.file)
-    models = posterior_models(data, runner, gaussian, study.uncertainty.draws, drawn)
-    work.expect(extent(study.predictions, data.sizes["point"] + models.count))
-    data = with_posterior(with_predictions(data, runner, study.slack), runner, models)
+    of_posterior = gaussian, study.uncertainty.draws, drawn
+    data = with_predictions(data, runner, study.slack, *of_posterior)
     data = with_verdict(data)
     data.attrs |= _attributes(study, work, front)
     return data
