@@ -23,7 +23,7 @@ from modefront.optim.problem import at_bounds
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.most_probable import maximum
 from modefront.uncertainty.planning import Candidates, candidates
-from modefront.uncertainty.prior import NoiseModel, prior_widths
+from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task
@@ -119,21 +119,17 @@ class Inference:
     fit : of its maximum
     freed : the maximum between wider bounds; None where no bound holds it
     unfixed : the maximum with a fixed parameter free; None where none lowers errors beyond chance
-    widths : (p,) of the 90 % intervals of the priors
-    assumed : in words, which errors are assumed; empty for none
     """
 
     draws: Draws
     fit: Fit
     freed: Freed | None
     unfixed: Unfixed | None
-    widths: Floats
-    assumed: str
 
     @property
     def gaussian(self) -> Posterior:
         """The Gaussian with the covariance of the draws."""
-        p = self.widths.size
+        p = self.draws.theta.shape[1]
         lam, V = np.linalg.eigh(np.cov(self.draws.theta, rowvar=False).reshape(p, p))
         moved = lam > np.finfo(float).eps * lam.max(initial=0.0)
         axes = V[:, moved] * np.sqrt(lam[moved])
@@ -154,8 +150,6 @@ def infer(
         fit,
         freed(noise, theta, work),
         unfixed(noise, theta, fit.misfit, work),
-        prior_widths(noise.problem),
-        noise.assumed,
     )
 
 
