@@ -29,11 +29,8 @@ NEGLIGIBLE = 1e-9
 BATCH = 1000
 """Draws that are made at a time."""
 
-SELDOM = 1e-4
-"""Share of draws within the bounds below which there is no sampling by trial."""
-
-TRIALS = 100_000
-"""Draws after which that share is judged."""
+TRIALS = 10_000
+"""Draws for one within the bounds, at most: with fewer of these there is no sampling by trial."""
 
 
 @dataclass(frozen=True)
@@ -112,18 +109,14 @@ def draw(
     sample begins with a shorter one. Raises TruncationError where fewer than one draw of 10,000 is
     within the bounds.
     """
-    lower, upper = bounds
-    parts: list[Floats] = []
-    accepted = drawn_count = 0
-    while accepted < count:
-        if drawn_count >= TRIALS and accepted < SELDOM * drawn_count:
-            raise TruncationError(f"{accepted} of {drawn_count} draws are within the bounds")
+    (lower, upper), out, tried = bounds, np.empty((0, theta.size)), 0
+    while len(out) < count:
+        if tried >= 10 * TRIALS and len(out) * TRIALS < tried:
+            raise TruncationError(f"{len(out)} of {tried} draws are within the bounds")
         drawn = theta + rng.standard_normal((BATCH, axes.shape[1])) @ axes.T
-        within = drawn[((drawn >= lower) & (drawn <= upper)).all(axis=1)]
-        parts.append(within)
-        accepted += len(within)
-        drawn_count += BATCH
-    return np.concatenate([*parts, np.empty((0, theta.size))])[:count]
+        out = np.vstack([out, drawn[((drawn >= lower) & (drawn <= upper)).all(axis=1)]])
+        tried += BATCH
+    return out[:count]
 
 
 def summary(values: Floats) -> Floats:
