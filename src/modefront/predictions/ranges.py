@@ -34,6 +34,7 @@ from modefront.optim.problem import (
     Problem,
     Wrapped,
     infeasible,
+    room,
 )
 from modefront.optim.scalarisation import Linear, Rows, achievement, no_rows
 from modefront.optim.sqp import Options, Solution, begin, solve
@@ -119,7 +120,7 @@ class Equivalent:
 
     def _farther(self, q: Values, sign: float, theta: Floats, reached: float) -> Floats | None:
         """Return the model (p,) at the bounds that promises most; None where none promises more."""
-        null = self.equations[1]
+        null, bounds = self.equations[1], (self.problem.lower, self.problem.upper)
         best, best_value = None, reached - sign * SURE * abs(reached)
         known: list[Floats] = []
         for v in (null @ null.T)[np.abs(null).max(axis=1, initial=0.0) > RANK]:
@@ -127,21 +128,13 @@ class Equivalent:
             if any(abs(v @ x) > 1 - RANK for x in known):
                 continue
             known.append(v)
-            for step in (v, -v):
-                end = self._at_bound(theta, step)
+            along = np.where(np.abs(v) > RANK, v, 0.0) * self.span
+            for step in (along, -along):
+                end = np.clip(theta + max(room(theta, step, *bounds), 0.0) * step, *bounds)
                 value = q(end)
                 if sign * value < sign * best_value:
                     best, best_value = end, value
         return best
-
-    def _at_bound(self, theta: Floats, direction: Floats) -> Floats:
-        """Return the model at the bounds in a direction (p,) over the ranges."""
-        lower, upper = self.problem.lower, self.problem.upper
-        moves = np.abs(direction) > RANK
-        step = np.where(moves, direction, 0.0) * self.span
-        room = np.where(step > 0, upper, lower)[moves] - theta[moves]
-        reach = max(float((room / step[moves]).min()), 0.0)
-        return np.clip(theta + reach * step, lower, upper)
 
     @property
     def span(self) -> Floats:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.optim.problem import room
 
 SUMMARY = ("mean", "standard deviation", "5 %", "50 %", "95 %")
 """Statistics of a sample: two moments and three quantiles."""
@@ -62,7 +63,7 @@ def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stenci
     directions = np.where(np.abs(axes) > NEGLIGIBLE * std[:, None], axes, 0.0).T
     points, factors = np.empty((m, 2, theta.size)), np.empty((m, 3))
     for k, direction in enumerate(directions):
-        up, down = (_room(theta, s * direction, lower, upper) for s in (1.0, -1.0))
+        up, down = (room(theta, s * direction, lower, upper) for s in (1.0, -1.0))
         side = 1.0 if up >= down else -1.0
         central, aside = min(STEP, up, down), min(STEP, max(up, down) / 2)
         if max(central, aside) < LEAST:
@@ -75,13 +76,6 @@ def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stenci
             factors[k] = side * np.array([-3.0, 4.0, -1.0]) / (2 * aside)
         points[k] = np.clip(theta + steps[:, None] * direction, lower, upper)
     return Stencil(points, factors)
-
-
-def _room(theta: Floats, direction: Floats, lower: Floats, upper: Floats) -> float:
-    """Return the number of steps ``direction`` (p,) that stay within the bounds."""
-    moved = direction != 0
-    to = np.where(direction > 0, upper, lower)
-    return float(((to - theta)[moved] / direction[moved]).min(initial=np.inf))
 
 
 class TruncationError(ValueError):
