@@ -17,7 +17,6 @@ from scipy.stats import chi2
 
 from modefront._typing import Bools, Floats
 from modefront.errors import ModelError
-from modefront.models.base import Model
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.optim.problem import at_bounds
 from modefront.uncertainty.laplace import Posterior
@@ -214,17 +213,20 @@ def unfixed(noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor) ->
 
 
 def _placed(noise: NoiseModel, known: Sequence[str], theta: Floats) -> Floats:
-    """Return all parameters of a problem, of which those known are theta, others nominal."""
-    names = noise.problem.model.parameters
-    out = noise.problem.start.copy()
-    out[[names.index(x) for x in known]] = theta
+    """Return all parameters of a problem, of which those known are theta, others nominal.
+
+    There a reduced model begins its basis.
+    """
+    model, out = noise.problem.model, noise.problem.start.copy()
+    out[[model.parameters.index(x) for x in known]] = theta
+    if isinstance(model, ReducedModel):
+        model.nominal = out
     return out
 
 
 def _promises(noise: NoiseModel, theta: Floats, known: Sequence[str]) -> Floats:
     """Return by how much -2 ln p becomes less with each parameter that is not known so far."""
     problem = noise.problem
-    _columns(problem.model, theta)
     found = problem.evaluate(theta)
     slope, A = noise.logs.gradient(found.J) @ found.dJ / 2, noise.precision(found)
     free = np.isin(problem.model.parameters, known)
@@ -236,22 +238,13 @@ def _promises(noise: NoiseModel, theta: Floats, known: Sequence[str]) -> Floats:
 
 def _tried(noise: NoiseModel, theta: Floats) -> Freed | None:
     """Return the model to which theta (p,) leads, in a basis that lacks nothing of it."""
-    known, at = 0, theta
-    while (columns := _columns(noise.problem.model, at)) > known:
-        known, at = columns, maximum(noise, at).theta
-    return _freed(noise, theta)
-
-
-def _columns(model: Model, theta: Floats) -> int:
-    """Return the columns of a basis that knows the modes at theta (p,); 0 of a model without one.
-
-    Where there are no modes, it is left as it is.
-    """
-    if not isinstance(model, ReducedModel):
-        return 0
-    with suppress(ModelError):
-        model.take(SnapshotRequest(theta, model.count))
-    return model.columns
+    model, columns, found = noise.problem.model, 0, _freed(noise, theta)
+    while isinstance(model, ReducedModel) and found is not None and model.columns > columns:
+        columns = model.columns
+        with suppress(ModelError):
+            model.take(SnapshotRequest(found.theta, model.count))
+        found = _freed(noise, theta)
+    return found
 
 
 def wider(lower: Floats, upper: Floats) -> tuple[Floats, Floats]:

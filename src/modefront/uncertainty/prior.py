@@ -108,9 +108,8 @@ class NoiseModel:
     @property
     def programme(self) -> LogSum:
         """What the most probable model minimises, with the distance from the nominal model."""
-        own = zip((self.logs.a, self.logs.floor, 0 * self.a), (0.0, 1.0, 1.0), strict=True)
-        a, floor, linear = (np.append(*x) for x in own)
-        return LogSum(a, floor, linear=linear)
+        logs, alone = self.logs, np.eye(self.a.size + 1)[-1]
+        return LogSum(np.append(logs.a, 0.0), np.append(logs.floor, 1.0), linear=alone)
 
     @property
     def target(self) -> Problem:
