@@ -51,8 +51,10 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     """
     if "misfit" not in data:
         return data.assign_attrs(verdict="\n".join(_unjudged(data)))
-    groups = list(map(str, data["group"].values))
-    why = refusals(groups, data["misfit"].values, data["nominal_misfit"].values)
+    groups, misfit = data["group"].values, data["misfit"].values
+    far, worse = map(np.flatnonzero, refused(misfit, data["nominal_misfit"].values))
+    why = [_say("far", group=groups[i], misfit=misfit[i]) for i in far.tolist()]
+    why += [_say("worse", group=groups[i]) for i in worse.tolist()]
     assumed = data.attrs.get("assumed")
     said = [*_at_bounds(data), *_fixed(data)]
     said += [_say("assumed", assumed=assumed)] if assumed else []
@@ -89,19 +91,6 @@ def _with_room(sentences: Sequence[str]) -> list[str]:
     """Return the first sentences for which there is room, and the first one in any case."""
     ends = np.cumsum([len(wrap(sentence, COLUMNS)) for sentence in sentences])
     return list(sentences[: max(1, int(np.searchsorted(ends, LINES, side="right")))])
-
-
-def refusals(groups: Sequence[str], misfit: Floats, nominal: Floats) -> list[str]:
-    """Return why the most probable model cannot be used; nothing where it can be.
-
-    ``misfit`` and ``nominal`` (n,) are the errors of its groups, and those of the nominal model,
-    over those expected.
-    """
-    far, worse = refused(misfit, nominal)
-    return [
-        *(_say("far", group=groups[i], misfit=misfit[i]) for i in np.flatnonzero(far).tolist()),
-        *(_say("worse", group=groups[i]) for i in np.flatnonzero(worse).tolist()),
-    ]
 
 
 def _use(data: xr.Dataset) -> str:

@@ -56,12 +56,10 @@ APART = 1.0
 FAINT = 1e-3
 """Probability of a peak over that of the greatest one, below which it is left out."""
 
-SMALL = 100
-"""Columns of a basis below which steps in a smaller one are not much faster."""
-
-SNAPSHOTS, TOGETHER = 40, 5
-"""Models of which the modes span the smaller basis, and steps in it that are taken together: of an
-odd number, every second one a jump, the kinds are in the same order backwards."""
+SMALL, SNAPSHOTS, TOGETHER = 100, 40, 5
+"""Columns of a basis from which steps are taken in a smaller one, models of which the modes span
+that, and steps that are taken together: of an odd number, every second one a jump, the kinds are in
+the same order backwards."""
 
 SOLVED, STEPS = 1e-3, 12
 """Error of the normal variables behind a model, and steps to it at most."""
@@ -411,9 +409,8 @@ def _advanced(
             here, true = (new, at) if rng.random() < np.exp(min(change, 0.0)) else (here, true)
             new = here
         out.append(true)
-    none = np.empty(0)
     frequency, mac = (
-        np.array([x.quantities.get(name, none) for x in out]) for name in ("frequency", "mac")
+        np.array([x.quantities.get(name, ()) for x in out]) for name in ("frequency", "mac")
     )
     return Chain(
         np.array([x.theta for x in out]),
