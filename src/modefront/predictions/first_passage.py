@@ -69,17 +69,6 @@ def _is_modulation(value: list[list[float]]) -> bool:
     return rising([t for t, _ in value]) and any(factor != 0 for _, factor in value)
 
 
-SOIL_FREQUENCY = number("a frequency of the soil above 0 Hz", above=0)
-SOIL_DAMPING = number("a damping ratio of the soil above 0", above=0)
-DENSITY = number("a spectral density above 0", above=0)
-DURATION = number("a duration above 0 s", above=0)
-STEP = number("a time step above 0 s", above=0)
-
-LEVELS = numbers(
-    "a list of different levels above 0",
-    array(ABOVE_ZERO, 1, once=True),
-)
-
 MODULATION = Requirement(
     "a list of [time in s, factor], times rising from 0 or more, one factor not zero",
     {**array(pair(NOT_NEGATIVE, NUMBER), 1), "contains": {"items": [{}, {"not": {"const": 0}}]}},
@@ -100,8 +89,8 @@ class SoilFilter:
     damping : damping ratio of the soil, above 0
     """
 
-    frequency: Annotated[float, SOIL_FREQUENCY]
-    damping: Annotated[float, SOIL_DAMPING]
+    frequency: Annotated[float, number("a frequency of the soil above 0 Hz", above=0)]
+    damping: Annotated[float, number("a damping ratio of the soil above 0", above=0)]
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -145,13 +134,16 @@ class Passage:
 
     name: Name
     response: Response
-    density: Annotated[float, DENSITY]
+    density: Annotated[float, number("a spectral density above 0", above=0)]
     sided: Literal["one", "two"]
-    levels: Annotated[Sequence[float], LEVELS]
-    duration: Annotated[float, DURATION]
+    levels: Annotated[
+        Sequence[float],
+        numbers("a list of different levels above 0", array(ABOVE_ZERO, 1, once=True)),
+    ]
+    duration: Annotated[float, number("a duration above 0 s", above=0)]
     force: Forces | None = None
     base: Base | None = None
-    step: Annotated[float, STEP] | None = None
+    step: Annotated[float, number("a time step above 0 s", above=0)] | None = None
     filter: Annotated[SoilFilter, FILTER] | None = None
     modulation: Annotated[Sequence[tuple[float, float]], MODULATION] | None = None
     samples: Annotated[int, whole(2, 10**8)] = 2000
