@@ -185,10 +185,6 @@ class DenseAffine:
         coefficients, factors = self.coefficients.held(fixed, tied)
         return DenseAffine(self.terms * factors[:, None, None], coefficients)
 
-    def within(self, V: Floats) -> DenseAffine:
-        """Return V^T A V for columns V (N, n)."""
-        return DenseAffine(V.T @ self.terms @ V, self.coefficients)
-
     def sparse(self) -> SparseAffine:
         """Return the same matrix with sparse terms."""
         terms = [scipy.sparse.coo_array(term) for term in self.terms]

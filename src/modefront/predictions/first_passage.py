@@ -52,12 +52,6 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.response.system import ModalSystem
 from modefront.rounding import ACCUMULATED
 
-MOST_WORKERS = 8
-"""Threads at most; each takes some 100 MB."""
-
-STEPS_A_PERIOD = 20
-"""Time steps in the shortest period, where the step is not given."""
-
 MOST_STEPS = 10**6
 """Time steps at most: convolutions of more fill the memory."""
 
@@ -65,15 +59,11 @@ WHOLE = 1e-6
 """Difference from a whole number of time steps that passes for the digits of their length."""
 
 
-def _is_modulation(value: list[list[float]]) -> bool:
-    return rising([t for t, _ in value]) and any(factor != 0 for _, factor in value)
-
-
 MODULATION = Requirement(
     "a list of [time in s, factor], times rising from 0 or more, one factor not zero",
     {**array(pair(NOT_NEGATIVE, NUMBER), 1), "contains": {"items": [{}, {"not": {"const": 0}}]}},
     lambda value: tuple((float(t), float(q)) for t, q in value),
-    _is_modulation,
+    lambda value: rising([t for t, _ in value]) and any(factor != 0 for _, factor in value),
 )
 
 
@@ -285,7 +275,7 @@ class Passage:
                 expected = f"at most {limit:.4g} s, {period}"
                 raise wrong("step", expected, f"{self.step:g}")
             return self.step
-        steps = math.ceil(self.duration * highest / (2 * np.pi) * STEPS_A_PERIOD)
+        steps = math.ceil(self.duration * highest / (2 * np.pi) * 20)
         if steps > MOST_STEPS:
             raise wrong("step", f"at most {MOST_STEPS} time steps", steps)
         return self.duration / steps
@@ -330,6 +320,6 @@ class Passage:
     ) -> tuple[Prepare, FirstPassage, Floats, int, np.random.SeedSequence, int]:
         """Return what estimates at a model take."""
         method, passage = METHODS[self.method], self.problem(problem, theta)
-        # How many threads there are changes no digit, only memory and time.
-        workers = min(os.cpu_count() or 1, MOST_WORKERS)
+        # How many threads there are changes no digit, only time and memory, 100 MB each.
+        workers = min(os.cpu_count() or 1, 8)
         return method, passage, np.array(self.levels), self.samples, seed, workers

@@ -208,10 +208,6 @@ class Standardised:
             slope[known] = scale * self.share * np.exp((x**2 - z[known] ** 2) / 2)
         return np.clip(theta, lower, upper), slope
 
-    def parameters(self, z: Floats) -> Floats:
-        """Return the parameters (models, p) of several z (models, p)."""
-        return np.array([self.theta(x)[0] for x in z])
-
     def z(self, theta: Floats) -> Floats:
         """Return z (p,) of parameters (p,), infinite where these are at their bounds."""
         lower, upper, x = self.problem.lower, self.problem.upper, self._units(theta)

@@ -219,7 +219,6 @@ class Model:
         return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
 
 
-@record
 @dataclass(frozen=True)
 class Draws:
     """Models drawn from the posterior, with what they predict.
@@ -324,7 +323,7 @@ def draw_models(
     last = len(every) * ROUND - 1
     order = rng.permutation(np.linspace(0, last, min(count, last + 1)).round().astype(int))
     z, frequency, mac = (_joined(every, x)[order] for x in ("z", "frequency", "mac"))
-    return Draws(target.parameters(z), frequency, mac, settled)
+    return Draws(np.array([target.theta(x)[0] for x in z]), frequency, mac, settled)
 
 
 def _nearer(noise: NoiseModel, z: Floats, turn: int, work: Executor) -> NoiseModel | None:
@@ -335,7 +334,7 @@ def _nearer(noise: NoiseModel, z: Floats, turn: int, work: Executor) -> NoiseMod
     problem = noise.problem
     if not isinstance(problem.model, ReducedModel):
         return None
-    theta = Standardised(problem).parameters(z)
+    theta = np.array([Standardised(problem).theta(x)[0] for x in z])
     (V,) = work.run([Task(("sample-posterior", "space", turn), problem.model.space, (theta,))])
     if len(V) < SMALL or 2 * V.shape[1] > len(V):
         return None

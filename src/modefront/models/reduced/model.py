@@ -233,8 +233,9 @@ class ReducedModel:
 
     def within(self, V: Floats) -> ReducedModel:
         """Return the model in the space of coordinates (columns, n) in its basis."""
-        what, K, M, sensed = self._projected()
-        return replace(self, _small=(what, K.within(V), M.within(V), sensed @ V))
+        what, *matrices, sensed = self._projected()
+        K, M = (replace(A, terms=V.T @ A.terms @ V) for A in matrices)
+        return replace(self, _small=(what, K, M, sensed @ V))
 
     def certifier(self) -> Certifier:
         """Return what judges modes of the basis."""
