@@ -8,8 +8,7 @@ from modefront._typing import Floats
 from modefront.uncertainty.inference import unfixed
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.prior import NoisePrior
-from modefront.work.costs import counted
-from modefront.work.task import IMMEDIATE
+from modefront.work.task import IMMEDIATE, counted
 
 NAMES = ("k1", "k2", "k3", "k4", "k5")
 FIXED = ("k2", "k4")

@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.brief import as_html, brief
 from modefront.errors import suggestion
+from modefront.text import brief
 
 MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std")
 """Arrays of modal data, of which data sets are the first axis."""
@@ -69,7 +69,6 @@ class ModalData:
     pairs: Pairs = ()
 
     __repr__ = brief
-    _repr_html_ = as_html
 
     @cached_property
     def mean_frequency(self) -> Floats:

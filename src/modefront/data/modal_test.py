@@ -22,16 +22,19 @@ from modefront.data.responses import ORDERS, DataSet, assemble, joined
 from modefront.data.uff import is_universal, read_uff
 from modefront.errors import Fault, InputError, refuse, suggestion
 from modefront.inputs import wrong
-from modefront.json_schema import NOT_NEGATIVE, any_of, array, whole_number
 from modefront.options import (
+    NOT_NEGATIVE,
     Requirement,
     Table,
+    any_of,
+    array,
     is_name,
     keys,
     numbers,
     read_toml,
     repeated,
     rising,
+    whole_number,
 )
 
 KINDS = ("hammer", "ambient")

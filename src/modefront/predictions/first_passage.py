@@ -6,18 +6,22 @@ import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
-from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, NUMBER, array, pair
 from modefront.models.base import Model
 from modefront.options import (
+    ABOVE_ZERO,
+    NOT_NEGATIVE,
+    NUMBER,
     Requirement,
+    array,
     check_fields,
+    checked,
     nested,
     number,
     numbers,
@@ -26,7 +30,15 @@ from modefront.options import (
     whole,
 )
 from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVariable, Setting
-from modefront.predictions.load_model import (
+from modefront.predictions.reliability import (
+    LARGEST_ANGLE,
+    METHODS,
+    FirstPassage,
+    Share,
+    estimate,
+    step_effect,
+)
+from modefront.predictions.system import (
     ABOVE,
     EITHER,
     MEASURED,
@@ -34,23 +46,21 @@ from modefront.predictions.load_model import (
     Damping,
     Forces,
     ModalLoadModel,
+    ModalSystem,
     ModeCount,
     Name,
     Response,
-    complete_modes,
-    contradictions,
     filled,
     highest_frequency,
-    load_case_of,
-    load_faults,
-    nominal_system,
 )
-from modefront.reliability.estimate import Prepare, estimate, step_effect
-from modefront.reliability.methods import METHODS
-from modefront.reliability.problem import LARGEST_ANGLE, FirstPassage
 from modefront.residuals.problem import UpdatingProblem
-from modefront.response.system import ModalSystem
 from modefront.rounding import ACCUMULATED
+
+MOST_WORKERS = 8
+"""Threads at most; each takes some 100 MB."""
+
+STEPS_A_PERIOD = 20
+"""Time steps in the shortest period, where the step is not given."""
 
 MOST_STEPS = 10**6
 """Time steps at most: convolutions of more fill the memory."""
@@ -59,15 +69,20 @@ WHOLE = 1e-6
 """Difference from a whole number of time steps that passes for the digits of their length."""
 
 
+LEVELS = numbers("a list of different levels above 0", array(ABOVE_ZERO, 1, once=True))
+
 MODULATION = Requirement(
     "a list of [time in s, factor], times rising from 0 or more, one factor not zero",
-    {**array(pair(NOT_NEGATIVE, NUMBER), 1), "contains": {"items": [{}, {"not": {"const": 0}}]}},
+    {
+        **array(array([NOT_NEGATIVE, NUMBER], 2, 2), 1),
+        "contains": {"items": [{}, {"not": {"const": 0}}]},
+    },
     lambda value: tuple((float(t), float(q)) for t, q in value),
-    lambda value: rising([t for t, _ in value]) and any(factor != 0 for _, factor in value),
+    lambda value: rising([t for t, _ in value]) and any(factor for _, factor in value),
 )
 
 
-@dataclass(frozen=True)
+@checked
 class SoilFilter:
     """A filter of white noise by a layer of soil, after Kanai and Tajimi.
 
@@ -81,9 +96,6 @@ class SoilFilter:
 
     frequency: Annotated[float, number("a frequency of the soil above 0 Hz", above=0)]
     damping: Annotated[float, number("a damping ratio of the soil above 0", above=0)]
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
     @property
     def omega(self) -> float:
@@ -126,10 +138,7 @@ class Passage:
     response: Response
     density: Annotated[float, number("a spectral density above 0", above=0)]
     sided: Literal["one", "two"]
-    levels: Annotated[
-        Sequence[float],
-        numbers("a list of different levels above 0", array(ABOVE_ZERO, 1, once=True)),
-    ]
+    levels: Annotated[Sequence[float], LEVELS]
     duration: Annotated[float, number("a duration above 0 s", above=0)]
     force: Forces | None = None
     base: Base | None = None
@@ -194,7 +203,7 @@ class Passage:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        faults = list(contradictions(self.loads))
+        faults = list(self.loads.contradictions())
         steps = 1.0 if self.step is None else self.duration / self.step
         if steps > MOST_STEPS:
             faults.append(Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}"))
@@ -206,8 +215,8 @@ class Passage:
     @property
     def loads(self) -> ModalLoadModel:
         """Load case, outputs, modes and damping."""
-        load_case = load_case_of(self.response, self.force, self.base)
-        return ModalLoadModel(load_case, self.modes, self.damping, static=False)
+        forces: Any = self.force or ()
+        return ModalLoadModel.of(self, forces, static=False)
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -246,7 +255,7 @@ class Passage:
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""
-        yield from load_faults(self.loads, model, data)
+        yield from self.loads.faults(model, data)
         number_known = self.modes is not None or isinstance(self.damping, tuple)
         if highest_frequency(data) is None and not number_known:
             yield Fault("", "modes", "how many modes, as no frequency was measured", "nothing")
@@ -258,8 +267,8 @@ class Passage:
         """
         refuse(self.faults(problem.model, problem.data))
         top = ABOVE * (highest_frequency(problem.data) or 0.0)
-        out = replace(self, modes=complete_modes(self.loads, problem, top))
-        return replace(out, step=out._step(nominal_system(out.loads, problem)))
+        out = replace(self, modes=self.loads.complete_modes(problem, top))
+        return replace(out, step=out._step(out.loads.nominal(problem)))
 
     def _step(self, system: ModalSystem) -> float:
         """Return the time step.
@@ -275,7 +284,7 @@ class Passage:
                 expected = f"at most {limit:.4g} s, {period}"
                 raise wrong("step", expected, f"{self.step:g}")
             return self.step
-        steps = math.ceil(self.duration * highest / (2 * np.pi) * 20)
+        steps = math.ceil(self.duration * highest / (2 * np.pi) * STEPS_A_PERIOD)
         if steps > MOST_STEPS:
             raise wrong("step", f"at most {MOST_STEPS} time steps", steps)
         return self.duration / steps
@@ -317,9 +326,9 @@ class Passage:
 
     def _sampled(
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
-    ) -> tuple[Prepare, FirstPassage, Floats, int, np.random.SeedSequence, int]:
+    ) -> tuple[Share | None, FirstPassage, Floats, int, np.random.SeedSequence, int]:
         """Return what estimates at a model take."""
         method, passage = METHODS[self.method], self.problem(problem, theta)
-        # How many threads there are changes no digit, only time and memory, 100 MB each.
-        workers = min(os.cpu_count() or 1, 8)
+        # How many threads there are changes no digit, only memory and time.
+        workers = min(os.cpu_count() or 1, MOST_WORKERS)
         return method, passage, np.array(self.levels), self.samples, seed, workers
