@@ -38,7 +38,7 @@ from modefront.front.weights import accepted, optimal_minimum
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import begin
 from modefront.results.analysis import DETERMINED
-from modefront.results.verdict import refusals
+from modefront.uncertainty.inference import refused
 from modefront.uncertainty.laplace import laplace
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.prior import NoisePrior
@@ -200,7 +200,7 @@ def judge(seed: int, draws: int, wrong: bool, few: bool) -> list[Verdict]:
         noise.over_expected(noise.problem.evaluate(theta).J)
         for theta in (best.theta, problem.start)
     )
-    if refusals(problem.objectives, misfit, nominal):
+    if np.any(refused(misfit, nominal)):
         return []
     drawn = draw_models(noise, [x.theta for x in maxima], draws, seed, IMMEDIATE)
     samples = drawn.theta

@@ -27,6 +27,7 @@ class Squares:
     start: Floats
     objectives: tuple[str, ...]
     exact: bool = True
+    model: None = None
 
     @property
     def priors(self) -> tuple[()]:

@@ -120,6 +120,23 @@ def test_a_snapshot_is_exact_with_its_derivatives(full: MatrixModel) -> None:
     assert error <= 0.1 * np.abs(expected.dphi[:, r]).max()
 
 
+def test_a_space_of_modes_has_these_and_is_smaller(full: MatrixModel) -> None:
+    model, thetas = reduced(full), np.random.default_rng(4).uniform(0.5, 2.3, (6, 3))
+    model.take(SnapshotRequest(np.array([1.4, 0.7, 2.1]), 10))
+    V = model.space(thetas)
+    assert V.shape[0] == model.columns
+    assert V.shape[1] < 0.8 * model.columns
+    sent = pickle.loads(pickle.dumps(model.within(V)))
+    for theta in thetas:
+        result, expected = sent.modes(theta, 8), model.modes(theta, 8)
+        r = elastic(expected.lam)
+        assert result.lam[r] == pytest.approx(expected.lam[r], rel=1e-4)
+        size = np.abs(expected.phi[:, r]).max()
+        assert np.abs(result.phi[:, r]) == pytest.approx(
+            np.abs(expected.phi[:, r]), abs=0.02 * size
+        )
+
+
 def test_derivatives_are_those_of_the_reduced_problem(full: MatrixModel) -> None:
     model, theta, h = reduced(full), np.array([0.7, 1.4, 2.1]), 1e-3
     result = model.modes(theta, 8)

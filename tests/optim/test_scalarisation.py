@@ -21,6 +21,7 @@ PROGRAMMES = [
     achievement(1e-3 * ONES, np.eye(2), np.array([0.2, 0.1])),
     LogSum(np.array([3.0, 9.0])),
     LogSum(np.array([3.0, 9.0]), np.array([0.5, 0.1])),
+    LogSum(np.array([3.0, 0.0]), np.array([0.5, 1.0]), linear=np.array([0.0, 1.0])),
 ]
 
 

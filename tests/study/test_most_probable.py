@@ -129,7 +129,9 @@ def test_expected_errors_are_those_of_the_study(tmp_path: Path) -> None:
     assert "frequencies known to 2 %, shapes to 10 %" in data.attrs["assumed"]
 
 
-def test_no_model_is_advised_where_errors_are_far_above_those_expected(tmp_path: Path) -> None:
+def test_no_model_is_advised_where_errors_are_far_above_those_expected(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     wrong = DATA.replace("9.615", "30.0")
     data = mf.run(mf.load(study(tmp_path, data=wrong)), tmp_path / "r").dataset
     first = data.attrs["verdict"].splitlines()[0]
@@ -139,7 +141,11 @@ def test_no_model_is_advised_where_errors_are_far_above_those_expected(tmp_path:
     assert data.attrs["reference"] == ""
     results = mf.read_results(tmp_path / "r")
     assert results.reference.label == "most-probable"
-    assert command("show", tmp_path / "r") == 0
+    assert json.loads(as_json(data))["attributes"]["settled"] == 0
+    assert "determined" not in set(data["trust"].values)
+    for option in ("--models", "--uncertainty"):
+        assert command("show", tmp_path / "r", option) == 0
+        assert "the model is not to be used" in " ".join(capsys.readouterr().out.split())
 
 
 def test_modes_that_sensors_do_not_tell_apart_are_paired_by_frequencies_and_named() -> None:

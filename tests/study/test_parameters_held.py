@@ -83,7 +83,7 @@ def test_the_distance_of_a_prior_has_the_derivatives_of_differences() -> None:
         parameter("k3"),
     ]
     problem = mf.updating_problem(MODEL, data(TRUE, 2), GROUPS, parameters=chosen)
-    distance = Distance(problem, problem.start, 1e-2)
+    distance = Distance(problem, 1e-2)
     theta, h = np.array([0.7, 1.6, 2.0]), 1e-5
     r, dr, d2r = distance.residuals(theta)
     expected = [-0.3 / 0.2, np.log(1.6) / 0.3, 0.1 / (BOUNDS[1] - BOUNDS[0])]

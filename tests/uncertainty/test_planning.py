@@ -48,7 +48,7 @@ def test_a_further_mode_narrows_as_if_it_had_been_measured(priors: bool) -> None
     further = candidates(before, found)
     assert further.sensor == ("",)
     assert further.frequency == pytest.approx(after.problem.data.frequency[:, 2])
-    w = before.programme.logs.gradient(found.J)
+    w = before.logs.gradient(found.J)
     precision = 1 / (0.3 * THETA) ** 2 if priors else np.full(3, 12 / 2.7**2)
     expected = 1 - deviations(after, w, precision) / deviations(before, w, precision)
     assert expected.max() > 0.1
@@ -61,7 +61,7 @@ def test_a_further_sensor_narrows_as_if_it_had_been_there() -> None:
     further = candidates(before, found)
     assert further.sensor == (before.problem.model.sensors[2],)
     assert further.frequency.tolist() == [0.0]
-    w = before.programme.logs.gradient(found.J)
+    w = before.logs.gradient(found.J)
     # One component of three was the greatest: expected errors are those over it.
     tau = np.median(0.02 * np.abs(after.problem.model.modes(THETA, 3).phi).max(axis=0))
     assert tau > 0

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 from typing import cast
 
@@ -41,7 +42,7 @@ def test_one_group_of_linear_residuals_has_students_distribution() -> None:
     exact, (J,), *_ = np.linalg.lstsq(A, y)
     assert best.theta == pytest.approx(exact, abs=1e-5)
     at = Standardised(noise.problem).evaluate(ndtri((best.theta + 3) / 6))
-    of = Peak(at, noise.programme.logs)
+    of = Peak(at, noise.logs)
     assert of.dof == pytest.approx([6 + NU - 2], rel=1e-3)
     assert of.scale == pytest.approx([J + NU], rel=1e-3)
     draws = draw_models(noise, [best.theta], 800, 1, IMMEDIATE).theta
@@ -221,5 +222,24 @@ def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
         return [(steep @ theta, steep)]
 
     noise = noise_of(meet, [-1] * 6, [1] * 6, [40.0])
-    peak = Peak(Standardised(noise.problem).evaluate(np.zeros(6)), noise.programme.logs)
+    peak = Peak(Standardised(noise.problem).evaluate(np.zeros(6)), noise.logs)
     assert np.linalg.eigvalsh(peak.precision(np.ones(1))).min() > 0
+
+
+def test_steps_in_a_poor_basis_leave_draws_exact(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps are those of a posterior whose mean is off by one of its standard deviations."""
+
+    def line(theta: Floats, mean: float, std: float) -> Residuals:
+        x, _ = theta
+        return [(np.array([(x - mean) / std]), np.array([[1 / std + 0 * x, 0 * x]]))]
+
+    exact, poor = (
+        replace(noise_of(partial(line, mean=m, std=s), [0, 0], [1, 1], [1.0]), weight=1e8)
+        for m, s in ((0.1, 0.2), (0.3, 0.15))
+    )
+    for name, value in (("_nearer", lambda *_: poor), ("ROUND", 20), ("TOGETHER", 3)):
+        monkeypatch.setattr(f"modefront.uncertainty.sampling.{name}", value)
+    draws = draw_models(exact, [np.array([0.1, 0.5])], 100, 8, IMMEDIATE).theta
+    known = scipy.stats.truncnorm(-0.5, 4.5, loc=0.1, scale=0.2)
+    assert scipy.stats.kstest(draws[:, 0], known.cdf).pvalue > 0.01
+    assert scipy.stats.kstest(draws[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01

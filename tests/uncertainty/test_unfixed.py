@@ -8,7 +8,7 @@ from modefront._typing import Floats
 from modefront.uncertainty.inference import Freed, excluding, unfixed
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.prior import NoisePrior
-from modefront.work.task import IMMEDIATE
+from modefront.work.task import IMMEDIATE, counted
 
 NAMES = ("k1", "k2", "k3", "k4", "k5")
 FIXED = ("k2", "k4")
@@ -85,3 +85,30 @@ def test_bounds_are_to_blame_where_wider_ones_lower_errors_beyond_chance(
     free = Freed(np.array(theta), np.array(misfit), less)
     sides, at = np.array([-1, 0, 1]), np.array([0.3, 1.0, 3.0])
     assert excluding(sides, at, np.array([2.0, 2.0]), free) == wrong
+
+
+def test_trials_are_the_same_in_a_basis_and_in_full() -> None:
+    """A chain of 120 stories in five parts, one of the fixed parts softer; bases of a few modes."""
+    stories = [name for name in NAMES for _ in range(24)]
+    model = mf.chain(NAMES, [20.0] * 120, [8e7] * 120, stiffness_parameters=stories)
+    true = model.modes(np.array([0.9, 0.65, 1.1, 1.0, 1.2]), 4)
+    data = mf.modal_data(true.frequency, true.phi.T[:, ::8], model.sensors[::8])
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    parameters = [mf.Parameter(x, nominal=1.0, bounds=(0.3, 3.0), fixed=x in FIXED) for x in NAMES]
+    found = []
+    for reduction in (None, mf.Reduction(1e-8)):
+        problem = mf.updating_problem(
+            model, data, groups, parameters=parameters, reduction=reduction
+        )
+        noise = NoisePrior().of(problem, None)
+        assert noise is not None
+        theta = np.array([0.9, 0.8, 1.3])
+        with counted() as costs:
+            found.append(unfixed(noise, theta, np.full(2, 3.0), IMMEDIATE))
+    full, reduced = found
+    assert full is not None
+    assert reduced is not None
+    assert (reduced.name, full.name) == ("k2", "k2")
+    assert reduced.value == pytest.approx(full.value, rel=1e-6)
+    assert reduced.misfit == pytest.approx(full.misfit, abs=1e-5)
+    assert costs.eigenproblems < 10

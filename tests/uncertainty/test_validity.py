@@ -156,7 +156,7 @@ def test_another_model_that_fits_as_well_is_a_rival(
         SolvedPoint("nbi-1", best, Role("end", ("edge-J1",))),
     ]
     none = np.zeros((1, 2))
-    chosen = Scatter(none, np.array([[0.0, std]]), none, np.zeros(2, bool), none.T, ())
+    chosen = Scatter(none, np.array([[0.0, std]]), none.T, ())
     scatters = {"edge-J1": chosen, "nbi-1": chosen}
     result = with_neighbours(front, points, scatters, np.ones(2), np.ones(2))
     assert [scatter.warnings for scatter in result.values()] == [doubts, doubts]

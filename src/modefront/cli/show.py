@@ -117,12 +117,18 @@ def _deviations(data: xr.Dataset) -> tuple[Floats, str]:
     """Return standard deviations (p,) of the parameters of the reference, and what they are."""
     if "sample_theta" in data:
         std = data["sample_theta"].values.std(axis=0, ddof=1)
-        return std, "standard deviation of the posterior"
+        return std, f"standard deviation of the posterior{_rough(data)}"
     if "theta_std" in data:
         return data["theta_std"].values[position(data)], "standard deviation by errors of the data"
     if "posterior_std" in data:
         return data["posterior_std"].values, "standard deviation of the posterior"
     return np.full(data.sizes["parameter"], np.nan), ""
+
+
+def _rough(data: xr.Dataset) -> str:
+    """Return why the posterior is not to be relied on; nothing where it is."""
+    rough = ", rough: draws are too few, or the model is not to be used"
+    return "" if data.attrs.get("settled", 1) else rough
 
 
 DRAWN = ("mean", "5 %", "95 %")
@@ -260,7 +266,7 @@ def print_uncertainty(screen: Screen, data: xr.Dataset) -> None:
         titles += [*(f"f{r} Hz" for r in modes), *(f"MAC {r}" for r in modes)]
         values = [data[f"posterior_{name}std"].values for name in ("", "frequency_", "mac_")]
         cells = [number(x, ".3g", "") for x in np.concatenate(values)]
-        title = f"posterior around {preferred(data.attrs)}: standard deviations"
+        title = f"posterior around {preferred(data.attrs)}: standard deviations{_rough(data)}"
         screen.table(title, ["of", "std"], list(zip(titles, cells, strict=True)))
     elif "theta_std" not in data:
         screen.say("The results hold no uncertainty: the data have no errors that are known.")

@@ -35,6 +35,13 @@ def at_bounds(theta: Floats, lower: Floats, upper: Floats) -> Ints:
     return np.where(theta <= lower + margin, -1, np.where(theta >= upper - margin, 1, 0))
 
 
+def room(theta: Floats, step: Floats, lower: Floats, upper: Floats) -> float:
+    """Return the number of steps (p,) from theta (p,) that stay within the bounds."""
+    moved = step != 0
+    to = np.where(step > 0, upper, lower)
+    return float(((to - theta)[moved] / step[moved]).min(initial=np.inf))
+
+
 @record
 @dataclass(frozen=True)
 class Residual:

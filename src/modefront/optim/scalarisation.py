@@ -92,12 +92,13 @@ class LogSum:
     With a ``floor`` b (n,), J_i + b_i stands for J_i: the weights a_i / (J_i + b_i) are bounded,
     and there is a minimum also where a group can be fitted exactly. Where some J_i + b_i is not
     above ``vanishing`` (n,), I is minus infinity. ``a`` (n,) counts the measured properties of
-    each group.
+    each group, and ``linear`` (n,) are weights of J_i themselves besides.
     """
 
     a: Floats
     floor: Floats | float = 0.0
     vanishing: Floats | float = 0.0
+    linear: Floats | float = 0.0
 
     @property
     def constraints(self) -> Rows:
@@ -113,11 +114,12 @@ class LogSum:
         """Return I; minus infinity where an objective vanishes."""
         if (J + self.floor <= self.vanishing).any():
             return -np.inf
-        return float(self.a @ np.log(np.maximum(J + self.floor, LEAST)))
+        logs = self.a @ np.log(np.maximum(J + self.floor, LEAST))
+        return float(logs + (self.linear * J).sum())
 
     def gradient(self, J: Floats) -> Floats:
-        """Return a / (J + b)."""
-        return self.a / np.maximum(J + self.floor, LEAST)
+        """Return a / (J + b), and the weights of J."""
+        return self.a / np.maximum(J + self.floor, LEAST) + self.linear
 
     def hessian(self, J: Floats) -> Floats:
         """Return -a / (J + b)**2 on the diagonal."""

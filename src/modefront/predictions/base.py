@@ -137,7 +137,6 @@ class Setting:
 
 
 VARIABLES = _all_of(ResultVariable, "ResultVariable")
-SETTINGS = _all_of(Setting, "Setting")
 
 
 @checked
@@ -180,7 +179,7 @@ class PredictionKind:
     table: Annotated[str, IDENTIFIER]
     dimension: Annotated[str, IDENTIFIER]
     variables: Annotated[tuple[ResultVariable, ...], VARIABLES]
-    settings: Annotated[tuple[Setting, ...], SETTINGS] = ()
+    settings: Annotated[tuple[Setting, ...], _all_of(Setting, "Setting")] = ()
     absent: Annotated[str, WORDS] = "have no value"
     undefined: Annotated[str, WORDS] = "have no such value"
     check: NumericalCheck | None = None

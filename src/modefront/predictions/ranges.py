@@ -34,6 +34,7 @@ from modefront.optim.problem import (
     Problem,
     Wrapped,
     infeasible,
+    room,
 )
 from modefront.optim.scalarisation import Linear, Rows, achievement, no_rows
 from modefront.optim.sqp import Options, Solution, begin, solve
@@ -119,7 +120,7 @@ class Equivalent:
 
     def _farther(self, q: Values, sign: float, theta: Floats, reached: float) -> Floats | None:
         """Return the model (p,) at the bounds that promises most; None where none promises more."""
-        null = self.equations[1]
+        null, bounds = self.equations[1], (self.problem.lower, self.problem.upper)
         best, best_value = None, reached - sign * SURE * abs(reached)
         known: list[Floats] = []
         for v in (null @ null.T)[np.abs(null).max(axis=1, initial=0.0) > RANK]:
@@ -127,21 +128,13 @@ class Equivalent:
             if any(abs(v @ x) > 1 - RANK for x in known):
                 continue
             known.append(v)
-            for step in (v, -v):
-                end = self._at_bound(theta, step)
+            along = np.where(np.abs(v) > RANK, v, 0.0) * self.span
+            for step in (along, -along):
+                end = np.clip(theta + max(room(theta, step, *bounds), 0.0) * step, *bounds)
                 value = q(end)
                 if sign * value < sign * best_value:
                     best, best_value = end, value
         return best
-
-    def _at_bound(self, theta: Floats, direction: Floats) -> Floats:
-        """Return the model at the bounds in a direction (p,) over the ranges."""
-        lower, upper = self.problem.lower, self.problem.upper
-        moves = np.abs(direction) > RANK
-        step = np.where(moves, direction, 0.0) * self.span
-        room = np.where(step > 0, upper, lower)[moves] - theta[moves]
-        reach = max(float((room / step[moves]).min()), 0.0)
-        return np.clip(theta + reach * step, lower, upper)
 
     @property
     def span(self) -> Floats:
@@ -249,37 +242,28 @@ class _Along:
     problem : the problem
     front : some of its models, and what is known between them
     value : returns the value of a model of the front
-    theta, J, values : of the models
+    known : parameters, objectives and value of each model
     halved : pairs of models between which the front has been solved for
     """
 
     problem: Problem
     front: Sampled
     value: Callable[[Floats], float]
-    theta: list[Floats] = field(default_factory=list)
-    J: list[Floats] = field(default_factory=list)
-    values: list[float] = field(default_factory=list)
+    known: list[tuple[Floats, Floats, float]] = field(default_factory=list)
     halved: set[tuple[int, int]] = field(default_factory=set)
-
-    def add(self, theta: Floats, J: Floats, value: float) -> None:
-        """Add a model."""
-        self.theta.append(theta)
-        self.J.append(J)
-        self.values.append(value)
 
     def least(self) -> float:
         """Return the least value; NaN without any."""
         while pairs := set(self._promising()):
             for pair in sorted(pairs):
                 self._halve(*pair)
-        known = [x for x in self.values if np.isfinite(x)]
-        return min(known, default=np.nan)
+        return min((x for *_, x in self.known if np.isfinite(x)), default=np.nan)
 
     def _promising(self) -> Iterator[tuple[int, int]]:
         """Yield the neighbours between which less than the least value may lie."""
-        values = np.array(self.values)
+        values = np.array([x for *_, x in self.known])
         known = np.isfinite(values)
-        scaled = np.array(self.J) / self.front.ranges
+        scaled = np.array([J for _, J, _ in self.known]) / self.front.ranges
         squares = ((scaled[:, None] - scaled) ** 2).sum(axis=2)
         needed = values.min(where=known, initial=np.inf)
         needed -= SURE * np.abs(values).max(where=known, initial=0.0)
@@ -294,21 +278,20 @@ class _Along:
     def _halve(self, a: int, b: int) -> None:
         """Add the model half-way between two of them, if it is another one."""
         self.halved.add((a, b))
-        one, other = self.theta[a], self.theta[b]
+        one, other = self.known[a][0], self.known[b][0]
         if _apart(self.problem, one, other) <= SURE:
             return
         key = np.append(one, other).tobytes()
         if key not in self.front.between:
             self.front.between[key] = self._between(a, b)
-        found = self.front.between[key]
-        known = np.array(self.J)
+        found, known = self.front.between[key], np.array([J for _, J, _ in self.known])
         if found and undominated(found.J[None], known, self.front.ranges).all():
-            self.add(found.theta, found.J, self.value(found.theta))
+            self.known.append((found.theta, found.J, self.value(found.theta)))
 
     def _between(self, a: int, b: int) -> Solution | None:
         """Return the model half-way between two; None where these are as near to it as any."""
-        one, other, unit = self.theta[a], self.theta[b], self.front.ranges
-        ends = np.array([self.J[a], self.J[b]]) / unit
+        (one, J, _), (other, at, _), unit = self.known[a], self.known[b], self.front.ranges
+        ends = np.array([J, at]) / unit
         middle = ends.mean(axis=0)
         programme = achievement(RHO / unit, np.diag(1 / unit), middle)
         for starts in ([(one + other) / 2], [one, other]):
@@ -344,6 +327,6 @@ def extreme(
 
     along = _Along(problem, front, value)
     for theta, J, known in zip(front.theta, front.J, sign * values, strict=True):
-        if all(_apart(problem, theta, other) > SURE for other in along.theta):
-            along.add(theta, J, value(theta) if front.is_open else float(known))
+        if all(_apart(problem, theta, other) > SURE for other, *_ in along.known):
+            along.known.append((theta, J, value(theta) if front.is_open else float(known)))
     return sign * along.least()

@@ -22,6 +22,7 @@ from modefront.errors import ModelError
 from modefront.models.base import Model
 from modefront.models.matrices import of_free
 from modefront.models.parameters import Parameter, Prior, in_order, parameters_of
+from modefront.models.reduced.model import ReducedModel
 from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
@@ -98,11 +99,17 @@ class UpdatingProblem:
         return vars(self) | {"whole": None}
 
     def with_free(self, names: Sequence[str]) -> UpdatingProblem:
-        """Return the problem with more parameters: those of its fixed ones that are named."""
+        """Return the problem with more parameters: those of its fixed ones that are named.
+
+        A reduced model has a basis of its own, in which there is nothing so far.
+        """
         assert self.whole is not None, "no parameter is fixed"
         model, given = self.whole
         given = tuple(replace(x, fixed=x.fixed and x.name not in names) for x in given)
         model, chosen = of_free(model, given)
+        if isinstance(self.model, ReducedModel):
+            reduction = Reduction(self.model.tolerance, self.model.memory)
+            model = reduction.of(model, self.data, self.pairing, chosen)
         return replace(self, model=model, **_limits(chosen))
 
     @cached_property

@@ -30,6 +30,7 @@ from modefront.rounding import TINY
 from modefront.uncertainty.conditions import std
 from modefront.uncertainty.inference import Inference
 from modefront.uncertainty.prediction import summary
+from modefront.uncertainty.prior import NoiseModel, prior_widths
 
 Values = dict[str, object]
 """Values of variables by name; `modefront.results.schema` describes them."""
@@ -217,35 +218,35 @@ def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis)
     }
 
 
-def with_intervals(data: xr.Dataset, inference: Inference) -> xr.Dataset:
+def with_intervals(data: xr.Dataset, noise: NoiseModel, inference: Inference) -> xr.Dataset:
     """Return results with what the posterior says.
 
     A quantile is such that the next draw is below it with its probability. Of draws that do not
-    settle no parameter is called determined.
+    settle, and of a model that cannot be used, no parameter is called determined.
     """
-    draws, fit = inference.draws, inference.fit
+    draws, fit, widths = inference.draws, inference.fit, prior_widths(noise.problem)
     freed, unfixed = inference.freed, inference.unfixed
+    settled = draws.settled and not fit.is_refused
     interval = np.quantile(draws.theta, QUANTILES, axis=0, method="weibull").T
-    share = (interval[:, 2] - interval[:, 0]) / inference.widths
-    place = np.where((share < DETERMINED) & draws.settled, 0, np.where(share > OPEN, 2, 1))
-    p = inference.widths.size
+    share = (interval[:, 2] - interval[:, 0]) / widths
+    place = np.where((share < DETERMINED) & settled, 0, np.where(share > OPEN, 2, 1))
     values = {
         "sample_theta": draws.theta,
         "interval": interval,
         "trust": np.array(TRUST)[place],
-        "prior_width": inference.widths,
+        "prior_width": widths,
         "misfit": fit.misfit,
         "nominal_misfit": fit.nominal,
         "likely_mode": fit.pairs,
         "posterior_std": draws.theta.std(axis=0, ddof=1),
-        "posterior_covariance": np.cov(draws.theta, rowvar=False).reshape(p, p),
+        "posterior_covariance": np.atleast_2d(np.cov(draws.theta, rowvar=False)),
         "posterior_frequency_std": summary(draws.frequency)[1],
         "posterior_mac_std": summary(draws.mac)[1],
         "candidate_frequency": fit.candidates.frequency,
         "candidate_sensor": list(fit.candidates.sensor),
         "candidate_gain": fit.candidates.gain,
     }
-    attributes: dict[str, Any] = {"assumed": inference.assumed, "settled": int(draws.settled)}
+    attributes: dict[str, Any] = {"assumed": noise.assumed, "settled": int(settled)}
     if freed is not None:
         values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
         attributes["freed_less"] = freed.less

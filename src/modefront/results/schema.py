@@ -235,7 +235,8 @@ study | text | name of the study
 inputs | text | hash of the study file and of all files that it names
 checksum | text | BLAKE2b hash of all variables and attributes, in hexadecimal digits
 assumed | text | which errors of the data are assumed, and how great
-settled | number | 1 where the chains that draw from the posterior agree
+settled | number | 1 where the chains that draw from the posterior agree and the model can be used;
+    0 where `interval` is rough
 fixed_parameter | text | fixed parameter that lowers errors beyond chance when it is free
 fixed_value | number | its value at the most probable model then
 verdict | text | sentences of the first screen, one a line

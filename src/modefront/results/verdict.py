@@ -29,9 +29,6 @@ SMALL = 0.5
 LINES, COLUMNS = 11, 78
 """Lines of the first answer, of which each has so many columns: a dozen with the title."""
 
-FORETOLD = 2
-"""Predictions that are named."""
-
 TWINS = 0.9
 """Correlation of draws, without its sign, from which two parameters are known only together."""
 
@@ -45,8 +42,10 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     """
     if "misfit" not in data:
         return data.assign_attrs(verdict="\n".join(_unjudged(data)))
-    groups = list(map(str, data["group"].values))
-    why = refusals(groups, data["misfit"].values, data["nominal_misfit"].values)
+    groups, misfit = data["group"].values, data["misfit"].values
+    far, worse = map(np.flatnonzero, refused(misfit, data["nominal_misfit"].values))
+    why = [_say("far", group=groups[i], misfit=misfit[i]) for i in far.tolist()]
+    why += [_say("worse", group=groups[i]) for i in worse.tolist()]
     assumed = data.attrs.get("assumed")
     said = [*_at_bounds(data), *_fixed(data)]
     said += [_say("assumed", assumed=assumed)] if assumed else []
@@ -59,7 +58,9 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
             said.insert(0, _say("unsettled"))
         further = (_parameters(data), _front(data), _next(data), _predictions(data))
         said = [_use(data), *said, *chain.from_iterable(further)]
-    return data.assign_attrs(verdict="\n".join(_with_room(said)))
+    ends = np.cumsum([len(wrap(sentence, COLUMNS)) for sentence in said])
+    said = said[: max(1, int(np.searchsorted(ends, LINES, side="right")))]
+    return data.assign_attrs(verdict="\n".join(said))
 
 
 def _unjudged(data: xr.Dataset) -> Iterator[str]:
@@ -77,25 +78,6 @@ def _unjudged(data: xr.Dataset) -> Iterator[str]:
 
 def _say(kind: str, **values: Any) -> str:
     return VERDICT[kind].format(**values)
-
-
-def _with_room(sentences: Sequence[str]) -> list[str]:
-    """Return the first sentences for which there is room, and the first one in any case."""
-    ends = np.cumsum([len(wrap(sentence, COLUMNS)) for sentence in sentences])
-    return list(sentences[: max(1, int(np.searchsorted(ends, LINES, side="right")))])
-
-
-def refusals(groups: Sequence[str], misfit: Floats, nominal: Floats) -> list[str]:
-    """Return why the most probable model cannot be used; nothing where it can be.
-
-    ``misfit`` and ``nominal`` (n,) are the errors of its groups, and those of the nominal model,
-    over those expected.
-    """
-    far, worse = refused(misfit, nominal)
-    return [
-        *(_say("far", group=groups[i], misfit=misfit[i]) for i in np.flatnonzero(far).tolist()),
-        *(_say("worse", group=groups[i]) for i in np.flatnonzero(worse).tolist()),
-    ]
 
 
 def _use(data: xr.Dataset) -> str:
@@ -190,7 +172,7 @@ def _front(data: xr.Dataset) -> Iterator[str]:
 
 def _predictions(data: xr.Dataset) -> Iterator[str]:
     """Yield the posterior and the range of the first quantity of the first predictions."""
-    for each in list(predictions_in(data))[:FORETOLD]:
+    for each in list(predictions_in(data))[:2]:
         for x in [x for x in each.quantities if x.variable.ranged and x.drawn][:1]:
             least, greatest, _ = x.extent
             if np.isfinite([least, greatest]).all():

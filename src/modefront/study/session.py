@@ -225,8 +225,8 @@ def worked(study: Study, work: Run) -> xr.Dataset:
     (shapes,) = work.run([Task(("shapes", mark), mode_shapes, (problem, theta, paired))])
     data = with_mode_shapes(data, problem, shapes)
     gaussian, drawn = analysis.posterior, None
-    if inference is not None:
-        data = with_intervals(data, inference)
+    if noise is not None and inference is not None:
+        data = with_intervals(data, noise, inference)
         gaussian, drawn = inference.gaussian, inference.draws.theta
     runner = PredictionRunner(problem, study.predictions, seed, work, study.file)
     draws = study.uncertainty.draws

@@ -9,17 +9,20 @@ all others follow (Rao's score); those that promise most are freed and tried, on
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import chdtri
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.errors import ModelError
+from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.optim.problem import at_bounds
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.most_probable import maximum
 from modefront.uncertainty.planning import Candidates, candidates
-from modefront.uncertainty.prior import NoiseModel, prior_widths
+from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task
@@ -118,21 +121,17 @@ class Inference:
     fit : of its maximum
     freed : the maximum between wider bounds; None where no bound holds it
     unfixed : the maximum with a fixed parameter free; None where none lowers errors beyond chance
-    widths : (p,) of the 90 % intervals of the priors
-    assumed : in words, which errors are assumed; empty for none
     """
 
     draws: Draws
     fit: Fit
     freed: Freed | None
     unfixed: Unfixed | None
-    widths: Floats
-    assumed: str
 
     @property
     def gaussian(self) -> Posterior:
         """The Gaussian with the covariance of the draws."""
-        p = self.widths.size
+        p = self.draws.theta.shape[1]
         lam, V = np.linalg.eigh(np.cov(self.draws.theta, rowvar=False).reshape(p, p))
         moved = lam > np.finfo(float).eps * lam.max(initial=0.0)
         axes = V[:, moved] * np.sqrt(lam[moved])
@@ -154,8 +153,6 @@ def infer(
         fit,
         free,
         unfixed(noise, theta, fit.misfit, work),
-        prior_widths(noise.problem),
-        noise.assumed,
     )
 
 
@@ -218,7 +215,7 @@ def unfixed(noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor) ->
     for k, name in enumerate(tried):
         one = replace(noise, problem=problem.with_free([name]))
         start = _placed(one, known, theta)
-        tasks.append(Task(("most-probable", "unfixed", k + 1), _lower, (one, start)))
+        tasks.append(Task(("most-probable", "unfixed", k + 1), _tried, (one, start)))
     found = [(x, name) for x, name in zip(work.run(tasks), tried, strict=True) if x is not None]
     best, name = max(found, key=lambda x: x[0].less, default=(None, ""))
     if best is None or best.less < least:
@@ -228,10 +225,14 @@ def unfixed(noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor) ->
 
 
 def _placed(noise: NoiseModel, known: Sequence[str], theta: Floats) -> Floats:
-    """Return all parameters of a problem, of which those known are theta, others nominal."""
-    names = noise.problem.model.parameters
-    out = noise.problem.start.copy()
-    out[[names.index(x) for x in known]] = theta
+    """Return all parameters of a problem, of which those known are theta, others nominal.
+
+    There a reduced model begins its basis.
+    """
+    model, out = noise.problem.model, noise.problem.start.copy()
+    out[[model.parameters.index(x) for x in known]] = theta
+    if isinstance(model, ReducedModel):
+        model.nominal = out
     return out
 
 
@@ -239,12 +240,23 @@ def _promises(noise: NoiseModel, theta: Floats, known: Sequence[str]) -> Floats:
     """Return by how much -2 ln p becomes less with each parameter that is not known so far."""
     problem = noise.problem
     found = problem.evaluate(theta)
-    slope, A = noise.programme.logs.gradient(found.J) @ found.dJ / 2, noise.precision(found)
+    slope, A = noise.logs.gradient(found.J) @ found.dJ / 2, noise.precision(found)
     free = np.isin(problem.model.parameters, known)
     moved = free & (at_bounds(theta, problem.lower, problem.upper) == 0)
     Q, R = A[np.ix_(moved, moved)], A[np.ix_(moved, ~free)]
     left = np.diag(A)[~free] - (R * np.linalg.solve(Q, R)).sum(axis=0)
     return slope[~free] ** 2 / left
+
+
+def _tried(noise: NoiseModel, theta: Floats) -> Freed | None:
+    """Return the model to which theta (p,) leads, in a basis that lacks nothing of it."""
+    model, columns, found = noise.problem.model, 0, _lower(noise, theta)
+    while isinstance(model, ReducedModel) and found is not None and model.columns > columns:
+        columns = model.columns
+        with suppress(ModelError):
+            model.take(SnapshotRequest(found.theta, model.count))
+        found = _lower(noise, theta)
+    return found
 
 
 def wider(lower: Floats, upper: Floats) -> tuple[Floats, Floats]:

@@ -54,7 +54,7 @@ def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float,
     """Yield the frequency of a mode or the name of a sensor, and the residuals' rows (., p)."""
     problem, data = noise.problem, noise.problem.data
     modes, pairs = problem.modes(evaluation.theta)
-    w = noise.programme.logs.gradient(evaluation.J)
+    w = noise.logs.gradient(evaluation.J)
 
     def size(kind: str, std: Floats, values: Floats) -> float:
         """Return the root of the weight of a group of this kind over the expected error."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.optim.problem import room
 
 SUMMARY = ("mean", "standard deviation", "5 %", "50 %", "95 %")
 """Statistics of a sample: two moments and three quantiles."""
@@ -29,11 +30,8 @@ NEGLIGIBLE = 1e-9
 BATCH = 1000
 """Draws that are made at a time."""
 
-SELDOM = 1e-4
-"""Share of draws within the bounds below which there is no sampling by trial."""
-
-TRIALS = 100_000
-"""Draws after which that share is judged."""
+TRIALS = 10_000
+"""Draws for one within the bounds, at most: with fewer of these there is no sampling by trial."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +63,7 @@ def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stenci
     directions = np.where(np.abs(axes) > NEGLIGIBLE * std[:, None], axes, 0.0).T
     points, factors = np.empty((m, 2, theta.size)), np.empty((m, 3))
     for k, direction in enumerate(directions):
-        up, down = (_room(theta, s * direction, lower, upper) for s in (1.0, -1.0))
+        up, down = (room(theta, s * direction, lower, upper) for s in (1.0, -1.0))
         side = 1.0 if up >= down else -1.0
         central, aside = min(STEP, up, down), min(STEP, max(up, down) / 2)
         if max(central, aside) < LEAST:
@@ -78,13 +76,6 @@ def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stenci
             factors[k] = side * np.array([-3.0, 4.0, -1.0]) / (2 * aside)
         points[k] = np.clip(theta + steps[:, None] * direction, lower, upper)
     return Stencil(points, factors)
-
-
-def _room(theta: Floats, direction: Floats, lower: Floats, upper: Floats) -> float:
-    """Return the number of steps ``direction`` (p,) that stay within the bounds."""
-    moved = direction != 0
-    to = np.where(direction > 0, upper, lower)
-    return float(((to - theta)[moved] / direction[moved]).min(initial=np.inf))
 
 
 class TruncationError(ValueError):
@@ -112,18 +103,14 @@ def draw(
     sample begins with a shorter one. Raises TruncationError where fewer than one draw of 10,000 is
     within the bounds.
     """
-    lower, upper = bounds
-    parts: list[Floats] = []
-    accepted = drawn_count = 0
-    while accepted < count:
-        if drawn_count >= TRIALS and accepted < SELDOM * drawn_count:
-            raise TruncationError(f"{accepted} of {drawn_count} draws are within the bounds")
+    (lower, upper), out, tried = bounds, np.empty((0, theta.size)), 0
+    while len(out) < count:
+        if tried >= 10 * TRIALS and len(out) * TRIALS < tried:
+            raise TruncationError(f"{len(out)} of {tried} draws are within the bounds")
         drawn = theta + rng.standard_normal((BATCH, axes.shape[1])) @ axes.T
-        within = drawn[((drawn >= lower) & (drawn <= upper)).all(axis=1)]
-        parts.append(within)
-        accepted += len(within)
-        drawn_count += BATCH
-    return np.concatenate([*parts, np.empty((0, theta.size))])[:count]
+        out = np.vstack([out, drawn[((drawn >= lower) & (drawn <= upper)).all(axis=1)]])
+        tried += BATCH
+    return out[:count]
 
 
 def summary(values: Floats) -> Floats:

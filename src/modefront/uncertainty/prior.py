@@ -17,7 +17,7 @@ from scipy.special import ndtr, ndtri
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
-from modefront.optim.scalarisation import LogSum, Rows, no_rows
+from modefront.optim.scalarisation import LogSum
 from modefront.options import checked, number
 from modefront.residuals.base import NEGLIGIBLE
 from modefront.residuals.groups import Group
@@ -98,21 +98,26 @@ class NoiseModel:
     assumed: str
 
     @property
-    def programme(self) -> NegativeLogPosterior:
-        """What the most probable model minimises: -2 ln p as a function of J'."""
-        return NegativeLogPosterior(LogSum(self.a + self.weight, self.weight * self.level - self.S))
+    def logs(self) -> LogSum:
+        """-2 ln p of J', without the prior of the parameters."""
+        return LogSum(self.a + self.weight, self.weight * self.level - self.S)
+
+    @property
+    def programme(self) -> LogSum:
+        """What the most probable model minimises, with the distance from the nominal model."""
+        logs, alone = self.logs, np.eye(self.a.size + 1)[-1]
+        return LogSum(np.append(logs.a, 0.0), np.append(logs.floor, 1.0), linear=alone)
 
     @property
     def target(self) -> Problem:
         """The problem with the distance from the nominal model as a further objective."""
         names = (*self.problem.objectives, "distance from the nominal model")
-        distance = Distance(self.problem, self.problem.start, PULL)
-        return Wrapped(self.problem, distance.evaluation, names)
+        return Wrapped(self.problem, Distance(self.problem, PULL).evaluation, names)
 
     def precision(self, evaluation: Evaluation) -> Floats:
         """Return Gauss-Newton's matrix (p, p) of -ln p; a uniform prior has its variance."""
-        w = self.programme.logs.gradient(evaluation.J)
-        dr = Distance(self.problem, self.problem.start, 12.0).residuals(evaluation.theta)[1]
+        w = self.logs.gradient(evaluation.J)
+        dr = Distance(self.problem, 12.0).residuals(evaluation.theta)[1]
         out: Floats = np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
         return out
 
@@ -122,60 +127,25 @@ class NoiseModel:
 
 
 @dataclass(frozen=True)
-class NegativeLogPosterior:
-    """-2 ln p of J' (n,) and of the distance from the nominal model; see the module."""
-
-    logs: LogSum
-
-    @property
-    def constraints(self) -> Rows:
-        """No constraints."""
-        return no_rows(self.logs.a.size + 1)
-
-    @property
-    def maximised(self) -> Rows:
-        """No maximum."""
-        return no_rows(self.logs.a.size + 1)
-
-    def value(self, J: Floats) -> float:
-        """Return -2 ln p."""
-        return self.logs.value(J[:-1]) + float(J[-1])
-
-    def gradient(self, J: Floats) -> Floats:
-        """Return its derivatives with respect to the objectives."""
-        return np.append(self.logs.gradient(J[:-1]), 1.0)
-
-    def hessian(self, J: Floats) -> Floats:
-        """Return its second derivatives."""
-        out = np.zeros((J.size, J.size))
-        out[:-1, :-1] = self.logs.hessian(J[:-1])
-        return out
-
-
-@dataclass(frozen=True)
 class Distance:
-    """Distance of parameters from others, in the units of their priors.
+    """Distance of parameters from the nominal ones, in the units of their priors.
 
-    Attributes
-    ----------
-    problem : with bounds and priors
-    centre : (p,) parameters from which it is
-    weight : of a distance of one range, for parameters of uniform prior
+    ``weight`` is that of a distance of one range, for parameters of uniform prior.
     """
 
     problem: UpdatingProblem
-    centre: Floats
     weight: float
 
     def residuals(self, theta: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the distances (p,) and their first and second derivatives."""
-        unit = np.sqrt(self.weight) / (self.problem.upper - self.problem.lower)
-        r, dr, d2r = unit * (theta - self.centre), unit.copy(), np.zeros(unit.size)
+        centre, span = self.problem.start, self.problem.upper - self.problem.lower
+        unit = np.sqrt(self.weight) / span
+        r, dr, d2r = unit * (theta - centre), unit.copy(), np.zeros(unit.size)
         for j, prior in enumerate(self.problem.priors):
             if prior and prior.kind == "normal":
-                r[j], dr[j] = (theta[j] - self.centre[j]) / prior.std, 1 / prior.std
+                r[j], dr[j] = (theta[j] - centre[j]) / prior.std, 1 / prior.std
             elif prior:
-                r[j] = np.log(theta[j] / self.centre[j]) / prior.std
+                r[j] = np.log(theta[j] / centre[j]) / prior.std
                 dr[j], d2r[j] = 1 / (theta[j] * prior.std), -1 / (theta[j] ** 2 * prior.std)
         return r, dr, d2r
 
@@ -257,12 +227,12 @@ class Standardised:
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:
-        """Return the objectives at z (p,), always with the derivatives that residuals take."""
-        del derivatives, second
+        """Return the objectives at z (p,), with the derivatives that residuals take."""
+        del second
         parameters, slope = self.theta(theta)
-        found = self.problem.evaluate(parameters)
-        if not found.feasible:
-            return replace(found, theta=theta, J=np.append(found.J, np.inf))
+        found = self.problem.evaluate(parameters, derivatives=derivatives)
+        if not (derivatives and found.feasible):
+            return replace(found, theta=theta, J=np.append(found.J, theta @ theta))
         residuals = (
             *(Residual(x.r, x.dr * slope) for x in found.residuals),
             Residual(theta, np.eye(theta.size)),

@@ -9,18 +9,23 @@ from 1, independent models, as far as is needed. Steps of the stochastic Newton 
 centres of further proposals. Chains go on until they agree and the effective sample is large enough
 (Vehtari et al. 2021, doi:10.1214/20-BA1221). They end at half of their length at most where none of
 their halves is worth more than one draw.
+
+Where modes are those of a reduced basis, steps are taken in a smaller one, and several of them
+together are taken or not by what the basis itself says (Liu 2001, *Monte Carlo Strategies in
+Scientific Computing*, section 9.4.3): a poor one makes chains slow, and draws no less exact.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from scipy.special import chdtri, gammainc, gammaln, ndtr, ndtri, softmax
 
 from modefront._typing import Floats
+from modefront.models.reduced.model import ReducedModel
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import begin, solve
@@ -50,6 +55,11 @@ APART = 1.0
 FAINT = 1e-3
 """Probability of a peak over that of the greatest one, below which it is left out."""
 
+SMALL, SNAPSHOTS, TOGETHER = 100, 40, 5
+"""Columns of a basis from which steps are taken in a smaller one, models of which the modes span
+that, and steps that are taken together: of an odd number, every second one a jump, the kinds are in
+the same order backwards."""
+
 SOLVED, STEPS = 1e-3, 12
 """Error of the normal variables behind a model, and steps to it at most."""
 
@@ -68,9 +78,9 @@ class Peak:
     logs: LogSum
 
     @cached_property
-    def G(self) -> Floats:
-        """Derivatives of the residuals (rows, p)."""
-        return np.vstack([x.dr for x in self.at.residuals[:-1]])
+    def top(self) -> Model:
+        """The model at the peak."""
+        return Model(self.at, self.expected)
 
     @cached_property
     def squares(self) -> Floats:
@@ -98,16 +108,10 @@ class Peak:
         """Return A (p, p)."""
         return _definite(np.tensordot(1 / s, self.squares, axes=1))
 
-    def variances(self, eta: Floats) -> Floats:
-        """Return variances (n,) of normal variables (n,)."""
-        out: Floats = self.scale / chdtri(self.dof, ndtr(np.clip(-eta, -FARTHEST, FARTHEST)))
-        return out
-
     def forward(self, model: Model) -> tuple[Floats, Floats]:
         """Return F (p,) of a model and its derivative (p, p)."""
-        over = np.repeat(1 / model.s, model.rows)[:, None]
-        F = model.z + self.G.T @ (over[:, 0] * model.r)
-        return F, np.eye(len(F)) + self.G.T @ (over * model.dr)
+        F = model.z + self.top.dr.T @ (model.over * model.r)
+        return F, np.eye(len(F)) + self.top.dr.T @ (model.over[:, None] * model.dr)
 
     def behind(self, model: Model) -> Floats:
         """Return the normal variables (p + n,) behind a model."""
@@ -131,7 +135,8 @@ class Peak:
         Steps become shorter until the next one does (Deuflhard's natural monotonicity).
         """
         p = self.at.theta.size
-        here = Model(start, self.variances(u[p:]))
+        below = ndtr(np.clip(-u[p:], -FARTHEST, FARTHEST))
+        here = Model(start, self.scale / chdtri(self.dof, below))
         L = np.linalg.cholesky(self.precision(here.s))
         F, slope = self.forward(here)
         missing = L @ u[:p] - F
@@ -179,9 +184,9 @@ class Model:
         return self.found.theta
 
     @cached_property
-    def rows(self) -> list[int]:
-        """Numbers of residuals of the groups."""
-        return [x.r.size for x in self.found.residuals[:-1]]
+    def over(self) -> Floats:
+        """One over the variance of each residual, (rows,)."""
+        return np.repeat(1 / self.s, [x.r.size for x in self.found.residuals[:-1]])
 
     @cached_property
     def r(self) -> Floats:
@@ -199,18 +204,20 @@ class Model:
         of_s = (logs.a / 2 + 1) * np.log(self.s) + b / (2 * self.s)
         return float(-of_s.sum() - self.found.J[-1] / 2)
 
+    def excess(self, true: Evaluation, logs: LogSum) -> float:
+        """Return ln p of the model with the residuals of another evaluation, over its own."""
+        return Model(true, self.s).log_posterior(logs) - self.log_posterior(logs)
+
     def newton(self, b: float) -> tuple[Floats, Floats]:
         """Return mean (p,) and precision (p, p) of proposals nearby: the stochastic Newton method.
 
         Of a Gaussian they leave it as it is, whatever b.
         """
-        over = np.repeat(1 / self.s, self.rows)
-        A = _definite(self.dr.T @ (over[:, None] * self.dr))
-        slope = self.z + self.dr.T @ (over * self.r)
+        A = _definite(self.dr.T @ (self.over[:, None] * self.dr))
+        slope = self.z + self.dr.T @ (self.over * self.r)
         return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
 
 
-@record
 @dataclass(frozen=True)
 class Draws:
     """Models drawn from the posterior, with what they predict.
@@ -235,7 +242,7 @@ class Chain:
 
     Attributes
     ----------
-    z, theta : (steps, p) standardised parameters, and parameters
+    z : (steps, p) standardised parameters
     frequency, mac : (steps, modes)
     s : (n,) variances at its end
     length : b of both kinds of proposals
@@ -243,7 +250,6 @@ class Chain:
     """
 
     z: Floats
-    theta: Floats
     frequency: Floats
     mac: Floats
     s: Floats
@@ -267,14 +273,18 @@ def draw_models(
 ) -> Draws:
     """Return models drawn from the posterior, of which all known ``maxima`` (p,) are given.
 
-    Chains have ``rounds`` at most; None for as many as so many effective draws may take.
+    They are as many as asked for, and as the chains have steps at most. Chains have ``rounds`` at
+    most; None for as many as so many effective draws may take.
     """
-    stage, at = "sample-posterior", Standardised(noise.problem).evaluate
+    stage, target = "sample-posterior", Standardised(noise.problem)
     tasks = [Task((stage, "peak", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
     peaks = _mixture(noise, work.run(tasks))
     work.expect({stage: 3 * CHAINS})
     chains: list[Chain | None] = [None] * CHAINS
     kept: list[list[Chain]] = []
+    rng = np.random.default_rng(seed_sequence(seed, stage, "near"))
+    around = [peaks[k].top.newton(1.0) for k in rng.choice(len(peaks), SNAPSHOTS)]
+    near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), 0, work)
     warm, settled = True, False
     rounds = rounds or -(-LONGEST * count // (CHAINS * ROUND))
     for turn in range(WARM + rounds):
@@ -282,7 +292,7 @@ def draw_models(
             Task(
                 (stage, k + 1, turn + 1),
                 _advanced,
-                (noise, peaks, chain, warm),
+                (noise, near, peaks, chain, warm),
                 seed_sequence(seed, stage, k + 1, turn + 1),
             )
             for k, chain in enumerate(chains)
@@ -292,10 +302,14 @@ def draw_models(
         if warm:
             beyond = [x.z[-1] for x in found if x.beyond]
             tasks = [
-                Task((stage, "beyond", turn + 1, k + 1), at, (z,)) for k, z in enumerate(beyond)
+                Task((stage, "beyond", turn + 1, k + 1), target.evaluate, (z,))
+                for k, z in enumerate(beyond)
             ]
             more = _mixture(noise, work.run(tasks))
             peaks, warm = [*peaks, *more], bool(more) and turn + 1 < WARM
+            if near:
+                z = _joined(found, "z")
+                near = _nearer(noise, z, turn + 1, work)
             continue
         kept.append(found)
         ratio, size = agreement(np.array([_joined(x, "z") for x in zip(*kept, strict=True)]))
@@ -305,9 +319,25 @@ def draw_models(
             break
     every = [x for chain in zip(*kept, strict=True) for x in chain]
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
-    order = rng.permutation(np.linspace(0, len(every) * ROUND - 1, count).round().astype(int))
-    theta, frequency, mac = (_joined(every, x)[order] for x in ("theta", "frequency", "mac"))
-    return Draws(theta, frequency, mac, settled)
+    last = len(every) * ROUND - 1
+    order = rng.permutation(np.linspace(0, last, min(count, last + 1)).round().astype(int))
+    z, frequency, mac = (_joined(every, x)[order] for x in ("z", "frequency", "mac"))
+    return Draws(np.array([target.theta(x)[0] for x in z]), frequency, mac, settled)
+
+
+def _nearer(noise: NoiseModel, z: Floats, turn: int, work: Executor) -> NoiseModel | None:
+    """Return the posterior in the space of the modes at standardised parameters z (models, p).
+
+    None where the model is not a reduced one, its basis is small, or this space is not much less.
+    """
+    problem = noise.problem
+    if not isinstance(problem.model, ReducedModel):
+        return None
+    theta = np.array([Standardised(problem).theta(x)[0] for x in z])
+    (V,) = work.run([Task(("sample-posterior", "space", turn), problem.model.space, (theta,))])
+    if len(V) < SMALL or 2 * V.shape[1] > len(V):
+        return None
+    return replace(noise, problem=replace(problem, model=problem.model.within(V)))
 
 
 def _joined(rounds: Sequence[Chain], name: str) -> Floats:
@@ -323,13 +353,12 @@ def _peak(noise: NoiseModel, theta: Floats) -> Evaluation:
 
 def _mixture(noise: NoiseModel, found: Sequence[Evaluation]) -> list[Peak]:
     """Return the peaks that count, each once."""
-    logs = noise.programme.logs
+    logs = noise.logs
     peaks: list[Peak] = []
     for x in sorted(found, key=lambda x: noise.programme.value(x.J)):
         new = Peak(x, logs)
-        ways = [new.behind(Model(y.at, new.expected)) for y in peaks]
-        here = new.behind(Model(x, new.expected))
-        if all(np.linalg.norm(way - here) > APART for way in ways):
+        ways = [new.behind(Model(y.at, new.expected)) - new.behind(new.top) for y in peaks]
+        if all(np.linalg.norm(way) > APART for way in ways):
             peaks.append(new)
     if not peaks:
         return []
@@ -341,6 +370,7 @@ def _mixture(noise: NoiseModel, found: Sequence[Evaluation]) -> list[Peak]:
 
 def _advanced(
     noise: NoiseModel,
+    near: NoiseModel | None,
     peaks: Sequence[Peak],
     chain: Chain | None,
     warm: bool,
@@ -348,32 +378,40 @@ def _advanced(
     rng: np.random.Generator,
 ) -> Chain:
     """Return the next round of a chain; a warm-up adapts the lengths of steps."""
-    target, logs = Standardised(noise.problem), noise.programme.logs
+    target, logs = Standardised((near or noise).problem), noise.logs
     of = Sampler(target, logs, peaks)
     length = np.ones(2) if chain is None or warm else chain.length
     if chain is None:
-        peak = peaks[rng.choice(len(peaks))]
-        here = Model(peak.at, peak.expected)
+        top = peaks[rng.choice(len(peaks))].top
+        z, s = top.z, top.s
     else:
-        here = Model(target.evaluate(chain.z[-1]), chain.s)
-    out = []
-    for t in range(ROUND):
-        across = len(peaks) > 1 and t % 2 == 1
-        here, far = of.across(here, 1.0 if across else length[0], across, rng)
-        b = here.found.J[:-1] + logs.floor
-        here = Model(here.found, b / rng.chisquare(logs.a))
-        here, near = of.nearby(here, length[1], rng)
+        z, s = chain.z[-1], chain.s
+    here = Model(target.evaluate(z), s)
+    exact = Standardised(noise.problem)
+    true = exact.evaluate(z, derivatives=False) if near else here.found
+    out, new = [], here
+    every = TOGETHER if near else 1
+    for t in range(ROUND if warm else ROUND * every):
+        jumps = len(peaks) > 1 and t % 2 == 1
+        new, chances = of.after(new, length, jumps, near is not None and rng.random() < 0.5, rng)
         if warm:
-            better = np.array([0.0 if across else far - ACCEPTED, near - ACCEPTED])
+            better = np.array([0.0 if jumps else chances[0] - ACCEPTED, chances[1] - ACCEPTED])
             length = np.minimum(length * np.exp(better / np.sqrt(1 + t / 4)), 1.0)
-        out.append(here.found)
-    none = np.empty(0)
+        if (t + 1) % every:
+            continue
+        if near is None:
+            here, true = new, new.found
+        else:
+            at = true if new.found is here.found else exact.evaluate(new.z, derivatives=False)
+            change = new.excess(at, logs) - here.excess(true, logs)
+            here, true = (new, at) if rng.random() < np.exp(min(change, 0.0)) else (here, true)
+            new = here
+        out.append(true)
     frequency, mac = (
-        np.array([x.quantities.get(name, none) for x in out]) for name in ("frequency", "mac")
+        np.array([x.quantities.get(name, ()) for x in out]) for name in ("frequency", "mac")
     )
     return Chain(
         np.array([x.theta for x in out]),
-        np.array([target.theta(x.theta)[0] for x in out]),
         frequency,
         mac,
         here.s,
@@ -389,6 +427,25 @@ class Sampler:
     target: Standardised
     logs: LogSum
     peaks: Sequence[Peak]
+
+    # 6 arguments: where from, how far, and in which order.
+    def after(
+        self, here: Model, b: Floats, jumps: bool, backwards: bool, rng: np.random.Generator
+    ) -> tuple[Model, tuple[float, float]]:
+        """Return the model after both kinds of steps of lengths b (2,), and their probabilities.
+
+        The variances are drawn between them. In an order by chance, they are reversible together.
+        """
+        far = near = 0.0
+        for k in (2, 1, 0) if backwards else (0, 1, 2):
+            if k == 0:
+                here, far = self.across(here, 1.0 if jumps else float(b[0]), jumps, rng)
+            elif k == 1:
+                scale = here.found.J[:-1] + self.logs.floor
+                here = Model(here.found, scale / rng.chisquare(self.logs.a))
+            else:
+                here, near = self.nearby(here, float(b[1]), rng)
+        return here, (far, near)
 
     def across(
         self, here: Model, b: float, jumps: bool, rng: np.random.Generator
@@ -420,8 +477,7 @@ class Sampler:
     def nearby(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
         """Return the model after a step of the stochastic Newton method."""
         mean, precision = here.newton(b)
-        L = np.linalg.cholesky(precision)
-        z = mean + np.linalg.solve(L.T, rng.normal(size=mean.size))
+        z = _drawn(mean, precision, rng)
         new = Model(self.target.evaluate(np.clip(z, -FARTHEST, FARTHEST)), here.s)
         if not new.found.feasible:
             return here, 0.0
@@ -431,6 +487,11 @@ class Sampler:
         ratio += ahead @ precision @ ahead - aback @ behind @ aback
         change = new.log_posterior(self.logs) - here.log_posterior(self.logs) + float(ratio) / 2
         return _taken(here, new, change, rng)
+
+
+def _drawn(mean: Floats, precision: Floats, rng: np.random.Generator) -> Floats:
+    """Return a draw (p,) from a Gaussian."""
+    return mean + np.linalg.solve(np.linalg.cholesky(precision).T, rng.normal(size=mean.size))
 
 
 def _taken(here: Model, new: Model, change: float, rng: np.random.Generator) -> tuple[Model, float]:

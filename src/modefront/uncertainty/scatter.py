@@ -65,16 +65,12 @@ class Scatter:
     ----------
     theta : (sources, p) changes of the parameters
     J : (sources, n) changes of the objectives at the solution, of its own data
-    w : (sources, n) changes of the weights of the objectives
-    held : (p,) parameters that a bound holds
     free : (p, d) directions that no data determine, orthonormal over the ranges
     warnings : reasons why the linearisation may not be valid
     """
 
     theta: Floats
     J: Floats
-    w: Floats
-    held: Bools
     free: Floats
     warnings: tuple[LinearisationWarning, ...]
 
@@ -158,7 +154,7 @@ def scatter(
         ),
     ]
     why = tuple(warning for warning, holds in warnings if holds)
-    return Scatter(theta, J, dw, held, span[:, None] * free, why)
+    return Scatter(theta, J, span[:, None] * free, why)
 
 
 def _is_minimum(W: Floats, C: Floats, dJ: Floats, c: Conditions) -> bool:

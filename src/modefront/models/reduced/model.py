@@ -36,6 +36,10 @@ FAR = 30.0
 WORST = 6
 """Models of a snapshot that are corrected at once, the worst ones."""
 
+HARDLY = 1e-3
+"""Length of a direction that a space of modes may lack, root mean square over some models: the
+square is an error of eigenvalues."""
+
 TOLERANCE = 1e-8
 """Default relative error of eigenvalues."""
 
@@ -202,6 +206,24 @@ class ReducedModel:
         Phi = basis.combine(np.ascontiguousarray(pairs.Phi[:, :count]))
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return FullModes(pairs.lam[:count], Phi, None)
+
+    def space(self, thetas: Floats) -> Floats:
+        """Return coordinates (columns, n) in the basis that span its modes at some parameters.
+
+        Directions in which modes of unit energy have less than `HARDLY`, root mean square, are left
+        out.
+        """
+        _, K, M, _ = self._projected()
+        X = [dense.decompose(K.at(x), M.at(x), self.count).X[:, : self.count] for x in thetas]
+        U, sizes, _ = np.linalg.svd(np.hstack(X), full_matrices=False)
+        spend(Costs(reduced=len(thetas)))
+        return np.asarray(U[:, sizes > HARDLY * np.sqrt(len(thetas))])
+
+    def within(self, V: Floats) -> ReducedModel:
+        """Return the model in the space of coordinates (columns, n) in its basis."""
+        what, *matrices, sensed = self._projected()
+        K, M = (replace(A, terms=V.T @ A.terms @ V) for A in matrices)
+        return replace(self, _small=(what, K, M, sensed @ V))
 
     def certifier(self) -> bases.Certifier:
         """Return what judges modes of the basis."""
