@@ -126,7 +126,10 @@ class Fit:
 
     @cached_property
     def observed(self) -> Floats:
-        """Half the second derivatives of J by alpha, (alphas, alphas)."""
+        """Half the second derivatives of J by alpha, (alphas, alphas).
+
+        Where these have no minimum, as with a pole on the imaginary axis: the information.
+        """
         task, model, n = self.task, self.model, len(self.model)
         weighted = task.s**task.order * (task.weight * self.residual).conj()
         upper, lower = (1 / (task.s - lam[:, None]) for lam in (model.lam, model.lam.conj()))
@@ -143,7 +146,10 @@ class Fit:
             for row, column in {(r, k), (k, r)}:
                 block = out[2 * row : 2 * row + 2, 2 * column : 2 * column + 2]
                 block -= [[z.real, z.imag], [z.imag, -z.real]]
-        return out
+        free = directions(model)
+        size = np.sqrt(np.maximum((free.T @ self.information @ free).diagonal(), TINY))
+        least = np.linalg.eigvalsh(free.T @ out @ free / np.outer(size, size)).min(initial=1.0)
+        return out if least > 1e-12 else self.information
 
     def inverted(self, A: Floats) -> Floats:
         """Return A^-1 in the directions in which alpha is free; large where it is singular."""
