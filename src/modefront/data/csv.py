@@ -14,6 +14,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import TextIO
 
@@ -36,7 +37,7 @@ from modefront.outputs import write_table
 from modefront.rounding import LARGEST
 from modefront.text import NAME, clean
 
-KEYS = ("set", "mode")
+KEYS, SENSOR = ("set", "mode"), "sensor"
 QUANTITIES = ("frequency", "damping")
 PAIR = "pair"
 
@@ -131,18 +132,9 @@ def read_csv(
         said = _header_faults(header, sensors)
         refuse(Fault(file, _place(first, name), *each) for name, *each in said)
         faults = list[Fault]()
-        for line, fields in rows:
-            if len(faults) > MOST_FAULTS:
-                break
-            if not any(map(str.strip, fields[width:])):  # fields without a name may be empty
-                fields = fields[:width]
+        for line, fields in _of_width(rows, width, file, faults):
             last.append(fields[-1])
-            if len(fields) != width:
-                expected = f"{width} fields, as in the header"
-                faults.append(Fault(file, f"line {line}", expected, str(len(fields))))
-                continue
-            texts = dict(zip(header, map(str.strip, fields), strict=True))
-            key, row, found = _row(texts, sensors)
+            key, row, found = _row(dict(zip(header, fields, strict=True)), sensors)
             faults += [Fault(file, _place(line, name), *each) for name, *each in found]
             if key in values:
                 expected, place = "each mode of a data set once", "columns 'set' and 'mode'"
@@ -152,12 +144,98 @@ def read_csv(
                 faults.append(Fault(file, f"line {line}, {place}", expected, f"{key} again"))
             elif key is not None:
                 values[key], lines[key] = row, line
+    refuse(faults)
     if not last:
         raise wrong(path, "a row for each measured mode", "the end", "line 2")
-    refuse(faults)
     ended_column(path, last)
     paired = PAIR in header and PAIR not in sensors
     return _assembled(path, values, tuple(sensors), _pairs(path, values, lines) if paired else ())
+
+
+def _of_width(
+    rows: Iterator[tuple[int, list[str]]], width: int, file: str, faults: list[Fault]
+) -> Iterator[tuple[int, list[str]]]:
+    """Yield rows of as many fields as the header; note others, until there are `MOST_FAULTS`."""
+    for line, fields in rows:
+        if len(faults) > MOST_FAULTS:
+            return
+        fields = list(map(str.strip, fields))
+        if not any(fields[width:]):  # fields without a name may be empty
+            fields = fields[:width]
+        if len(fields) == width:
+            yield line, fields
+        else:
+            expected = f"{width} fields, as in the header"
+            faults.append(Fault(file, f"line {line}", expected, str(len(fields))))
+
+
+def read_covariance(
+    path: Path, data: ModalData, columns: Mapping[str, str] | None = None
+) -> ModalData:
+    """Return modal data with the covariances of shapes of a CSV file.
+
+    A row is a component of a shape: columns ``set, mode, sensor``, then one a sensor with the
+    covariances. ``columns`` maps sensors of the file to those of the data; ``set`` may be left out
+    for one set. Shapes without rows keep their deviations. Raises InputError with what is wrong.
+    """
+    file, columns, faults, last = str(path), columns or {}, list[Fault](), list[str]()
+    known = {"set": data.sets, "mode": tuple(map(str, data.modes)), SENSOR: data.sensors}
+    C = np.full((*data.shape.shape, len(data.sensors)), np.nan)
+    rows_of: dict[tuple[int, ...], int] = {}
+    with table_rows(path, "a file of covariances of shapes") as rows:
+        first, fields = next(rows, (1, []))
+        header = list(map(str.strip, fields))
+        keys = header[: header.index(SENSOR) + 1] if SENSOR in header else []
+        names = renamed(header[len(keys) :], columns, ())[0]
+        if sorted(keys) not in (["mode", SENSOR], ["mode", SENSOR, "set"])[len(data.sets) > 1 :]:
+            found = clean(", ".join(header[:6]), NAME) or "nothing"
+            raise wrong(path, "set, mode, sensor, then a column a sensor", found, f"line {first}")
+        refuse(
+            Fault(file, _place(first, x), "a sensor of the data, once", suggestion(x, data.sensors))
+            for k, x in enumerate(names)
+            if x not in data.sensors or x in names[:k]
+        )
+        places = [data.sensors.index(name) for name in names]
+        for line, fields in _of_width(rows, len(header), file, faults):
+            last.append(fields[-1])
+            row = {"set": data.sets[0]} | dict(zip(keys, fields, strict=False))
+            row[SENSOR] = columns.get(row[SENSOR], row[SENSOR])
+            said = [
+                (key, f"one of {', '.join(known[key][:8])}", suggestion(text, known[key]))
+                for key, text in row.items()
+                if text not in known[key]
+            ] + [
+                (name, "a finite number or an empty field", repr(text))
+                for name, text in zip(names, fields[len(keys) :], strict=True)
+                if text and not (NUMBER.fullmatch(text) and abs(float(text)) <= LARGEST)
+            ]
+            faults += [Fault(file, _place(line, name), *each) for name, *each in said]
+            if said:
+                continue
+            place = tuple(known[key].index(row[key]) for key in known)
+            if rows_of.setdefault(place, line) != line:
+                found = f"that of line {rows_of[place]} again"
+                faults.append(Fault(file, f"line {line}", "each component once", found))
+            C[place][places] = [float(text or "nan") for text in fields[len(keys) :]]
+    refuse(faults)
+    if not last:
+        raise wrong(path, "a row for each component of a shape", "the end", "line 2")
+    ended_column(path, last)
+    try:
+        return data.with_covariance(C)
+    except InputError as error:
+        raise InputError(replace(fault, file=file) for fault in error.faults) from None
+
+
+def write_covariance(path: Path, data: ModalData, digits: int = 9) -> None:
+    """Write the covariances of the shapes of modal data, which have some; whole or not at all."""
+    rows = [[*KEYS, SENSOR, *data.sensors]]
+    C = data.shape_covariance
+    for k, r, s in np.argwhere(np.isfinite(data.shape)).tolist() if C is not None else ():
+        if np.isfinite(own := C[k, r, s]).any():
+            texts = ["" if math.isnan(x) else f"{x:.{digits}g}" for x in own.tolist()]
+            rows.append([data.sets[k], str(data.modes[r]), data.sensors[s], *texts])
+    write_table(path, rows)
 
 
 def write_csv(

@@ -7,13 +7,19 @@ from functools import cached_property
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.brief import as_html, brief
-from modefront.errors import suggestion
+from modefront.errors import Fault, refuse, suggestion
 
-MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std")
+MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std", "shape_covariance")
 """Arrays of modal data, of which data sets are the first axis."""
 
+SAME = 0.05
+"""Relative difference below which a variance is the square of a standard deviation: rounding."""
+
+ROUNDED, LEAST = 1e-5, 1e-8
+"""Difference of two covariances, over standard deviations, up to which they are one, rounded;
+eigenvalue of correlations from which on it is more than the rounding of nine digits."""
 
 Pairs = tuple[tuple[int, int], ...]
 """Numbers of modes of one frequency, two by two."""
@@ -56,6 +62,8 @@ class ModalData:
     shape : (sets, modes, sensors) mode shape components, in any scale and with any sign
     frequency_std, shape_std : standard deviations, of the shape of ``frequency`` and ``shape``
     pairs : numbers of modes of one frequency, whose shapes are some basis of a plane
+    shape_covariance : (sets, modes, sensors, sensors) of the components of each shape, in any
+        normalisation; NaN, or None as a whole, where only ``shape_std`` is known
     """
 
     sets: tuple[str, ...]
@@ -67,6 +75,7 @@ class ModalData:
     frequency_std: Floats
     shape_std: Floats
     pairs: Pairs = ()
+    shape_covariance: Floats | None = None
 
     __repr__ = brief
     _repr_html_ = as_html
@@ -97,7 +106,77 @@ class ModalData:
             raise ValueError(f"expected data at each sensor once, found {', '.join(self.sensors)}")
         phi, phi_std = np.full((2, *self.shape.shape[:2], len(sensors)), np.nan)
         phi[:, :, places], phi_std[:, :, places] = self.shape, self.shape_std
-        return replace(self, sensors=sensors, shape=phi, shape_std=phi_std)
+        C = None
+        if self.shape_covariance is not None:
+            C = np.full((*phi.shape, len(sensors)), np.nan)
+            C[:, :, np.array(places)[:, None], places] = self.shape_covariance
+        return replace(self, sensors=sensors, shape=phi, shape_std=phi_std, shape_covariance=C)
+
+    def of_sets(self, chosen: Ints, names: tuple[str, ...]) -> ModalData:
+        """Return the data of some sets, by their positions, under new names."""
+        parts = {name: x[chosen] for name in MEASURED if (x := getattr(self, name)) is not None}
+        return replace(self, sets=names, **parts)
+
+    def with_covariance(self, covariance: Floats) -> ModalData:
+        """Return the data with covariances of shapes, NaN where none is known.
+
+        They are (sets, modes, sensors, sensors), and give the standard deviations that the data
+        lack. Raises InputError for what is no covariance of these shapes.
+        """
+        C = np.asarray(covariance, float)
+        if C.shape != (size := (*self.shape.shape, len(self.sensors))):
+            expected = "an array of " + " x ".join(map(str, size))
+            refuse([Fault("", "shape_covariance", expected, " x ".join(map(str, C.shape)))])
+        variance = np.einsum("krss->krs", C)
+        std = np.where(self.shape_std > 0, self.shape_std, np.sqrt(np.maximum(variance, 0.0)))
+        std = np.where(np.isnan(variance), self.shape_std, std)
+        out, faults = replace(self, shape_std=std, shape_covariance=C), list[Fault]()
+        for k, r in np.argwhere(np.isfinite(self.shape).any(axis=2)).tolist():
+            sensors = np.flatnonzero(np.isfinite(self.shape[k, r]))
+            if np.isfinite(C[k, r][np.ix_(sensors, sensors)]).any() and (said := out._said(k, r)):
+                place = f"covariance of mode {self.modes[r]} in set {self.sets[k]!r}"
+                faults.append(Fault("", place, *said))
+        refuse(faults)
+        return out
+
+    def _said(self, k: int, r: int) -> tuple[str, str] | None:
+        """Return what is wrong with the covariance of a shape: the expected and the found."""
+        sensors = np.flatnonzero(np.isfinite(self.shape[k, r]))
+        names, std = [self.sensors[i] for i in sensors], self.shape_std[k, r, sensors]
+        C = self.shape_covariance[k, r][np.ix_(sensors, sensors)]  # type: ignore[index]
+        for i, j in np.argwhere(~np.isfinite(C)).tolist():
+            return "the covariances of all measured components", f"none of {names[i]}, {names[j]}"
+        for i, j in np.argwhere(np.abs(C - C.T) > ROUNDED * np.outer(std, std)).tolist():
+            two = f"one covariance of {names[i]} and {names[j]}, a symmetric matrix"
+            return two, f"{C[i, j]:.9g} and {C[j, i]:.9g}"
+        for (i,) in np.argwhere(np.abs(C.diagonal() - std**2) > 2 * SAME * std**2).tolist():
+            known = f"{std[i] ** 2:.6g}, the square of its deviation," if std[i] else "0 or more"
+            return f"{known} as the variance of {names[i]}", f"{C[i, i]:.6g}"
+        A = self.covariance_of(k, r, sensors)
+        size = np.sqrt(np.maximum(A.diagonal(), np.finfo(float).tiny))
+        least = float(np.linalg.eigvalsh(A / np.outer(size, size))[0])
+        if least > LEAST:
+            return None
+        expected = "positive eigenvalues of the correlations, but for that along the shape"
+        return expected, f"{least:.2g}"
+
+    def covariance_of(self, k: int, r: int, sensors: Ints) -> Floats | None:
+        """Return the covariance of components of a shape, positive definite; None for none.
+
+        Errors along the shape are those of its factor, which is fitted: they change no result, and
+        a norm leaves them out. They get the median variance; so do those along the other of a pair.
+        """
+        if self.shape_covariance is None:
+            return None
+        C = self.shape_covariance[k, r][np.ix_(sensors, sensors)]
+        if not np.isfinite(C).all():
+            return None
+        mode = self.modes[r]
+        same = [r, *(self.modes.index(a + b - mode) for a, b in self.pairs if mode in (a, b))]
+        U = np.nan_to_num(self.shape[k, same][:, sensors])
+        U = U / np.maximum(np.linalg.norm(U, axis=1), np.finfo(float).tiny)[:, None]
+        out: Floats = (C + C.T) / 2 + np.median(C.diagonal()) * U.T @ U
+        return out
 
     @cached_property
     def measured_shapes(self) -> MeasuredShapes:
@@ -116,7 +195,7 @@ def _mean(values: Floats) -> Floats:
     return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)
 
 
-# 7 arguments: the parts of modal data, the optional ones by keyword.
+# 8 arguments: the parts of modal data, the optional ones by keyword.
 def modal_data(
     frequency: Floats,
     shape: Floats,
@@ -126,6 +205,7 @@ def modal_data(
     damping: Floats | None = None,
     frequency_std: Floats | None = None,
     shape_std: Floats | None = None,
+    shape_covariance: Floats | None = None,
 ) -> ModalData:
     """Return the data of modes 1, 2, ... from arrays, in which NaN is not measured.
 
@@ -144,11 +224,13 @@ def modal_data(
         Damping ratios, like ``frequency``; not measured unless given.
     frequency_std, shape_std
         Standard deviations, like ``frequency`` and ``shape``; not known unless given.
+    shape_covariance
+        Covariances of each shape, (modes, sensors, sensors) or (sets, modes, sensors, sensors).
 
     Raises
     ------
     ValueError
-        If the arrays do not fit together.
+        If the arrays do not fit together; `InputError` for what is no covariance.
     """
     f = np.atleast_2d(np.asarray(frequency, float))
     phi = np.asarray(shape, float).reshape(*f.shape, -1)
@@ -162,4 +244,8 @@ def modal_data(
 
     names = sets if sets is not None else tuple(str(k + 1) for k in range(len(f)))
     modes, stds = tuple(range(1, f.shape[1] + 1)), (like(frequency_std, f), like(shape_std, phi))
-    return ModalData(names, modes, tuple(sensors), f, like(damping, f), phi, *stds)
+    data = ModalData(names, modes, tuple(sensors), f, like(damping, f), phi, *stds)
+    if shape_covariance is None:
+        return data
+    C = np.asarray(shape_covariance, float)
+    return data.with_covariance(C if C.ndim > 3 else C[None])

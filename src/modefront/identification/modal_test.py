@@ -15,14 +15,14 @@ from threadpoolctl import threadpool_limits
 
 from modefront._typing import Complexes
 from modefront.brief import as_html
-from modefront.data.csv import is_reserved, write_csv
+from modefront.data.csv import is_reserved, write_covariance, write_csv
 from modefront.data.modal import ModalData
 from modefront.data.modal_test import ByHand, ModalTest, read_test
 from modefront.data.uff import write_uff55
 from modefront.errors import Fault, InputError, UnfinishedError
 from modefront.identification.methods import ambient, hammer
 from modefront.identification.record import Identification, Rejected
-from modefront.identification.sets import CombinedModes, combine, modal_data_of
+from modefront.identification.sets import CombinedModes, combine
 from modefront.outputs import write_text
 
 POOR_FIT = 0.5
@@ -63,7 +63,7 @@ class IdentifiedTest:
         """The modal data that studies read; raises UnfinishedError where no mode was found."""
         if self.modes is None:
             raise UnfinishedError("no mode was found in the band")
-        return modal_data_of(self.modes)
+        return self.modes.data
 
     @property
     def warnings(self) -> list[str]:
@@ -108,6 +108,7 @@ class IdentifiedTest:
         """
         path = writable(path)
         report = path.with_name(path.stem + "-identification.json")
+        written = [path]
         if path.suffix.lower() == ".uff":
             modes = modal_modes(self)
             pairs = [each.pairs for each in self.identified]
@@ -119,9 +120,12 @@ class IdentifiedTest:
                 expected = "names of sensors that are no columns of modal data"
                 raise InputError(Fault("sensors", repr(clashing[0]), expected, "a reserved name"))
             write_csv(path, self.data, self.modes.damping_std if self.modes else None)
+            if self.data.shape_covariance is not None:
+                written.append(path.with_name(path.stem + "-covariance.csv"))
+                write_covariance(written[-1], self.data)
         text = json.dumps(self.as_plain(), indent=1, allow_nan=False)
         write_text(report, text + "\n")
-        return [path, report]
+        return [*written, report]
 
     def as_plain(self) -> dict[str, Any]:
         """Return all that was identified as plain data; complex numbers are [real, imaginary]."""
@@ -136,8 +140,8 @@ class IdentifiedTest:
         out = [f"{self.test.name}: {len(self.names)} data sets"]
         if self.modes is not None:
             columns = zip(
-                np.nanmean(self.modes.frequency, axis=0),
-                np.nanmean(self.modes.damping, axis=0),
+                self.data.mean_frequency,
+                self.data.mean_damping,
                 strict=True,
             )
             lines = [f"  mode {r}: {f:.5g} Hz, {z:.2%}" for r, (f, z) in enumerate(columns, 1)]

@@ -9,7 +9,7 @@ neighbouring lines, by windows and zero padding.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -30,7 +30,7 @@ from modefront.identification.modal_model import (
     windowed_correlation,
 )
 from modefront.identification.noise import square
-from modefront.identification.record import ModeEstimate, Residuals
+from modefront.identification.record import MOST_COVARIED, ModeEstimate, Residuals
 from modefront.identification.selection import freedom
 from modefront.identification.shapes import TINY, RealShape, real_plane, real_shape
 
@@ -127,27 +127,42 @@ def mode_estimates(
     inverse = _inverse_information(fit)
     linear, alpha = _roots_of_responses(task, fit, residuals)
     C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
-    variance = np.zeros(model.phi.shape)
+    whole = model.phi.shape[1] <= MOST_COVARIED
+    products: Products = np.matmul if whole else _of_same
+    spread = []
     for r, shape in enumerate(shapes):
         rows = slice(2 * r, 2 * r + 2)
         answer = shape.differential(_as_complex(fit.Z[:, rows] @ inverse))
-        variance[r] = _shape_variance(shape, _as_complex(linear[:, rows]), answer, alpha)
+        direct = _as_complex(linear[:, rows])
+        spread.append(_shape_covariance(shape, direct, answer, alpha, products))
     for steps, phi in _force_influence(task, fit, residuals.force):
         C = C + steps @ steps.T
         for r, shape in enumerate(shapes):
-            variance[r] += (shape.differential(phi[:, r]) ** 2).sum(axis=1)
+            change = shape.differential(phi[:, r])
+            spread[r] += products(change, change.T)
     scale = max(residuals.chi2, 1.0)
-    C, variance = C * scale, variance * scale
-    variance[:, ~task.weight.any(axis=(0, 2)) | _silent(model.phi, linear, scale)] = np.nan
-    return [
-        _estimate(
-            complex(model.lam[r]),
-            C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2],
-            omega,
-            *rest,
-        )
-        for r, rest in enumerate(zip(shapes, np.sqrt(variance), model.L, strict=True))
-    ]
+    gone = ~task.weight.any(axis=(0, 2)) | _silent(model.phi, linear, scale)
+    out = []
+    for r, each in enumerate(spread):
+        each *= scale
+        each[gone] = np.nan
+        if whole:
+            each[:, gone] = np.nan
+        variance = np.maximum(each.diagonal() if whole else each, 0.0)
+        own = C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2] * scale
+        lam, L = complex(model.lam[r]), model.L[r]
+        mode = _estimate(lam, own, omega, shapes[r], np.sqrt(variance), L)
+        out.append(replace(mode, shape_covariance=each if whole else None))
+    return out
+
+
+Products = Callable[[Floats, Floats], Floats]
+"""Product of (responses, n) and (n, responses), all of it or its diagonal."""
+
+
+def _of_same(a: Floats, b: Floats) -> Floats:
+    """Return the diagonal of a product."""
+    return np.vecdot(a, b.T)
 
 
 def _silent(phi: Complexes, linear: Floats, scale: float) -> Bools:
@@ -162,14 +177,16 @@ def _silent(phi: Complexes, linear: Floats, scale: float) -> Bools:
     return out
 
 
-def _shape_variance(shape: RealShape, direct: Complexes, answer: Floats, alpha: Floats) -> Floats:
-    r"""Return the variance of a real shape by independent errors of each response, (responses,).
+def _shape_covariance(
+    shape: RealShape, direct: Complexes, answer: Floats, alpha: Floats, products: Products
+) -> Floats:
+    r"""Return the covariance of a real shape by independent errors of each response.
 
     Errors of response i change its own component by ``direct[i]``, (errors,), and the nonlinear
     parameters by ``alpha[i]``, (alphas, errors), which change the shape by ``-answer``,
     (responses, alphas). By the equations of `modefront.identification.shapes`, what i does to
     component k is :math:`\delta_{ik} a_i - (U U^T)_{ki} a_i + y_k\,\mathrm{d}\theta_i -
-    \mathrm{answer}_k \alpha_i`: its squares are summed over i at once.
+    \mathrm{answer}_k \alpha_i`: its products are summed over i at once, or their diagonal.
     """
     u, y = shape.shape, shape.complex_shape.imag
     a = shape.turn * direct / shape.norm
@@ -178,10 +195,10 @@ def _shape_variance(shape: RealShape, direct: Complexes, answer: Floats, alpha: 
     causes = np.concatenate([inside, theta[:, None], alpha], axis=1)
     effects = np.column_stack([-shape.plane, y, -answer])
     flat = causes.transpose(1, 0, 2).reshape(effects.shape[1], -1)
-    common = np.sum((effects @ (flat @ flat.T)) * effects, axis=1)
-    of_itself = np.einsum("ia,iae->ie", effects, causes)
-    out: Floats = common + np.sum((2 * of_itself + a.real) * a.real, axis=1)
-    return np.maximum(out, 0.0)
+    own = np.vecdot(causes, a.real[:, None])  # (responses, causes), by a response's own error
+    out = products(effects @ (flat @ flat.T) + own, effects.T) + products(effects, own.T)
+    power = np.vecdot(a.real, a.real)
+    return out + (np.diag(power) if out.ndim == 2 else power)
 
 
 def _as_complex(pairs: Floats) -> Complexes:

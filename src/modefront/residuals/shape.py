@@ -12,6 +12,8 @@ errors of model and data, and those of modes that coincide are any basis of thei
 does not depend. The unit u is :math:`\|\hat\varphi\| / \sqrt{N_0}`, as in equation (1), or the
 standard deviation of each component. A standard deviation that is 0 or rounding, such as that of
 the component to which a shape was normalised, is replaced by the median of the others in its shape.
+Where their covariance :math:`C = D R D` is known, D the deviations and :math:`R = L L^T` the
+correlations, :math:`1/u` is the matrix :math:`W = L^{-1} D^{-1}`, and residuals are independent.
 
 From :math:`X^T r = 0` (Golub & Pereyra 1973, doi:10.1137/0710036)
 
@@ -41,6 +43,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy.linalg as la
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.data.modal import ModalData
@@ -62,12 +65,13 @@ from modefront.residuals.base import (
 class _Components(NamedTuple):
     """The measured components of a mode, those of a data set together.
 
-    Of each data set that has the shape their number and where they are, and of each component data
-    set, sensor, factor 1 / (u sqrt K), and the measured value times that.
+    Of each data set that has the shape their number, where they are, and L^-1 if they have a
+    covariance; of each component data set, sensor, factor 1 / (u sqrt K), and psi.
     """
 
     sizes: Ints
     parts: list[slice]
+    mixed: list[Floats | None]
     sets: Ints
     sensors: Ints
     weight: Floats
@@ -93,14 +97,29 @@ class ShapeResiduals:
         sizes = np.unique(rows, return_counts=True)[1]
         parts = [slice(*ends) for ends in pairwise([0, *np.cumsum(sizes).tolist()])]
         values = self.data.shape[rows, self.mode, sensors]
+        mixed: list[Floats | None] = [None] * len(parts)
         if self.scale == "measured":
             squares = np.array([values[part] @ values[part] for part in parts])
             weight = np.repeat(np.sqrt(sizes / squares), sizes)
         else:
-            std = self.data.shape_std[rows, self.mode, sensors]
-            weight = 1 / joined([without_negligible(std[part]) for part in parts] or [std])
+            units = [self._units(int(rows[part.start]), sensors[part]) for part in parts]
+            mixed = [inverse for _, inverse in units]
+            weight = 1 / joined([unit for unit, _ in units] or [values])
         weight = weight / np.sqrt(sizes.size)
-        return _Components(sizes, parts, rows, sensors, weight, weight * values)
+        psi = weight * values
+        for part, inverse in zip(parts, mixed, strict=True):
+            if inverse is not None:
+                psi[part] = inverse @ psi[part]
+        return _Components(sizes, parts, mixed, rows, sensors, weight, psi)
+
+    def _units(self, k: int, sensors: Ints) -> tuple[Floats, Floats | None]:
+        """Return the deviations D of a data set's components, and L^-1 where they have one."""
+        C = self.data.covariance_of(k, self.mode, sensors)
+        if C is None:
+            return without_negligible(self.data.shape_std[k, self.mode, sensors]), None
+        std = np.sqrt(C.diagonal())
+        L = np.linalg.cholesky(C / np.outer(std, std))
+        return std, la.solve_triangular(L, np.eye(std.size), lower=True)
 
     @property
     def count(self) -> float:
@@ -123,8 +142,14 @@ class ShapeResiduals:
 
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
-        x = self.components
-        square = sum(x.psi[part] @ x.psi[part] for part in x.parts)
+        x, square = self.components, 0.0
+        for part, inverse in zip(x.parts, x.mixed, strict=True):
+            if inverse is None:
+                square += x.psi[part] @ x.psi[part]
+            else:
+                size = np.linalg.norm(inverse * x.weight[part], 2)
+                values = self.data.shape[x.sets[part], self.mode, x.sensors[part]]
+                square += size**2 * (values @ values)
         return float(errors.shape[self.mode] ** 2 * square)
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
@@ -134,9 +159,12 @@ class ShapeResiduals:
         for part in x.parts:
             k, sensors = int(x.sets[part.start]), x.sensors[part]
             std = self.data.shape_std[k, self.mode, sensors]
-            unit = np.ones(std.size) if relative else without_negligible(std)
+            C = self.data.covariance_of(k, self.mode, sensors)
+            unit, inverse = (np.ones(std.size), None) if relative else self._units(k, sensors)
             psi, places = self.data.shape[k, self.mode, sensors] / unit, np.ix_(sensors, q)
             X, dX = modes.phi[places] / unit[:, None], modes.dphi[places] / unit[:, None, None]
+            if inverse is not None:
+                psi, X, dX = inverse @ psi, inverse @ X, np.tensordot(inverse, dX, 1)
             fit = _fitted(X[None], dX[None], psi[None])
             projection, dprojection = fit.r[0] + psi, fit.dr[0]
             w, s, ds = 1.0, 1.0, np.zeros(dX.shape[2])
@@ -144,12 +172,15 @@ class ShapeResiduals:
                 a = psi @ psi
                 w, s = psi.size / a, projection @ projection / a
                 ds = 2 * projection @ dprojection / a
-            step = known_std(std) / x.sizes.size
-            yield Sensitivity(
-                value_numbers(self.data, k, self.mode)[1:][sensors],
-                -2 * w * (projection - s * psi) / unit * step,
-                -2 * w * (dprojection - np.outer(psi, ds)) / unit[:, None] * step[:, None],
-            )
+            J = -2 * w * (projection - s * psi)
+            dJ = -2 * w * (dprojection - np.outer(psi, ds))
+            if C is None:
+                step = known_std(std) / x.sizes.size
+                J, dJ = J / unit * step, dJ / unit[:, None] * step[:, None]
+            else:  # on the scale of deviations the root of C is the unit
+                root = np.linalg.cholesky(C) if relative else np.eye(std.size)
+                J, dJ = root.T @ J / x.sizes.size, root.T @ dJ / x.sizes.size
+            yield Sensitivity(value_numbers(self.data, k, self.mode)[1:][sensors], J, dJ)
 
     def independent(self) -> tuple[float, float, float]:
         """Return counts and scatter: each set has a factor of its own, fitted.
@@ -159,7 +190,7 @@ class ShapeResiduals:
         """
         x, m = self.components, len(self.cluster) or 1
         total, K = float(np.maximum(x.sizes - m, 0).sum()), x.sizes.size
-        if K > 1 and m == 1 and np.ptp(x.sizes) == 0:
+        if K > 1 and m == 1 and np.ptp(x.sizes) == 0 and not any(W is not None for W in x.mixed):
             psi, weight, sensors = (v.reshape(K, -1) for v in (x.psi, x.weight, x.sensors))
             share = weight / weight[:, :1]
             if (sensors == sensors[0]).all() and np.ptp(share / share[0]) <= NEGLIGIBLE:
@@ -178,6 +209,8 @@ class ShapeStack:
     sensors, weight, psi : (shapes, components) of each: its sensors, the factors 1 / (u sqrt K),
         and the measured components times these; both are 0 beyond the components that it has
     rows : (shapes, components) which components it has
+    mixed : (shapes, components, components) of each L^-1, by which these are multiplied besides;
+        None for ones
     """
 
     fitted: Ints
@@ -185,20 +218,21 @@ class ShapeStack:
     weight: Floats
     psi: Floats
     rows: Bools
+    mixed: Floats | None
 
     def squares(self, modes: Modes, count: int) -> Floats:
         """Return the sums of squares with each model mode, (measured modes, modes)."""
         out = np.zeros((count, modes.frequency.size))
         if self.fitted.shape[1] == 1:  # no pair of modes alone has a residual from a span
-            c = np.einsum("rs,rsq->rq", self.psi * self.weight, modes.phi[self.sensors])
-            b = np.einsum("rs,rsq->rq", self.weight**2, modes.phi[self.sensors] ** 2)
+            X = self._over(modes.phi[self.sensors])
+            c, b = np.vecdot(self.psi[:, :, None], X, axis=1), np.vecdot(X, X, axis=1)
             seen = np.divide(c**2, b, out=np.zeros(b.shape), where=b > 0)
             np.add.at(out, self.fitted[:, 0], np.vecdot(self.psi, self.psi)[:, None] - seen)
         return out
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""
-        X = self.weight[:, :, None] * modes.phi[self._places(pairs)]
+        X = self._over(modes.phi[self._places(pairs)])
         return self._in_rows((X @ (_inverse(X) @ self.psi[:, :, None]))[:, :, 0] - self.psi)
 
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
@@ -211,7 +245,8 @@ class ShapeStack:
         fit, dX = self._fit(modes, pairs)
         of_dX = (fit.r[:, None] @ dX.reshape(*fit.r.shape, -1)).reshape(-1, dX.shape[3])
         v, own = np.zeros(modes.phi.shape), 2 * of_dX.T @ fit.dc.reshape(of_dX.shape)
-        np.add.at(v, self._places(pairs), 2 * (self.weight * fit.r)[:, :, None] * fit.c[:, None])
+        r = fit.r if self.mixed is None else np.einsum("rab,ra->rb", self.mixed, fit.r)
+        np.add.at(v, self._places(pairs), 2 * (self.weight * r)[:, :, None] * fit.c[:, None])
         curvature = Curvature(np.zeros(modes.lam.size), v, own + own.T)
         return self._in_rows(fit.r), self._in_rows(fit.dr), curvature
 
@@ -229,11 +264,19 @@ class ShapeStack:
         """Return sensors and model modes of the entries of X, (shapes, components, m)."""
         return self.sensors[:, :, None], pairs.index[self.fitted][:, None]
 
+    def _over(self, values: Floats) -> Floats:
+        """Return values (shapes, components, ...) over the unit u sqrt K."""
+        out = self.weight.reshape(*self.weight.shape, *[1] * (values.ndim - 2)) * values
+        if self.mixed is None:
+            return out
+        flat = self.mixed @ out.reshape(*out.shape[:2], -1)
+        return flat.reshape(out.shape)
+
     def _fit(self, modes: Modes, pairs: Pairs) -> tuple[_Fit, Floats]:
         """Return the fit, and dX (shapes, components, m, p)."""
-        places, weight = self._places(pairs), self.weight[:, :, None]
-        dX = weight[..., None] * modes.dphi[places]
-        return _fitted(weight * modes.phi[places], dX, self.psi), dX
+        places = self._places(pairs)
+        dX = self._over(modes.dphi[places])
+        return _fitted(self._over(modes.phi[places]), dX, self.psi), dX
 
 
 class _Fit(NamedTuple):
@@ -308,7 +351,14 @@ class ShapeKind:
             return out
 
         fitted = np.repeat(fitted, [part.sizes.size for part in parts], axis=0)
-        return ShapeStack(fitted, in_rows("sensors"), in_rows("weight"), in_rows("psi"), rows)
+        inverses, mixed = [W for part in parts for W in part.mixed], None
+        if any(W is not None for W in inverses):
+            mixed = np.tile(np.eye(rows.shape[1]), (len(rows), 1, 1))
+            for whole, W in zip(mixed, inverses, strict=True):
+                if W is not None:
+                    whole[: len(W), : len(W)] = W
+        names = ("sensors", "weight", "psi")
+        return ShapeStack(fitted, *map(in_rows, names), rows=rows, mixed=mixed)
 
 
 def without_negligible(std: Floats) -> Floats:

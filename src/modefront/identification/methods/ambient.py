@@ -515,7 +515,7 @@ def _of_structure(
     phi, C = merged_shape(places, [mode.phi for _, mode in having], covariances, len(sensors))
     omega, zeta = np.exp(means)
     mode = _estimate(float(omega), float(zeta), deviations, phi, np.sqrt(np.diag(C)))
-    return replace(mode, evidence=_evidence(having, mode, setups))
+    return replace(mode, evidence=_evidence(having, mode, setups), shape_covariance=C)
 
 
 def _evidence(having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int) -> Evidence:
