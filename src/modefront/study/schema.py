@@ -39,7 +39,7 @@ from modefront.residuals.groups import KINDS as RESIDUALS
 from modefront.study.file import OF_OPTIONS, of_group, of_header
 from modefront.study.kinds import KINDS
 from modefront.study.kinds.sensors import ModelKind
-from modefront.study.measured import FILE, PLACE, READERS
+from modefront.study.measured import COVARIANCE, FILE, PLACE, READERS
 from modefront.text import NAME as LENGTH
 from modefront.text import clean
 
@@ -99,6 +99,7 @@ def _data() -> Schema:
     table = closed(
         {
             "file": {**FILE.described, **file_name([".csv", *SUFFIXES, *READERS], any_case=True)},
+            "covariance": COVARIANCE.described,
             "sensors": {"description": places, **table_of(PLACE)},
             "columns": {"description": columns, **table_of(NAME)},
         },
