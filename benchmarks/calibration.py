@@ -183,9 +183,7 @@ def setups(seed: int) -> tuple[mf.UpdatingProblem, Floats]:
     names = tuple(f"k{j}" for j in range(N))
     places = {f"s{i}": i for i in range(N)}
     unit = (2 * np.pi / (2 * np.sin(np.pi / (4 * N + 2)))) ** 2  # the first mode at 1 Hz or so
-    model = mf.chain(
-        names, mass.tolist(), [unit] * N, stiffness_parameters=names, sensors=places
-    )
+    model = mf.chain(names, mass.tolist(), [unit] * N, stiffness_parameters=names, sensors=places)
     modes = model.modes(truth, N, derivatives=False)
     rate, zeta = 4 * float(modes.frequency[-1]), rng.uniform(0.008, 0.02, N)
     systems = [
@@ -193,7 +191,7 @@ def setups(seed: int) -> tuple[mf.UpdatingProblem, Floats]:
         for w, z in zip(2 * np.pi * modes.frequency, zeta, strict=True)
     ]
     references, roving = np.split(rng.permutation(N), [int(rng.integers(1, 3))])
-    records = []
+    records = list[Records]()
     for part in np.array_split(roving, int(rng.integers(2, 4))):
         sensors = np.append(references, part)
         force = modes.phi.T @ rng.standard_normal((N, int(60 * minutes * rate)))
@@ -212,7 +210,7 @@ def beside_deviations(seed: int, draws: int) -> list[tuple[Verdict, Verdict]]:
     """Return the verdicts on each parameter of a test with setups, without covariances and with."""
     problem, truth = setups(seed)
     alone = replace(problem, data=replace(problem.data, shape_covariance=None))
-    both = [judge(seed, draws, (x, NoisePrior(), truth, ("all",))) for x in (alone, problem)]
+    both = [judged(seed, draws, (x, NoisePrior(), truth, ("all",))) for x in (alone, problem)]
     return list(zip(*both, strict=False))
 
 
@@ -236,12 +234,17 @@ def histogram(found: Sequence[int], draws: int) -> str:
     )
 
 
-def judge(
-    seed: int,
-    draws: int,
-    test: tuple[mf.UpdatingProblem, NoisePrior, Floats, tuple[str, ...]],
-) -> list[Verdict]:
+Test = tuple[mf.UpdatingProblem, NoisePrior, Floats, tuple[str, ...]]
+"""A problem, what is expected of its errors, the truth and its classes."""
+
+
+def judge(seed: int, draws: int, wrong: bool, few: bool) -> list[Verdict]:
     """Return the verdicts of a simulated test; none where no model is to be used."""
+    return judged(seed, draws, case(seed, wrong, few))
+
+
+def judged(seed: int, draws: int, test: Test) -> list[Verdict]:
+    """Return the verdicts of a test; none where no model is to be used."""
     problem, prior, truth, classes = test
     source = mf.Uncertainty().of(problem.data)
     noise = prior.of(problem, source)
@@ -331,10 +334,10 @@ def main() -> None:
             if not options.quiet:
                 print(f"{seed}: {rates[0]} and {rates[1]} of {len(own)}, {ratio:.2f}", flush=True)
         ratio = np.exp(np.mean([np.log(b.width / a.width) for a, b in pairs]))
-        rates = [100 * np.mean([x[k].held for x in pairs]) for k in (0, 1)]
+        share = [100 * np.mean([x[k].held for x in pairs]) for k in (0, 1)]
         print(
-            f"{len(pairs)} parameters: intervals hold {rates[0]:.0f} % with deviations, "
-            f"{rates[1]:.0f} % with covariances, which are {ratio:.2f} times as wide"
+            f"{len(pairs)} parameters: intervals hold {share[0]:.0f} % with deviations, "
+            f"{share[1]:.0f} % with covariances, which are {ratio:.2f} times as wide"
         )
         return
     if options.prior:
@@ -346,7 +349,7 @@ def main() -> None:
     verdicts, refused = [], 0
     for seed in seeds:
         began = time.process_time()
-        found = judge(seed, options.draws, case(seed, options.wrong, options.few))
+        found = judge(seed, options.draws, options.wrong, options.few)
         verdicts += found
         refused += not found
         if not options.quiet and not found:

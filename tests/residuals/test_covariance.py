@@ -1,6 +1,7 @@
 """Shapes with covariances: whitened residuals, exact derivatives, and what the scale leaves out."""
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.residuals.base import Scale
+from modefront.residuals.groups import ModeNumbers
 from modefront.uncertainty.noise import noise
 from modefront.uncertainty.points import redraw
 from modefront.uncertainty.prior import NoisePrior
@@ -42,17 +44,20 @@ def measured(sets: int = 2, modes: int = 3) -> ModalData:
     return data.with_covariance(C)
 
 
-def problem_of(data: ModalData, scale: Scale, kind: str = "shape") -> mf.UpdatingProblem:
+def problem_of(
+    data: ModalData, scale: Scale, kind: Literal["shape", "subspace"] = "shape"
+) -> mf.UpdatingProblem:
+    shapes: dict[str, ModeNumbers] = {kind: "all"}
     groups = [
         mf.Group("frequencies", frequency="all"),
-        mf.Group("shapes", scale=scale, **{kind: "all"}),
+        mf.Group("shapes", scale=scale, **shapes),
     ]
     bounds, nominal = dict.fromkeys(NAMES, (0.3, 3.0)), dict.fromkeys(NAMES, 1.0)
     return mf.updating_problem(MODEL, data, groups, bounds, nominal)
 
 
 @pytest.mark.parametrize("kind", ["shape", "subspace"])
-def test_derivatives_of_whitened_residuals_are_exact(kind: str) -> None:
+def test_derivatives_of_whitened_residuals_are_exact(kind: Literal["shape", "subspace"]) -> None:
     problem, h = problem_of(measured(), "std", kind), 1e-4
     found = problem.evaluate(THETA, second=True)
     assert found.exact
@@ -146,8 +151,10 @@ def test_the_posterior_takes_covariances_of_deviations_only() -> None:
     noise = NoisePrior().of(problem, "std")
     assert noise is not None
     C = noise.problem.data.shape_covariance
+    before = problem.data.shape_covariance
     assert C is not None
-    np.testing.assert_allclose(C, problem.data.shape_covariance / 2)  # means become sums
+    assert before is not None
+    np.testing.assert_allclose(C, before / 2)  # means become sums
     assert noise.a[1] == 3 + 5 * 4  # one less than the components of every shape
     other = NoisePrior().of(problem, "sets")
     assert other is not None

@@ -121,12 +121,9 @@ class ModalData:
         """Return the data with covariances of shapes, NaN where none is known.
 
         They are (sets, modes, sensors, sensors), and give the standard deviations that the data
-        lack. Raises InputError for what is no covariance of these shapes.
+        lack. Raises InputError for what is no covariance of these shapes, ValueError for others.
         """
-        C = np.asarray(covariance, float)
-        if C.shape != (size := (*self.shape.shape, len(self.sensors))):
-            expected = "an array of " + " x ".join(map(str, size))
-            refuse([Fault("", "shape_covariance", expected, " x ".join(map(str, C.shape)))])
+        C = np.asarray(covariance, float).reshape(*self.shape.shape, len(self.sensors))
         variance = np.einsum("krss->krs", C)
         std = np.where(self.shape_std > 0, self.shape_std, np.sqrt(np.maximum(variance, 0.0)))
         std = np.where(np.isnan(variance), self.shape_std, std)
@@ -245,7 +242,4 @@ def modal_data(
     names = sets if sets is not None else tuple(str(k + 1) for k in range(len(f)))
     modes, stds = tuple(range(1, f.shape[1] + 1)), (like(frequency_std, f), like(shape_std, phi))
     data = ModalData(names, modes, tuple(sensors), f, like(damping, f), phi, *stds)
-    if shape_covariance is None:
-        return data
-    C = np.asarray(shape_covariance, float)
-    return data.with_covariance(C if C.ndim > 3 else C[None])
+    return data if shape_covariance is None else data.with_covariance(shape_covariance)

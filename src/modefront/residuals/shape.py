@@ -39,8 +39,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg as la
@@ -56,25 +55,18 @@ from modefront.residuals.base import (
     ModeErrors,
     Scale,
     Sensitivity,
-    joined,
     known_std,
     value_numbers,
 )
 
 
-class _Components(NamedTuple):
-    """The measured components of a mode, those of a data set together.
+class _Shape(NamedTuple):
+    """A shape of a data set: its sensors, factors 1 / (u sqrt K), L^-1 or None, and psi."""
 
-    Of each data set that has the shape their number, where they are, and L^-1 if they have a
-    covariance; of each component data set, sensor, factor 1 / (u sqrt K), and psi.
-    """
-
-    sizes: Ints
-    parts: list[slice]
-    mixed: list[Floats | None]
-    sets: Ints
+    set: int
     sensors: Ints
     weight: Floats
+    inverse: Floats | None
     psi: Floats
 
 
@@ -91,26 +83,22 @@ class ShapeResiduals:
     cluster: tuple[int, ...] = ()
 
     @cached_property
-    def components(self) -> _Components:
-        """All components, those of one data set after those of the other."""
-        rows, sensors = np.nonzero(np.isfinite(self.data.shape[:, self.mode]))
-        sizes = np.unique(rows, return_counts=True)[1]
-        parts = [slice(*ends) for ends in pairwise([0, *np.cumsum(sizes).tolist()])]
-        values = self.data.shape[rows, self.mode, sensors]
-        mixed: list[Floats | None] = [None] * len(parts)
-        if self.scale == "measured":
-            squares = np.array([values[part] @ values[part] for part in parts])
-            weight = np.repeat(np.sqrt(sizes / squares), sizes)
-        else:
-            units = [self._units(int(rows[part.start]), sensors[part]) for part in parts]
-            mixed = [inverse for _, inverse in units]
-            weight = 1 / joined([unit for unit, _ in units] or [values])
-        weight = weight / np.sqrt(sizes.size)
-        psi = weight * values
-        for part, inverse in zip(parts, mixed, strict=True):
-            if inverse is not None:
-                psi[part] = inverse @ psi[part]
-        return _Components(sizes, parts, mixed, rows, sensors, weight, psi)
+    def shapes(self) -> list[_Shape]:
+        """The shape in each data set that has it."""
+        measured, out = np.isfinite(self.data.shape[:, self.mode]), list[_Shape]()
+        sets = np.flatnonzero(measured.any(axis=1)).tolist()
+        for k in sets:
+            sensors, inverse = np.flatnonzero(measured[k]), None
+            values = self.data.shape[k, self.mode, sensors]
+            if self.scale == "measured":
+                weight = np.full(values.size, np.sqrt(values.size / (values @ values)))
+            else:
+                unit, inverse = self._units(k, sensors)
+                weight = 1 / unit
+            weight = weight / np.sqrt(len(sets))
+            psi = weight * values if inverse is None else inverse @ (weight * values)
+            out.append(_Shape(k, sensors, weight, inverse, psi))
+        return out
 
     def _units(self, k: int, sensors: Ints) -> tuple[Floats, Floats | None]:
         """Return the deviations D of a data set's components, and L^-1 where they have one."""
@@ -124,40 +112,39 @@ class ShapeResiduals:
     @property
     def count(self) -> float:
         """Mean number of components over the data sets that have the shape."""
-        return float(self.sets.size / max(self.components.sizes.size, 1))
+        return float(self.sets.size / max(len(self.shapes), 1))
 
     @property
     def sets(self) -> Ints:
         """Data set of each component."""
-        return self.components.sets
+        every = [np.full(x.sensors.size, x.set) for x in self.shapes]
+        return np.concatenate([np.zeros(0, dtype=np.intp), *every])
 
     @property
     def remark(self) -> str:
         """Reason why any model fits the shape, empty where models can miss it."""
         m = len(self.cluster) or 1
-        if self.components.sizes.max() > m:
+        if max(x.sensors.size for x in self.shapes) > m:
             return ""
         sensors = "a single sensor" if m == 1 else f"{m} sensors for as many modes"
         return f"a shape that is measured at {sensors} fits any model"
 
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
-        x, square = self.components, 0.0
-        for part, inverse in zip(x.parts, x.mixed, strict=True):
-            if inverse is None:
-                square += x.psi[part] @ x.psi[part]
+        square = 0.0
+        for x in self.shapes:
+            if x.inverse is None:
+                square += x.psi @ x.psi
             else:
-                size = np.linalg.norm(inverse * x.weight[part], 2)
-                values = self.data.shape[x.sets[part], self.mode, x.sensors[part]]
-                square += size**2 * (values @ values)
+                values = self.data.shape[x.set, self.mode, x.sensors]
+                square += np.linalg.norm(x.inverse * x.weight, 2) ** 2 * (values @ values)
         return float(errors.shape[self.mode] ** 2 * square)
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield the change of J by one standard deviation of each measured component."""
-        x, q = self.components, pairs.index[list(self.cluster or (self.mode,))]
+        q, K = pairs.index[list(self.cluster or (self.mode,))], len(self.shapes)
         relative = self.scale == "measured"
-        for part in x.parts:
-            k, sensors = int(x.sets[part.start]), x.sensors[part]
+        for k, sensors, *_ in self.shapes:
             std = self.data.shape_std[k, self.mode, sensors]
             C = self.data.covariance_of(k, self.mode, sensors)
             unit, inverse = (np.ones(std.size), None) if relative else self._units(k, sensors)
@@ -175,11 +162,11 @@ class ShapeResiduals:
             J = -2 * w * (projection - s * psi)
             dJ = -2 * w * (dprojection - np.outer(psi, ds))
             if C is None:
-                step = known_std(std) / x.sizes.size
+                step = known_std(std) / K
                 J, dJ = J / unit * step, dJ / unit[:, None] * step[:, None]
             else:  # on the scale of deviations the root of C is the unit
                 root = np.linalg.cholesky(C) if relative else np.eye(std.size)
-                J, dJ = root.T @ J / x.sizes.size, root.T @ dJ / x.sizes.size
+                J, dJ = root.T @ J / K, root.T @ dJ / K
             yield Sensitivity(value_numbers(self.data, k, self.mode)[1:][sensors], J, dJ)
 
     def independent(self) -> tuple[float, float, float]:
@@ -188,14 +175,17 @@ class ShapeResiduals:
         Sets with the same sensors and standard deviations in proportion have one shape, at best the
         first singular vector; all others count as independent of each other.
         """
-        x, m = self.components, len(self.cluster) or 1
-        total, K = float(np.maximum(x.sizes - m, 0).sum()), x.sizes.size
-        if K > 1 and m == 1 and np.ptp(x.sizes) == 0 and not any(W is not None for W in x.mixed):
-            psi, weight, sensors = (v.reshape(K, -1) for v in (x.psi, x.weight, x.sensors))
-            share = weight / weight[:, :1]
-            if (sensors == sensors[0]).all() and np.ptp(share / share[0]) <= NEGLIGIBLE:
+        shapes, m = self.shapes, len(self.cluster) or 1
+        total = float(sum(max(x.sensors.size - m, 0) for x in shapes))
+        alike = all(
+            x.inverse is None and np.array_equal(x.sensors, shapes[0].sensors) for x in shapes
+        )
+        if len(shapes) > 1 and m == 1 and alike:
+            share = np.array([x.weight / x.weight[0] for x in shapes])
+            if np.ptp(share / share[0]) <= NEGLIGIBLE:
+                psi, own = np.array([x.psi for x in shapes]), shapes[0].sensors.size - 1.0
                 S = float((np.linalg.svd(psi, compute_uv=False)[1:] ** 2).sum())
-                return float(x.sizes[0] - 1), S, total - float(x.sizes[0] - 1)
+                return own, S, total - own
         return total, 0.0, 0.0
 
 
@@ -225,7 +215,7 @@ class ShapeStack:
         out = np.zeros((count, modes.frequency.size))
         if self.fitted.shape[1] == 1:  # no pair of modes alone has a residual from a span
             X = self._over(modes.phi[self.sensors])
-            c, b = np.vecdot(self.psi[:, :, None], X, axis=1), np.vecdot(X, X, axis=1)
+            c, b = np.einsum("rs,rsq->rq", self.psi, X), np.einsum("rsq,rsq->rq", X, X)
             seen = np.divide(c**2, b, out=np.zeros(b.shape), where=b > 0)
             np.add.at(out, self.fitted[:, 0], np.vecdot(self.psi, self.psi)[:, None] - seen)
         return out
@@ -339,26 +329,20 @@ class ShapeKind:
 
     def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> ShapeStack:
         """Return the residuals of the shapes of some modes."""
-        parts = [ShapeResiduals(data, r, scale).components for r in modes]
-        sizes = np.concatenate([part.sizes for part in parts])
-        fitted = np.array([modes] * len(modes) if self.joint else np.array(modes)[:, None])
+        shapes = [(r, x) for r in modes for x in ShapeResiduals(data, r, scale).shapes]
+        sizes = np.array([x.sensors.size for _, x in shapes])
+        fitted = np.array([modes if self.joint else [r] for r, _ in shapes])
         rows = np.arange(sizes.max()) < sizes[:, None]
-
-        def in_rows(name: str) -> Any:
-            values = np.concatenate([getattr(part, name) for part in parts])
-            out = np.zeros(rows.shape, values.dtype)
-            out[rows] = values
-            return out
-
-        fitted = np.repeat(fitted, [part.sizes.size for part in parts], axis=0)
-        inverses, mixed = [W for part in parts for W in part.mixed], None
-        if any(W is not None for W in inverses):
+        sensors, (weight, psi) = np.zeros(rows.shape, dtype=np.intp), np.zeros((2, *rows.shape))
+        for name, out in (("sensors", sensors), ("weight", weight), ("psi", psi)):
+            out[rows] = np.concatenate([getattr(x, name) for _, x in shapes])
+        mixed = None
+        if any(x.inverse is not None for _, x in shapes):
             mixed = np.tile(np.eye(rows.shape[1]), (len(rows), 1, 1))
-            for whole, W in zip(mixed, inverses, strict=True):
-                if W is not None:
-                    whole[: len(W), : len(W)] = W
-        names = ("sensors", "weight", "psi")
-        return ShapeStack(fitted, *map(in_rows, names), rows=rows, mixed=mixed)
+            for whole, (_, x) in zip(mixed, shapes, strict=True):
+                if x.inverse is not None:
+                    whole[: x.sensors.size, : x.sensors.size] = x.inverse
+        return ShapeStack(fitted, sensors, weight, psi, rows, mixed)
 
 
 def without_negligible(std: Floats) -> Floats:
