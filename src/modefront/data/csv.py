@@ -525,25 +525,20 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
         if values.shape == (len(numbered), len(header)) and (np.abs(values) <= LARGEST).all():
             ended_column(path, (row.rpartition(separator)[2] for row in texts))
             return header, values
-    fields = [(number, [x.strip() for x in row.split(separator)]) for number, row in numbered]
-    whole = [row for _, row in fields if len(row) == len(header)]
-    full = [k for k in range(len(header)) if any(row[k] for row in whole)]
-    values, faults = np.full((len(fields), len(header)), np.nan), list[Fault]()
-    for position, (number, row) in enumerate(fields):
-        place = f"line {number}"
-        if len(row) != len(header):
-            expected = f"{len(header)} fields, as in the header"
-            faults.append(Fault(str(path), place, expected, str(len(row))))
-            continue
+    faults, file = list[Fault](), str(path)
+    split = ((number, row.split(separator)) for number, row in numbered)
+    whole = list(_of_width(split, len(header), file, faults))
+    full = [k for k in range(len(header)) if any(row[k] for _, row in whole)]
+    values = np.full((len(whole), len(header)), np.nan)
+    for position, (number, row) in enumerate(whole):
         for k in full:
             if NUMBER.fullmatch(row[k]) and abs(float(row[k])) <= LARGEST:
                 values[position, k] = float(row[k])
             else:
                 expected = f"a finite number up to {LARGEST:g}"
-                column = f"{place}, column {header[k]!r}"
-                faults.append(Fault(str(path), column, expected, repr(row[k])))
+                faults.append(Fault(file, _place(number, header[k]), expected, repr(row[k])))
         if len(faults) >= LISTED:
             break
     refuse(faults[:LISTED])
-    ended_column(path, (row[full[-1]] for row in whole))
+    ended_column(path, (row[full[-1]] for _, row in whole))
     return header, values

@@ -25,29 +25,6 @@ Pairs = tuple[tuple[int, int], ...]
 """Numbers of modes of one frequency, two by two."""
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredShapes:
-    """Shapes with zeros where nothing was measured.
-
-    Attributes
-    ----------
-    measured : (sets, modes, sensors) 1 for components that were measured, or 0
-    shape : (sets, modes, sensors) components, or 0
-    squares : (sets, modes, 1) sum of their squares
-    sets : (modes, 1) number of data sets with the shape of each mode; NaN where there is none
-    """
-
-    measured: Floats
-    shape: Floats
-    squares: Floats
-    sets: Floats
-
-    @cached_property
-    def complete(self) -> bool:
-        """Whether every mode has a shape in some data set."""
-        return bool(np.isfinite(self.sets).all())
-
-
 @dataclass(frozen=True, repr=False)
 class ModalData:
     """Frequencies, damping ratios and mode shapes; NaN is what was not measured.
@@ -176,15 +153,17 @@ class ModalData:
         return out
 
     @cached_property
-    def measured_shapes(self) -> MeasuredShapes:
-        """The shapes with zeros where nothing was measured."""
+    def measured_shapes(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Arrays for sums over what was measured.
+
+        Shapes with 0 where nothing was measured, and 1 where something was, (sets, modes, sensors);
+        sums of squares (sets, modes, 1); data sets with the shape of each mode (modes, 1), or NaN.
+        """
         measured = np.isfinite(self.shape)
         shape = np.where(measured, self.shape, 0.0)
-        squares = (shape**2).sum(axis=2)[:, :, None]
         sets = measured.any(axis=2).sum(axis=0)[:, None]
-        return MeasuredShapes(
-            measured.astype(float), shape, squares, np.where(sets > 0, sets, np.nan)
-        )
+        squares = (shape**2).sum(axis=2)[:, :, None]
+        return shape, measured.astype(float), squares, np.where(sets > 0, sets, np.nan)
 
 
 def _mean(values: Floats) -> Floats:

@@ -33,7 +33,6 @@ from modefront.residuals.base import (
     ModeErrors,
     Scale,
     Sensitivity,
-    known_std,
     value_numbers,
 )
 
@@ -91,7 +90,8 @@ class FrequencyResiduals:
         """Yield the change of J by one standard deviation of each measured frequency."""
         q = pairs.index[self.modes[0]]
         f, df = modes.frequency[q], modes.dfrequency[q]
-        step = known_std(self.data.frequency_std[self.rows]) / self.sets.size
+        std = self.data.frequency_std[self.rows]
+        step = np.where(std > 0, std, 0.0) / self.sets.size
         for k, y, u, h in zip(self.sets, self.measured, self.unit, step, strict=True):
             ratio = f / y if self.scale == "measured" else 1.0
             J = -2 * (f - y) / u**2 * ratio

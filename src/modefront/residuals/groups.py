@@ -142,19 +142,12 @@ def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str
             measured = _measured_modes(name, data)
             for mode in [m for m in modes if m not in measured][:1] if modes != "all" else []:
                 wrong.append((name, f"one of the measured modes {measured}", str(mode)))
-        yield from wrong or _of_members(group, data)
-
-
-def _of_members(group: Group, data: ModalData) -> Iterator[tuple[str, str, str]]:
-    """Yield the faults of members that the data have."""
-    chosen = group.positions(data)
-    if not any(positions for _, positions in chosen):
-        yield "", "at least one measured property", "none in the data"
-    if group.scale != "std":
-        return
-    for kind, positions in chosen:
-        for r in positions:
-            if not kind.has_usable_std(data, r):
+        yield from wrong
+        chosen = [] if wrong else group.positions(data)
+        if not wrong and not any(positions for _, positions in chosen):
+            yield "", "at least one measured property", "none in the data"
+        for kind, r in [(kind, r) for kind, positions in chosen for r in positions]:
+            if group.scale == "std" and not kind.has_usable_std(data, r):
                 found = f"others for the {kind.name} of mode {data.modes[r]}"
                 yield "scale", f"'std' with {kind.usable_std}", found
 

@@ -55,7 +55,6 @@ from modefront.residuals.base import (
     ModeErrors,
     Scale,
     Sensitivity,
-    known_std,
     value_numbers,
 )
 
@@ -162,7 +161,7 @@ class ShapeResiduals:
             J = -2 * w * (projection - s * psi)
             dJ = -2 * w * (dprojection - np.outer(psi, ds))
             if C is None:
-                step = known_std(std) / K
+                step = np.where(std > 0, std, 0.0) / K
                 J, dJ = J / unit * step, dJ / unit[:, None] * step[:, None]
             else:  # on the scale of deviations the root of C is the unit
                 root = np.linalg.cholesky(C) if relative else np.eye(std.size)
@@ -223,12 +222,12 @@ class ShapeStack:
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""
         X = self._over(modes.phi[self._places(pairs)])
-        return self._in_rows((X @ (_inverse(X) @ self.psi[:, :, None]))[:, :, 0] - self.psi)
+        return ((X @ (_inverse(X) @ self.psi[:, :, None]))[:, :, 0] - self.psi)[self.rows]
 
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, (rows, p), which are 0 of a shape that is."""
         fit, _ = self._fit(modes, pairs)
-        return self._in_rows(fit.r), self._in_rows(fit.dr)
+        return fit.r[self.rows], fit.dr[self.rows]
 
     def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
         """Return these and what is needed of second derivatives."""
@@ -238,17 +237,7 @@ class ShapeStack:
         r = fit.r if self.mixed is None else np.einsum("rab,ra->rb", self.mixed, fit.r)
         np.add.at(v, self._places(pairs), 2 * (self.weight * r)[:, :, None] * fit.c[:, None])
         curvature = Curvature(np.zeros(modes.lam.size), v, own + own.T)
-        return self._in_rows(fit.r), self._in_rows(fit.dr), curvature
-
-    def _in_rows(self, values: Floats) -> Floats:
-        """Return values (shapes, components, ...) of the components that there are, (rows, ...)."""
-        if self._is_full:
-            return values.reshape(-1, *values.shape[2:])
-        return values[self.rows]
-
-    @cached_property
-    def _is_full(self) -> bool:
-        return bool(self.rows.all())
+        return fit.r[self.rows], fit.dr[self.rows], curvature
 
     def _places(self, pairs: Pairs) -> tuple[Ints, Ints]:
         """Return sensors and model modes of the entries of X, (shapes, components, m)."""
@@ -315,13 +304,9 @@ class ShapeKind:
 
     def has_usable_std(self, data: ModalData, r: int) -> bool:
         """Return whether all components of a mode have standard deviations, not all of them 0."""
-        for values, std in zip(data.shape[:, r], data.shape_std[:, r], strict=True):
-            measured = np.isfinite(values)
-            if measured.any() and not (
-                np.isfinite(std[measured]).all() and (std[measured] > 0).any()
-            ):
-                return False
-        return True
+        measured, std = np.isfinite(data.shape[:, r]), data.shape_std[:, r]
+        known = (np.isfinite(std) | ~measured).all(axis=1) & ((std > 0) & measured).any(axis=1)
+        return bool((known | ~measured.any(axis=1)).all())
 
     def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
         """Return the residuals of the shape of each mode."""
