@@ -181,7 +181,6 @@ def read_covariance(
     file, columns, faults, last = str(path), columns or {}, list[Fault](), list[str]()
     known = {"set": data.sets, "mode": tuple(map(str, data.modes)), SENSOR: data.sensors}
     C = np.full((*data.shape.shape, len(data.sensors)), np.nan)
-    rows_of: dict[tuple[int, ...], int] = {}
     with table_rows(path, "a file of covariances of shapes") as rows:
         first, fields = next(rows, (1, []))
         header = list(map(str.strip, fields))
@@ -200,23 +199,23 @@ def read_covariance(
             last.append(fields[-1])
             row = {"set": data.sets[0]} | dict(zip(keys, fields, strict=False))
             row[SENSOR] = columns.get(row[SENSOR], row[SENSOR])
+            numbers = dict(zip(names, fields[len(keys) :], strict=True))
             said = [
                 (key, f"one of {', '.join(known[key][:8])}", suggestion(text, known[key]))
                 for key, text in row.items()
                 if text not in known[key]
-            ] + [
-                (name, "a finite number or an empty field", repr(text))
-                for name, text in zip(names, fields[len(keys) :], strict=True)
-                if text and not (NUMBER.fullmatch(text) and abs(float(text)) <= LARGEST)
             ]
+            said += [
+                (name, "a finite number or an empty field", repr(text))
+                for name, text in numbers.items()
+                if text and not NUMBER.fullmatch(text)
+            ]
+            place = tuple(known[key].index(row[key]) for key in known) if not said else ()
+            if place and np.isfinite(C[place]).any():
+                said.append((SENSOR, "each component of a shape once", "one again"))
             faults += [Fault(file, _place(line, name), *each) for name, *each in said]
-            if said:
-                continue
-            place = tuple(known[key].index(row[key]) for key in known)
-            if rows_of.setdefault(place, line) != line:
-                found = f"that of line {rows_of[place]} again"
-                faults.append(Fault(file, f"line {line}", "each component once", found))
-            C[place][places] = [float(text or "nan") for text in fields[len(keys) :]]
+            if not said:
+                C[place][places] = [float(text or "nan") for text in numbers.values()]
     refuse(faults)
     if not last:
         raise wrong(path, "a row for each component of a shape", "the end", "line 2")
@@ -227,14 +226,13 @@ def read_covariance(
         raise InputError(replace(fault, file=file) for fault in error.faults) from None
 
 
-def write_covariance(path: Path, data: ModalData, digits: int = 9) -> None:
+def write_covariance(path: Path, data: ModalData) -> None:
     """Write the covariances of the shapes of modal data, which have some; whole or not at all."""
     rows = [[*KEYS, SENSOR, *data.sensors]]
-    C = data.shape_covariance
-    for k, r, s in np.argwhere(np.isfinite(data.shape)).tolist() if C is not None else ():
-        if np.isfinite(own := C[k, r, s]).any():
-            texts = ["" if math.isnan(x) else f"{x:.{digits}g}" for x in own.tolist()]
-            rows.append([data.sets[k], str(data.modes[r]), data.sensors[s], *texts])
+    C = np.asarray(data.shape_covariance)
+    for k, r, s in np.argwhere(np.isfinite(C).any(axis=3)).tolist():
+        texts = ["" if math.isnan(x) else f"{x:.9g}" for x in C[k, r, s].tolist()]
+        rows.append([data.sets[k], str(data.modes[r]), data.sensors[s], *texts])
     write_table(path, rows)
 
 

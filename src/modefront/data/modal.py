@@ -127,23 +127,24 @@ class ModalData:
             known = f"{std[i] ** 2:.6g}, the square of its deviation," if std[i] else "0 or more"
             return f"{known} as the variance of {names[i]}", f"{C[i, i]:.6g}"
         A = self.covariance_of(k, r, sensors)
+        if A is None:
+            return None
         size = np.sqrt(np.maximum(A.diagonal(), np.finfo(float).tiny))
         least = float(np.linalg.eigvalsh(A / np.outer(size, size))[0])
-        if least > LEAST:
-            return None
         expected = "positive eigenvalues of the correlations, but for that along the shape"
-        return expected, f"{least:.2g}"
+        return None if least > LEAST else (expected, f"{least:.2g}")
 
     def covariance_of(self, k: int, r: int, sensors: Ints) -> Floats | None:
         """Return the covariance of components of a shape, positive definite; None for none.
 
         Errors along the shape are those of its factor, which is fitted: they change no result, and
         a norm leaves them out. They get the median variance; so do those along the other of a pair.
+        Where a shape has no other direction, nothing is known.
         """
         if self.shape_covariance is None:
             return None
         C = self.shape_covariance[k, r][np.ix_(sensors, sensors)]
-        if not np.isfinite(C).all():
+        if not (np.isfinite(C).all() and C.any()):
             return None
         mode = self.modes[r]
         same = [r, *(self.modes.index(a + b - mode) for a, b in self.pairs if mode in (a, b))]

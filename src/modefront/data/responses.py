@@ -109,8 +109,8 @@ class FrequencyResponses:
         noise, variance = self.force_noise, self.variance
         noise = noise and replace(noise, deviation=noise.deviation[:, kept])
         variance = None if variance is None else variance[..., kept]
-        parts = {"frequency": self.frequency[kept], "H": self.H[..., kept]}
-        return replace(self, **parts, variance=variance, force_noise=noise)
+        f, H = self.frequency[kept], self.H[..., kept]
+        return replace(self, frequency=f, H=H, variance=variance, force_noise=noise)
 
 
 # 8 arguments: the parts of measured functions, the optional ones by keyword.

@@ -76,16 +76,12 @@ class IdentifiedTest:
             for r, k in enumerate(of_set)
             if k >= 0 and each.modes[k].evidence.flags
         ]
-        spread = (
-            []
-            if self.modes is None
-            else [
-                f"mode {r}: the sets differ by more than their own standard deviations: "
-                f"{f:.2g} Hz, damping {100 * zeta:.2g} % between sets are included"
-                for r, (f, zeta) in enumerate(self.modes.spread, 1)
-                if f or zeta
-            ]
-        )
+        spread = [
+            f"mode {r}: the sets differ by more than their own standard deviations: "
+            f"{f:.2g} Hz, damping {100 * zeta:.2g} % between sets are included"
+            for r, (f, zeta) in enumerate(self.modes.spread if self.modes else (), 1)
+            if f or zeta
+        ]
         read = [text for part in self.test.sets for text in part.warnings]
         read += [
             f"set {setup.name!r}: {name} does not move and is left out"
@@ -139,11 +135,7 @@ class IdentifiedTest:
         """Return the modes, a line each, and the first warnings."""
         out = [f"{self.test.name}: {len(self.names)} data sets"]
         if self.modes is not None:
-            columns = zip(
-                self.data.mean_frequency,
-                self.data.mean_damping,
-                strict=True,
-            )
+            columns = zip(self.data.mean_frequency, self.data.mean_damping, strict=True)
             lines = [f"  mode {r}: {f:.5g} Hz, {z:.2%}" for r, (f, z) in enumerate(columns, 1)]
             more = [f"  and {len(lines) - 12} more"] * (len(lines) > 12)
             out += [*lines[:12], *more]

@@ -191,19 +191,15 @@ def _agreement(of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, sensors: Sequ
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:
     """Return shapes in the sign of the first set, and deviations with the spread of the sets."""
     having = np.flatnonzero(np.isfinite(phi).any(axis=1))
-    first = phi[having[0]]
-    phi = phi.copy()
-    scaled, scaled_std, scale = phi.copy(), std.copy(), np.ones(len(phi))
+    first, factor = phi[having[0]], np.ones((len(phi), 1))
     for k in having[1:]:
         both = np.isfinite(first) & np.isfinite(phi[k])
         if both.any() and np.any(phi[k][both]):
-            factor = float(phi[k][both] @ first[both]) / float(phi[k][both] @ phi[k][both])
-            if factor < 0:
-                phi[k] = -phi[k]
-            scale[k] = abs(factor) or 1.0
-            scaled[k], scaled_std[k] = phi[k] * scale[k], std[k] * scale[k]
-    tau = np.array([between(scaled[:, i], scaled_std[:, i]) for i in range(phi.shape[1])])
-    return phi, np.hypot(std, tau / scale[:, None])
+            own = phi[k][both]
+            factor[k] = float(own @ first[both]) / float(own @ own) or 1.0
+    scaled, size = phi * factor, np.abs(factor)
+    tau = np.array([between(*x) for x in zip(scaled.T, (std * size).T, strict=True)])
+    return phi * np.sign(factor), np.hypot(std, tau / size)
 
 
 def merged_shape(

@@ -62,6 +62,7 @@ from modefront.residuals.base import (
 class _Shape(NamedTuple):
     """A shape of a data set: its sensors, factors 1 / (u sqrt K), L^-1 or None, and psi."""
 
+    mode: int
     set: int
     sensors: Ints
     weight: Floats
@@ -69,41 +70,59 @@ class _Shape(NamedTuple):
     psi: Floats
 
 
+class _Rows(NamedTuple):
+    """All shapes: what `_Shape` has, (shapes, components), 0 beyond the components that there are.
+
+    Also positions of the modes by which each is fitted, (shapes, m), and which components it has;
+    the L^-1 are (shapes, components, components), or None for ones.
+    """
+
+    fitted: Ints
+    there: Bools
+    sensors: Ints
+    weight: Floats
+    psi: Floats
+    inverse: Floats | None
+
+
 @dataclass(frozen=True, eq=False)
 class ShapeResiduals:
-    """Residuals of the shape of the measured mode at position ``mode`` of the data.
+    """Residuals of the shapes of the measured modes at some positions of the data.
 
-    With a ``cluster`` of positions, the shape is fitted by all model modes that belong to these.
+    Those of one mode are a member of a group, those of several a stack of them. With a ``cluster``
+    of positions, each shape is fitted by all model modes that belong to these.
     """
 
     data: ModalData
-    mode: int
+    modes: Sequence[int]
     scale: Scale
     cluster: tuple[int, ...] = ()
 
     @cached_property
     def shapes(self) -> list[_Shape]:
-        """The shape in each data set that has it."""
-        measured, out = np.isfinite(self.data.shape[:, self.mode]), list[_Shape]()
-        sets = np.flatnonzero(measured.any(axis=1)).tolist()
-        for k in sets:
-            sensors, inverse = np.flatnonzero(measured[k]), None
-            values = self.data.shape[k, self.mode, sensors]
-            if self.scale == "measured":
-                weight = np.full(values.size, np.sqrt(values.size / (values @ values)))
-            else:
-                unit, inverse = self._units(k, sensors)
-                weight = 1 / unit
-            weight = weight / np.sqrt(len(sets))
-            psi = weight * values if inverse is None else inverse @ (weight * values)
-            out.append(_Shape(k, sensors, weight, inverse, psi))
+        """The shape of each mode in each data set that has it."""
+        out = list[_Shape]()
+        for mode in self.modes:
+            measured = np.isfinite(self.data.shape[:, mode])
+            sets = np.flatnonzero(measured.any(axis=1)).tolist()
+            for k in sets:
+                sensors, inverse = np.flatnonzero(measured[k]), None
+                values = self.data.shape[k, mode, sensors]
+                if self.scale == "measured":
+                    weight = np.full(values.size, np.sqrt(values.size / (values @ values)))
+                else:
+                    unit, inverse = self._units(k, mode, sensors)
+                    weight = 1 / unit
+                weight = weight / np.sqrt(len(sets))
+                psi = weight * values if inverse is None else inverse @ (weight * values)
+                out.append(_Shape(mode, k, sensors, weight, inverse, psi))
         return out
 
-    def _units(self, k: int, sensors: Ints) -> tuple[Floats, Floats | None]:
+    def _units(self, k: int, mode: int, sensors: Ints) -> tuple[Floats, Floats | None]:
         """Return the deviations D of a data set's components, and L^-1 where they have one."""
-        C = self.data.covariance_of(k, self.mode, sensors)
+        C = self.data.covariance_of(k, mode, sensors)
         if C is None:
-            return without_negligible(self.data.shape_std[k, self.mode, sensors]), None
+            return without_negligible(self.data.shape_std[k, mode, sensors]), None
         std = np.sqrt(C.diagonal())
         L = np.linalg.cholesky(C / np.outer(std, std))
         return std, la.solve_triangular(L, np.eye(std.size), lower=True)
@@ -135,19 +154,18 @@ class ShapeResiduals:
             if x.inverse is None:
                 square += x.psi @ x.psi
             else:
-                values = self.data.shape[x.set, self.mode, x.sensors]
+                values = self.data.shape[x.set, x.mode, x.sensors]
                 square += np.linalg.norm(x.inverse * x.weight, 2) ** 2 * (values @ values)
-        return float(errors.shape[self.mode] ** 2 * square)
+        return float(errors.shape[self.modes[0]] ** 2 * square)
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield the change of J by one standard deviation of each measured component."""
-        q, K = pairs.index[list(self.cluster or (self.mode,))], len(self.shapes)
+        q, K = pairs.index[list(self.cluster or self.modes)], len(self.shapes)
         relative = self.scale == "measured"
-        for k, sensors, *_ in self.shapes:
-            std = self.data.shape_std[k, self.mode, sensors]
-            C = self.data.covariance_of(k, self.mode, sensors)
-            unit, inverse = (np.ones(std.size), None) if relative else self._units(k, sensors)
-            psi, places = self.data.shape[k, self.mode, sensors] / unit, np.ix_(sensors, q)
+        for r, k, sensors, *_ in self.shapes:
+            std, C = self.data.shape_std[k, r, sensors], self.data.covariance_of(k, r, sensors)
+            unit, inverse = (np.ones(std.size), None) if relative else self._units(k, r, sensors)
+            psi, places = self.data.shape[k, r, sensors] / unit, np.ix_(sensors, q)
             X, dX = modes.phi[places] / unit[:, None], modes.dphi[places] / unit[:, None, None]
             if inverse is not None:
                 psi, X, dX = inverse @ psi, inverse @ X, np.tensordot(inverse, dX, 1)
@@ -160,13 +178,11 @@ class ShapeResiduals:
                 ds = 2 * projection @ dprojection / a
             J = -2 * w * (projection - s * psi)
             dJ = -2 * w * (dprojection - np.outer(psi, ds))
-            if C is None:
-                step = np.where(std > 0, std, 0.0) / K
-                J, dJ = J / unit * step, dJ / unit[:, None] * step[:, None]
-            else:  # on the scale of deviations the root of C is the unit
-                root = np.linalg.cholesky(C) if relative else np.eye(std.size)
-                J, dJ = root.T @ J / K, root.T @ dJ / K
-            yield Sensitivity(value_numbers(self.data, k, self.mode)[1:][sensors], J, dJ)
+            if inverse is not None:
+                J, dJ = inverse.T @ J, inverse.T @ dJ
+            root = np.diag(np.where(std > 0, std, 0.0)) if C is None else np.linalg.cholesky(C)
+            root, number = root.T / K, value_numbers(self.data, k, r)[1:][sensors]
+            yield Sensitivity(number, root @ (J / unit), root @ (dJ / unit[:, None]))
 
     def independent(self) -> tuple[float, float, float]:
         """Return counts and scatter: each set has a factor of its own, fitted.
@@ -187,75 +203,73 @@ class ShapeResiduals:
                 return own, S, total - own
         return total, 0.0, 0.0
 
-
-@dataclass(frozen=True, eq=False)
-class ShapeStack:
-    """Residuals of shapes; see `modefront.residuals.base.Stack`.
-
-    Attributes
-    ----------
-    fitted : (shapes, m) positions in the data of the modes by which each is fitted
-    sensors, weight, psi : (shapes, components) of each: its sensors, the factors 1 / (u sqrt K),
-        and the measured components times these; both are 0 beyond the components that it has
-    rows : (shapes, components) which components it has
-    mixed : (shapes, components, components) of each L^-1, by which these are multiplied besides;
-        None for ones
-    """
-
-    fitted: Ints
-    sensors: Ints
-    weight: Floats
-    psi: Floats
-    rows: Bools
-    mixed: Floats | None
+    @cached_property
+    def rows(self) -> _Rows:
+        """All shapes, a row each."""
+        sizes = np.array([x.sensors.size for x in self.shapes])
+        there = np.arange(sizes.max()) < sizes[:, None]
+        sensors, (weight, psi) = np.zeros(there.shape, dtype=np.intp), np.zeros((2, *there.shape))
+        for name, out in (("sensors", sensors), ("weight", weight), ("psi", psi)):
+            out[there] = np.concatenate([getattr(x, name) for x in self.shapes])
+        inverse = None
+        if any(x.inverse is not None for x in self.shapes):
+            inverse = np.tile(np.eye(there.shape[1]), (len(there), 1, 1))
+            for whole, x in zip(inverse, self.shapes, strict=True):
+                if x.inverse is not None:
+                    whole[: x.sensors.size, : x.sensors.size] = x.inverse
+        fitted = np.array([self.cluster or (x.mode,) for x in self.shapes])
+        return _Rows(fitted, there, sensors, weight, psi, inverse)
 
     def squares(self, modes: Modes, count: int) -> Floats:
         """Return the sums of squares with each model mode, (measured modes, modes)."""
-        out = np.zeros((count, modes.frequency.size))
-        if self.fitted.shape[1] == 1:  # no pair of modes alone has a residual from a span
-            X = self._over(modes.phi[self.sensors])
-            c, b = np.einsum("rs,rsq->rq", self.psi, X), np.einsum("rsq,rsq->rq", X, X)
+        out, rows = np.zeros((count, modes.frequency.size)), self.rows
+        if rows.fitted.shape[1] == 1:  # no pair of modes alone has a residual from a span
+            X = self._over(modes.phi[rows.sensors])
+            c, b = np.einsum("rs,rsq->rq", rows.psi, X), np.einsum("rsq,rsq->rq", X, X)
             seen = np.divide(c**2, b, out=np.zeros(b.shape), where=b > 0)
-            np.add.at(out, self.fitted[:, 0], np.vecdot(self.psi, self.psi)[:, None] - seen)
+            np.add.at(out, rows.fitted[:, 0], np.vecdot(rows.psi, rows.psi)[:, None] - seen)
         return out
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""
         X = self._over(modes.phi[self._places(pairs)])
-        return ((X @ (_inverse(X) @ self.psi[:, :, None]))[:, :, 0] - self.psi)[self.rows]
+        psi = self.rows.psi
+        return ((X @ (_inverse(X) @ psi[:, :, None]))[:, :, 0] - psi)[self.rows.there]
 
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, (rows, p), which are 0 of a shape that is."""
         fit, _ = self._fit(modes, pairs)
-        return fit.r[self.rows], fit.dr[self.rows]
+        return fit.r[self.rows.there], fit.dr[self.rows.there]
 
     def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
         """Return these and what is needed of second derivatives."""
         fit, dX = self._fit(modes, pairs)
         of_dX = (fit.r[:, None] @ dX.reshape(*fit.r.shape, -1)).reshape(-1, dX.shape[3])
         v, own = np.zeros(modes.phi.shape), 2 * of_dX.T @ fit.dc.reshape(of_dX.shape)
-        r = fit.r if self.mixed is None else np.einsum("rab,ra->rb", self.mixed, fit.r)
-        np.add.at(v, self._places(pairs), 2 * (self.weight * r)[:, :, None] * fit.c[:, None])
+        rows, r = self.rows, fit.r
+        if rows.inverse is not None:
+            r = np.einsum("rab,ra->rb", rows.inverse, r)
+        np.add.at(v, self._places(pairs), 2 * (rows.weight * r)[:, :, None] * fit.c[:, None])
         curvature = Curvature(np.zeros(modes.lam.size), v, own + own.T)
-        return fit.r[self.rows], fit.dr[self.rows], curvature
+        return fit.r[rows.there], fit.dr[rows.there], curvature
 
     def _places(self, pairs: Pairs) -> tuple[Ints, Ints]:
         """Return sensors and model modes of the entries of X, (shapes, components, m)."""
-        return self.sensors[:, :, None], pairs.index[self.fitted][:, None]
+        return self.rows.sensors[:, :, None], pairs.index[self.rows.fitted][:, None]
 
     def _over(self, values: Floats) -> Floats:
         """Return values (shapes, components, ...) over the unit u sqrt K."""
-        out = self.weight.reshape(*self.weight.shape, *[1] * (values.ndim - 2)) * values
-        if self.mixed is None:
+        weight, inverse = self.rows.weight, self.rows.inverse
+        out = weight.reshape(*weight.shape, *[1] * (values.ndim - 2)) * values
+        if inverse is None:
             return out
-        flat = self.mixed @ out.reshape(*out.shape[:2], -1)
-        return flat.reshape(out.shape)
+        return (inverse @ out.reshape(*out.shape[:2], -1)).reshape(out.shape)
 
     def _fit(self, modes: Modes, pairs: Pairs) -> tuple[_Fit, Floats]:
         """Return the fit, and dX (shapes, components, m, p)."""
         places = self._places(pairs)
         dX = self._over(modes.dphi[places])
-        return _fitted(self._over(modes.phi[places]), dX, self.psi), dX
+        return _fitted(self._over(modes.phi[places]), dX, self.rows.psi), dX
 
 
 class _Fit(NamedTuple):
@@ -310,24 +324,12 @@ class ShapeKind:
 
     def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
         """Return the residuals of the shape of each mode."""
-        return [ShapeResiduals(data, r, scale, tuple(modes) if self.joint else ()) for r in modes]
+        cluster = tuple(modes) if self.joint else ()
+        return [ShapeResiduals(data, [r], scale, cluster) for r in modes]
 
-    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> ShapeStack:
+    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> ShapeResiduals:
         """Return the residuals of the shapes of some modes."""
-        shapes = [(r, x) for r in modes for x in ShapeResiduals(data, r, scale).shapes]
-        sizes = np.array([x.sensors.size for _, x in shapes])
-        fitted = np.array([modes if self.joint else [r] for r, _ in shapes])
-        rows = np.arange(sizes.max()) < sizes[:, None]
-        sensors, (weight, psi) = np.zeros(rows.shape, dtype=np.intp), np.zeros((2, *rows.shape))
-        for name, out in (("sensors", sensors), ("weight", weight), ("psi", psi)):
-            out[rows] = np.concatenate([getattr(x, name) for _, x in shapes])
-        mixed = None
-        if any(x.inverse is not None for _, x in shapes):
-            mixed = np.tile(np.eye(rows.shape[1]), (len(rows), 1, 1))
-            for whole, (_, x) in zip(mixed, shapes, strict=True):
-                if x.inverse is not None:
-                    whole[: x.sensors.size, : x.sensors.size] = x.inverse
-        return ShapeStack(fitted, sensors, weight, psi, rows, mixed)
+        return ShapeResiduals(data, modes, scale, tuple(modes) if self.joint else ())
 
 
 def without_negligible(std: Floats) -> Floats:
