@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from modefront.study.schema import register as register
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve
-    from modefront.uncertainty.options import Uncertainty as Uncertainty
+    from modefront.uncertainty.noise import Uncertainty as Uncertainty
     from modefront.uncertainty.prior import NoisePrior as NoisePrior
 
 __getattr__, __dir__, __all__ = lazy(__name__, __file__)

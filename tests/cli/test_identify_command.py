@@ -34,7 +34,9 @@ def test_the_example_gives_the_modal_data_it_comes_with(tmp_path: Path) -> None:
     assert [len(identified["modes"]) for identified in report["sets"]] == [3, 3, 3]
 
     study, file = tmp_path / "study.toml", tmp_path / "again-covariance.csv"
-    text = study.read_text(encoding="utf-8").replace("[data]", f'[data]\ncovariance = "{file.name}"')
+    text = study.read_text(encoding="utf-8").replace(
+        "[data]", f'[data]\ncovariance = "{file.name}"'
+    )
     study.write_text(text, encoding="utf-8")
     loaded = load(study)
     data, C = loaded.problem.data, loaded.problem.data.shape_covariance

@@ -78,15 +78,17 @@ class ModalData:
             if name not in sensors:
                 known = f"expected data at sensors of the model ({', '.join(sensors)})"
                 raise ValueError(f"{known}, found {suggestion(name, sensors)}")
-        places = [sensors.index(name) for name in self.sensors]
-        if len(set(places)) < len(places):
+        if len(set(self.sensors)) < len(self.sensors):
             raise ValueError(f"expected data at each sensor once, found {', '.join(self.sensors)}")
-        phi, phi_std = np.full((2, *self.shape.shape[:2], len(sensors)), np.nan)
-        phi[:, :, places], phi_std[:, :, places] = self.shape, self.shape_std
-        C = None
-        if self.shape_covariance is not None:
-            C = np.full((*phi.shape, len(sensors)), np.nan)
-            C[:, :, np.array(places)[:, None], places] = self.shape_covariance
+        places = [self.sensors.index(name) if name in self.sensors else -1 for name in sensors]
+        more = [(0, 0), (0, 0), (0, 1)]  # a sensor that measured nothing, at the end
+        phi, phi_std = (
+            np.pad(x, more, constant_values=np.nan)[..., places]
+            for x in (self.shape, self.shape_std)
+        )
+        C = self.shape_covariance
+        if C is not None:
+            C = np.pad(C, [*more, (0, 1)], constant_values=np.nan)[..., places, :][..., places]
         return replace(self, sensors=sensors, shape=phi, shape_std=phi_std, shape_covariance=C)
 
     def of_sets(self, chosen: Ints, names: tuple[str, ...]) -> ModalData:

@@ -110,7 +110,7 @@ def read_test(path: Path) -> ModalTest:
         expected = "a universal file (.uff), a CSV file (.csv) or a test file (.toml)"
         found = "no such file" if not path.exists() else "none of these"
         raise wrong(path, expected, found)
-    data_set = _assembled([contents], known)
+    data_set = _assembled([contents], known, Table(str(path), "", {}, []))
     data_set = replace(data_set, warnings=(*notes, *data_set.warnings))
     return ModalTest(path.stem, None, None, (data_set,))
 
@@ -247,7 +247,7 @@ def _contents(path: Path, reference: str, columns: Mapping[str, str]) -> Content
     )
 
 
-def _assembled(contents: Sequence[Contents], known: SetFiles, root: Table | None = None) -> DataSet:
+def _assembled(contents: Sequence[Contents], known: SetFiles, root: Table) -> DataSet:
     """Return one data set with the names of the test file, at the side that has the sensors."""
     channels, warnings, decay, force_noise = _functions(contents, known, root)
     responses = {channel.response for channel in channels}
@@ -258,12 +258,10 @@ def _assembled(contents: Sequence[Contents], known: SetFiles, root: Table | None
         turned = len(plain & references) > len(plain & responses)
         labels = sorted(references if turned else responses)
         missing = sorted(plain.difference(labels))
-        if root is not None and missing:
-            expected = "a channel of the files: " + ", ".join(labels[:8])
-            for label in missing:
-                place = f"[sensors] {names.get(label, '')}"
-                root.fault(place, expected, suggestion(label, labels))
-            raise InputError(root.faults)
+        expected = "a channel of the files: " + ", ".join(labels[:8])
+        for label in missing:
+            root.fault(f"[sensors] {names.get(label, '')}", expected, suggestion(label, labels))
+        refuse(root.faults)
     named = []
     for channel in channels:
         response, sign = channel_name(channel.response, names)
@@ -278,7 +276,7 @@ def _assembled(contents: Sequence[Contents], known: SetFiles, root: Table | None
     return DataSet(known.name, data, (*warnings, *out.warnings))
 
 
-def _functions(contents: Sequence[Contents], known: SetFiles, root: Table | None) -> Functions:
+def _functions(contents: Sequence[Contents], known: SetFiles, root: Table) -> Functions:
     channels = [channel for content in contents for channel in content.channels]
     blows = [blow for content in contents for blow in content.blows]
     wrong = None
@@ -289,7 +287,7 @@ def _functions(contents: Sequence[Contents], known: SetFiles, root: Table | None
         wrong = "records of blows in time, for [impact]", found
     elif blows and known.decay:
         wrong = "functions, for 'window'", "records of blows: [impact] has their windows"
-    if wrong and root is not None:
+    if wrong:
         raise InputError(Fault(root.file, f"[[set]] {known.name!r}", *wrong))
     if not blows:
         return channels, [], known.decay, {}

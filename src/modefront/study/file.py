@@ -32,7 +32,7 @@ from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.study.definition import Origin, Study, label_faults, undrawn
 from modefront.study.kinds import KINDS
 from modefront.study.measured import read_data
-from modefront.uncertainty.options import Uncertainty
+from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 
 GROUP_NAME = text("the name of the group")
