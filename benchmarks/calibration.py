@@ -39,7 +39,7 @@ import scipy.stats
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.data.records import Records
+from modefront.data.modal_test import Records
 from modefront.front.weights import accepted, optimal_minimum
 from modefront.identification.methods import ambient
 from modefront.identification.sets import combine
@@ -47,10 +47,10 @@ from modefront.optim.second import with_second_order
 from modefront.optim.sqp import begin
 from modefront.results.analysis import DETERMINED
 from modefront.results.verdict import refusals
-from modefront.uncertainty.laplace import laplace
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS, draw_models
+from modefront.uncertainty.scatter import laplace
 from modefront.work.task import IMMEDIATE
 
 BOUNDS = (0.3, 3.0)

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from modefront.models.parameters import Parameter as Parameter
     from modefront.models.parameters import Prior as Prior
     from modefront.models.reduced.options import Reduction as Reduction
-    from modefront.pairing.mac import mac as mac
     from modefront.pairing.match import Pairing as Pairing
+    from modefront.pairing.match import mac as mac
     from modefront.predictions import Passage as Passage
     from modefront.predictions import PeakResponse as PeakResponse
     from modefront.predictions import Prediction as Prediction

@@ -14,12 +14,9 @@ from modefront.errors import Fault, refuse, suggestion
 MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std", "shape_covariance")
 """Arrays of modal data, of which data sets are the first axis."""
 
-SAME = 0.05
-"""Relative difference below which a variance is the square of a standard deviation: rounding."""
-
-ROUNDED, LEAST = 1e-5, 1e-8
-"""Difference of two covariances, over standard deviations, up to which they are one, rounded;
-eigenvalue of correlations from which on it is more than the rounding of nine digits."""
+SAME, ROUNDED, LEAST = 0.05, 1e-5, 1e-8
+"""Relative difference of standard deviations, and difference of covariances over these, up to which
+they are one, rounded; eigenvalue of correlations that is more than the rounding of nine digits."""
 
 Pairs = tuple[tuple[int, int], ...]
 """Numbers of modes of one frequency, two by two."""
@@ -104,8 +101,8 @@ class ModalData:
         """
         C = np.asarray(covariance, float).reshape(*self.shape.shape, len(self.sensors))
         variance = np.einsum("krss->krs", C)
-        std = np.where(self.shape_std > 0, self.shape_std, np.sqrt(np.maximum(variance, 0.0)))
-        std = np.where(np.isnan(variance), self.shape_std, std)
+        known = (self.shape_std > 0) | np.isnan(variance)
+        std = np.where(known, self.shape_std, np.sqrt(np.maximum(variance, 0.0)))
         out, faults = replace(self, shape_std=std, shape_covariance=C), list[Fault]()
         for k, r in np.argwhere(np.isfinite(self.shape).any(axis=2)).tolist():
             sensors = np.flatnonzero(np.isfinite(self.shape[k, r]))

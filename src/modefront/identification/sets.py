@@ -70,11 +70,10 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
             mode = identifications[k].modes[number]
             f[k, r], f_std[k, r] = mode.frequency, mode.frequency_std
             z[k, r], z_std[k, r] = mode.damping, mode.damping_std
-            names, known = identifications[k].responses, np.isfinite(mode.shape_std)
-            phi_std[k, r] = _at(mode.shape_std, names, sensors)
-            phi[k, r] = _at(np.where(known, mode.shape.shape, np.nan), names, sensors)
+            places = [sensors.index(name) for name in identifications[k].responses]
+            phi_std[k, r, places] = mode.shape_std
+            phi[k, r, places] = np.where(np.isfinite(mode.shape_std), mode.shape.shape, np.nan)
             if C is not None and mode.shape_covariance is not None:
-                places = [sensors.index(name) for name in names]
                 C[k, r][np.ix_(places, places)] = mode.shape_covariance
     paired = _pairs(identifications, index)
     spread = np.zeros((R, 2))

@@ -128,7 +128,7 @@ def mode_estimates(
     linear, alpha = _roots_of_responses(task, fit, residuals)
     C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
     whole = model.phi.shape[1] <= MOST_COVARIED
-    products: Products = np.matmul if whole else _of_same
+    products = np.matmul if whole else lambda a, b: np.vecdot(a, b.T)
     spread = []
     for r, shape in enumerate(shapes):
         rows = slice(2 * r, 2 * r + 2)
@@ -156,15 +156,6 @@ def mode_estimates(
     return out
 
 
-Products = Callable[[Floats, Floats], Floats]
-"""Product of (responses, n) and (n, responses), all of it or its diagonal."""
-
-
-def _of_same(a: Floats, b: Floats) -> Floats:
-    """Return the diagonal of a product."""
-    return np.vecdot(a, b.T)
-
-
 def _silent(phi: Complexes, linear: Floats, scale: float) -> Bools:
     """Return which responses show nothing that noise would not make of all shapes, (responses,).
 
@@ -178,7 +169,11 @@ def _silent(phi: Complexes, linear: Floats, scale: float) -> Bools:
 
 
 def _shape_covariance(
-    shape: RealShape, direct: Complexes, answer: Floats, alpha: Floats, products: Products
+    shape: RealShape,
+    direct: Complexes,
+    answer: Floats,
+    alpha: Floats,
+    products: Callable[[Floats, Floats], Floats],
 ) -> Floats:
     r"""Return the covariance of a real shape by independent errors of each response.
 

@@ -88,14 +88,10 @@ class Group:
         if scale not in get_args(Scale):
             expected = " or ".join(map(repr, get_args(Scale)))
             raise ValueError(f"group '{name}': scale: expected {expected}, found {scale!r}")
-        chosen = []
-        for kind in sorted(modes, key=known.index):
-            members = modes[kind]
-            if members:
-                chosen.append((kind, members if isinstance(members, str) else tuple(members)))
-        object.__setattr__(self, "name", name)
-        object.__setattr__(self, "scale", scale)
-        object.__setattr__(self, "chosen", tuple(chosen))
+        ordered = [(kind, modes[kind]) for kind in sorted(modes, key=known.index)]
+        chosen = tuple((k, x if isinstance(x, str) else tuple(x)) for k, x in ordered if x)
+        for key, value in (("name", name), ("scale", scale), ("chosen", chosen)):
+            object.__setattr__(self, key, value)
 
     def modes_of(self, kind: str) -> ModeNumbers:
         """Return the chosen modes of a kind; empty where the group has none."""

@@ -25,7 +25,6 @@ from modefront.predictions.runner import PredictionRunner
 from modefront.results.analysis import ALL, Values, left_open
 from modefront.results.findings import as_values
 from modefront.results.schema import described
-from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.prediction import (
     SUMMARY,
     Stencil,
@@ -35,6 +34,7 @@ from modefront.uncertainty.prediction import (
     stencil,
     summary,
 )
+from modefront.uncertainty.scatter import Posterior
 from modefront.work.task import seed_sequence
 
 RANGE = ("minimum", "maximum", "spread")

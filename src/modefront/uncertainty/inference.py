@@ -16,11 +16,11 @@ from scipy.stats import chi2
 
 from modefront._typing import Bools, Floats
 from modefront.optim.problem import at_bounds
-from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.most_probable import maximum
 from modefront.uncertainty.planning import Candidates, candidates
 from modefront.uncertainty.prior import NoiseModel, prior_widths
 from modefront.uncertainty.sampling import Draws, draw_models
+from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task
 

@@ -1,9 +1,10 @@
 r"""Effects of errors of measurement on the objectives and their derivatives, to first order.
 
 They are sums over independent sources of standard deviation one. From standard deviations, each
-value is a source, and one without counts as exact; from a covariance, each column of a root. From several data sets, each set is a source, by
-the infinitesimal jackknife (Efron 1982, doi:10.1137/1.9781611970319, chapter 6); nothing is assumed
-of how errors within a set depend on each other.
+value is a source, and one without counts as exact; from a covariance, each column of its root. From
+several data sets, each set is a source, by the infinitesimal jackknife (Efron 1982,
+doi:10.1137/1.9781611970319, chapter 6); nothing is assumed of how errors within a set depend on
+each other.
 """
 
 from __future__ import annotations
@@ -45,13 +46,6 @@ def available(data: ModalData) -> tuple[Source, ...]:
     return (*(("std",) if std else ()), *(("sets",) if sets else ()))
 
 
-NEEDED = {
-    "std": "standard deviations above 0 in the data for 'std'",
-    "sets": "a mode measured in two data sets for 'sets'",
-}
-"""Requirements of each source on the data."""
-
-
 @dataclass(frozen=True)
 class Uncertainty:
     """Source of the errors of the data, and samples of data and models.
@@ -79,8 +73,10 @@ class Uncertainty:
     def faults(self, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the data do not meet."""
         known = available(data)
-        if self.source in NEEDED and self.source not in known:
-            yield Fault("", "source", NEEDED[self.source], "none")
+        if self.source == "std" and self.source not in known:
+            yield Fault("", "source", "standard deviations above 0 in the data for 'std'", "none")
+        if self.source == "sets" and self.source not in known:
+            yield Fault("", "source", "a mode measured in two data sets for 'sets'", "none")
         if self.bootstrap and self.source == "auto" and not known:
             needed = "0, or data with standard deviations or a mode measured in two data sets"
             yield Fault("", "bootstrap", needed, str(self.bootstrap))

@@ -21,7 +21,7 @@ from scipy.optimize import minimize_scalar
 from scipy.stats import chi2, norm
 
 from modefront._typing import Complexes, Floats
-from modefront.data.records import Records
+from modefront.data.modal_test import Records
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import selection, spectra, spectral_density
 from modefront.identification.lscf import Poles
