@@ -473,8 +473,9 @@ def read_uff55(path: Path) -> NodalModes:
 
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
-    readers = {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode}
-    old, new, systems, modes = _decoded(path, MODES, 55, readers)
+    known: dict[int, Callable[[Block], Sequence[Any]]]
+    known = {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode}
+    old, new, systems, modes = _decoded(path, MODES, 55, known)
     once(path, "nodes", "each node", (node for node, *_ in old + new))
     return _assembled(path, modes, old + new, dict(systems))
 

@@ -152,10 +152,11 @@ class ShapeResiduals:
         square = 0.0
         for x in self.shapes:
             if x.inverse is None:
-                square += x.psi @ x.psi
+                square += float(x.psi @ x.psi)
             else:
                 values = self.data.shape[x.set, x.mode, x.sensors]
-                square += np.linalg.norm(x.inverse * x.weight, 2) ** 2 * (values @ values)
+                size = float(np.linalg.norm(x.inverse * x.weight, 2))
+                square += size**2 * float(values @ values)
         return float(errors.shape[self.modes[0]] ** 2 * square)
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
@@ -171,7 +172,7 @@ class ShapeResiduals:
                 psi, X, dX = inverse @ psi, inverse @ X, np.tensordot(inverse, dX, 1)
             fit = _fitted(X[None], dX[None], psi[None])
             projection, dprojection = fit.r[0] + psi, fit.dr[0]
-            w, s, ds = 1.0, 1.0, np.zeros(dX.shape[2])
+            w, s, ds = 1.0, 1.0, np.zeros(dX.shape[-1])
             if relative:
                 a = psi @ psi
                 w, s = psi.size / a, projection @ projection / a
