@@ -111,7 +111,7 @@ def read_csv(
     path, file = Path(path), str(path)
     values: dict[Key, dict[str, float]] = {}
     lines: dict[Key, int] = {}
-    last: list[str] = []
+    last, faults = list[str](), list[Fault]()
     with table_rows(path, "a file of modal data") as rows:
         first, fields = next(rows, (1, []))
         if not fields:
@@ -131,7 +131,6 @@ def read_csv(
             sensors = [name for name in named if not is_reserved(name, set(header))]
         said = _header_faults(header, sensors)
         refuse(Fault(file, _place(first, name), *each) for name, *each in said)
-        faults = list[Fault]()
         for line, fields in _of_width(rows, width, file, faults):
             last.append(fields[-1])
             key, row, found = _row(dict(zip(header, fields, strict=True)), sensors)

@@ -121,9 +121,7 @@ def channel_name(channel: str, names: Mapping[str, str]) -> tuple[str, int]:
 
 def read_records(setup: SetFiles) -> Records:
     """Return the records of a setup; raises InputError with what is wrong."""
-    names: list[str] = []
-    rows: list[Floats] = []
-    rates: list[float] = []
+    names, rows, rates = list[str](), list[Floats](), list[float]()
     for path in setup.files:
         found, values, rate = _of_file(path, setup)
         rates.append(rate)

@@ -149,15 +149,15 @@ class ShapeResiduals:
 
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
-        square = 0.0
+        squares = []
         for x in self.shapes:
             if x.inverse is None:
-                square += float(x.psi @ x.psi)
+                squares.append(x.psi @ x.psi)
             else:
                 values = self.data.shape[x.set, x.mode, x.sensors]
-                size = float(np.linalg.norm(x.inverse * x.weight, 2))
-                square += size**2 * float(values @ values)
-        return float(errors.shape[self.modes[0]] ** 2 * square)
+                size = np.linalg.norm(x.inverse * x.weight, 2)
+                squares.append(size**2 * (values @ values))
+        return float(errors.shape[self.modes[0]] ** 2 * sum(squares))
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield the change of J by one standard deviation of each measured component."""
