@@ -104,15 +104,14 @@ class ModalData:
         known = (self.shape_std > 0) | np.isnan(variance)
         std = np.where(known, self.shape_std, np.sqrt(np.maximum(variance, 0.0)))
         out, faults = replace(self, shape_std=std, shape_covariance=C), list[Fault]()
-        for k, r in np.argwhere(np.isfinite(self.shape).any(axis=2)).tolist():
-            sensors = np.flatnonzero(np.isfinite(self.shape[k, r]))
-            if np.isfinite(C[k, r][np.ix_(sensors, sensors)]).any() and (said := out._said(k, r)):
+        for k, r in np.argwhere(np.isfinite(C).any(axis=(2, 3))).tolist():
+            if said := out.covariance_fault(k, r):
                 place = f"covariance of mode {self.modes[r]} in set {self.sets[k]!r}"
                 faults.append(Fault("", place, *said))
         refuse(faults)
         return out
 
-    def _said(self, k: int, r: int) -> tuple[str, str] | None:
+    def covariance_fault(self, k: int, r: int) -> tuple[str, str] | None:
         """Return what is wrong with the covariance of a shape: the expected and the found."""
         sensors = np.flatnonzero(np.isfinite(self.shape[k, r]))
         names, std = [self.sensors[i] for i in sensors], self.shape_std[k, r, sensors]

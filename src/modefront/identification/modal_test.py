@@ -104,7 +104,6 @@ class IdentifiedTest:
         sensors would take.
         """
         path = writable(path)
-        report = path.with_name(path.stem + "-identification.json")
         written = [path]
         if path.suffix.lower() == ".uff":
             modes = modal_modes(self)
@@ -121,8 +120,9 @@ class IdentifiedTest:
                 written.append(path.with_name(path.stem + "-covariance.csv"))
                 write_covariance(written[-1], self.data)
         text = json.dumps(self.as_plain(), indent=1, allow_nan=False)
-        write_text(report, text + "\n")
-        return [*written, report]
+        written.append(path.with_name(path.stem + "-identification.json"))
+        write_text(written[-1], text + "\n")
+        return written
 
     def as_plain(self) -> dict[str, Any]:
         """Return all that was identified as plain data; complex numbers are [real, imaginary]."""

@@ -87,10 +87,12 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
             C[:, r] += (phi_std[:, r] ** 2 - before)[:, None] * np.eye(S)
     f_std, z_std = np.hypot(f_std, spread[:, 0]), np.hypot(z_std, spread[:, 1])
     pairs = tuple((r + 1, s + 1) for r, s in paired.items() if r < s)
-    numbers = tuple(range(1, R + 1))
-    data = ModalData(tuple(sets), numbers, sensors, f, z, phi, f_std, phi_std, pairs)
-    if C is not None and np.isfinite(C).any():
-        data = replace(data, shape_covariance=C)
+    parts = (f, z, phi, f_std, phi_std, pairs, C)
+    data = ModalData(tuple(sets), tuple(range(1, R + 1)), sensors, *parts)
+    if C is not None:
+        faulty = [[data.covariance_fault(k, r) is not None for r in range(R)] for k in range(K)]
+        C[np.array(faulty)] = np.nan  # of functions without noise, there is only rounding
+        data = data if np.isfinite(C).any() else replace(data, shape_covariance=None)
     return CombinedModes(data, z_std, spread, index)
 
 

@@ -150,8 +150,8 @@ def mode_estimates(
             each[:, gone] = np.nan
         variance = np.maximum(each.diagonal() if whole else each, 0.0)
         own = C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2] * scale
-        lam, L = complex(model.lam[r]), model.L[r]
-        mode = _estimate(lam, own, omega, shapes[r], np.sqrt(variance), L)
+        known = own, omega, shapes[r], np.sqrt(variance), model.L[r]
+        mode = _estimate(complex(model.lam[r]), *known)
         out.append(replace(mode, shape_covariance=each if whole else None))
     return out
 
