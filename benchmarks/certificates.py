@@ -34,7 +34,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.modes import dense
-from modefront.work.costs import counted
+from modefront.work.task import counted
 
 MODES, SPARE = 5, 3
 """Modes that are judged, and those that the basis has beyond them."""

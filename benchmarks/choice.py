@@ -35,7 +35,7 @@ from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
 from modefront.models.reduced.options import estimate
-from modefront.work.costs import counted
+from modefront.work.task import counted
 
 BOUNDS = 0.4, 2.5
 

@@ -20,7 +20,7 @@ from smu import Structure, frequencies_and_shapes, read, weighted_minimum
 
 from modefront import Pairing
 from modefront._typing import Floats
-from modefront.work.costs import counted
+from modefront.work.task import counted
 
 
 def run(structure: Structure, pairing: Pairing, starts: Floats, *, reduced: bool = False) -> int:

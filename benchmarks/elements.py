@@ -23,7 +23,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu, spsolve
 
 from modefront import fem
 from modefront._typing import Bools, Floats, Ints
-from modefront.fem.elements.common import elasticity, solid_mass, solid_stiffness
+from modefront.fem.elements.common import elasticity
 from modefront.fem.elements.shapes import Cell, gradients
 
 TARGET = 2.0
@@ -201,11 +201,15 @@ def solid_of_high_order(
     cells = np.array([grid[i, j].ravel() for i in at for j in at])
     dofs = (3 * cells[:, :, None] + np.arange(3)).reshape(len(cells), -1)
     K, M = sparse.csc_array((3 * len(X),) * 2), sparse.csc_array((3 * len(X),) * 2)
+    C = elasticity(STEEL, np.eye(3))
     for nodes, own in zip(cells, dofs, strict=True):
         g, det = gradients(X[nodes][None], dN)
-        weight, place = np.abs(det) * w.prod(1), (np.repeat(own, len(own)), np.tile(own, len(own)))
-        k = solid_stiffness(g, weight, elasticity(STEEL, np.eye(3)))[0]
-        m = STEEL.rho * solid_mass(N, weight)[0]
+        weight, place = (
+            np.abs(det[0]) * w.prod(1),
+            (np.repeat(own, len(own)), np.tile(own, len(own))),
+        )
+        k = np.einsum("p,pja,ijkl,plb->aibk", weight, g[0], C, g[0], optimize=True)
+        m = np.einsum("p,pa,pb,ij->aibj", STEEL.rho * weight, N, N, np.eye(3), optimize=True)
         K += sparse.csc_array((k.ravel(), place), shape=K.shape)
         M += sparse.csc_array((m.ravel(), place), shape=K.shape)
     free = np.flatnonzero(~held(points).ravel())

@@ -16,11 +16,14 @@ import numpy as np
 import openturns as ot
 from scipy.linalg import eigh
 
-from modefront.reliability.estimate import estimate
-from modefront.reliability.gaussian import Convolution, gaussian_response
-from modefront.reliability.methods import METHODS
-from modefront.reliability.problem import FirstPassage
-from modefront.response.system import ModalSystem
+from modefront.predictions.reliability import (
+    METHODS,
+    Convolution,
+    FirstPassage,
+    estimate,
+    gaussian_response,
+)
+from modefront.predictions.system import ModalSystem
 
 DRIFTS = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, -1.0, 1.0]])
 LEVEL = 2.1

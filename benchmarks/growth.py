@@ -25,7 +25,7 @@ import modefront as mf
 from modefront import fem
 from modefront.identifiability.options import Identifiability
 from modefront.models.mesh import mesh_model
-from modefront.work.costs import counted
+from modefront.work.task import counted
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
 USUAL = {"dofs": 600, "parameters": 3, "modes": 4, "points": 6, "sensors": 12, "sets": 1}

@@ -26,8 +26,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from modefront.programs import PROGRAMS
-from modefront.programs.base import JobOptions
+from modefront.programs.base import JobOptions, read_job
 from modefront.study.importing import import_model
 
 Array = npt.NDArray[np.float64]
@@ -177,7 +176,7 @@ WRITERS: dict[str, Callable[[Path, scipy.sparse.csr_array], None]] = {
 def measure(program: str, job: Path, out: multiprocessing.Queue[tuple[float, ...]]) -> None:
     """Read a job and report time and memory."""
     clock, processor = time.perf_counter(), time.process_time()
-    result = PROGRAMS[program].job(job, JobOptions())
+    result = read_job(program, job, JobOptions())
     times = time.process_time() - processor, time.perf_counter() - clock
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     out.put((result.size, result.stiffness.nnz, result.mass.nnz, *times, memory))

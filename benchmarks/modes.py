@@ -32,7 +32,7 @@ from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
 from modefront.modes import sparse
-from modefront.work.costs import counted
+from modefront.work.task import counted
 
 SHAPES = {546: (13, 7, 2), 4998: (34, 7, 7), 49980: (70, 34, 7), 199920: (119, 80, 7)}
 """Free nodes along each axis, for each number of degrees of freedom."""

@@ -47,7 +47,7 @@ from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel
 from modefront.modes import dense
 from modefront.modes.sparse import lowest
-from modefront.work.costs import counted
+from modefront.work.task import counted
 
 MODES, REGIONS, PARTS, SENSORS, POINTS = 6, 6, 12, 20, 20
 BOUNDS = 0.4, 2.5

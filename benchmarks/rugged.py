@@ -37,7 +37,7 @@ from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives
-from modefront.work.costs import Costs, counted, spend
+from modefront.work.task import Costs, counted, spend
 
 Derivatives = tuple[Floats, Floats, Floats]
 

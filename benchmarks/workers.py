@@ -40,9 +40,9 @@ from modefront import fem
 from modefront.models.mesh import mesh_model
 from modefront.study import session
 from modefront.study.examples import write_example
-from modefront.work.run import Run
+from modefront.work.store import Run
 from modefront.work.task import R, Task
-from modefront.work.workers import Workers, backend
+from modefront.work.workers import backend
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
 MORE = uncertainty(draws=24, bootstrap=12, source="sets") + PUSHED
@@ -157,7 +157,7 @@ def processor_seconds(process: int | None) -> float:
 def overhead(workers: int) -> float:
     """Return the seconds that a task costs that does nothing."""
     with backend(workers) as carrier:
-        assert isinstance(carrier, Workers)
+        assert carrier.pool is not None
         while not carrier.pool.ready:
             time.sleep(0.01)
         tasks = [Task(("nothing", k), time.sleep, (0.02,)) for k in range(100)]

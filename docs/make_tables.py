@@ -12,12 +12,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from modefront.json_schema import Schema
-from modefront.options import WITHOUT
+from modefront.options import WITHOUT, Schema
 from modefront.predictions import Passage, PeakResponse
+from modefront.predictions.base import Variable
 from modefront.results.schema import ATTRIBUTES, DIMENSIONS, FORMAT, variables_of
-from modefront.study.schema import study_schema
-from modefront.variables import Variable
+from modefront.study.file import study_schema
 
 DOCS = Path(__file__).parent
 

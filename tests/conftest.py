@@ -16,8 +16,8 @@ from hypothesis import settings
 from refusals import Check, command
 from threadpoolctl import threadpool_limits
 
-from modefront.study.schema import FAMILIES
-from modefront.work.costs import Costs, counted
+from modefront.study.file import FAMILIES
+from modefront.work.task import Costs, counted
 
 # Threads wait for each other on small matrices. SciPy brings a BLAS of its own: `scipy.linalg`.
 threadpool_limits(1, user_api="blas")

@@ -14,7 +14,7 @@ import pytest
 import modefront as mf
 from modefront.front import methods
 from modefront.study.examples import write_example
-from modefront.work.costs import counted
+from modefront.work.task import counted
 
 METHODS = "'nbi', 'weights', 'spea2', 'nsga2'"
 

@@ -15,9 +15,8 @@ from refusals import command
 
 import modefront
 from modefront.outputs import output, output_by_name, remove_unfinished, write_table, write_text
-from modefront.work.costs import Costs
 from modefront.work.store import Store
-from modefront.work.task import Task
+from modefront.work.task import Costs, Task
 
 SOURCE = Path(modefront.__file__).parent
 

@@ -41,7 +41,8 @@ def test_a_study_is_run_by_its_path_as_a_text_or_a_path(tmp_path: Path) -> None:
 
 def assert_short(shown: Any) -> None:
     assert 1 <= len(repr(shown).splitlines()) <= 20
-    assert "<" in shown._repr_html_()
+    if hasattr(shown, "_repr_html_"):  # others are shown by their text
+        assert "<" in shown._repr_html_()
 
 
 def test_results_are_shown_in_a_few_lines(folder: Path) -> None:

@@ -23,7 +23,7 @@ def test_orders_to_a_terminal_are_escaped() -> None:
     shown = clean(HOSTILE)
     assert shown.isprintable()
     assert shown == r"a\x1b]0;title\x07\x9b31m\r\n\u202e\u2028\udc80b"
-    assert one_line(f" {HOSTILE}\n\nmore ").isprintable()
+    assert one_line(f" {HOSTILE}\n\nmore ", 300).isprintable()
     assert clean("Grüße, 漢字, naïve ±") == "Grüße, 漢字, naïve ±"
 
 

@@ -49,14 +49,14 @@ if TYPE_CHECKING:
     from modefront.results.results import Results as Results
     from modefront.results.results import read_results as read_results
     from modefront.study.check import check as check
-    from modefront.study.deck import import_deck as import_deck
     from modefront.study.definition import Study as Study
     from modefront.study.export import export as export
     from modefront.study.file import load as load
+    from modefront.study.file import register as register
+    from modefront.study.importing import import_deck as import_deck
     from modefront.study.importing import import_model as import_model
     from modefront.study.kinds.sensors import ModelKind as ModelKind
     from modefront.study.measured import DataReader as DataReader
-    from modefront.study.schema import register as register
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve
     from modefront.uncertainty.noise import Uncertainty as Uncertainty

@@ -1,7 +1,7 @@
-"""Readers of other packages in processes of their own, with limits on time and memory.
+"""Readers of other packages in a process of their own, with limits on time and memory.
 
-A server imports what readers need once, and has each file read by a fork of itself; where the
-system has no forks, it reads one file and ends. Nothing that comes back is unpickled.
+It imports what readers need once, and reads one file after another; where one ends it, the next has
+another process. Nothing that comes back is unpickled.
 """
 
 from __future__ import annotations
@@ -184,37 +184,36 @@ def _kill(process: subprocess.Popen[str]) -> None:
 
 
 def serve() -> None:
-    """Have files read, one request a line, until there are no more."""
+    """Read files, one request a line, until there are no more; what is printed goes nowhere."""
+    global _INSIDE
+    _INSIDE = True
+    nowhere, answers = os.open(os.devnull, os.O_WRONLY), os.dup(1)
+    for number in (1, 2):
+        os.dup2(nowhere, number)
     for line in sys.stdin:
         function, called, answer, seconds, memory, work = json.loads(line)
-        if not hasattr(os, "fork"):
-            _read(function, called, answer, memory, work)
-            print(0, flush=True)
-            return
         with suppress(Exception):  # what fails fails again, and is said, below
             importlib.import_module(function.split(":")[0])
-        child = os.fork()
-        if not child:
-            signal.setitimer(signal.ITIMER_REAL, seconds)
-            _read(function, called, answer, memory, work)
-            os._exit(0)
-        print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
+        _alarm(seconds)
+        _read(function, called, answer, memory, work)
+        _alarm(0)
+        os.write(answers, b"0\n")
+
+
+def _alarm(seconds: float) -> None:
+    """End this process after some seconds, where the system can; 0 is never."""
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_REAL, seconds)
 
 
 def _read(function: str, called: Sequence[str], answer: str, memory: int, work: str) -> None:
     """Read one file, and write what it holds, or what is wrong with it, into another."""
-    global _INSIDE
-    _INSIDE = True
 
     def write(error: str, found: object, arrays: Mapping[str, Any] | None = None) -> None:
         texts = np.frombuffer(json.dumps([error, found]).encode(), np.uint8)
         with output(Path(answer)) as stream:
             np.savez(stream, allow_pickle=False, **(arrays or {}), **{TEXTS: texts})
 
-    # What is printed goes nowhere.
-    nowhere, answers = os.open(os.devnull, os.O_WRONLY), os.dup(1)
-    for number in (1, 2):
-        os.dup2(nowhere, number)
     path, *arguments = called
     try:
         os.chdir(work)
@@ -227,8 +226,6 @@ def _read(function: str, called: Sequence[str], answer: str, memory: int, work: 
         write(TOO_MUCH.format(memory / 1e9), None)
     except Exception as error:
         write(reason(error), None)
-    sys.stdout.flush()
-    os.dup2(answers, 1)
 
 
 def limit(memory: int) -> None:
@@ -241,4 +238,4 @@ def limit(memory: int) -> None:
     if sys.platform == "linux":  # others count memory that is not taken
         hard = resource.getrlimit(resource.RLIMIT_AS)[1]
         most = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
-        resource.setrlimit(resource.RLIMIT_AS, (most, most))
+        resource.setrlimit(resource.RLIMIT_AS, (most, hard))

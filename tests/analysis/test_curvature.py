@@ -9,7 +9,7 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.analysis.front import _local
 from modefront.optim.second import with_second_order
-from modefront.work.costs import Costs
+from modefront.work.task import Costs
 
 K = ("k1", "k2", "k3")
 

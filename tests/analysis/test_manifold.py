@@ -11,7 +11,7 @@ from modefront._typing import Floats
 from modefront.analysis.manifold import Extent, Manifold, equivalent_models
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
-from modefront.work.costs import Costs
+from modefront.work.task import Costs
 
 ONE = weighted(np.ones(1))
 

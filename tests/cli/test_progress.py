@@ -15,8 +15,8 @@ from modefront.cli.progress import _Lines, _Log
 from modefront.front.search import Search
 from modefront.study.estimate import SHORT, duration, estimate
 from modefront.study.examples import write_example
-from modefront.work.costs import Costs
 from modefront.work.progress import State, listening, note, note_iteration
+from modefront.work.task import Costs
 
 
 def drawn(lines: _Lines, width: int) -> list[str]:

@@ -13,10 +13,9 @@ from rich.console import Console
 
 import modefront as mf
 from modefront.cli.layout import Screen
-from modefront.cli.lists import LISTS
-from modefront.cli.show import print_comparison, print_results
+from modefront.cli.show import LISTS, print_comparison, print_results
 from modefront.results.compare import Apart, Comparison, Spread, Summary
-from modefront.results.remarks import headlines, remarks
+from modefront.results.remarks import findings_of, headlines
 
 SEARCH = mf.Search(doubt=0.5)
 NAMES = ["k1", "the stiffness of the second story"]
@@ -96,7 +95,7 @@ def test_pairs_that_change_on_a_lattice_are_said_once(three: xr.Dataset) -> None
     front = np.flatnonzero(three["kind"].values == "front")
     paired[front[1:], 0] = 2
     changed = three.assign(paired_mode=(("point", "mode"), paired))
-    messages = [text for text in remarks(changed) if "paired with" in text]
+    messages = [text for text in map(str, findings_of(changed, full=True)) if "paired with" in text]
     assert messages == [
         "measured mode 1 is paired with different model modes along the front: "
         f"2 at {front.size - 1}, 1 at 1 of {front.size} points"
@@ -108,7 +107,7 @@ def test_many_points_are_counted_and_neighbours_joined(two: xr.Dataset) -> None:
     converged = np.ones(two.sizes["point"], dtype=bool)
     converged[:3] = False
     some = two.assign(converged=(("point",), converged))
-    assert "not converged: nbi-1 to nbi-3" in remarks(some)
+    assert "not converged: nbi-1 to nbi-3" in list(map(str, findings_of(some, full=True)))
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])

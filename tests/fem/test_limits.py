@@ -17,7 +17,7 @@ BOX, BRICKS = fem.grids.box((1.0, 1.0, 1.0), (3, 3, 3))
 def shells(X: Floats, cells: Ints, thickness: float, *scaled: str) -> tuple[str, ...]:
     groups = (fem.Shells("plate", cells, STEEL, thickness),)
     parameters = tuple(fem.Parameter(name, "thickness", ("plate",)) for name in scaled)
-    return limits_of(fem.Structure(X, groups, parameters=parameters), X)
+    return tuple(limits_of(fem.Structure(X, groups, parameters=parameters), X))
 
 
 def roof(X: Floats) -> Floats:
@@ -51,7 +51,7 @@ def test_thickness_that_is_a_parameter() -> None:
 def test_distorted_bricks() -> None:
     def warnings(X: Floats) -> tuple[str, ...]:
         structure = fem.Structure(X, (fem.Solids("block", BRICKS, STEEL),))
-        return limits_of(structure, X)
+        return tuple(limits_of(structure, X))
 
     assert warnings(BOX) == ()
     assert warnings(BOX + np.outer(BOX[:, 1], [1.0, 0.0, 0.0])) == ()  # a parallelepiped is none

@@ -9,7 +9,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, infeasible
-from modefront.work.costs import Costs, spend
+from modefront.work.task import Costs, spend
 
 Derivatives = tuple[Floats, Floats, Floats]
 

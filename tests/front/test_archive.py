@@ -9,16 +9,14 @@ from interruptions import interrupt_after
 from problems import box, circles, disconnected
 
 from modefront._typing import Floats
-from modefront.front.archive import Archive, Recorder, recorded
+from modefront.front.archive import Archive, recorded
 from modefront.front.front import Front
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
-from modefront.front.state import Counted, State
-from modefront.optim.problem import Evaluation, Problem, Wrapped
-from modefront.work.costs import Costs
-from modefront.work.run import Run
-from modefront.work.store import Store
-from modefront.work.task import IMMEDIATE, Executor, Task
+from modefront.front.state import State
+from modefront.optim.problem import Evaluation, Problem
+from modefront.work.store import Run, Store
+from modefront.work.task import IMMEDIATE, Costs, Executor, Task
 
 
 def dominated(J: Floats, others: Floats) -> bool:
@@ -47,15 +45,18 @@ def test_it_holds_the_nondominated_models_of_all(n: int) -> None:
         assert beaten.any() == dominated(row, finite)
 
 
+def visited(problem: Problem, *thetas: list[float]) -> None:
+    for theta in thetas:
+        problem.evaluate(np.array(theta), derivatives=False)
+
+
 def test_of_a_problem_that_is_recorded_all_evaluations_are_counted_and_the_best_kept(
     costs: Costs,
 ) -> None:
-    recorder = Recorder(Archive(2, 2))
-    problem = Wrapped(box(circles, [-1, -1], [2, 2]), recorder.evaluation)
-    for theta in ([0.5, 1.0], [0.5, 0.5], [0.0, 0.0]):
-        problem.evaluate(np.array(theta), derivatives=False)
-    assert recorder.archive.theta.tolist() == [[0.5, 0.5], [0.0, 0.0]]
-    assert recorder.evaluations == costs.eigenproblems == 3
+    problem = box(circles, [-1, -1], [2, 2])
+    outcome = recorded(visited, None, problem, [0.5, 1.0], [0.5, 0.5], [0.0, 0.0])
+    assert outcome.theta.tolist() == [[0.5, 0.5], [0.0, 0.0]]
+    assert outcome.evaluations == costs.eigenproblems == 3
 
 
 def middle(problem: Problem, share: float) -> Evaluation:
@@ -84,14 +85,13 @@ def test_a_task_ends_where_its_evaluations_are_spent_and_its_models_are_known() 
 
 def test_tasks_share_what_is_left_of_the_budget() -> None:
     problem = box(circles, [-1, -1], [2, 2])
-    state = State(problem, 1e-3, Archive(2, 2))
+    state = State(problem, 1e-3)
     tasks = [Task(("test", k), middle, (problem, share)) for k, share in enumerate((0.3, 0.6))]
-    within = Counted(state, IMMEDIATE, budget=7)
-    assert None not in within.run(tasks)
-    assert (state.evaluations, within.spent) == (4, False)
-    assert within.run(tasks) == [None, None], "three are left, one for each"
-    assert (state.evaluations, within.spent) == (6, True)
-    assert None not in Counted(state, IMMEDIATE).run(tasks), "what has to be done is done"
+    assert not any(x.spent for x in state.run(tasks, 7))
+    assert state.evaluations == 4
+    assert [x.result for x in state.run(tasks, 3)] == [None, None], "three are left, one for each"
+    assert state.evaluations == 6
+    assert not any(x.spent for x in state.run(tasks)), "what has to be done is done"
     assert state.evaluations == 10
 
 

@@ -15,7 +15,6 @@ from modefront.front.gaps import Gap, branch_numbers, gaps
 from modefront.front.simplex import Payoff
 from modefront.front.subproblems import Point
 from modefront.optim.sqp import Solution, begin
-from modefront.work.costs import Costs
 
 
 def f(x: float) -> float:
@@ -80,15 +79,6 @@ def test_branches_end_where_the_front_jumps(
     inside = branches > 0
     assert set(branches[inside].tolist()) == {1, 2}
     assert ((branches == 1) == (J[:, 0] < gap.middle))[inside].all()
-
-
-def test_a_point_with_slack_saves_the_search_of_an_end(costs: Costs) -> None:
-    problem = box(disconnected, [0, -1], [0.651, 1])
-    points, slack, scale = front(problem, equations=False)
-    before = costs.eigenproblems
-    (gap,) = gaps(problem, points, np.ones(len(points), dtype=bool), scale, slack=slack)
-    assert len(gap.ends) == 2
-    assert costs.eigenproblems - before <= 15
 
 
 def test_a_front_without_slack_has_no_gap() -> None:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from modefront.front.dominance import nondominated, undominated
 from modefront.front.indicators import hypervolume, igd_plus, largest_gap
-from modefront.front.simplex import lattice, neighbours, payoff, size
+from modefront.front.simplex import is_flat, lattice, neighbours, payoff, size
 from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution, begin
 
@@ -101,8 +101,11 @@ def test_edges_that_are_one_model_span_nothing_and_flat_ones_the_ranges() -> Non
     same = solution_at(1.0, 2.0)
     assert payoff([same, same], np.ones(2)) is None
     corner = solution_at(0.0, 0.0, 1.0)
-    known = [solution_at(1.0, 0.0, 0.0), solution_at(0.0, 1.0, 0.0)]
-    target = payoff([corner, corner, known[0]], np.ones(3), known)
+    worst = [solution_at(1.0, 0.0, 0.0), solution_at(0.0, 1.0, 0.0), corner]
+    edges = [corner, corner, worst[0]]
+    assert is_flat(edges, np.ones(3))
+    assert not is_flat([corner, corner, corner], np.ones(3)), "one model is the best in everything"
+    target = payoff(edges, np.ones(3), worst)
     assert target is not None
     assert target.Phi.tolist() == np.eye(3).tolist()
     assert target.scale == pytest.approx(np.ones(3))

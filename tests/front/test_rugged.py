@@ -19,9 +19,8 @@ from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind
 from modefront.front.search import Search
-from modefront.work.costs import counted
-from modefront.work.run import Run
-from modefront.work.store import Store
+from modefront.work.store import Run, Store
+from modefront.work.task import counted
 
 FEW = Search(evaluations=4000)
 

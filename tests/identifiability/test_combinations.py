@@ -17,7 +17,7 @@ from modefront.identifiability.combinations import (
     pairs,
 )
 from modefront.identifiability.sparse import sparse_basis
-from modefront.work.costs import counted
+from modefront.work.task import counted
 
 NAMES = ("k1", "k2", "k3")
 

@@ -21,7 +21,7 @@ from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.modes import derivatives as exact
 from modefront.modes.sparse import lowest
-from modefront.work.costs import Costs, counted, uncounted
+from modefront.work.task import Costs, counted, uncounted
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
 NAMES = ("k1", "k2", "k3")

@@ -12,10 +12,9 @@ from modefront.errors import ModelError
 from modefront.models.base import LoadCase, Transfer
 from modefront.models.matrices import MatrixModel, SensorSpec, affine, matrices, select
 from modefront.models.mesh import mesh_model
-from modefront.predictions.load_model import modes_reaching
-from modefront.response.function import derivatives
-from modefront.response.system import ModalSystem
-from modefront.work.costs import Costs
+from modefront.predictions.peak_response import derivatives
+from modefront.predictions.system import ModalSystem, modes_reaching
+from modefront.work.task import Costs
 
 N = 60
 PLACES: dict[str, SensorSpec] = {"low": 3, "pair": [(40, 0.5), (41, 0.5)]}

@@ -25,7 +25,7 @@ from modefront.modes import dense, derivatives, sparse
 from modefront.modes.derivatives import Shifted
 from modefront.modes.lanczos import Ritz, greatest
 from modefront.modes.result import ModeDerivatives, Modes
-from modefront.work.costs import Costs, counted
+from modefront.work.task import Costs, counted
 
 
 def springs(size: int, ends: Floats, k: Floats) -> scipy.sparse.coo_array:

@@ -25,8 +25,8 @@ from modefront.errors import Fault
 from modefront.models.base import Model
 from modefront.options import check_fields, text, whole
 from modefront.predictions import ResultVariable, Setting
-from modefront.predictions.registry import kinds_in
-from modefront.reports.payload import payload, topics
+from modefront.predictions.base import kinds_in
+from modefront.reports.page import payload, topics
 from modefront.results.files import read_dataset
 from modefront.results.soundness import faults
 
@@ -141,7 +141,7 @@ def test_everything_shows_it(
     assert axes.get_yticklabels()[0].get_text().startswith("slow, mode 1: period")
     compared = mf.compare([folder, folder]).fronts[0].predictions
     assert "period_length slow: mode 1" in [spread.name for spread in compared]
-    assert any("period of slow" in x for topic in topics(data) for x in topic.sentences)
+    assert any("period of slow" in x for said in topics(data).values() for x in said)
 
 
 def test_files_that_describe_kinds_wrongly_are_refused(data: xr.Dataset) -> None:

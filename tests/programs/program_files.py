@@ -59,9 +59,8 @@ def frequencies(K: Array, M: Array) -> Array:
 
 
 def dense(A: scipy.sparse.sparray) -> Array:
-    """Return the symmetric matrix of an upper triangle."""
-    upper = A.toarray()
-    out: Array = upper + np.triu(upper, 1).T
+    """Return a matrix as an array."""
+    out: Array = A.toarray()
     return out
 
 

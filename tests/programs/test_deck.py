@@ -19,9 +19,8 @@ from modefront.programs.changes import (
     write_changes,
     write_deck,
 )
-from modefront.study.deck import Target, job_text, lines_of, printed_frequencies
 from modefront.study.examples import write_example
-from modefront.study.importing import model_of
+from modefront.study.importing import Target, job_text, lines_of, model_of, printed_frequencies
 
 CCX = shutil.which("ccx")
 needs_ccx = pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not installed")

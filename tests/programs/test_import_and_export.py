@@ -24,7 +24,7 @@ from modefront.errors import InputError
 from modefront.models.dofs import read_dofs
 from modefront.models.matrices import MatrixModel
 from modefront.programs import PROGRAMS
-from modefront.programs.base import JobOptions, read_mesh, whole
+from modefront.programs.base import JobOptions, read_job, read_mesh
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.check import check
 from modefront.study.examples import write_example
@@ -487,7 +487,7 @@ def test_sensors_at_nodes_of_shells_that_are_tied(
         deck + "*STEP\n*FREQUENCY\n3\n*NODE PRINT, NSET=NALL\nU\n*END STEP\n"
     )
     ccx(tmp_path, "a", "b")
-    job = PROGRAMS["calculix"].job(tmp_path / "a", JobOptions())
+    job = read_job("calculix", tmp_path / "a", JobOptions())
     _, shapes = printed(tmp_path / "b.dat")
     _, vectors = scipy.linalg.eigh(dense(job.mass), dense(job.stiffness))
     nodes = (2, 3, 4, 6, 7, 8, 500)
@@ -582,7 +582,7 @@ def test_the_plate_of_nastran(tmp_path: Path) -> None:
 
 def _stiffer_spring(source: Path, target: Path) -> None:
     """Copy a file with the spring at node 25 z (row 114 of KAA) at three times its stiffness."""
-    job = PROGRAMS["nastran"].job(source, JobOptions())
+    job = read_job("nastran", source, JobOptions())
     K = dense(job.stiffness)
     K[113, 113] += 2e5
     write_op4(target, {"KAA": K, "MAA": dense(job.mass)}, "sparse")
@@ -610,11 +610,11 @@ def test_a_deck_that_does_not_fit_its_matrices(tmp_path: Path) -> None:
 
 @needs_data
 def test_the_solid_of_ansys() -> None:
-    job = PROGRAMS["ansys"].job(DATA / "ansys.full", JobOptions())
-    assert (job.size, job.stiffness.nnz) == (900, 39023 - 63)
-    M = whole(job.mass)
+    job = read_job("ansys", DATA / "ansys.full", JobOptions())
+    assert (job.size, scipy.sparse.triu(job.stiffness).nnz) == (900, 39023 - 63)
+    M = job.mass
     masses = [M[job.dofs.direction == d][:, job.dofs.direction == d].sum() for d in (1, 2, 3)]
     assert masses == pytest.approx([masses[0]] * 3)
-    K = whole(job.stiffness)
+    K = job.stiffness
     residue = K @ (job.dofs.direction == 1).astype(float)
     assert (np.abs(residue) > 1e-6 * (abs(K) @ np.ones(900))).sum() < 100, "near the supports only"

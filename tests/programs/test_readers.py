@@ -25,14 +25,14 @@ from program_files import (
 from modefront.errors import InputError
 from modefront.models.dofs import DofTable, write_dofs
 from modefront.programs import PROGRAMS
-from modefront.programs.base import Job, JobOptions
-from modefront.programs.bulk import read_bulk
+from modefront.programs.base import Job, JobOptions, read_job
+from modefront.programs.nastran import read_bulk
 
 K, M = structure()
 
 
 def read(program: str, path: Path, options: JobOptions | None = None) -> Job:
-    return PROGRAMS[program].job(path, options or JobOptions())
+    return read_job(program, path, options or JobOptions())
 
 
 def assert_same(job: Job, tolerance: float = 1e-13, K: Array = K, M: Array = M) -> None:
@@ -201,10 +201,10 @@ def test_held_rows_of_ansys_are_left_out(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("items", "message"),
     [
-        ({14: 1}, "symmetric matrices, found unsymmetric"),
-        ({21: 3}, "without constraint equations .*found 3"),
-        ({34: 0}, "a mass matrix .ANTYPE,MODAL., found none"),
-        ({19: 10**6}, "whole records of Ansys"),
+        ({14: 1}, "an assembled matrix .*found unsymmetric matrices"),
+        ({21: 3}, "found 3 constraint equations .*EXPORT applies them"),
+        ({34: 0}, "found no mass matrix .ANTYPE,MODAL writes one"),
+        ({19: 10**6}, "whole records of an assembled matrix of Ansys"),
         ({1: 4}, "an assembled matrix of Ansys"),
     ],
 )
@@ -330,7 +330,7 @@ def test_unsymmetric_matrices_are_refused(tmp_path: Path, program: str) -> None:
     skew = K.copy()
     skew[0, 3] *= 1.5
     writer(tmp_path / name, skew, M)
-    refused(program, tmp_path / name, "a symmetric matrix .damping, contact")
+    refused(program, tmp_path / name, "a symmetric matrix, found .*damping, contact")
 
 
 @pytest.mark.parametrize("program", WRITERS)

@@ -7,7 +7,7 @@ import pytest
 from smu import FOLDER, frequencies_and_shapes, read, weighted_minimum
 
 import modefront as mf
-from modefront.work.costs import Costs, counted
+from modefront.work.task import Costs, counted
 
 pytestmark = pytest.mark.skipif(
     not FOLDER.is_dir(), reason=f"the published models are not at {FOLDER}"

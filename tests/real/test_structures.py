@@ -18,11 +18,11 @@ from modefront.linalg.affine import SparseAffine
 from modefront.optim.scalarisation import weighted
 from modefront.optim.sqp import begin
 from modefront.optim.sqp import solve as descend
-from modefront.results.remarks import remarks
+from modefront.results.remarks import findings_of
 from modefront.study.check import check
 from modefront.study.file import load
 from modefront.study.session import run
-from modefront.work.costs import Costs
+from modefront.work.task import Costs
 
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason=f"there is no folder {FOLDER}")
 
@@ -148,6 +148,10 @@ def test_the_front_of_the_steel_bridge_over_its_standard_deviations(tmp_path: Pa
     theta = theta[data["kind"].values != "nominal"]
     at_bounds = (theta <= bounds[:, 0]) | (theta >= bounds[:, 1])
     assert at_bounds.any(axis=1).all()
-    named = next(line for line in remarks(data) if line.startswith("parameters at a bound"))
+    named = next(
+        line
+        for line in list(map(str, findings_of(data, full=True)))
+        if line.startswith("parameters at a bound")
+    )
     for name in data["parameter"].values[at_bounds.any(axis=0)]:
         assert name in named

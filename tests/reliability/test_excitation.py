@@ -7,9 +7,13 @@ import pytest
 from scipy.integrate import quad
 from scipy.signal import StateSpace, lsim
 
-from modefront.reliability.gaussian import Convolution, gaussian_response, pulse_response
-from modefront.reliability.problem import FirstPassage
-from modefront.response.system import ModalSystem
+from modefront.predictions.reliability import (
+    Convolution,
+    FirstPassage,
+    gaussian_response,
+    pulse_response,
+)
+from modefront.predictions.system import ModalSystem
 
 SYSTEM = ModalSystem(
     omega=np.array([0.0, 6.0, 9.0]),

@@ -11,11 +11,15 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.stats import norm
 
-from modefront.reliability.estimate import estimate, step_effect
-from modefront.reliability.gaussian import gaussian_response
-from modefront.reliability.methods import METHODS, elementary_failures
-from modefront.reliability.problem import FirstPassage
-from modefront.response.system import ModalSystem
+from modefront.predictions.reliability import (
+    METHODS,
+    FirstPassage,
+    elementary_failures,
+    estimate,
+    gaussian_response,
+    step_effect,
+)
+from modefront.predictions.system import ModalSystem
 
 CONDITIONAL = ["importance", "directional", "additive"]
 OSCILLATOR = ModalSystem(np.array([7.85]), np.array([0.02]), np.eye(1), np.eye(1))

@@ -18,8 +18,7 @@ import modefront as mf
 from modefront.cli.main import main
 from modefront.front.point import front_points
 from modefront.models.base import geometry_of
-from modefront.reports.page import page
-from modefront.reports.payload import payload, topics
+from modefront.reports.page import page, payload, topics
 from modefront.results.files import FILE, write
 from modefront.results.shapes import drawing, mode_shapes
 from modefront.results.soundness import faults
@@ -164,7 +163,7 @@ def test_a_common_basis_keeps_shapes_of_many_models_small() -> None:
     geometry = geometry_of(model)
     assert geometry is not None
     Phi = model.full_modes(thetas[5], 3).Phi
-    u = geometry.displacement(Phi)[:, drawing(geometry).nodes]
+    u = geometry.displacement(Phi)[:, drawing(geometry)[0]]
     u /= np.sqrt((u**2).sum(axis=2)).max(axis=1)[:, None, None]
     drawn = np.tensordot(result.coefficient[5], result.basis, 1)
     drawn *= np.sign((drawn * u).sum(axis=(1, 2)))[:, None, None]
@@ -193,13 +192,13 @@ def test_only_the_surface_of_solids_is_drawn() -> None:
     )
     geometry = geometry_of(mf.mesh_model(structure, ()))
     assert geometry is not None
-    drawn = drawing(geometry)
-    assert len(drawn.faces) == 6 * 9
-    assert len(drawn.nodes) == 4**3 - 2**3
+    drawn, _, faces = drawing(geometry)
+    assert len(faces) == 6 * 9
+    assert len(drawn) == 4**3 - 2**3
 
 
 def test_words_say_what_was_found_and_what_is_open() -> None:
-    text = {topic.heading: " ".join(topic.sentences) for topic in topics(chain())}
+    text = {heading: " ".join(said) for heading, said in topics(chain()).items()}
     assert "3 measured modes in 2 groups" in text["What was studied"]
     assert "normal-boundary intersection" in text["What was studied"]
     assert text[""].startswith("Use most-probable: its errors over those expected are ")
@@ -215,7 +214,7 @@ def test_what_did_not_converge_is_named() -> None:
     converged = data["converged"].values.copy()
     converged[2] = False
     spoiled = data.assign(converged=("point", converged))
-    messages = [text for topic in topics(spoiled) for text in topic.sentences]
+    messages = [text for said in topics(spoiled).values() for text in said]
     assert f"Not converged: {data['label'].values[2]}." in messages
 
 

@@ -19,7 +19,7 @@ from modefront.pairing.match import Pairs
 from modefront.residuals.base import Scale
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
-from modefront.work.costs import Costs
+from modefront.work.task import Costs
 
 FREQUENCY = np.array([4.646, 13.81, 19.48])
 SHAPE = np.array([[0.4561, 0.8069, 1.0], [1.0, 0.3009, -0.9026], [-0.7801, 1.0, -0.6448]])

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
-from modefront.response import function
-from modefront.response.function import ORDERS, derivatives
-from modefront.response.system import ModalSystem
+from modefront.predictions import peak_response
+from modefront.predictions.peak_response import ORDERS, derivatives
+from modefront.predictions.system import ModalSystem
 
 M = np.diag([22.6, 22.6, 0.76 * 22.6])
 K = 84763.8 * np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
@@ -28,7 +28,7 @@ class Peak(NamedTuple):
 
 def peaks(system, quantity="receptance", output=0, band=None):
     band = band or (0.0, 2 * system.omega.max())
-    return tuple(map(Peak, *function.peaks(system, quantity, output, band)))
+    return tuple(map(Peak, *peak_response.peaks(system, quantity, output, band)))
 
 
 def frequency_response(system, omega, quantity="receptance"):

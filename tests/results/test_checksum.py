@@ -15,7 +15,7 @@ from faultless import DATA, STUDY
 from refusals import command
 
 import modefront as mf
-from modefront.reports.payload import topics
+from modefront.reports.page import topics
 from modefront.results.files import FILE, checksum, read_dataset, write
 
 pytestmark = pytest.mark.slow(2)
@@ -102,8 +102,8 @@ def test_a_lost_checksum_is_said_everywhere(
     answer = json.loads(capsys.readouterr().out)
     assert says in answer["remarks"][0]
     assert says in answer["attributes"]["changed"]
-    (caution,) = (x for x in topics(read_dataset(results)) if x.heading == "What to beware of")
-    assert says.lower() in caution.sentences[0].lower()
+    caution = topics(read_dataset(results))["What to beware of"]
+    assert says.lower() in caution[0].lower()
     with pytest.warns(UserWarning, match=says):
         mf.read_results(results)
 

@@ -7,9 +7,8 @@ from typing import Any
 
 import pytest
 
-from modefront.work.costs import Costs
 from modefront.work.store import Store
-from modefront.work.task import Task
+from modefront.work.task import Costs, Task
 
 
 def interrupt(monkeypatch: pytest.MonkeyPatch, when: Callable[[Task[Any], int], bool]) -> None:

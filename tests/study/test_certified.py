@@ -27,9 +27,8 @@ from modefront.optim.sqp import given
 from modefront.results.files import read_dataset
 from modefront.study.check import check
 from modefront.study.definition import Study
-from modefront.work.costs import Costs, counted
-from modefront.work.run import Run
-from modefront.work.task import Executor, R, Task
+from modefront.work.store import Run
+from modefront.work.task import Costs, Executor, R, Task, counted
 
 pytestmark = pytest.mark.slow(2)
 

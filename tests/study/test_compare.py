@@ -8,7 +8,7 @@ import xarray as xr
 
 from modefront.errors import InputError
 from modefront.predictions import Passage
-from modefront.predictions.registry import as_text
+from modefront.predictions.base import as_text
 from modefront.results.compare import compare
 from modefront.results.files import FILE
 from modefront.results.schema import ATTRIBUTES, FORMAT, variables_of

@@ -18,7 +18,7 @@ from modefront.front.pareto import pareto_front
 from modefront.study.check import check
 from modefront.study.examples import names, write_example
 from modefront.study.file import load
-from modefront.work.costs import counted
+from modefront.work.task import counted
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -24,7 +24,7 @@ from modefront.options import Table
 from modefront.pairing.match import Pairs
 from modefront.residuals.base import Curvature, Member, ModeErrors, Scale, Sensitivity
 from modefront.results.files import read_dataset
-from modefront.study.schema import FAMILIES
+from modefront.study.file import FAMILIES
 
 CHAIN = STUDY[STUDY.index("[model]") : STUDY.index("[[parameter]]")]
 

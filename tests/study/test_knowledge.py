@@ -11,7 +11,7 @@ from texts import two_of_each
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.results.remarks import remarks
+from modefront.results.remarks import findings_of
 
 NAMES = ("k1", "k2", "k3")
 MODEL = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=NAMES)
@@ -69,7 +69,7 @@ def test_combinations_are_in_the_results_and_in_words() -> None:
         "k1, k2 and k3 can be scaled together: no shape changes"
     )
     assert text in data["finding"].values.tolist()
-    assert text in remarks(data)
+    assert text in list(map(str, findings_of(data, full=True)))
     assert np.diag(data["collinearity"].values) == pytest.approx(1)
 
 
@@ -288,8 +288,7 @@ def test_the_scatter_of_three_groups_runs_on_with_the_same_digits(tmp_path: Path
 def test_a_study_runs_on_with_the_same_digits_and_shows_all(
     tolerance: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from modefront.cli.lists import LISTS
-    from modefront.cli.show import print_results
+    from modefront.cli.show import LISTS, print_results
 
     write_data(tmp_path)
     text = STUDY.replace("points = 3", f"points = 3\ntolerance = {tolerance}")

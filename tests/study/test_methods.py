@@ -15,7 +15,7 @@ from modefront._typing import Floats
 from modefront.front.dominance import nondominated
 from modefront.front.point import front_points
 from modefront.study.examples import write_example
-from modefront.work.costs import counted
+from modefront.work.task import counted
 
 pytestmark = pytest.mark.slow(2)
 

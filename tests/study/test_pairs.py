@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from modefront import Group, UpdatingProblem, matrices, modal_data, solve, updating_problem
-from modefront.results.remarks import remarks
+from modefront.results.remarks import findings_of
 
 SENSORS = ("a", "b", "c")
 
@@ -44,7 +44,7 @@ def test_modes_that_change_places_along_the_front_are_reported() -> None:
     assert (np.diff(s) > 0).all()
     assert s[[0, -1]] == pytest.approx([1, 2], abs=1e-6)
     last = int((s < 1.5).sum())
-    text = remarks(data)
+    text = list(map(str, findings_of(data, full=True)))
     for measured, before, after in ((2, 2, 3), (3, 3, 2)):
         assert (
             f"measured mode {measured} is paired with model mode {before} at nbi-{last} "

@@ -16,7 +16,7 @@ from two_masses import FRF, QUICK, ZETA, direct, run, write_study
 import modefront as mf
 from modefront._typing import Floats
 from modefront.predictions import Passage, PeakResponse, Prediction
-from modefront.results.remarks import remarks
+from modefront.results.remarks import findings_of
 from modefront.study.examples import write_example
 from modefront.uncertainty.prediction import STEP, SUMMARY
 from modefront.work.progress import Progress, State
@@ -271,8 +271,8 @@ def test_what_there_is_no_posterior_or_no_prediction_of_is_not_there(drawn: xr.D
     for data in (exact, plain):
         assert not any("frf" in str(x) or "failure" in str(x) for x in data if "post" in str(x))
     missing = "there is no posterior: no models are drawn from it"
-    assert missing in remarks(exact)
-    assert missing not in remarks(plain)
+    assert missing in list(map(str, findings_of(exact, full=True)))
+    assert missing not in list(map(str, findings_of(plain, full=True)))
     with pytest.raises(mf.InputError, match="draws: expected 0 without predictions, found 3"):
         solved(problem_of(), [], draws=3)
 
@@ -291,7 +291,7 @@ def test_models_that_cannot_be_solved_are_counted() -> None:
     assert np.isfinite(data["posterior_failure_probability"].values).all()
     assert np.isfinite(data["posterior_frf_peak_std"].values).all()
     assert np.isnan(data["posterior_failure_log_std"].values).all()
-    message = remarks(data)
+    message = list(map(str, findings_of(data, full=True)))
     assert (
         f"{stiff.size} of 20 models drawn from the posterior cannot be solved for passage: they "
         "are left out"
@@ -304,7 +304,7 @@ def test_peaks_that_models_do_not_have_are_counted() -> None:
     missing = np.isnan(data["draw_frf_peak"].values).sum()
     assert 0 < missing < 20
     text = f"{missing} of 20 models drawn from the posterior have no peak for peak: floor1"
-    assert any(line.startswith(text) for line in remarks(data))
+    assert any(line.startswith(text) for line in list(map(str, findings_of(data, full=True))))
 
 
 def test_bounds_that_hold_hardly_any_of_the_posterior_end_with_a_statement() -> None:
@@ -312,7 +312,7 @@ def test_bounds_that_hold_hardly_any_of_the_posterior_end_with_a_statement() -> 
     data = solved(problem_of(lower=theta - 1e-6, upper=theta + 1e-6), [PEAK], draws=3)
     assert "draw_theta" not in data
     assert "posterior_frf_peak_std" not in data
-    message = remarks(data)
+    message = list(map(str, findings_of(data, full=True)))
     assert any("wider than the bounds (" in text for text in message)
     assert "optimal-weights has no room for differences between bounds: see draws" in message
 
@@ -332,7 +332,7 @@ def test_what_the_data_leave_open_is_said() -> None:
     assert (
         "the posterior of predictions is that of what the data determine: where they leave k1 and "
         "k2 open, the models are those of optimal-weights"
-    ) in remarks(result)
+    ) in list(map(str, findings_of(result, full=True)))
 
 
 def test_show_tells_the_posterior_beside_the_range(

@@ -20,7 +20,7 @@ from modefront.models.base import Transfer
 from modefront.models.matrices import MatrixModel
 from modefront.plots import pictures, write_figures
 from modefront.predictions import Passage, PeakResponse
-from modefront.reliability.gaussian import gaussian_response
+from modefront.predictions.reliability import gaussian_response
 from modefront.results.files import read_dataset
 from modefront.study.examples import write_example
 from modefront.work.store import Store

@@ -26,7 +26,7 @@ from modefront.identifiability.options import Identifiability
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.results.assemble import lattice_values
-from modefront.results.remarks import remarks
+from modefront.results.remarks import findings_of
 from modefront.study.examples import write_example
 
 
@@ -87,7 +87,11 @@ def test_an_end_that_is_not_known_is_said_and_is_no_number(
     assert np.isnan(data["end_objective"].values[0]).all()
     assert np.isnan(data["end_theta"].values[0]).all()
     assert data["end_converged"].values.tolist() == [False, True]
-    messages = [text for text in remarks(data) if "the front has a gap" in text]
+    messages = [
+        text
+        for text in list(map(str, findings_of(data, full=True)))
+        if "the front has a gap" in text
+    ]
     assert messages == ["the front has a gap: where branch 1 ends is not known"]
     J, piece = data["objective"].values, data["piece"].values
     middle = (J[2, 0] + J[3, 0]) / 2

@@ -21,7 +21,7 @@ from refusals import command
 import modefront as mf
 from modefront.errors import Fault
 from modefront.fem.mesh import read_mesh
-from modefront.json_schema import (
+from modefront.options import (
     ABOVE_ZERO,
     NAME,
     NOT_NEGATIVE,
@@ -32,9 +32,9 @@ from modefront.json_schema import (
     table_of,
 )
 from modefront.study.examples import names, write_example
+from modefront.study.file import FILE_NAME, as_text, study_schema
 from modefront.study.kinds import KINDS, mesh
 from modefront.study.kinds.sensors import AXES, DIRECTION, DOF, WEIGHTED
-from modefront.study.schema import FILE_NAME, as_text, study_schema
 
 COUNT = 700
 

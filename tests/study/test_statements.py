@@ -9,7 +9,7 @@ from texts import two_of_each
 
 import modefront as mf
 from modefront.cli.main import cli
-from modefront.results.remarks import MOST, digest, remarks
+from modefront.results.remarks import MOST, digest, findings_of
 from modefront.study.file import load
 
 SEARCH = mf.Search(doubt=0.5)
@@ -58,7 +58,7 @@ def test_findings_are_cut_where_they_are_printed_and_nowhere_else() -> None:
     data = mf.solve(stiffnesses_and_masses(), points=2, search=SEARCH).dataset
     many = np.array([f"finding {i}" for i in range(25)])
     data = data.drop_vars(["finding", "finding_record"]).assign(finding=(("finding",), many))
-    said = [text for text in remarks(data) if text.startswith("finding")]
+    said = [text for text in map(str, findings_of(data, full=True)) if text.startswith("finding")]
     assert said == many.tolist()
     cut = digest(said, "modefront show --all DIR")
     assert cut[-2:] == ["finding 9", "and 15 more findings: modefront show --all DIR"]

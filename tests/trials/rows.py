@@ -38,8 +38,7 @@ from modefront.data.modal_test import read_test
 from modefront.data.uff import read_uff55
 from modefront.fem.mesh import read_with_meshio
 from modefront.models.files import read_matrix
-from modefront.programs import PROGRAMS
-from modefront.programs.base import Job, JobOptions
+from modefront.programs import base
 
 Kind = Literal["cut", "delete", "double", "swap", "field"]
 KINDS: tuple[Kind, ...] = ("cut", "delete", "double", "swap", "field")
@@ -393,7 +392,7 @@ def join_mat73(rows: Rows) -> bytes:
 
 def read_job(program: str, given: str) -> Callable[[Path], object]:
     def read(folder: Path) -> object:
-        job: Job = PROGRAMS[program].job(folder / given, JobOptions())
+        job = base.read_job(program, folder / given, base.JobOptions())
         mesh = None
         if job.mesh is not None:
             cells = {kind: sorted(map(tuple, x.tolist())) for kind, x in job.mesh.cells.items()}

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from modefront._typing import Floats
-from modefront.front.simplex import spanned
+from modefront.front.simplex import payoff
 from modefront.front.subproblems import Point, active_bounds
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum, Scalarisation, constrained, weighted
@@ -171,7 +171,7 @@ def test_points_of_the_front_follow_their_edges(
 
     def solved(problem: Squares) -> tuple[list[Solution], Solution]:
         edges = edges_of(problem)
-        target = spanned(edges, worst, np.ones(n))
+        target = payoff(edges, np.ones(n), worst)
         assert target is not None
         point = Point(place, (), target)
         result = point.solve(problem, edges[0])

@@ -11,7 +11,7 @@ from problems import Derivatives, Known, box, many_minima
 from modefront._typing import Floats
 from modefront.front.front import Edge, Front
 from modefront.front.point import Kind, Point
-from modefront.front.simplex import spanned
+from modefront.front.simplex import payoff
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import weighted
@@ -103,7 +103,7 @@ def of_corners(beta: Floats, std: float) -> Scatter:
     for edge, w in zip(edges, np.eye(3), strict=True):
         point, chosen = point_at(problem, edge.theta.tolist()), noise(edge.theta)
         dE.append(scatter(problem, point, w, given_weights(chosen), chosen).J)
-    target = spanned(edges, (), np.ones(3))
+    target = payoff(edges, np.ones(3))
     assert target is not None
     result = LatticePoint(beta, (), target).solve(problem, edges[0])
     assert result.converged

@@ -15,8 +15,7 @@ from threadpoolctl import threadpool_info
 
 from modefront._typing import Floats
 from modefront.linalg.products import shared_pool
-from modefront.work.costs import Costs, spend
-from modefront.work.task import Task
+from modefront.work.task import Costs, Task, spend
 from modefront.work.transfer import shared
 
 

@@ -15,13 +15,21 @@ from hypothesis import strategies as st
 from problems import Known, box, circles
 
 from modefront._typing import Floats
-from modefront.front.archive import Archive, Outcome, Recorder, recorded
-from modefront.optim.problem import Problem, Wrapped
-from modefront.work.costs import Costs, counted, spend, uncounted
+from modefront.front.archive import Archive, Outcome, recorded
+from modefront.optim.problem import Problem
 from modefront.work.progress import Plan, Progress, State
-from modefront.work.run import Run
-from modefront.work.store import Store
-from modefront.work.task import IMMEDIATE, R, Task, Within, seed_sequence
+from modefront.work.store import Run, Store
+from modefront.work.task import (
+    IMMEDIATE,
+    Costs,
+    R,
+    Task,
+    Within,
+    counted,
+    seed_sequence,
+    spend,
+    uncounted,
+)
 
 CALLS: list[int] = []
 
@@ -207,16 +215,15 @@ class Backwards:
 def test_the_archive_is_that_of_one_evaluation_after_another(seed: int) -> None:
     problem = box(circles, [-1, -1], [2, 2])
     tasks = tasks_on(problem, seed)
-    straight = Recorder(Archive(2, 2))
-    known = Wrapped(problem, straight.evaluation)
-    sums = [visited(known, task.arguments[3]) for task in tasks]
+    visits = [task.arguments[3] for task in tasks]
+    straight = recorded(lambda of: [visited(of, thetas) for thetas in visits], None, problem)
     for work in (IMMEDIATE, Run(), Backwards(), Within(Run(), turn=("again", 1))):
         outcomes = work.run(tasks)
-        assert [x.result for x in outcomes] == sums
+        assert [x.result for x in outcomes] == straight.result
         assert sum(x.evaluations for x in outcomes) == straight.evaluations == 30
         archive = archived(outcomes)
-        assert archive.theta.tolist() == straight.archive.theta.tolist(), "in the order of tasks"
-        assert archive.J.tolist() == straight.archive.J.tolist()
+        assert archive.theta.tolist() == straight.theta.tolist(), "in the order of tasks"
+        assert archive.J.tolist() == straight.J.tolist()
 
 
 def test_kept_tasks_bring_the_models_that_they_had_evaluated(tmp_path: Path) -> None:

@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives
 from modefront.optim.sqp import Solution, Status, begin
-from modefront.work.costs import Costs
 from modefront.work.store import LONGEST, Store
-from modefront.work.task import Key, Task
+from modefront.work.task import Costs, Key, Task
 
 COSTS = Costs(eigenproblems=3, factorisations=2, full_time=0.1)
 

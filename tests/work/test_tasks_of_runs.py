@@ -15,10 +15,8 @@ from two_masses import FRF, PASSAGE, write_study
 
 import modefront as mf
 from modefront.work.codec import encode
-from modefront.work.costs import Costs
-from modefront.work.run import Run
-from modefront.work.store import Store
-from modefront.work.task import R, Task
+from modefront.work.store import Run, Store
+from modefront.work.task import Costs, R, Task
 
 SHAPES = """[[group]]
 name = "shapes"

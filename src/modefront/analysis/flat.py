@@ -12,9 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.front.archive import Archive
 from modefront.front.proposers.polish import Polish
-from modefront.front.proposers.rivals import Rivals
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import Payoff, lattice, payoff
 from modefront.front.state import State, distinct_points
@@ -103,14 +101,14 @@ def identifiable_part(
     target = payoff(ends, sizes) if flat.any() else None
     if target is None:
         return Identifiable(flat, uncut, ends)
-    state = State(problem, Search().tolerance, Archive(problem.lower.size, len(edges)))
+    state = State(problem, Search().tolerance, work)
     for solution in [*ends, *known]:
         state.archive.add(solution.theta, solution.J)
     state.models += [*ends, *points]
     counts = lattice(len(edges), divisions)
     subproblems = [Point(row / divisions, tuple(row.tolist()), target) for row in counts]
     state.add(subproblems)
-    Loop(state, [Polish(), Rivals()], Search(), work).run("identifiable")
+    Loop(state, [Polish()], Search()).run("identifiable")
     along = distinct_points([place.incumbent for place in state.places], target.scale)
     floor = np.where(flat > 0, (1 - TIE) * target.utopia, 0.0)
     above = [solution for solution in along if (floor <= solution.J).all()]

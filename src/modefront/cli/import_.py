@@ -9,8 +9,7 @@ from typing import Any
 from modefront.cli.terminal import say
 from modefront.errors import Fault, InputError
 from modefront.programs.base import JobOptions
-from modefront.study.deck import import_deck
-from modefront.study.importing import Imported, describe, import_model
+from modefront.study.importing import Imported, describe, import_deck, import_model
 
 
 def run_import(program: str, base: Path, options: JobOptions, output: Path, **given: Any) -> None:

@@ -22,7 +22,7 @@ from modefront.errors import InputError, UnfinishedError, reason
 from modefront.text import one_line
 
 if TYPE_CHECKING:
-    from modefront.work.task import Backend
+    from modefront.work.workers import Workers
 
 PATH = click.Path(path_type=Path)
 
@@ -91,7 +91,7 @@ def cli(context: click.Context) -> None:
 def init(directory: Path, example: str) -> None:
     """Write a study that runs at once into DIRECTORY."""
     from modefront.study.examples import write_example
-    from modefront.study.schema import add_schema
+    from modefront.study.file import add_schema
 
     files = write_example(example, directory)
     studies = [path for path in files if path.name.startswith("study") and path.suffix == ".toml"]
@@ -103,7 +103,7 @@ def init(directory: Path, example: str) -> None:
 @cli.command()
 def schema() -> None:
     """Print the JSON Schema of study files, for editors."""
-    from modefront.study.schema import as_text
+    from modefront.study.file import as_text
 
     click.echo(as_text(), nl=False)
 
@@ -164,7 +164,7 @@ def run(
     from modefront.work.workers import backend
 
     directory = directory or study.with_name(f"{study.stem}-results")
-    carrier: AbstractContextManager[Backend] = backend(workers, scheduler)
+    carrier: AbstractContextManager[Workers] = backend(workers, scheduler)
     with ExitStack() as early:
         if scheduler is None:  # they start while the study is read
             carrier = nullcontext(early.enter_context(carrier))

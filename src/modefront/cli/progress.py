@@ -17,8 +17,8 @@ from rich.text import Text
 
 from modefront.study.estimate import duration
 from modefront.text import NAME, clean
-from modefront.work.costs import Costs, counted
 from modefront.work.progress import COUNTED, ITERATION, Plan, Progress, State, listening
+from modefront.work.task import Costs, counted
 
 TITLES: Mapping[str, str] = {
     "check-groups": "check of the groups",

@@ -1,10 +1,11 @@
-"""Results and comparisons in the terminal, and as JSON."""
+"""Results and comparisons in the terminal, an overview or full lists, and as JSON."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +13,302 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
-from modefront.cli.layout import BLANK, Line, Screen, number
-from modefront.cli.lists import LISTS, models_in, predictions_in_short
+from modefront._typing import Floats
+from modefront.cli.layout import BLANK, Line, Screen, number, plural
 from modefront.cli.terminal import command, say_next
 from modefront.findings.catalogue import Severity
+from modefront.front.point import INTERNAL, Kind, position, preferred
+from modefront.predictions import ResultVariable
+from modefront.predictions.base import Quantity, predictions_in, quantity
 from modefront.results.compare import Comparison, Spread, short_names
 from modefront.results.remarks import digest, findings_of, headlines, verdict
 from modefront.study.estimate import Estimate
-from modefront.work.costs import Costs
+from modefront.work.task import Costs
+
+FEWEST = 3
+"""Parameters and modes that a table keeps, however long it is."""
+
+BOUND = {-1: " min", 1: " max"}
+
+
+def print_models(screen: Screen, data: xr.Dataset) -> None:
+    """Print all parameters, modes and errors of the first models."""
+    screen.show([BLANK, *_table(screen, data.isel(point=_first_models(data)))])
+
+
+def models_in(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Line]:
+    """Return the lines of the first models, ``most`` or fewer where that is possible.
+
+    ``full`` is the command that prints what is left out.
+    """
+    models = _first_models(data)
+    theta, f = data["theta"].values[models], data["frequency"].values[models]
+    best = models.index(position(data))
+    change = np.abs(theta[best] - theta[0]) / np.ptp(data["bounds"].values, axis=1)
+    error = np.abs(f[best] / data["measured_frequency"].values - 1)
+    parameters, modes = (np.argsort(-np.nan_to_num(x), kind="stable") for x in (change, error))
+    p, m = parameters.size, modes.size
+    while True:
+        chosen = data.isel(parameter=np.sort(parameters[:p]), mode=np.sort(modes[:m]))
+        count = len(models)
+        lines = _table(screen, chosen.isel(point=models))
+        while count > 2 and BLANK in lines:  # models that do not fit side by side
+            count -= 1
+            lines = _table(screen, chosen.isel(point=models[:count]))
+        left = [
+            (parameters.size - p, "more parameter", "that change{} less"),
+            (modes.size - m, "more mode", "that fit{} better"),
+            (len(models) - count, "edge", ""),
+        ]
+        said = [f"{plural(n, x)} {of.format('s' * (n == 1))}".rstrip() for n, x, of in left if n]
+        lines += screen.sentence(f"and {', '.join(said)}: {full}") if said else []
+        if len(lines) <= most or (p <= FEWEST and m <= FEWEST):
+            return lines
+        # Each row that is left out saves a line at least, and names or blocks save more.
+        fewer = max((len(lines) - most) // 6, 1)
+        if p > FEWEST and (p >= m or m <= FEWEST):
+            p = max(p - fewer, FEWEST)
+        else:
+            m = max(m - fewer, FEWEST)
+
+
+def _first_models(data: xr.Dataset) -> list[int]:
+    """Return the positions of the nominal model, the reference and the edges."""
+    kinds = data["kind"].values
+    nominal, edges = (np.flatnonzero(kinds == x.value) for x in (Kind.NOMINAL, Kind.EDGE))
+    return list(dict.fromkeys([*nominal.tolist(), position(data), *edges.tolist()]))
+
+
+def _table(screen: Screen, data: xr.Dataset) -> list[Line]:
+    """Return the table of models, and what explains it."""
+    std, explained = _deviations(data)
+    bound = data["at_bound"].values if "at_bound" in data else np.zeros(data["theta"].shape)
+    out = screen.grid("", ["", *map(str, data["label"].values)], list(_rows(data, std, bound)))
+    notes = [f"±: {explained}"] * bool(np.isfinite(std).any())
+    notes += ["min, max: at its lower or upper bound"] * bool(bound.any())
+    return [*out, *screen.sentence("; ".join(notes))] if notes else out
+
+
+def _rows(data: xr.Dataset, std: Floats, bound: Floats) -> Iterator[list[str]]:
+    """Yield the cells, with headings."""
+    best, measured = position(data), data["measured_frequency"].values
+    yield ["parameters"]
+    for j, name in enumerate(data["parameter"].values):
+        row = [f"  {name}"]
+        for i, value in enumerate(data["theta"].values[:, j]):
+            at = BOUND.get(int(bound[i, j]), "")
+            scatter = f" ± {std[j]:.2g}" * (i == best and np.isfinite(std[j]) and not at)
+            row.append(f"{number(value, '#.4g').removesuffix('.')}{scatter}{at}")
+        yield row
+    yield ["modes: error of the frequency in %, and MAC"]
+    for r, mode in enumerate(data["mode"].values):
+        row = [f"  {mode}" + f": {measured[r]:.4g} Hz" * bool(np.isfinite(measured[r]))]
+        for f, mac in zip(data["frequency"].values[:, r], data["mac"].values[:, r], strict=True):
+            error = 100 * (f / measured[r] - 1)
+            first = f"{f:.4g} Hz" if np.isnan(error) else f"{round(error, 2) + 0.0:+.2f}"
+            row.append("none" if np.isnan(f) else f"{first}  {number(mac, '.3f')}")
+        yield row
+    yield ["errors of the groups, root mean square"]
+    for group, errors in zip(data["group"].values, data["error"].values.T, strict=True):
+        yield [f"  {group}", *(number(x, ".3g") for x in errors)]
+
+
+def _deviations(data: xr.Dataset) -> tuple[Floats, str]:
+    """Return standard deviations (p,) of the parameters of the reference, and what they are."""
+    if "sample_theta" in data:
+        std = data["sample_theta"].values.std(axis=0, ddof=1)
+        return std, "standard deviation of the posterior"
+    if "theta_std" in data:
+        return data["theta_std"].values[position(data)], "standard deviation by errors of the data"
+    if "posterior_std" in data:
+        return data["posterior_std"].values, "standard deviation of the posterior"
+    return np.full(data.sizes["parameter"], np.nan), ""
+
+
+DRAWN = ("mean", "5 %", "95 %")
+"""Statistics of models drawn from the posterior that are shown."""
+
+
+def print_predictions(screen: Screen, data: xr.Dataset) -> None:
+    """Print all predictions of all models that are no points of the front, and their ranges."""
+    if "range" not in data.sizes:
+        screen.say("The study asks for no predictions.")
+        return
+    linear, drawn = "posterior_frequency_std" in data, "statistic" in data.sizes
+    kinds = data["kind"].values
+    models = [i for i, kind in enumerate(kinds) if kind not in {"front", *INTERNAL}]
+    columns = ["", "minimum", "maximum", "spread", *["posterior"] * linear]
+    columns += [f"drawn {x}" for x in DRAWN] * drawn
+    columns += [str(data["label"].values[i]) for i in models]
+
+    def row(name: str, x: Quantity) -> list[str]:
+        form = (".3e" if x.variable.logarithmic else ".5g") if x.variable.ranged else ".2g"
+        known = x.values[np.isfinite(x.values)]
+        extent = ["", number(known.max() if known.size else np.nan, form), ""]
+        if x.variable.ranged:
+            extent = [*(number(end, form) for end in x.extent[:2]), number(x.extent[2], ".4g")]
+        of_draws = [number(x.drawn[name], form) if x.drawn else "" for name in DRAWN] * drawn
+        std = [_deviation(x)] * linear
+        return [name, *extent, *std, *of_draws, *(number(x.values[i], form) for i in models)]
+
+    frequency = ResultVariable("frequency", "frequency", "frequency", "Hz")
+    modes = [
+        row(f"f{r}, Hz", quantity(data, frequency, i)) for i, r in enumerate(data["mode"].values)
+    ]
+    title = "frequencies: range over the Pareto-optimal models; spread is greatest over least"
+    screen.table(title, columns, modes)
+    if linear:
+        screen.say(
+            f"posterior: standard deviation around {preferred(data.attrs)}; of P as a factor, "
+            "e to that of ln P"
+        )
+    if drawn:
+        screen.say(
+            f"drawn: over {plural(data.sizes['draw'], 'model')} drawn from the posterior; the mean "
+            "of P is the robust failure probability"
+        )
+    for each in predictions_in(data):
+        rows = [row(f"{x.place}: {x.variable.title}", x) for x in each.quantities]
+        screen.table(each.heading, columns, rows)
+        check = each.kind.check
+        if check is not None and check.label.name in data:
+            label = data[check.label.name].values[each.positions[0]]
+            for variable in check.variables:
+                values = [number(data[variable.name].values[i], ".3f") for i in each.positions]
+                screen.say(f"at {label}: {variable.meaning}: {', '.join(values)}")
+
+
+def predictions_in_short(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Line]:
+    """Return the lines of the main quantities of the first predictions, ``most`` of them.
+
+    ``full`` is the command that prints all.
+    """
+    best = position(data)
+    rows = [
+        [
+            f"{each.name}, {x.place}: {x.variable.title}",
+            f"{number(x.values[best], '.3g')} {_deviation(x)}",
+            f"{number(x.extent[0], '.3g')} to {number(x.extent[1], '.3g')}",
+        ]
+        for each in predictions_in(data)
+        for x in each.quantities
+        if x.variable in each.kind.ranged[:1]
+    ]
+    columns = ["", preferred(data.attrs), "Pareto-optimal models"]
+    out = screen.grid("predictions", columns, rows[:most])
+    rest = len(rows) - most
+    return out + (screen.sentence(f"and {rest} more: {full}") if rest > 0 else [])
+
+
+def _deviation(of: Quantity) -> str:
+    """Return the standard deviation by the posterior, that of a logarithm as a factor."""
+    if of.std is None:
+        return ""
+    shown = f"×÷ {np.exp(of.std):.3g}" if of.variable.logarithmic else f"± {of.std:.3g}"
+    return "none" if np.isnan(of.std) else shown
+
+
+Columns = Sequence[tuple[str, str, str]]
+"""Titles with a place for a name, the variable (rows, names), and the format of its values."""
+
+
+def print_points(screen: Screen, data: xr.Dataset) -> None:
+    """Print objectives, errors, parameters, modes and weights of all models."""
+    marks = [
+        "*" * int(pareto) + "!" * int(not converged)
+        for pareto, converged in zip(data["pareto"].values, data["converged"].values, strict=True)
+    ]
+    columns = [("J {}", "objective", ".5g"), ("error {}", "error", ".4g"), ("{}", "theta", ".5g")]
+    _print(screen, data, "models: * Pareto optimal among these, ! not converged", columns, marks)
+    measured = data["measured_frequency"].values
+    error = 100 * (data["frequency"] / measured - 1)
+    known = data.assign({"": np.round(error, 2) + 0.0})
+    title = f"frequencies in Hz and MAC; measured: {', '.join(f'{x:.4g}' for x in measured)}"
+    columns = [("f{}", "frequency", ".4g"), ("error f{} %", "", "+.2f"), ("MAC {}", "mac", ".4f")]
+    _print(screen, known, title, columns)
+    if "certified" in data:
+        marks = ["!" * int(not x) for x in data["certified"].values]
+        columns = [("eigenvalue {}", "eigenvalue_error", ".1e"), ("shape {}", "shape_error", ".1e")]
+        _print(screen, data, "estimated relative errors: ! above the tolerance", columns, marks)
+    weighted = data.isel(point=np.flatnonzero(~np.isnan(data["weight"].values).all(axis=1)))
+    _print(screen, weighted, "weights", (("{}", "weight", ".5g"),))
+
+
+def print_minima(screen: Screen, data: xr.Dataset) -> None:
+    """Print the minima of each group and of the optimally weighted residuals."""
+    columns = (("J {}", "minimum_objective", ".5g"), ("{}", "minimum_theta", ".5g"))
+    title = "minima of the groups and of the weighted residuals"
+    _print(screen, data, title, columns, of="minimum_of")
+
+
+def print_uncertainty(screen: Screen, data: xr.Dataset) -> None:
+    """Print how far models and objectives scatter, and the posterior, where they are known."""
+    for kind, title in (
+        ("", "scatter by errors of the data: standard deviations, linearised"),
+        ("bootstrap_", "scatter over data drawn again: standard deviations"),
+    ):
+        if f"{kind}theta_std" in data:
+            columns = [("J {}", f"{kind}objective_std", ".3g"), ("{}", f"{kind}theta_std", ".3g")]
+            _print(screen, data, title, columns)
+    if "scatter_doubt" in data:
+        doubts = zip(data["label"].values, data["scatter_doubt"].values, strict=True)
+        rows = [[str(x), str(y)] for x, y in doubts if y]
+        screen.table("where linearised standard deviations are approximate", ["model", "why"], rows)
+    if "posterior_std" in data:
+        modes = data["mode"].values
+        titles = [str(x) for x in data["parameter"].values]
+        titles += [*(f"f{r} Hz" for r in modes), *(f"MAC {r}" for r in modes)]
+        values = [data[f"posterior_{name}std"].values for name in ("", "frequency_", "mac_")]
+        cells = [number(x, ".3g", "") for x in np.concatenate(values)]
+        title = f"posterior around {preferred(data.attrs)}: standard deviations"
+        screen.table(title, ["of", "std"], list(zip(titles, cells, strict=True)))
+    elif "theta_std" not in data:
+        screen.say("The results hold no uncertainty: the data have no errors that are known.")
+
+
+def print_findings_of(screen: Screen, data: xr.Dataset) -> None:
+    """Print all findings, each with what it means and what to do."""
+    screen.say("")
+    for _, of_kind in groupby(findings_of(data, full=True), lambda finding: finding.kind):
+        for finding in of_kind:
+            screen.say(finding, start="- ")
+        for text in finding.meaning:
+            screen.say(text, start="    ")
+
+
+LISTS: Mapping[str, Callable[[Screen, xr.Dataset], None]] = {
+    "models": print_models,
+    "points": print_points,
+    "minima": print_minima,
+    "uncertainty": print_uncertainty,
+    "predictions": print_predictions,
+    "findings": print_findings_of,
+}
+"""Full lists by the name of their option, in the order in which they are printed."""
+
+
+# 6 arguments: the table, its rows and its columns.
+def _print(
+    screen: Screen,
+    data: xr.Dataset,
+    title: str,
+    columns: Columns,
+    marks: Sequence[str] = (),
+    of: str = "label",
+) -> None:
+    """Print a table with a row for each of what ``of`` names, and ``marks`` beside these."""
+    rows = []
+    for i, name in enumerate(data[of].values):
+        cells = [number(x, form) for _, values, form in columns for x in data[values].values[i]]
+        rows.append([str(name), *marks[i : i + 1], *cells])
+    titles = [
+        text.format(name)
+        for text, values, _ in columns
+        for name in data[data[values].dims[1]].values
+    ]
+    first = ["model" if of == "label" else "of", *[""] * bool(marks)]
+    screen.table(title, [*first, *titles], rows, keys=len(first))
+
 
 HEIGHT, TABLE, LEAST, PREDICTIONS = 40, 14, 4, 4
 """Lines of the first screen, about; of it for models and for findings, at least; predictions."""
@@ -98,26 +387,20 @@ def as_json(data: xr.Dataset) -> str:
     found = findings_of(data, full=True)
     sections = {
         "verdict": verdict(data),
-        "attributes": {str(k): as_plain(np.asarray(value)) for k, value in data.attrs.items()},
+        "attributes": {str(k): np.asarray(value).tolist() for k, value in data.attrs.items()},
         "variables": {
-            str(name): {"dimensions": list(map(str, x.dims)), "values": as_plain(x.values)}
+            str(name): {"dimensions": list(map(str, x.dims)), "values": x.values.tolist()}
             for name, x in {**data.coords, **data.data_vars}.items()
         },
         "remarks": [str(finding) for finding in found],
         "findings": [finding.as_plain() for finding in found],
     }
-    return json.dumps(sections, indent=1)
+    return json.dumps(as_plain(sections), indent=1)
 
 
 def as_plain(values: Any) -> Any:
-    """Return what JSON has: arrays as lists, records as objects, null for what is no number."""
-    if isinstance(values, dict):
-        return {key: as_plain(value) for key, value in values.items()}
-    if isinstance(values, np.ndarray):
-        values = values.tolist()
-    if isinstance(values, list | tuple):
-        return [as_plain(value) for value in values]
-    return None if isinstance(values, float) and not np.isfinite(values) else values
+    """Return what JSON has: null for what is no number."""
+    return json.loads(json.dumps(values), parse_constant=lambda _: None)
 
 
 SHOWN = 6

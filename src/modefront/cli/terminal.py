@@ -46,8 +46,6 @@ def complain(text: str) -> None:
 
 def usage(error: click.ClickException) -> str:
     """Return the error in the command line, with a reference to ``--help``."""
-    out = f"Error: {error.format_message()}"
-    context = error.ctx if isinstance(error, click.UsageError) else None
-    if context is None:
-        return out
-    return f"{context.get_usage()}\nTry '{context.command_path} --help' for help.\n\n{out}"
+    out = io.StringIO()
+    error.show(out)
+    return out.getvalue().rstrip()

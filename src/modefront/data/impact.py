@@ -24,8 +24,7 @@ from modefront.data.responses import (
     frequency_responses,
 )
 from modefront.errors import Fault, InputError, refuse
-from modefront.json_schema import any_of
-from modefront.options import Requirement, check_fields, number
+from modefront.options import Requirement, any_of, check_fields, number
 from modefront.rounding import ACCUMULATED, LARGEST
 
 Estimator = Literal["H1", "H2", "Hv"]

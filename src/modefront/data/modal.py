@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.brief import as_html, brief
 from modefront.errors import Fault, refuse, suggestion
+from modefront.text import brief
 
 MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std", "shape_covariance")
 """Arrays of modal data, of which data sets are the first axis."""
@@ -52,7 +52,6 @@ class ModalData:
     shape_covariance: Floats | None = None
 
     __repr__ = brief
-    _repr_html_ = as_html
 
     @cached_property
     def mean_frequency(self) -> Floats:

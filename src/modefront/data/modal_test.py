@@ -27,16 +27,19 @@ from modefront.data.uff import is_universal, read_functions, read_uff
 from modefront.errors import Fault, InputError, refuse, suggestion
 from modefront.inputs import MOST_DATA, file_size, wrong
 from modefront.isolated import IsolatedError, Read, isolated
-from modefront.json_schema import NOT_NEGATIVE, any_of, array, whole_number
 from modefront.options import (
+    NOT_NEGATIVE,
     Requirement,
     Table,
+    any_of,
+    array,
     is_name,
     keys,
     numbers,
     read_toml,
     repeated,
     rising,
+    whole_number,
 )
 from modefront.rounding import LARGEST
 

@@ -4,6 +4,12 @@ A parameter multiplies a property of named members (theta = 1 is the structure a
 modulus and density enter once, thickness as powers from t (membrane, translational mass) to t^5
 (bending of thick shells), the geometric stiffness of a prestress once. Terms of equal exponents
 are one term.
+
+Static loads make internal forces: at theta = 1 the displacements u = T q under the forces f are the
+solution of T^T K T q = T^T f, with forces at nodes, gravity f = M a, and the forces that make free
+strains. The elements turn u into internal forces and their geometric stiffness K_G, which is linear
+in them. The structure with it is stable where K + K_G is positive definite: L D L^T has no negative
+pivots.
 """
 
 from __future__ import annotations
@@ -21,10 +27,10 @@ from modefront.fem.check import SAME_PLACE, check_names, check_points, node_list
 from modefront.fem.dofs import Dofs, Followers, following_rows, hold, number_dofs
 from modefront.fem.elements.common import ByPower
 from modefront.fem.mechanism import check_mechanisms
-from modefront.fem.prestress import check_stability, load_forces, static_state
 from modefront.fem.section import Checks, FemError
-from modefront.fem.structure import Parameter, Sensor, Structure
+from modefront.fem.structure import DIRECTIONS, Load, Parameter, Sensor, Structure
 from modefront.linalg.affine import Monomials, SparseAffine, sparse_affine, sparse_rows
+from modefront.linalg.factorisation import Factorisation, SingularMatrixError, factorise
 
 SensorPlaces = tuple[Ints, Floats]
 """Nodes (sensors,) of sensors, and their directions (sensors, 6), weights of the DOFs of a node."""
@@ -73,7 +79,9 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     held = np.zeros_like(exists)
     following += hold(X, structure.supports, held, exists, checks)
     places = sensor_places(X, structure.sensors, np.flatnonzero(exists.any(1)), checks)
-    forces = load_forces(structure.loads, blocks, exists, checks)
+    forces = [
+        checks.attempt(f"load {x.name!r}", _forces, x, blocks, exists) for x in structure.loads
+    ]
     dofs = checks.attempt("", number_dofs, exists, held, following)
     checks.close()
     if dofs is None or places is None:
@@ -89,15 +97,24 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
         M.add(block, block.name, block.matrices.mass, ("density", "mass"))
         if block.prestress is not None:
             K.add(block, block.name, {0: block.prestress}, ("prestress",))
-    states = static_state(K.total(), dofs.T, forces, floating) if forces else ()
-    for load, u in zip(structure.loads, states, strict=True):
+    factor = _stable(K.total()) if forces and not floating else None
+    for load, f in zip(structure.loads, forces, strict=True):
+        if factor is None or f is None:
+            found = "a floating one" if floating else "another"
+            expected = "a structure that is held, and stable without it"
+            raise FemError(f"load: expected {expected}, found {found}")
+        u = dofs.T @ factor.solve((dofs.T.T @ f)[:, None])[:, 0]
         for block in blocks:
             if block.internal is not None:
                 strain = load.strains.get(block.name, 0.0)
                 made = block.internal().stiffness(u[block.dofs()], strain)
                 K.add(block, load.name, {0: made}, ("prestress",))
-    if not floating and (forces or any(block.prestress is not None for block in blocks)):
-        check_stability(K.total())
+    prestressed = bool(forces) or any(block.prestress is not None for block in blocks)
+    if prestressed and not floating and _stable(K.total()) is None:
+        raise FemError(
+            "load: expected loads and forces below the critical ones, but under them the"
+            " structure buckles"
+        )
     parameters, sensors = (
         tuple(each.name for each in named) for named in (structure.parameters, structure.sensors)
     )
@@ -217,3 +234,43 @@ def _node(X: Floats, sensor: Sensor, used: Ints, tree: KDTree | None) -> int:
         there = tuple(point.tolist())
         raise FemError(f"no node within {tolerance:.3g} of {there}; the nearest is {near}")
     return node
+
+
+def _forces(load: Load, blocks: Sequence[Block], exists: Bools) -> Floats:
+    force, a = (np.asarray(x, dtype=float) for x in (load.force, load.acceleration))
+    if force.shape not in ((3,), (6,)) or a.shape != (3,) or not np.isfinite([*force, *a]).all():
+        found = f"{load.force!r} and {load.acceleration!r}"
+        raise FemError(f"expected a force (3,) or (6,) and an acceleration (3,), found {found}")
+    f = np.zeros(exists.shape)
+    if (np.size(load.nodes) > 0) != force.any():
+        raise FemError("expected nodes and a force on them, found one without the other")
+    if force.any():
+        f[node_list(load.nodes, len(f)), : len(force)] = force
+    nowhere = np.argwhere((f != 0) & ~exists)
+    if len(nowhere):
+        node, direction = nowhere[0]
+        raise FemError(f"nothing resists {DIRECTIONS[direction]} of node {node}")
+    out = f.ravel()
+    known = {block.name for block in blocks if block.internal is not None}
+    if unknown := set(load.strains) - known:
+        names = ", ".join(sorted(known)) or "none"
+        raise FemError(f"nothing named {min(unknown)!r} has strains; those that do: {names}")
+    for block in blocks:
+        pull = np.tile(np.append(a, np.zeros(3))[list(block.directions)], block.cells.shape[1])
+        parts = [M @ pull for M in block.matrices.mass.values()]
+        if block.internal is not None and (strain := load.strains.get(block.name, 0.0)):
+            parts.append(block.internal().free_forces(strain))
+        for each in parts:
+            np.add.at(out, block.dofs(), each)
+    if not out.any():
+        raise FemError("expected forces at nodes, an acceleration or strains, found none")
+    return out
+
+
+def _stable(K: sparse.csr_array) -> Factorisation | None:
+    """Return the factor of K; None where it is not positive definite."""
+    try:
+        factor = factorise(K)
+    except SingularMatrixError:
+        return None
+    return None if factor.negative else factor

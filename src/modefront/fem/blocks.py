@@ -10,31 +10,17 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.fem.check import (
-    ALONG,
-    COINCIDENT,
-    axes_of,
-    cell_array,
-    check_positive,
-    check_sizes,
-    direction_indices,
-    node_list,
-    shell_sizes,
-    solid_sizes,
-    unit_vector,
-)
+from modefront.fem import check
+from modefront.fem.elements import common
 from modefront.fem.elements.beam import Axial, beam, truss
-from modefront.fem.elements.common import (
-    ElementMatrices,
-    attachment,
-    cross_matrix,
-    elasticity,
-    ply,
-    symmetric,
+from modefront.fem.elements.shell import (
+    centre_axes,
+    directors,
+    narrowness,
+    shell,
+    shell_stresses,
 )
-from modefront.fem.elements.internal import Stresses, centre_axes, shell_stresses, solid_stresses
-from modefront.fem.elements.shell import directors, narrowness, shell
-from modefront.fem.elements.solid import SOLIDS, solid
+from modefront.fem.elements.solid import SOLIDS, solid, solid_stresses
 from modefront.fem.section import Checks, FemError, Material, at
 from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring, Structure, Trusses
 from modefront.rounding import TINY
@@ -65,10 +51,10 @@ class Block:
     name: str
     cells: Ints
     directions: tuple[int, ...]
-    matrices: ElementMatrices
+    matrices: common.ElementMatrices
     rigid: bool = False
     prestress: Floats | None = None
-    internal: Callable[[], Axial | Stresses] | None = None
+    internal: Callable[[], Axial | common.Stresses] | None = None
 
     def dofs(self) -> Ints:
         """Return 6 node + direction of each row of the matrices (elements, k d)."""
@@ -108,15 +94,15 @@ def _beams(X: Floats, group: Beams) -> Block:
         orientation = np.where(upright, np.eye(3)[0], np.eye(3)[2])
     else:
         with at("orientation"):
-            v = unit_vector(tuple(group.orientation))[:3]
+            v = check.unit_vector(tuple(group.orientation))[:3]
         orientation = np.broadcast_to(v, axis.shape)
-        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < ALONG)
+        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < check.ALONG)
         if len(parallel):
             what = f"orientation {tuple(group.orientation)} must not be parallel to the axis, but"
             nodes = ", ".join(map(str, cells[parallel[0]].tolist()))
             raise FemError(f"{what} it is at element {parallel[0]} (nodes {nodes})")
     with at("releases"):
-        ends = [direction_indices(names) if len(names) else [] for names in group.releases]
+        ends = [check.direction_indices(names) if len(names) else [] for names in group.releases]
     released = [6 * end + d for end, directions in enumerate(ends) for d in directions]
     made, axial = beam(X[cells], group.material, section, orientation, r, released)
     given = group.force * axial.unit if group.force else None
@@ -124,7 +110,7 @@ def _beams(X: Floats, group: Beams) -> Block:
 
 
 def _trusses(X: Floats, group: Trusses) -> Block:
-    check_positive(group.area, "area")
+    check.check_positive(group.area, "area")
     cells, _ = _lines(X, group, np.zeros((2, 3)))
     made, axial = truss(X[cells], group.material, group.area)
     given = group.force * axial.unit if group.force else None
@@ -135,18 +121,18 @@ def _lines(X: Floats, group: Beams | Trusses, r: Floats) -> tuple[Ints, Floats]:
     """Return cells (elements, 2) and the unit vectors along them, with offsets r of the ends."""
     if not isinstance(group.material, Material):
         raise FemError(f"expected an isotropic material, found {group.material!r}")
-    cells = cell_array(group.cells, (2,), len(X))
+    cells = check.cell_array(group.cells, (2,), len(X))
     ends = X[cells] + r
     axis = ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(axis, axis=1)
-    check_sizes(length / np.ptp(X, axis=0).max(initial=TINY), cells, "length")
+    check.check_sizes(length / np.ptp(X, axis=0).max(initial=TINY), cells, "length")
     return cells, axis / length[:, None]
 
 
 def _shell_cells(X: Floats, group: Shells) -> Ints:
-    cells = cell_array(group.cells, (3, 4), len(X))
-    check_positive(group.thickness, "thickness")
-    check_sizes(shell_sizes(X[cells]), cells, "area")
+    cells = check.cell_array(group.cells, (3, 4), len(X))
+    check.check_positive(group.thickness, "thickness")
+    check.check_sizes(check.shell_sizes(X[cells]), cells, "area")
     return cells
 
 
@@ -157,7 +143,7 @@ def _shells(
     x, r, t = X[cells], group.offset * d, group.thickness
     m = _grain(x, group)
     made = shell(x, d, narrow, m, group.material, t, group.offset, group.name in varied)
-    internal = partial(shell_stresses, x, r, m, ply(group.material), t)
+    internal = partial(shell_stresses, x, r, m, common.ply(group.material), t)
     return Block(group.name, cells, SIX, made, rigid=True, internal=internal)
 
 
@@ -168,10 +154,10 @@ def _grain(x: Floats, group: Shells) -> Floats:
     if group.direction is None:
         raise FemError("a direction is needed, along which axis 1 of the material is")
     with at("direction"):
-        v = unit_vector(tuple(group.direction))[:3]
+        v = check.unit_vector(tuple(group.direction))[:3]
     R = centre_axes(x)[:, :2]
     m = (R @ v)[:, None] @ R
-    across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < ALONG)
+    across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < check.ALONG)
     if len(across):
         what = f"direction {tuple(group.direction)} must not be normal to the shell, but it is"
         raise FemError(f"{what} at element {across[0]}")
@@ -182,9 +168,9 @@ def _solids(X: Floats, group: Solids) -> Block:
     if np.ndim(group.cells) == 2 and np.shape(group.cells)[1] == 4:
         why = "tetrahedra of 4 nodes are far too stiff in bending"
         raise FemError(f"{why}; mesh with second-order elements (10 nodes)")
-    cells = cell_array(group.cells, tuple(SOLIDS), len(X))
-    check_sizes(solid_sizes(X[cells]), cells, "volume")
-    C = elasticity(group.material, axes_of(group.axes))
+    cells = check.cell_array(group.cells, tuple(SOLIDS), len(X))
+    check.check_sizes(check.solid_sizes(X[cells]), cells, "volume")
+    C = common.elasticity(group.material, check.axes_of(group.axes))
     made, internal = solid(X[cells], group.material.rho, C), partial(solid_stresses, X[cells], C)
     return Block(group.name, cells, TRANSLATIONS, made, rigid=True, internal=internal)
 
@@ -195,9 +181,9 @@ def _springs(X: Floats, member: Spring) -> Block:
     With a unit vector a on displacements or rotations of the nodes, s is (a, -a), or (a) to the
     ground.
     """
-    nodes = node_list(member.nodes, len(X))[:, None]
+    nodes = check.node_list(member.nodes, len(X))[:, None]
     if member.to is not None:
-        to = node_list(member.to, len(X))
+        to = check.node_list(member.to, len(X))
         if len(to) != len(nodes):
             raise FemError(f"expected {len(nodes)} partners, found {len(to)}")
         nodes = np.stack([nodes[:, 0], to], 1)
@@ -207,17 +193,16 @@ def _springs(X: Floats, member: Spring) -> Block:
         if k.shape != (6,) or not (k >= 0).all() or not k.any() or member.direction is not None:
             found = f"{member.stiffness!r} and direction {member.direction!r}"
             raise FemError(f"expected 6 stiffnesses >= 0 without a direction, found {found}")
-        R = np.broadcast_to(axes_of(member.axes), (len(nodes), 3, 3))
         arms = np.stack([gap / 2, -gap / 2], 1)[:, : nodes.shape[1]]
-        A = attachment(R, arms).reshape(len(nodes), -1, 6, 6 * nodes.shape[1])
+        A = common.attachment(arms, check.axes_of(member.axes))
         rows = A[:, 0] - A[:, 1] if nodes.shape[1] == 2 else A[:, 0]
     else:
         k = np.array([member.stiffness], dtype=float)
-        check_positive(k[0], "stiffness")
+        check.check_positive(k[0], "stiffness")
         axis = _spring_axis(X, member, nodes, gap)
         rows = np.concatenate([axis, -axis][: nodes.shape[1]], 1)[:, None]
-    K = symmetric(np.swapaxes(rows, 1, 2) @ (k[:, None] * rows))
-    return Block(member.name, nodes, SIX, ElementMatrices({0: K}, {}))
+    K = common.symmetric(np.swapaxes(rows, 1, 2) @ (k[:, None] * rows))
+    return Block(member.name, nodes, SIX, common.ElementMatrices({0: K}, {}))
 
 
 def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats) -> Floats:
@@ -227,12 +212,12 @@ def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats) -> Floats:
     if member.axes is not None:
         raise FemError("axes are for 6 stiffnesses; expected a vector as direction")
     if member.direction is None:
-        if member.to is None or (length <= COINCIDENT * size).any():
+        if member.to is None or (length <= check.COINCIDENT * size).any():
             raise FemError("a direction is needed unless it joins two distant nodes")
         return np.pad(gap / length, ((0, 0), (0, 3)))
-    axis = np.tile(unit_vector(member.direction), (len(nodes), 1))
+    axis = np.tile(check.unit_vector(member.direction), (len(nodes), 1))
     slant = np.linalg.norm(np.cross(gap, axis[:, :3]), axis=1)
-    skew = np.flatnonzero(slant > ALONG * length[:, 0] + COINCIDENT * size)
+    skew = np.flatnonzero(slant > check.ALONG * length[:, 0] + check.COINCIDENT * size)
     if axis[0, :3].any() and len(skew):
         raise FemError(
             f"between distant nodes it must act along their line, else it resists a"
@@ -247,7 +232,7 @@ def _masses(X: Floats, member: Mass) -> Block:
 
     Their energy is 1/2 m |u + omega x c|^2 + 1/2 omega^T I omega, with an m for each direction.
     """
-    nodes = node_list(member.nodes, len(X))[:, None]
+    nodes = check.node_list(member.nodes, len(X))[:, None]
     inertia, c = np.asarray(member.inertia, dtype=float), np.asarray(member.offset, dtype=float)
     m = np.asarray(member.mass, dtype=float)
     m = np.repeat(m, 3) if m.shape == () else m
@@ -260,10 +245,10 @@ def _masses(X: Floats, member: Mass) -> Block:
     if not (m >= 0).all() or least < -SYMMETRIC * inertia.max():
         expected = "mass >= 0 and inertia symmetric and not negative"
         raise FemError(f"expected {expected}, found {member.mass!r} and {inertia.tolist()}")
-    centre = np.concatenate([np.eye(3), -cross_matrix(c)], 1)
+    centre = np.concatenate([np.eye(3), -common.cross_matrix(c)], 1)
     M = centre.T @ (m[:, None] * centre)
     M[3:, 3:] += inertia
-    matrices = ElementMatrices({}, {0: np.tile(symmetric(M), (len(nodes), 1, 1))})
+    matrices = common.ElementMatrices({}, {0: np.tile(common.symmetric(M), (len(nodes), 1, 1))})
     return Block(member.name, nodes, SIX, matrices)
 
 

@@ -7,7 +7,6 @@ on an engineer should not trust a mesh; ``benchmarks/elements.py`` measures the 
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
 
@@ -29,6 +28,7 @@ from modefront.fem.structure import (
     Structure,
     Trusses,
 )
+from modefront.options import repeated
 
 FLAT = 1e-8
 """Length, area or volume of an element over that of its extent that is rounding of coordinates."""
@@ -179,11 +179,8 @@ def check_names(structure: Structure) -> None:
         ("sensor", [s.name for s in structure.sensors]),
         ("parameter", [p.name for p in structure.parameters]),
     ):
-        wrong += [
-            f"{what} {name!r}: expected a name used once, found it twice"
-            for name, count in Counter(names).items()
-            if count > 1
-        ]
+        expected = "expected a name used once, found it twice"
+        wrong += [f"{what} {name!r}: {expected}" for name in repeated(names)]
     for name in sorted(has["E"]):
         classes = sorted({type(g).__name__ for g in structure.groups if g.name == name})
         if len(classes) > 1:
@@ -222,12 +219,8 @@ CORNERS = np.array(
 """Neighbours of each corner of a brick, in the order of a right-handed system."""
 
 
-def limits_of(structure: Structure, nodes: Floats) -> tuple[str, ...]:
-    """Return warnings on the elements of a structure; its nodes (nodes, 3) are checked."""
-    return tuple(_limits(structure, nodes))
-
-
-def _limits(structure: Structure, nodes: Floats) -> Iterator[str]:
+def limits_of(structure: Structure, nodes: Floats) -> Iterator[str]:
+    """Yield warnings on the elements of a structure; its nodes (nodes, 3) are checked."""
     for group in structure.groups:
         cells = np.asarray(group.cells)
         if isinstance(group, Shells):

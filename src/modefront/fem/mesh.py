@@ -17,6 +17,7 @@ import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any, Literal
 from unittest import mock
@@ -192,7 +193,7 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
         ):
             warnings.simplefilter("error", DeprecationWarning)  # NumPy's, of a text that is cut
             if path.suffix.lower() == ".msh":
-                _check_sections(path)
+                _check_sections(path.read_bytes())
             raw = meshio.read(path)
     except (Exception, SystemExit) as error:
         raise FemError(" ".join(f"{output.getvalue()} {error}".split())) from error
@@ -220,42 +221,32 @@ def _from_file(file: Any, dtype: Any = float, count: int = -1, *others: Any, **n
     return out
 
 
-def _check_sections(path: Path) -> None:
+SECTION = re.compile(rb"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", re.DOTALL | re.MULTILINE)
+"""A section of a Gmsh file."""
+
+
+def _check_sections(content: bytes) -> None:
     """Raise ValueError where sections of Gmsh's text have no end, or not what they announce."""
-    lines = [line.strip() for line in path.read_bytes().split(b"\n")]
-    if lines[1:] and lines[1].split()[1:2] == [b"1"]:  # binary
+    sections = {name: body.split(b"\n")[:-1] for name, body in SECTION.findall(content)}
+    version, binary, *_ = sections.get(b"MeshFormat", [b"? 0"])[0].split()
+    if binary == b"1":
         return
-    k = 0
-    while (k := next((k for k in range(k, len(lines)) if lines[k]), len(lines))) < len(lines):
-        section, place = lines[k], f"line {k + 1}: {lines[k]!r}"
-        if not section.startswith(b"$") or section.startswith(b"$End"):
-            raise ValueError(f"{place} in place of the beginning of a section")
-        end = next((m for m in range(k + 1, len(lines)) if lines[m].startswith(b"$")), None)
-        if end is None:
-            raise ValueError(f"line {k + 1}: a section that has no end")
-        whole = _is_whole(lines[1][:1], section, lines[k + 1 : end])
-        if lines[end] != b"$End" + section[1:] or not whole:
-            raise ValueError(f"{place}, other lines than said, or no end")
-        k = end + 1
-
-
-def _is_whole(version: bytes, section: bytes, lines: list[bytes]) -> bool:
-    """Return whether a section of a version of Gmsh's text has as many entries as it announces."""
-    entry = {b"$Nodes": 2, b"$Elements": 1}.get(section)  # lines of an entry of a block
-    if version not in (b"2", b"4") or not (entry or section == b"$PhysicalNames"):
-        return True
-    if version == b"4" and entry:
-        blocks, total = (int(word) for word in lines[0].split()[:2])
-        position, found = 1, 0
-        for _ in range(blocks):
-            _, _, _, count = (int(word) for word in lines[position].split())
-            position, found = position + 1 + entry * count, found + count
-        return position == len(lines) and found == total
-    for _, kind, tags, *others in (map(int, x.split()) for x in lines[1:] if entry == 1):
-        nodes = len(others) - tags
-        if nodes != CORNERS.get(kind, nodes) or nodes < 0:
-            return False
-    return int(lines[0]) == len(lines) - 1
+    if outside := SECTION.sub(b"", content).strip():
+        raise ValueError(f"{outside[:60]!r} outside of sections, or in one without an end")
+    for name, each in ((b"PhysicalNames", 0), (b"Nodes", 2), (b"Elements", 1)):
+        (head, *lines), found = sections.get(name, [b"0 0"]), 0
+        if each and version[:1] == b"4":  # blocks of entries of ``each`` lines
+            rows = iter(lines)
+            for _, _, _, count in (map(int, row.split()) for row in rows):
+                found += count if len(list(islice(rows, each * count))) == each * count else -1
+        else:
+            found = len(lines)
+        if version[:1] in b"24" and found != int(head.split()[each > 0 and version[:1] == b"4"]):
+            raise ValueError(f"{found} entries of {name.decode()}, not those announced")
+    elements = sections.get(b"Elements", []) if version[:1] == b"2" else []
+    for _, kind, tags, *others in (map(int, line.split()) for line in elements[1:]):
+        if len(others) - tags != CORNERS.get(kind, len(others) - tags):
+            raise ValueError(f"{len(others) - tags} nodes of an element of type {kind}")
 
 
 def _node_sets(raw: Any) -> dict[str, Ints]:

@@ -45,26 +45,6 @@ class Archive:
         self.J = np.vstack([self.J[kept], J])
 
 
-@dataclass
-class Recorder:
-    """Archives the models that are evaluated, of which there are no more than ``most``."""
-
-    archive: Archive
-    most: int | None = None
-    evaluations: int = 0
-
-    def evaluation(
-        self, problem: Problem, theta: Floats, derivatives: bool, second: bool
-    ) -> Evaluation:
-        """Return the evaluation at ``theta``; raises SpentError where none is left."""
-        if self.most is not None and self.evaluations >= self.most:
-            raise SpentError
-        evaluation = problem.evaluate(theta, derivatives=derivatives, second=second)
-        self.evaluations += 1
-        self.archive.add(evaluation.theta, evaluation.J)
-        return evaluation
-
-
 @record
 @dataclass(frozen=True)
 class Outcome:
@@ -93,13 +73,22 @@ def recorded(
     **options: Any,
 ) -> Outcome:
     """Return the result of a function of a problem, with the models that it evaluates."""
-    seen = Recorder(Archive(problem.lower.size, len(problem.objectives)), most)
-    result, spent = None, False
+    archive, count = Archive(problem.lower.size, len(problem.objectives)), 0
+
+    def evaluation(of: Problem, theta: Floats, derivatives: bool, second: bool) -> Evaluation:
+        nonlocal count
+        if most is not None and count >= most:
+            raise SpentError
+        count += 1
+        found = of.evaluate(theta, derivatives=derivatives, second=second)
+        archive.add(found.theta, found.J)
+        return found
+
     try:
-        result = function(Wrapped(problem, seen.evaluation), *arguments, **options)
+        result = function(Wrapped(problem, evaluation), *arguments, **options)
     except SpentError:
-        spent = True
-    return Outcome(result, seen.archive.theta, seen.archive.J, seen.evaluations, spent)
+        return Outcome(None, archive.theta, archive.J, count, spent=True)
+    return Outcome(result, archive.theta, archive.J, count)
 
 
 def limited(task: Task[Any], most: int | None) -> Task[Outcome]:

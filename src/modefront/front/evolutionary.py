@@ -7,6 +7,8 @@ with those that are kept.
 from __future__ import annotations
 
 import zlib
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +17,7 @@ from modefront.front.dominance import nondominated
 from modefront.front.methods import METHODS
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, Status
-from modefront.work.task import IMMEDIATE, Executor, Task
+from modefront.work.task import IMMEDIATE, Task
 
 UNDEFINED = float(np.finfo(np.float32).max)
 """Value of an objective where the model cannot be evaluated; pymoo takes no infinity."""
@@ -27,11 +29,12 @@ def evolve_front(
     population: int,
     evaluations: int,
     rng: np.random.Generator,
-    work: Executor = IMMEDIATE,
+    run: Callable[[Sequence[Task[Any]]], list[Any]] = IMMEDIATE.run,
 ) -> list[Solution]:
     """Return the non-dominated models of the last population, ascending in the first objective.
 
     ``evaluations`` is the budget; whole generations of size ``population`` are spent of it.
+    ``run`` carries out tasks.
     """
     from pymoo.core.evaluator import Evaluator
     from pymoo.core.problem import Problem as Described
@@ -54,7 +57,7 @@ def evolve_front(
         thetas = proposals.get("X")
         # Another version of pymoo may ask for other models.
         key = ("front", method, spent, f"{zlib.crc32(thetas.tobytes()):x}")
-        (members,) = work.run([Task(key, _members, (problem, thetas))])
+        (members,) = run([Task(key, _members, (problem, thetas))])
         known |= {theta.tobytes(): x for theta, x in zip(thetas, members, strict=True)}
         spent += len(proposals)
         F = np.nan_to_num(np.array([x.J for x in members]), posinf=UNDEFINED)

@@ -1,16 +1,17 @@
 """Where the branches of a disconnected front of two objectives end (`docs/methods/nbi.md`).
 
-Equations have no slack. Between points that are none of them dominated, but have dominated ones
-between them, the branch behind starts at its own least first objective, if that lies to the right
-of the last point before that it does not dominate; otherwise the branch before ends at its least
-second objective.
+There is a gap where a point of the lattice has slack, or dominated points lie between two that are
+not. The branch before ends at its own least second objective, and the branch behind starts at its
+own least first one, unless these lie beyond the other branch. Where only one end is known so, or
+one dominates the other, the other branch ends or starts at its level.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from modefront.front.subproblems import RHO
 from modefront.optim.problem import Problem
 from modefront.optim.scalarisation import Scalarisation, constrained, weighted
 from modefront.optim.sqp import TIGHT, Solution, solve
-from modefront.work.task import IMMEDIATE, Executor, Task
+from modefront.work.task import IMMEDIATE, Task
 
 
 @dataclass(frozen=True)
@@ -54,13 +55,14 @@ def gaps(
     points: Sequence[Solution],
     optimal: Bools,
     scale: Floats,
-    work: Executor = IMMEDIATE,
+    run: Callable[[Sequence[Task[Any]]], list[Any]] = IMMEDIATE.run,
     slack: Bools | None = None,
 ) -> list[Gap]:
     """Return the gaps between points in their order along the front, of two objectives.
 
     ``optimal`` (points,) says which points are Pareto optimal among them, and ``slack`` (points, 2)
-    in which objective a point of the lattice has slack; none of them unless given.
+    in which objective a point of the lattice has slack; none of them unless given. ``run`` carries
+    out tasks.
     """
     slack = np.zeros((len(points), 2), dtype=np.bool_) if slack is None else slack
     tasks, sides = [], []
@@ -68,12 +70,11 @@ def gaps(
     for k, (a, b) in enumerate(pairwise(kept)):
         known = bool(slack[a, 0]), bool(slack[b, 1])
         if any(known) or b > a + 1:
-            before = [points[i] for i in kept[: k + 1]]
-            arguments = (problem, before, points[b], known, scale)
-            tasks.append(Task(("gap", a + 1, b + 1), _ends, arguments))
+            nearest = [points[i] for i in kept[k::-1]], [points[i] for i in kept[k + 1 :]]
+            tasks.append(Task(("gap", a + 1, b + 1), _ends, (problem, *nearest, scale)))
             sides.append((points[a], points[b], known))
     out = []
-    for (last, first, known), ends in zip(sides, work.run(tasks), strict=True):
+    for (last, first, known), ends in zip(sides, run(tasks), strict=True):
         end, start = ends or (None, None)
         if end and start and not _lies_between(end, start, scale):
             own, beyond = (end, first) if known[0] else (start, last)
@@ -91,40 +92,34 @@ def _lies_between(end: Solution, start: Solution, scale: Floats) -> bool:
 
 
 def _ends(
-    problem: Problem,
-    before: Sequence[Solution],
-    b: Solution,
-    slack: tuple[bool, bool],
-    scale: Floats,
+    problem: Problem, before: Sequence[Solution], behind: Sequence[Solution], scale: Floats
 ) -> list[Solution | None]:
-    """Return where the branch before a gap ends and that of b starts; ``slack`` of these points."""
-    unit, a = np.eye(2) / scale, before[-1]
+    """Return where the branch before a gap ends and the one behind starts, points nearest first."""
+    unit = np.eye(2) / scale
 
-    def found(programme: Scalarisation, of: Solution) -> Solution | None:
+    def found(of: Solution, programme: Scalarisation) -> Solution | None:
         solution = solve(problem, programme, of, TIGHT)
         return solution if solution.converged else None
-
-    def own(i: int, of: Solution) -> Solution | None:
-        """Return where an objective is least within the branch of a point."""
-        return found(weighted(unit[i]), of)
 
     def at_level(i: int, of: Solution, other: Solution | None) -> Solution | None:
         """Return where the branch of a point has as much of an objective as the other end."""
         goal = None if other is None else other.J[[i]] / scale[i]
-        return None if goal is None else found(constrained(unit[1 - i], unit[[i]], goal), of)
+        return None if goal is None else found(of, constrained(unit[1 - i], unit[[i]], goal))
 
-    ends_itself, starts_itself = slack
-    end = own(1, a) if ends_itself else None
-    start = own(0, b) if starts_itself or not ends_itself else None
-    if not any(slack) and start:
-        a = next((x for x in before[::-1] if (x.J < start.J).any()), a)
-        if start.J[0] < a.J[0]:
-            ends_itself, end = True, own(1, a)
-    if not ends_itself:
+    end, start = found(before[0], weighted(unit[1])), found(behind[0], weighted(unit[0]))
+    a, b = _first(before, start), _first(behind, end)
+    end = end if end and end.J[1] >= b.J[1] else None
+    start = start if start and start.J[0] >= a.J[0] else None
+    if start and (not end or (start.J <= end.J).all()):
         end = at_level(0, a, start)
-    elif not starts_itself:
+    elif not start or (end and (end.J <= start.J).all()):
         start = at_level(1, b, end)
     return [end, start]
+
+
+def _first(points: Sequence[Solution], other: Solution | None) -> Solution:
+    """Return the first point that the other end does not dominate."""
+    return next((x for x in points if other and (x.J < other.J).any()), points[0])
 
 
 def branches_of(

@@ -10,8 +10,16 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, suggestion
-from modefront.json_schema import ABOVE_ZERO, TABLE, table_of
-from modefront.options import Requirement, check_fields, number, shown, text
+from modefront.options import (
+    ABOVE_ZERO,
+    TABLE,
+    Requirement,
+    check_fields,
+    number,
+    shown,
+    table_of,
+    text,
+)
 
 WEIGHT = number("a weight above 0", above=0)
 

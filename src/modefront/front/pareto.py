@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, count, pairwise
+from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import UnfinishedError
-from modefront.front.archive import Archive
 from modefront.front.dominance import nondominated
 from modefront.front.evolutionary import evolve_front
 from modefront.front.front import Edge, Front
@@ -18,10 +18,9 @@ from modefront.front.gaps import Gap, gaps
 from modefront.front.methods import METHODS
 from modefront.front.options import MOST, Pareto
 from modefront.front.point import Kind, Point, label
-from modefront.front.proposers.base import Proposer, Rate, at, evaluated
+from modefront.front.proposers.base import Proposer, at, evaluated
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
-from modefront.front.proposers.rivals import Rivals
 from modefront.front.proposers.starts import SURE, Starts
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import (
@@ -33,7 +32,7 @@ from modefront.front.simplex import (
     neighbours,
     payoff,
 )
-from modefront.front.state import DISTINCT, Counted, Place, State, distinct_points
+from modefront.front.state import DISTINCT, Place, State, distinct_points
 from modefront.front.subproblems import (
     LOOSE,
     RHO,
@@ -52,7 +51,7 @@ from modefront.front.weights import (
     least_along,
     optimal_minimum,
 )
-from modefront.optim.lexicographic import EXACT, TIE
+from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
 from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
@@ -90,24 +89,21 @@ class _Run:
     seed: int
     search: Search
     given: Sequence[tuple[str, Floats]]
-    executor: Executor
+    work: Executor
     known: Front | None
 
     def __post_init__(self) -> None:
         self.n = len(self.problem.objectives)
         named = [(Kind.GIVEN, name, w) for name, w in self.given]
         self.weighted = [*named, (Kind.EQUAL, "", np.ones(self.n))]
-        archive = Archive(self.problem.lower.size, self.n)
-        self.state = State(self.problem, self.search.tolerance, archive)
-        self.needed = Counted(self.state, self.executor)
-        self.work = Counted(self.state, self.executor, self.search.evaluations)
+        self.state, self.cut = State(self.problem, self.search.tolerance, self.work), False
         rng = np.random.default_rng(seed_sequence(self.seed, "search"))
-        self.starts, self.rivals = Starts(rng), Rivals()
+        self.starts = Starts(rng)
         proposers: list[Proposer] = [Polish()]
         if self.known is None:
             others = np.random.default_rng(seed_sequence(self.seed, "evolution"))
-            proposers += [self.rivals, self.starts, Evolution(others, self.starts)]
-        self.loop = Loop(self.state, proposers, self.search, self.executor)
+            proposers += [self.starts, Evolution(others, self.starts)]
+        self.loop = Loop(self.state, proposers, self.search)
 
     def front(self) -> Front:
         """Return all that is found."""
@@ -116,7 +112,7 @@ class _Run:
         starts = [at(x.theta) for x in self.state.distinct(models)]
         self.state.models += [x for x in self._evaluated(("known",), starts) if x.feasible]
         anchors: list[Subproblem] = [
-            Least(i, sizes, name) for i, name in enumerate(self.problem.objectives)
+            Least(Lexicographic(i, sizes), x) for i, x in enumerate(self.problem.objectives)
         ]
         for kind, name, w in self.weighted:
             anchors.append(Weights(w, ("weights", kind.value, name), EXACT * float(w @ sizes)))
@@ -129,8 +125,8 @@ class _Run:
         self._complete()
         edges = self._edges()
         weighted = [
-            Point(kind, self.place("weights", kind.value, name).incumbent, name)
-            for kind, name, _ in self.weighted
+            Point(kind, place.incumbent, name)
+            for (kind, name, _), place in zip(self.weighted, self.places[self.n :], strict=False)
         ]
         bests = self._reported(sizes, "last")
         points, places, beta = self._points(target, bests)
@@ -138,12 +134,11 @@ class _Run:
             options = self.options
             rng = np.random.default_rng(seed_sequence(self.seed, options.method))
             extent = (options.population, options.evaluations)
-            points = evolve_front(self.problem, options.method, *extent, rng, self.needed)
+            points = evolve_front(self.problem, options.method, *extent, rng, self._needed)
         optimal = self._optimal(weighted, bests, points, sizes)
+        arguments = (self.problem, self.a, sizes, weighted[-1].solution)
         weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
-        equal = self.place("weights", Kind.EQUAL.value, "").incumbent
-        arguments = (self.problem, self.a, sizes, equal)
-        (iterated,) = self.work.run([Task(("iterated-weights",), iterate_weights, arguments)])
+        (iterated,) = self._run([Task(("iterated-weights",), iterate_weights, arguments)])
         method, ends = self.options.method, zip(self.problem.objectives, bests, strict=True)
         along = [Point(Kind.FRONT, x, method, i + 1) for i, x in enumerate(points)]
         return Front(
@@ -168,22 +163,28 @@ class _Run:
         names |= {("weights", k.value, x): label(k, x) for k, x, _ in self.weighted}
         left = self.loop.open
         more = ("points between the edges",) * bool(left - names.keys())
-        more += ("what follows from the points",) * self.work.spent
+        more += ("what follows from the points",) * self.cut
         return (*(text for key, text in names.items() if key in left), *more)
+
+    def _needed(self, tasks: Sequence[Task[Any]]) -> list[Any]:
+        """Return the results of tasks, whatever they cost."""
+        return [outcome.result for outcome in self.state.run(tasks)]
+
+    def _run(self, tasks: Sequence[Task[Any]]) -> list[Any]:
+        """Return the results of tasks, None where the evaluations of one were spent."""
+        outcomes = self.state.run(tasks, self.search.evaluations - self.state.evaluations)
+        self.cut |= any(outcome.spent for outcome in outcomes)
+        return [outcome.result for outcome in outcomes]
 
     @property
     def places(self) -> list[Place]:
-        """The places of all subproblems."""
+        """The places of all subproblems: edges and weighted models come first."""
         return self.state.places
-
-    def place(self, *key: str | int) -> Place:
-        """Return the place of a subproblem."""
-        return next(x for x in self.places if x.subproblem.key == key)
 
     def _sizes(self) -> Floats:
         """Return the typical size of each objective, (n,), of random models, unless it is known."""
         seed = seed_sequence(0 if self.known else 1, "sample")
-        (sizes,) = self.needed.run([Task(("sample",), sample, (self.problem,), seed)])
+        (sizes,) = self._needed([Task(("sample",), sample, (self.problem,), seed)])
         if self.known:
             return self.known.sizes
         if not sizes.size:
@@ -201,7 +202,7 @@ class _Run:
         target: Payoff | None = None
         for turn in count():
             bests = self._reported(sizes, turn)
-            new = payoff(bests, sizes, self._others(bests, sizes))
+            new = payoff(bests, sizes, self._worst(bests, sizes))
             if new is None:
                 self._drop_points()
                 return target
@@ -216,26 +217,26 @@ class _Run:
             more = (self._beyond(), self._apart(target, len(counts)), self._halfway(target))
             for new_points in chain([counts], *more):
                 self._add_points(target, new_points)
-                self.rivals.rate = Rate()
                 self.loop.run("front")
         return target
 
-    def _others(self, bests: Sequence[Solution], sizes: Floats) -> list[Solution]:
-        """Return the best models without regard to one objective each, where edges coincide.
+    def _worst(self, bests: Sequence[Solution], sizes: Floats) -> list[Solution]:
+        """Return the model worst in each objective, where the simplex between the edges is flat.
 
-        They tell the ranges of the front where the simplex between the edges is flat.
+        It is one of the edges and of the best models without regard to one objective each.
         """
         if not is_flat(bests, sizes):
             return []
-        keys = [("others", name) for name in self.problem.objectives]
-        if not any(x.subproblem.key == keys[0] for x in self.places):
+        if not any(x.subproblem.key[0] == "others" for x in self.places):
             new = []
-            for i, key in enumerate(keys):
+            for i, name in enumerate(self.problem.objectives):
                 w = np.where(np.arange(self.n) == i, TIE, 1.0) / sizes
-                new.append(Weights(w, key, EXACT * self.n))
+                new.append(Weights(w, ("others", name), EXACT * self.n))
             self.state.add(new)
             self.loop.run("ranges")
-        return [self.place(*key).incumbent for key in keys]
+        others = (x.incumbent for x in self.places if x.subproblem.key[0] == "others")
+        models = [*bests, *others]
+        return [max(models, key=lambda x: float(x.J[i])) for i in range(self.n)]
 
     def _add_points(self, target: Payoff, counts: Sequence[tuple[int, ...]]) -> None:
         """Add points of the lattice."""
@@ -325,7 +326,7 @@ class _Run:
     def _evaluated(self, key: Key, models: Iterable[Solution]) -> list[Solution]:
         """Return starts at models, with derivatives."""
         tasks = [Task((*key, k + 1), evaluated, (self.problem, x)) for k, x in enumerate(models)]
-        return self.needed.run(tasks)
+        return self._needed(tasks)
 
     def _edges(self) -> list[Edge]:
         """Return the edge of each objective with its other minima."""
@@ -367,21 +368,16 @@ class _Run:
     def _reported(self, sizes: Floats, turn: int | str) -> list[Solution]:
         """Return the edges, those within the tolerance that are best in the others if wanted."""
         names = self.problem.objectives
-        bests = [self.place("edge", name).incumbent for name in names]
+        bests = [place.incumbent for place in self.places[: self.n]]
         tolerance = self.options.tolerance
         if tolerance == 0:
             return bests
         starts = [place.incumbent for place in self.places]
-        tasks = [
-            Task(
-                ("near", name),
-                near_best,
-                (self.problem, x, i, tolerance, sizes, starts),
-                turn=("near", turn),
-            )
-            for i, (name, x) in enumerate(zip(names, bests, strict=True))
-        ]
-        found = self.work.run(tasks)
+        tasks = []
+        for i, name in enumerate(names):
+            arguments = (self.problem, bests[i], i, tolerance, sizes, starts)
+            tasks.append(Task(("near", name), near_best, arguments, turn=("near", turn)))
+        found = self._run(tasks)
         return [x or best for x, best in zip(found, bests, strict=True)]
 
     def _gaps(self, points: Sequence[Solution], target: Payoff | None) -> Sequence[Gap]:
@@ -394,7 +390,7 @@ class _Run:
             if x.converged and x.beta is not None and self.options.programme == "bounds":
                 c = target.r * target.excess(x.beta, x.J)
                 slack[k] = (c.max() - c > RHO) & ~active_bounds(x.weights * target.unit)
-        return gaps(self.problem, points, optimal, target.scale, self.work, slack)
+        return gaps(self.problem, points, optimal, target.scale, self._run, slack)
 
     def _optimal(
         self,
@@ -409,5 +405,5 @@ class _Run:
             Task(("optimal-weights", k + 1), optimal_minimum, (self.problem, self.a, sizes, x))
             for k, x in enumerate(starts)
         ]
-        minima = self.state.distinct(x for x in self.work.run(tasks) if x and x.converged)
+        minima = self.state.distinct(x for x in self._run(tasks) if x and x.converged)
         return accepted(self.problem, minima, self.a, sizes)

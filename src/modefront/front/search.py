@@ -13,11 +13,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from modefront.front.archive import limited
 from modefront.front.proposers.base import USUAL, Offer, Proposer
 from modefront.front.state import State
-from modefront.options import check_fields, number, whole
-from modefront.work.task import Executor, Key, Task
+from modefront.options import checked, number, whole
+from modefront.work.task import Key, Task
 
 BATCH = 6
 """Offers that are solved at the same time."""
@@ -33,7 +32,7 @@ SEARCHING = 0.9
 weights and the ends of its branches."""
 
 
-@dataclass(frozen=True)
+@checked
 class Search:
     """How far the search for global minima goes.
 
@@ -50,9 +49,6 @@ class Search:
     tolerance: Annotated[float, SHARE] = 1e-3
     doubt: Annotated[float, SHARE] = 0.05
 
-    def __post_init__(self) -> None:
-        check_fields(self)
-
 
 @dataclass
 class Loop:
@@ -63,7 +59,6 @@ class Loop:
     state : what is known
     proposers : in the order in which they are asked
     search : when it ends
-    work : solves the offers
     turn : number of batches that were solved
     costs : searches and evaluations of each proposer
     open : subproblems for which offers were left at the budget
@@ -72,7 +67,6 @@ class Loop:
     state: State
     proposers: Sequence[Proposer]
     search: Search
-    work: Executor
     turn: int = 0
     costs: dict[str, list[int]] = field(default_factory=dict)
     open: set[Key] = field(default_factory=set)
@@ -88,18 +82,14 @@ class Loop:
                 break
             chosen = offers[:BATCH]
             self.turn += 1
+            problem = self.state.problem
             tasks = [
-                Task(
-                    (stage, self.turn, j + 1),
-                    offer.function,
-                    (self.state.problem, *offer.arguments),
-                )
-                for j, (_, offer) in enumerate(chosen)
+                Task((stage, self.turn, j), offer.function, (problem, *offer.arguments))
+                for j, (_, offer) in enumerate(chosen, 1)
             ]
-            share = max(left // len(chosen), 1)
-            outcomes = self.work.run([limited(task, share) for task in tasks])
+            outcomes = self.state.run(tasks, max(left, len(tasks)))
             for (proposer, offer), outcome in zip(chosen, outcomes, strict=True):
-                gain = self.state.tell(offer.place, offer.start, offer.final, outcome)
+                gain = self.state.tell(offer.place, offer.start, outcome)
                 if outcome.result is not None:
                     proposer.learn(self.state, offer, outcome, gain)
                 spent = self.costs.setdefault(proposer.name, [0, 0])

@@ -139,35 +139,22 @@ class Payoff:
 def is_flat(edges: Sequence[Solution], sizes: Floats) -> bool:
     """Return whether the simplex between edges has no volume; ``sizes`` (n,) are typical ones.
 
-    One model may be best in several of more than two objectives.
+    One model may be best in several of more than two objectives. Where one is the best in all of
+    them, the front is one point.
     """
-    if len(edges) == 2:
-        return False
     P = simplex(edges)
     sigma = np.linalg.svd(P / np.maximum(P.max(axis=1), EXACT * sizes)[:, None], compute_uv=False)
-    return bool(sigma[-1] <= FLAT * sigma[0])
+    varies = (EXACT * sizes[:, None] < P).any()
+    return bool(len(edges) > 2 and varies and sigma[-1] <= FLAT * sigma[0])
 
 
 def payoff(
-    edges: Sequence[Solution], sizes: Floats, others: Sequence[Solution] = ()
+    edges: Sequence[Solution], sizes: Floats, worst: Sequence[Solution] = ()
 ) -> Payoff | None:
-    """Return the pay-off of the edges; None where an objective does not vary over them.
-
-    ``sizes`` are typical sizes of the objectives. Where nothing varies, one model is the best in
-    everything and the front is one point. ``others`` are models without regard to one objective
-    each: where the simplex between the edges is flat, its place takes that of the ranges over the
-    edges and these, whose corners need not be attained.
-    """
-    count = len(edges) if others else 0
-    worst = [max([*edges, *others], key=lambda x: float(x.J[i])) for i in range(count)]
-    varies = (simplex(edges) > EXACT * sizes[:, None]).any()
-    return spanned(edges, worst, sizes) if varies else None
-
-
-def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats) -> Payoff | None:
     """Return the pay-off of the edges, or of the ranges up to the ``worst`` models if given.
 
-    None where an objective does not vary.
+    None where an objective does not vary, compared with ``sizes`` (n,). The corners of the ranges,
+    which take the place of a simplex that is flat, need not be attained.
     """
     P, utopia = simplex(edges), np.array([solution.J[i] for i, solution in enumerate(edges)])
     if worst:

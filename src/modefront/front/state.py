@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,7 +14,7 @@ from modefront.front.dominance import SAME
 from modefront.front.subproblems import Order, Subproblem, competes, together
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, Status, begin
-from modefront.work.task import Executor, Task
+from modefront.work.task import IMMEDIATE, Executor, Task
 
 DISTINCT = 1e-3
 """Distance of two models, over the ranges of the parameters, above which they are two."""
@@ -31,13 +31,11 @@ class Place:
     ----------
     incumbent : the best model
     closed : whether the search from the incumbent itself leads nowhere better
-    compared : number of known models that were compared with the incumbent as rivals
     """
 
     subproblem: Subproblem
     incumbent: Solution
     closed: bool = False
-    compared: int = 0
 
 
 @dataclass
@@ -48,19 +46,24 @@ class State:
     ----------
     problem : that is searched
     tolerance : gain of a subproblem that counts
+    work : carries out tasks
     places : subproblems with their incumbents, changed by `add` and `keep`
-    archive : nondominated models of all evaluations
     models : solutions that programmes led to, each once, in the order in which they were found
     evaluations : so far
+    archive : nondominated models of all evaluations
     """
 
     problem: Problem
     tolerance: float
-    archive: Archive
+    work: Executor = IMMEDIATE
     places: list[Place] = field(default_factory=list)
     models: list[Solution] = field(default_factory=list)
     evaluations: int = 0
+    archive: Archive = field(init=False)
     _orders: Order | None = None
+
+    def __post_init__(self) -> None:
+        self.archive = Archive(self.problem.lower.size, len(self.problem.objectives))
 
     @property
     def span(self) -> Floats:
@@ -93,21 +96,31 @@ class State:
         close = near >= 0 and subproblem.gain(best.J, self.models[near]) <= self.tolerance
         return self.models[near] if close else best
 
+    def run(self, tasks: Sequence[Task[Any]], most: int | None = None) -> list[Outcome]:
+        """Return what tasks on the problem find in ``most`` evaluations, of which each has a share.
+
+        All models are archived.
+        """
+        share = None if most is None else max(most, 0) // max(len(tasks), 1)
+        outcomes = self.work.run([limited(task, share) for task in tasks])
+        for outcome in outcomes:
+            self.note(outcome)
+        return outcomes
+
     def note(self, outcome: Outcome) -> None:
         """Count the evaluations of a task, and archive its models."""
         self.evaluations += outcome.evaluations
         for theta, J in zip(outcome.theta, outcome.J, strict=True):
             self.archive.add(theta, J)
 
-    def tell(self, k: int, start: Solution, final: bool, outcome: Outcome) -> float:
-        """Take note of what a search led to; return the greatest gain of a subproblem.
+    def tell(self, k: int, start: Solution, outcome: Outcome) -> float:
+        """Let what a search led to compete; return the greatest gain of a subproblem.
 
-        It is a solution of the place ``k`` where it is ``final``.
+        It is a solution of the place ``k``, or of none where that is -1.
         """
         solution: Solution | None = outcome.result
-        self.note(outcome)
         gain = 0.0
-        if final and solution:
+        if k >= 0 and solution:
             place = self.places[k]
             is_incumbent, own = start is place.incumbent, 0.0
             if solution.feasible:
@@ -176,38 +189,6 @@ class State:
             if self.is_new(x, out):
                 out.append(x)
         return out
-
-
-@dataclass
-class Counted:
-    """Carries out tasks on a problem, whose models are archived, within a budget.
-
-    Attributes
-    ----------
-    state : which takes note of them
-    inner : carries out the tasks
-    budget : evaluations up to which tasks have a result; None where each of them has
-    spent : whether some task had none
-    """
-
-    state: State
-    inner: Executor
-    budget: int | None = None
-    spent: bool = False
-
-    def run(self, tasks: Sequence[Task[Any]]) -> list[Any]:
-        """Return the results of tasks, None where the evaluations of one were spent."""
-        left = None if self.budget is None else max(self.budget - self.state.evaluations, 0)
-        share = None if left is None else left // max(len(tasks), 1)
-        outcomes = self.inner.run([limited(task, share) for task in tasks])
-        for outcome in outcomes:
-            self.state.note(outcome)
-            self.spent |= outcome.spent
-        return [outcome.result for outcome in outcomes]
-
-    def expect(self, stages: Mapping[str, int]) -> None:
-        """Pass on the extent of the work."""
-        self.inner.expect(stages)
 
 
 def distinct_points(points: Sequence[Solution], scale: Floats) -> list[Solution]:

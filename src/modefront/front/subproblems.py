@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Bools, Floats
 from modefront.front.simplex import Payoff
 from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
 from modefront.optim.problem import Problem
@@ -85,16 +85,10 @@ def _linear(w: Floats) -> Order:
 
 @dataclass(frozen=True)
 class Least:
-    """The lexicographic minimum of one objective; ``sizes`` (n,) are typical ones."""
+    """The lexicographic minimum of one objective, and the name of that."""
 
-    objective: int
-    sizes: Floats
+    search: Lexicographic
     name: str
-
-    @cached_property
-    def search(self) -> Lexicographic:
-        """The search for it."""
-        return Lexicographic(self.objective, self.sizes)
 
     @property
     def key(self) -> Key:
@@ -108,7 +102,7 @@ class Least:
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the share by which J_i falls, or where that is tied, the others, if any do."""
-        i, before, search = self.objective, known.J, self.search
+        i, before, search = self.search.objective, known.J, self.search
         if not search.ties(J, before):
             return 1 - search.level(J[i]) / search.level(before[i])
         others = search.others
@@ -123,7 +117,7 @@ class Least:
 
     def solve(self, problem: Problem, start: Solution, known: Floats | None = None) -> Solution:
         """Return the lexicographic minimum below a start, if J_i may be as small as known."""
-        least = np.inf if known is None else float(known[self.objective])
+        least = np.inf if known is None else float(known[self.search.objective])
         return self.search.solve(problem, start, _TIGHT, least)
 
 
@@ -188,11 +182,6 @@ class Point:
         w = self.weights(known)
         fall = float(self.order.value(known.J) - self.order.value(J))
         return fall / min(max(float(w @ known.J), EXACT), 1.0)
-
-    def near(self, J: Floats) -> Ints:
-        """Return which rows of J (models, n) lie within a step of the lattice from the normal."""
-        steps = np.abs(self.target.place(J) - self.beta) * abs(sum(self.place))
-        return np.flatnonzero(steps.max(axis=1) <= 1)
 
     def weights(self, known: Solution) -> Floats:
         """Return the multipliers of the excess at a solution, or of the greatest one at others."""

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
-from modefront.options import check_fields, number, whole
+from modefront.options import checked, number, whole
 
 SHARE = number("a share from 0 to 1", least=0, most=1)
 STEP = number("a share of the ranges from 0.001 to 0.5", least=1e-3, most=0.5)
 
 
-@dataclass(frozen=True)
+@checked
 class Identifiability:
     """Limits of flat parts of the front and of manifolds of equivalent models.
 
@@ -29,6 +28,3 @@ class Identifiability:
     flat: Annotated[float, SHARE] = 0.01
     models: Annotated[int, whole(0, 10**6)] = 100
     step: Annotated[float, STEP] = 0.05
-
-    def __post_init__(self) -> None:
-        check_fields(self)

@@ -14,7 +14,6 @@ from scipy.optimize import linear_sum_assignment
 from threadpoolctl import threadpool_limits
 
 from modefront._typing import Complexes
-from modefront.brief import as_html
 from modefront.data.csv import is_reserved, write_covariance, write_csv
 from modefront.data.modal import ModalData
 from modefront.data.modal_test import ByHand, ModalTest, read_test
@@ -144,8 +143,6 @@ class IdentifiedTest:
         out += [f"warning: {text}" for text in warnings[:NAMED]]
         rest = len(warnings) - NAMED
         return "\n".join([*out, *([f"and {rest} more: see warnings"] if rest > 0 else [])])
-
-    _repr_html_ = as_html
 
 
 def identify(

@@ -325,7 +325,15 @@ class SparseAffine:
         products, ends = times(stack, right), np.cumsum([block.shape[1] for block in left])
         out = np.zeros((starts.size - 1, ends[-1], right.shape[1]))
         for j, rows in self._pieces(ROWS):
-            place, some = _in_a_row(dof[rows], products[rows])
+            own, some = dof[rows], products[rows]
+            place, length = _place(own), int(own[-1] - own[0]) + 1
+            if not isinstance(place, slice) and length <= SPARSE * own.size:
+                # Rows of zeros for those between are cheaper than to collect the others.
+                place, some = (
+                    slice(int(own[0]), int(own[0]) + length),
+                    np.zeros((length, right.shape[1])),
+                )
+                some[own - own[0]] = products[rows]
             for block, end in zip(left, ends, strict=True):
                 out[j, end - block.shape[1] : end] += gram(block[place], some)
         return out
@@ -392,19 +400,6 @@ def sparse_affine(
     indptr = np.searchsorted(union, np.arange(size + 1) * size)
     indices = (union % size).astype(np.int32)
     return SparseAffine(indptr.astype(np.int32), indices, data, coefficients)
-
-
-def _in_a_row(dof: Ints, rows: Floats) -> tuple[slice | Ints, Floats]:
-    """Return a range of degrees of freedom, and rows of zeros for those that were not in it.
-
-    Where these would be too many, nothing is changed.
-    """
-    place, length = _place(dof), int(dof[-1] - dof[0]) + 1
-    if isinstance(place, slice) or length > SPARSE * dof.size:
-        return place, rows
-    out = np.zeros((length, rows.shape[1]))
-    out[dof - dof[0]] = rows
-    return slice(int(dof[0]), int(dof[0]) + length), out
 
 
 def _place(dof: Ints) -> slice | Ints:

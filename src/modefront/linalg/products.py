@@ -42,50 +42,39 @@ THREADS = "RAYON_NUM_THREADS"
 """Variable of the environment that limits the threads of products, and of factors by rslab."""
 
 
-Sharing = Callable[[Callable[[int, int], None], int, int], None]
-"""Does some work on pieces, see `_share`."""
+PARTS, PART = 16, 2**22
+"""Parts of the rows at most, of which products X^T Y are computed each by itself and added up, and
+multiplications of a part at least."""
 
 
 def gram(X: Floats, Y: Floats) -> Floats:
     """Return X^T Y for X of shape (N, a) and Y of shape (N, b)."""
-    a, b = X.shape[1], Y.shape[1]
-    if a * b <= TILE**2:
-        return _gram(X, Y, _share)
-    wide = min(b, max(TILE, TILE**2 // a))
-    high = min(a, TILE**2 // wide)
-    tiles = [
-        (slice(i, i + high), slice(j, j + wide))
-        for i in range(0, a, high)
-        for j in range(0, b, wide)
-    ]
-    out = np.empty((a, b))
+    (N, a), b = X.shape, Y.shape[1]
+    wide = max(1, min(b, max(TILE, TILE**2 // max(a, 1))))
+    high = max(1, min(a, TILE**2 // wide))
+    parts = min(PARTS, 1 + N * a * b // PART)
+    sums = np.empty((parts, a, b))
 
     def fill(first: int, last: int) -> None:
-        for rows, columns in tiles[first:last]:
-            alone = _gram(X[:, rows], Y[:, columns], lambda work, count, _: work(0, count))
-            out[rows, columns] = alone
+        for part in range(first, last):
+            x, y = (A[N * part // parts : N * (part + 1) // parts] for A in (X, Y))
+            for i in range(0, a, high):
+                for j in range(0, b, wide):
+                    rows, columns = slice(i, i + high), slice(j, j + wide)
+                    sums[part, rows, columns] = _gram(x[:, rows], y[:, columns])
 
-    _share(fill, len(tiles), X.shape[0] * a * b)
-    return out
+    _share(fill, parts, N * a * b)
+    return sums[0] if parts == 1 else sums.sum(axis=0)
 
 
-def _gram(X: Floats, Y: Floats, share: Sharing) -> Floats:
-    """Return X^T Y, a block of rows after the other."""
+def _gram(X: Floats, Y: Floats) -> Floats:
+    """Return X^T Y, some blocks of rows after the others."""
     (a, b), (whole, rows) = (X.shape[1], Y.shape[1]), _blocks(X, Y.shape[1])
     out: Floats = X[whole:].T @ Y[whole:]
-    if whole:
-        left = X[:whole].reshape(whole // rows, rows, a).transpose(0, 2, 1)
-        right = Y[:whole].reshape(whole // rows, rows, b)
-        groups = -(-left.shape[0] // GROUP)
-        sums = np.empty((groups, a, b))
-
-        def add(first: int, last: int) -> None:
-            for k in range(first, last):
-                some = slice(k * GROUP, (k + 1) * GROUP)
-                np.matmul(left[some], right[some]).sum(axis=0, out=sums[k])
-
-        share(add, groups, whole * a * b)
-        out += sums.sum(axis=0)
+    left = X[:whole].reshape(-1, rows, a).transpose(0, 2, 1)
+    right = Y[:whole].reshape(-1, rows, b)
+    for k in range(0, len(left), GROUP):
+        out += np.matmul(left[k : k + GROUP], right[k : k + GROUP]).sum(axis=0)
     return out
 
 
@@ -143,7 +132,8 @@ def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:
 def _share(work: Callable[[int, int], None], count: int, multiplications: int) -> None:
     """Do some work on all of ``count`` pieces, from a first one to before a last one at a time."""
     pool, shares = shared_pool()
-    if multiplications < SHARED or shares == 1 or count < shares:
+    shares = min(shares, count)
+    if multiplications < SHARED or shares <= 1:
         work(0, count)
         return
     ends = [count * k // shares for k in range(shares + 1)]

@@ -2,7 +2,7 @@
 
 Loads and outputs are weighted sums, named sums of degrees of freedom with their weights; a moving
 base loads with -M r, r the motion of all degrees of freedom with it. In modes they are as
-`modefront.response.system` has it.
+`modefront.predictions.system` has it.
 """
 
 from __future__ import annotations

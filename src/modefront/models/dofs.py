@@ -15,7 +15,7 @@ from modefront.data.csv import table_rows
 from modefront.fem.check import unit_vector
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import ended_column, wrong
-from modefront.json_schema import array, fits
+from modefront.options import array, fits
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
 

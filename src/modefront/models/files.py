@@ -6,7 +6,6 @@ process of their own, with limits on time and memory (`modefront.isolated`).
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -15,16 +14,8 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
+from modefront import inputs
 from modefront.errors import suggestion
-from modefront.inputs import (
-    available_memory,
-    counted,
-    ended,
-    file_size,
-    first_repeated,
-    is_hdf5,
-    wrong,
-)
 from modefront.isolated import IsolatedError, Read, isolated
 from modefront.models.matrices import symmetrised
 
@@ -39,16 +30,16 @@ def read_entries(
     """
     form = form or path.suffix
     if form not in READERS:
-        raise wrong(path, f"a name that ends in {', '.join(READERS)}", f"'{path.name}'")
+        raise inputs.wrong(path, f"a name that ends in {', '.join(READERS)}", f"'{path.name}'")
     if name is not None and form != ".mat":
         expected = "a .mat file, as only these have names for matrices"
-        raise wrong(path, expected, f"'{path.name}'")
-    file_size(path, "a matrix")
+        raise inputs.wrong(path, expected, f"'{path.name}'")
+    inputs.file_size(path, "a matrix")
     arguments = (form, name or "", "square" if square else "")
     try:
         arrays, shape = isolated(f"{__name__}:entries", path, arguments=arguments)
     except IsolatedError as error:
-        raise wrong(path, "a readable matrix", str(error)) from None
+        raise inputs.wrong(path, "a readable matrix", str(error)) from None
     places = arrays["row"], arrays["column"]
     return scipy.sparse.coo_array((arrays["data"], places), shape=tuple(shape))
 
@@ -91,53 +82,42 @@ def entries(path: Path, form: str, name: str, square: str) -> Read:
     if matrix.dtype.kind not in "biufc":
         raise ValueError(f"'{name}' is no matrix of numbers: {matrix.dtype}")
     if matrix.dtype.kind == "c":
-        raise wrong(path, "real numbers", str(matrix.dtype))
+        raise inputs.wrong(path, "real numbers", str(matrix.dtype))
     if isinstance(matrix, np.ndarray):
         matrix = matrix.astype(float)  # of any order and precision
     A = scipy.sparse.coo_array(matrix)
-    need, free = 64 * (A.nnz + A.shape[0]), available_memory()  # bytes, to be made symmetric
+    need, free = 64 * (A.nnz + A.shape[0]), inputs.available_memory()  # bytes, to be made symmetric
     if need > free:
         expected = f"a matrix that fits into the {free / 1e9:.3g} GB of memory that are free"
         found = f"{A.nnz} entries in {A.shape[0]} rows, which take {need / 1e9:.3g} GB"
-        raise wrong(path, expected, found)
+        raise inputs.wrong(path, expected, found)
     return {"row": A.row, "column": A.col, "data": A.data.astype(float)}, list(A.shape)
 
 
 def _check_shape(path: Path, shape: tuple[int, ...], square: str = "square") -> None:
     if len(shape) != 2 or (square and shape[0] != shape[1]) or 0 in shape:
         found = " x ".join(map(str, shape)) or "a single number"
-        raise wrong(path, "a square matrix", found)
+        raise inputs.wrong(path, "a square matrix", found)
     if shape[0] >= 2**31:
         raise ValueError(f"{shape[0]} rows, more than indices of 32 bits can count")
 
 
 def _matrix_market(path: Path, _: str) -> Any:
-    with path.open("rb") as stream:
-        line = stream.readline(2**16)
-        if not line.startswith(b"%%MatrixMarket"):
-            raise ValueError("no line '%%MatrixMarket matrix ...'")
-        ended(path)
-        while line[:1] == b"%" or not line.strip():
-            if not (line := stream.readline(2**16)):
-                raise ValueError("the end of the file in its header")
-        words, before = 0, b" "
-        while chunk := stream.read(2**24):
-            words += len(chunk.split()) - (len((before + chunk[:1]).strip()) == 2)
-            before = chunk[-1:]
-            if other := chunk.translate(None, b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"):
-                raise ValueError(f"the byte {other[:1]!r} among the entries")
     rows, columns, _, layout, numbers, symmetry = scipy.io.mminfo(path)
+    inputs.ended(path)
     _check_shape(path, (rows, columns), "")
     if layout == "array":  # of which the reader takes a triangle that is cut off
+        lines = path.read_bytes().splitlines()
+        words = sum(len(line.split()) for line in lines if not line.startswith(b"%"))
         triangle = rows * (rows - 1 if symmetry == "skew-symmetric" else rows + 1) // 2
         stored = rows * columns if symmetry == "general" else triangle
-        counted(path, "file", "values", stored * (1 + (numbers == "complex")), words)
+        inputs.counted(path, "file", "values", stored * (1 + (numbers == "complex")), words - 2)
     matrix = scipy.io.mmread(path, spmatrix=False)
     if isinstance(matrix, np.ndarray):
         return matrix
-    if (again := first_repeated(matrix.row, matrix.col, matrix.shape[1])) is not None:
+    if (again := inputs.first_repeated(matrix.row, matrix.col, matrix.shape[1])) is not None:
         place = f"row {matrix.row[again] + 1}, column {matrix.col[again] + 1}"
-        raise wrong(path, "a readable matrix: each entry once", "it again", place)
+        raise inputs.wrong(path, "a readable matrix: each entry once", "it again", place)
     return matrix
 
 
@@ -149,17 +129,13 @@ def _numpy_npy(path: Path, _: str) -> Any:
             if "Object arrays" in str(error):
                 raise ValueError("Object arrays cannot be loaded: they could run code") from None
             raise ValueError("no array of NumPy, or one that is cut off") from None
-        counted(path, "file", "bytes of values", stream.tell(), path.stat().st_size)
+        inputs.counted(path, "file", "bytes of values", stream.tell(), path.stat().st_size)
     if array.dtype.kind not in "biufc":
-        raise wrong(path, "real numbers", str(array.dtype))
+        raise inputs.wrong(path, "real numbers", str(array.dtype))
     return array
 
 
 def _scipy_npz(path: Path, _: str) -> Any:
-    with zipfile.ZipFile(path) as file:
-        for part in file.infolist():
-            if part.file_size > max(64 * 10**6, 200 * part.compress_size):
-                raise ValueError(f"'{part.filename}' with {part.file_size / 1e6:.4g} MB compressed")
     A = scipy.sparse.load_npz(path)
     if hasattr(A, "check_format"):
         _check_shape(path, A.shape, "")
@@ -170,7 +146,7 @@ def _scipy_npz(path: Path, _: str) -> Any:
 
 
 def _matlab(path: Path, name: str) -> Any:
-    if is_hdf5(path):
+    if inputs.is_hdf5(path):
         from modefront import hdf5  # takes time to import
 
         return hdf5.variable(path, _chosen(path, name, hdf5.variables(path)))
@@ -191,10 +167,10 @@ def _chosen(path: Path, name: str, shapes: Mapping[str, tuple[int, ...]]) -> str
         matrices = [key for key, shape in shapes.items() if len(shape) == 2 and min(shape) > 1]
         if len(matrices) != 1:
             expected = 'one matrix, or { file = "...", name = "..." } to say which'
-            raise wrong(path, expected, ", ".join(matrices) or "none")
+            raise inputs.wrong(path, expected, ", ".join(matrices) or "none")
         name = matrices[0]
     if name not in shapes:
-        raise wrong(path, "the name of a variable in it", suggestion(name, list(shapes)))
+        raise inputs.wrong(path, "the name of a variable in it", suggestion(name, list(shapes)))
     return name
 
 

@@ -22,7 +22,6 @@ from numpy.exceptions import ComplexWarning
 from numpy.typing import NDArray
 
 from modefront._typing import Floats
-from modefront.brief import as_html, brief_model
 from modefront.errors import InputError, ModelError, refuse, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.models.base import LoadCase, Transfer, passed_on
@@ -37,6 +36,7 @@ from modefront.models.matrices import (
 from modefront.models.parameters import Parameter
 from modefront.modes.result import FullModes, Modes
 from modefront.options import each_once
+from modefront.text import brief_model
 from modefront.work.transfer import shared
 
 Matrix: TypeAlias = Any
@@ -169,7 +169,6 @@ class FunctionModel:
     nominal: MatrixModel
 
     __repr__ = brief_model
-    _repr_html_ = as_html
 
     unused = ()  # on which parameters a function does not depend is not known
     parameters = passed_on("nominal", "parameters")

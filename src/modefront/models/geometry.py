@@ -11,9 +11,9 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.brief import as_html, brief
 from modefront.fem.structure import Cells as Cells
 from modefront.linalg.affine import sparse_rows
+from modefront.text import brief
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,7 +36,6 @@ class Geometry:
     sensor_directions: Floats
 
     __repr__ = brief
-    _repr_html_ = as_html
 
     def weights(self, nodes: Ints, directions: Floats) -> scipy.sparse.csr_array:
         """Return weights (sensors, N) of sensors at nodes along ``directions`` (sensors, 3)."""

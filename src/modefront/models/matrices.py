@@ -3,7 +3,7 @@ r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j c_j(\theta) 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
@@ -13,7 +13,6 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.brief import as_html, brief_model
 from modefront.errors import Fault, InputError, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Pencil, pencil
@@ -31,7 +30,8 @@ from modefront.models.parameters import (
 from modefront.modes import dense, sparse
 from modefront.modes.result import FullModes, Modes
 from modefront.rounding import LARGEST, SYMMETRY
-from modefront.work.costs import Costs, spend
+from modefront.text import brief_model
+from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 
 DENSE = 180
@@ -89,7 +89,6 @@ class MatrixModel:
     geometry: Geometry | None = None
 
     __repr__ = brief_model
-    _repr_html_ = as_html
 
     @property
     def size(self) -> int:
@@ -364,26 +363,35 @@ def weights_of(places: Mapping[str, SensorSpec] | None, size: int, place: str) -
     return dict(zip(known, select(known, size, place).toarray(), strict=True))
 
 
-def symmetrised(A: Any, file: str, place: str) -> Any:
+def _row_and_column(i: int, j: int) -> str:
+    return f"row {i}, column {j} (from 0)"
+
+
+def symmetrised(
+    A: Any, file: str, place: str, label: Callable[[int, int], str] = _row_and_column
+) -> Any:
     """Return a matrix, an array or a sparse one, without the rounding in its symmetry.
 
-    Raises InputError, which names the ``file``, the ``place`` and the entry, where a number is not
-    finite and where the matrix is not symmetric.
+    Raises InputError, which names the ``file``, the ``place`` and the entry, by its ``label``,
+    where a number is not finite and where the matrix is not symmetric.
     """
-    entries = A.data if scipy.sparse.issparse(A) else A
-    if not (np.abs(entries) <= LARGEST).all():
-        B = scipy.sparse.coo_array(A)
-        k = int(np.argmin(np.abs(B.data) <= LARGEST))
+
+    def error(B: scipy.sparse.coo_array, wrong: Floats, expected: str, why: str) -> InputError:
+        k = int(np.argmax(wrong))
         i, j = int(B.row[k]), int(B.col[k])
-        expected, found = f"finite numbers up to {LARGEST:g}", f"{B.data[k]:g}"
-        raise InputError(Fault(file, _entry(place, i, j), expected, found))
+        found = f"{A[i, j]:.6g}" + (
+            f", and {A[j, i]:.6g} across the diagonal ({why})" if why else ""
+        )
+        where = ", ".join(filter(None, (place, label(i, j))))
+        return InputError(Fault(file, where, expected, found))
+
+    if not (np.abs(A.data if scipy.sparse.issparse(A) else A) <= LARGEST).all():
+        B = scipy.sparse.coo_array(A)
+        beyond = np.where(np.abs(B.data) <= LARGEST, 0.0, 1.0)
+        raise error(B, beyond, f"finite numbers up to {LARGEST:g}", "")
     asymmetry = abs(A - A.T)
     if asymmetry.max() > SYMMETRY * abs(A).max():
-        i, j = divmod(int(asymmetry.argmax()), A.shape[0])
-        found = f"{A[i, j]:.6g}, and {A[j, i]:.6g} across the diagonal"
-        raise InputError(Fault(file, _entry(place, i, j), "a symmetric matrix", found))
+        B = scipy.sparse.coo_array(asymmetry)
+        why = "damping, contact, friction and rotors make it unsymmetric"
+        raise error(B, B.data, "a symmetric matrix", why)
     return (A + A.T) / 2
-
-
-def _entry(place: str, i: int, j: int) -> str:
-    return f"{place}, row {i}, column {j} (from 0)".removeprefix(", ")

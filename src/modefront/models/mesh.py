@@ -80,7 +80,7 @@ def mesh_model(
             for d, name in enumerate(fem.DIRECTIONS[:3])
             if (direction == d).any()
         },
-        limits=limits_of(structure, check_points(structure.nodes)),
+        limits=tuple(limits_of(structure, check_points(structure.nodes))),
         geometry=_geometry(structure, built),
     ).compact()
 

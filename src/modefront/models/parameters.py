@@ -15,25 +15,16 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from modefront import options
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, refuse, wrong
-from modefront.options import (
-    PAIR,
-    TRUE_OR_FALSE,
-    Requirement,
-    check_fields,
-    each_once,
-    nested,
-    number,
-    numbers,
-    rising,
-    text,
+
+BOUNDS = options.numbers(
+    "[lower, upper], two finite numbers with lower < upper", options.PAIR, options.rising
 )
 
-BOUNDS = numbers("[lower, upper], two finite numbers with lower < upper", PAIR, rising)
 
-
-@dataclass(frozen=True)
+@options.checked
 class Prior:
     """What is expected of a parameter before the data are seen: it lies about its nominal value.
 
@@ -44,10 +35,7 @@ class Prior:
     """
 
     kind: Literal["normal", "lognormal"] = "normal"
-    std: Annotated[float, number("a number above 0", above=0)] = 0.2
-
-    def __post_init__(self) -> None:
-        check_fields(self)
+    std: Annotated[float, options.number("a number above 0", above=0)] = 0.2
 
 
 @dataclass(frozen=True)
@@ -66,15 +54,15 @@ class Parameter:
     tie : name of the parameter whose value it has; empty for a value of its own
     """
 
-    name: Annotated[str, text("the name of the parameter")]
-    nominal: Annotated[float, number("a finite number")]
+    name: Annotated[str, options.text("the name of the parameter")]
+    nominal: Annotated[float, options.number("a finite number")]
     bounds: Annotated[tuple[float, float], BOUNDS]
-    prior: Annotated[Prior, nested("a table of kind and std", Prior)] | None = None
-    fixed: Annotated[bool, TRUE_OR_FALSE] = False
-    tie: Annotated[str, Requirement("the name of a parameter", {"type": "string"})] = ""
+    prior: Annotated[Prior, options.nested("a table of kind and std", Prior)] | None = None
+    fixed: Annotated[bool, options.TRUE_OR_FALSE] = False
+    tie: Annotated[str, options.Requirement("the name of a parameter", {"type": "string"})] = ""
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        options.check_fields(self)
         if not self.lower <= self.nominal <= self.upper:
             inside = f"a value within its bounds, {self.lower:g} to {self.upper:g}"
             raise wrong("nominal", inside, f"{self.nominal:g}")
@@ -126,7 +114,7 @@ def in_order(parameters: Sequence[Parameter], names: Sequence[str]) -> list[Para
     """
     given = {parameter.name: parameter for parameter in parameters}
     missing = [name for name in names if name not in given]
-    twice = each_once("parameters", [parameter.name for parameter in parameters])
+    twice = options.each_once("parameters", [parameter.name for parameter in parameters])
     refuse([*twice, *(Fault("", "parameters", f"one called '{x}'", "none") for x in missing)])
     return [given[name] for name in names]
 

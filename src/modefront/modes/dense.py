@@ -17,7 +17,7 @@ where it does, the modes are called coincident, and the quotient is left out.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
@@ -25,8 +25,7 @@ import scipy.linalg
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, first_axis
-from modefront.modes.result import FullModes, ModeDerivatives, Modes
-from modefront.modes.second_derivatives import SecondDerivatives, Solved
+from modefront.modes.result import FullModes, ModeDerivatives, Modes, SecondDerivatives, Solved
 
 CLOSE = 1e-2
 """Relative gap of eigenvalues below which a quotient is formed with the gap itself."""
@@ -76,7 +75,12 @@ def modes(
         return Modes(lam[:count], phi)
     dlam, S, coincident, energy = nelson(K, M, theta, decomposition, count)
     seen = sensors @ X
-    solve = partial(_with_all, decomposition, seen, S, energy)
+
+    def solve(r: Ints, b: Floats, owner: Ints) -> Solved:
+        """Return modes r with adjoints; the energy is x_j^T (K - lam_r M) x_j."""
+        Z = X @ ((seen.T @ b) / energy[:, r[owner]])
+        return decomposition.Phi[:, r], first_axis(X, S[:, r]), Z
+
     second = SecondDerivatives(K, M, theta, lam[:count], phi, dlam[:count], solve, count)
     slopes = ModeDerivatives(
         dlam[:count], first_axis(seen, S[:, :count]), coincident[:count], second
@@ -141,20 +145,6 @@ class Decomposition:
         finite = self.lam.size
         out: Floats = self.X[:, :finite] / np.sqrt(self.mu[:finite])
         return out
-
-
-# 7 arguments: all modes, and those of `modefront.modes.second_derivatives.Solve`.
-def _with_all(
-    known: Decomposition, seen: Floats, S: Floats, energy: Floats, r: Ints, b: Floats, owner: Ints
-) -> Solved:
-    """Return modes r with adjoints.
-
-    The solutions x are ``seen`` (sensors, N) at the sensors; S (N, modes, p) are derivatives in
-    terms of them, and the energy (N, modes) is x_j^T (K - lam_r M) x_j, infinite where modes
-    coincide.
-    """
-    Z = known.X @ ((seen.T @ b) / energy[:, r[owner]])
-    return known.Phi[:, r], first_axis(known.X, S[:, r]), Z
 
 
 def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:

@@ -22,7 +22,7 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.factorisation import Factorisation, Pencil
 from modefront.linalg.products import combine, gram, times
-from modefront.modes.second_derivatives import Solved
+from modefront.modes.result import Solved
 from modefront.rounding import TINY
 
 
@@ -123,7 +123,7 @@ def _same(spectrum: Spectrum) -> Bools:
     return np.asarray(distance * COINCIDENT <= np.maximum(noise, noise[:, None]))
 
 
-# 8 arguments: those of `at_sensors`, and those of `modefront.modes.second_derivatives.Solve`.
+# 8 arguments: those of `at_sensors`, and those of `modefront.modes.result.Solve`.
 def everywhere(
     pencil: Pencil,
     sensors: Sensors,

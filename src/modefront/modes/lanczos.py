@@ -106,7 +106,12 @@ def greatest(
         if leading >= needed and mu[needed - 1] > LOST * mu[0]:
             break
         if leading == d:
-            Q, AQ = _fresh(solve, A, M, V[:, :d], AV[:, :d], step, b)
+            # All modes that the block contains are found; a random one may contain others.
+            W = solve(M @ np.random.default_rng(step).standard_normal((n, b)))
+            size = np.sqrt(np.einsum("nc,nc->c", W, A @ W).max())
+            W = _outside(_outside(W, V[:, :d], AV[:, :d]), V[:, :d], AV[:, :d])
+            Q, _, _ = _orthonormal(W, A, NEW * size, n - d)
+            Q, AQ, _ = _orthonormal(_outside(Q, V[:, :d], AV[:, :d]), A, 0.0)
             R = np.zeros((Q.shape[1], new.stop - new.start))
             complete = not Q.size
             if complete:
@@ -120,29 +125,6 @@ def _outside(W: Floats, V: Floats, AV: Floats) -> Floats:
     """Return the part of W that is orthogonal to V in A."""
     out: Floats = W - combine(V, gram(AV, W))
     return out
-
-
-# 7 arguments: the operator, the basis and the random block.
-def _fresh(
-    solve: Solve,
-    A: scipy.sparse.csr_array,
-    M: scipy.sparse.csr_array,
-    V: Floats,
-    AV: Floats,
-    seed: int,
-    columns: int,
-) -> tuple[Floats, Floats]:
-    """Return a new block Q and A Q, where the old one has led to all modes that it contains.
-
-    It has no columns where there are no more modes.
-    """
-    some = np.random.default_rng(seed).standard_normal((V.shape[0], columns))
-    W = solve(M @ some)
-    size = np.sqrt(np.einsum("nc,nc->c", W, A @ W).max())
-    W = _outside(_outside(W, V, AV), V, AV)
-    Q, _, _ = _orthonormal(W, A, NEW * size, V.shape[0] - V.shape[1])
-    Q, AQ, _ = _orthonormal(_outside(Q, V, AV), A, 0.0)
-    return Q, AQ
 
 
 def _orthonormal(

@@ -1,14 +1,110 @@
-"""The modes of a model: at its sensors, with derivatives, and at all degrees of freedom."""
+r"""The modes of a model: at its sensors, with derivatives, and at all degrees of freedom.
+
+Second derivatives are exact, by second-order adjoints.
+Of :math:`g = \sum_r w_r \lambda_r + b_r^T \varphi_r` with constant weights, let
+:math:`F_i = K_i - \lambda_r M_i` and :math:`A^+` be the pseudoinverse of :math:`K - \lambda_r M` on
+the M-complement of mode r, an index i being a derivative; :math:`z = A^+ b`,
+:math:`s = b^T \varphi` and :math:`y = w \varphi - z`, of each mode r. Differentiating
+
+.. math:: (K - \lambda M) \varphi = 0, \qquad \varphi^T M \varphi = 1
+
+twice gives :math:`\lambda_{ij}` (times :math:`\varphi^T` from the left), the part of
+:math:`\varphi_{ij}` in the M-complement (times :math:`A^+`) and that along :math:`\varphi`. What is
+left of :math:`g_{ij}` is, mode by mode, :math:`T_{ij} + T_{ji} + C_{ij}` with
+
+.. math::
+    T_{ij} &= \big(F_i y - s M_i \varphi - \tfrac12 s M \varphi_i\big)^T \varphi_j
+        + \lambda_i \big(z^T (M \varphi_j + M_j \varphi)
+        - \tfrac12 w\, \varphi^T M_j \varphi\big) \\
+    C_{ij} &= y^T F_{ij} \varphi - \tfrac12 s\, \varphi^T M_{ij} \varphi .
+
+K and M may be singular, and modes close: what is needed is in the first derivatives but for z. The
+price is one product of each term of K and M with z, and one of N x p with N x p numbers, a mode.
+Source: the equations of Fox & Kapoor 1968, doi:10.2514/3.5008, differentiated once more.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 
-from modefront._typing import Bools, Floats
-from modefront.modes.second_derivatives import SecondDerivatives
+from modefront._typing import Bools, Floats, Ints
+from modefront.linalg.affine import DenseAffine, SparseAffine, first_axis
+
+Solved: TypeAlias = tuple[Floats, Floats, Floats]
+"""Some mass-normalised modes r at all degrees of freedom (N, modes), their derivatives
+(N, modes, p), and adjoints z (N, adjoints)."""
+
+Solve: TypeAlias = Callable[[Ints, Floats, Ints], Solved]
+"""Returns modes r with the adjoints of weights b (sensors, adjoints), each that of the mode at
+position ``owner`` (adjoints,) in r, when second derivatives are requested."""
+
+
+@dataclass(frozen=True, eq=False)
+class SecondDerivatives:
+    """Second derivatives of modes at one theta, computed when they are requested.
+
+    Attributes
+    ----------
+    K, M : stiffness and mass matrix
+    theta : (p,) parameters
+    lam, phi, dlam : the modes at the sensors as in `modefront.modes.result.Modes`
+    solve : gives the modes at all degrees of freedom, and adjoints
+    most : number of modes that are solved for at once, at most
+    """
+
+    K: DenseAffine | SparseAffine
+    M: DenseAffine | SparseAffine
+    theta: Floats
+    lam: Floats
+    phi: Floats
+    dlam: Floats
+    solve: Solve
+    most: int
+
+    def of_sums(self, r: Ints, w: Floats, v: Floats) -> Floats:
+        """Return the Hessians of sum_r w_r lam_r + v_r^T phi_r for several w and v, (n, p, p).
+
+        ``r`` are modes, ``w`` has the shape (n, modes) and ``v`` (n, sensors, modes).
+        """
+        if not r.size:
+            return np.zeros((len(w), self.theta.size, self.theta.size))
+        if r.size > self.most:
+            some, others = slice(self.most), slice(self.most, None)
+            first = self.of_sums(r[some], w[:, some], v[:, :, some])
+            return first + self.of_sums(r[others], w[:, others], v[:, :, others])
+        # The forms are w times that of each eigenvalue, and that of each adjoint.
+        of, owner = np.nonzero(v.any(axis=1))
+        b = v[of, :, owner]
+        s = np.vecdot(b, self.phi[:, r[owner]].T)
+        (Phi, dPhi, Z), mass = self.solve(r, b.T, owner), self.M.at(self.theta)
+        (N, m, p), mode = dPhi.shape, np.append(np.arange(r.size), owner)
+        vectors, dlam = np.hstack([Phi, -Z]), self.dlam[r[mode]]
+        MdPhi = (mass @ dPhi.reshape(N, -1)).reshape(N, m, p)
+        left, change = self.K.derivatives_times(self.theta, vectors), MdPhi
+        c = np.zeros((mode.size, p))
+        if self.M.coefficients.varies:
+            dM = self.M.derivatives_times(self.theta, vectors)
+            left = left - self.lam[r[mode], None] * dM
+            c[:m] = -0.5 * np.einsum("nr,nri->ri", Phi, dM[:, :m])
+            change = MdPhi + dM[:, :m]
+        c[m:] = np.einsum("nk,nki->ki", Z, change[:, owner])
+        left[:, m:] -= s[:, None] * (change - 0.5 * MdPhi)[:, owner]
+        forms = left.transpose(1, 2, 0) @ dPhi[:, mode].transpose(1, 0, 2)
+        weights = np.hstack([w, np.arange(len(w))[:, None] == of])
+        T = first_axis(weights, forms) + dlam.T @ (weights[:, :, None] * c)
+        out: Floats = T + T.transpose(0, 2, 1)
+        if self.K.coefficients.curved or self.M.coefficients.curved:
+            y, sphi = w[:, None] * Phi, np.zeros((len(w), N, m))
+            y[of, :, owner] -= Z.T
+            sphi[of, :, owner] = (s * Phi[:, owner]).T
+            out += self.K.second_derivatives(self.theta, y, Phi)
+            out -= self.M.second_derivatives(self.theta, self.lam[r] * y + 0.5 * sphi, Phi)
+        return out
 
 
 @dataclass(frozen=True)

@@ -31,8 +31,7 @@ from modefront.modes import dense
 from modefront.modes import derivatives as exact
 from modefront.modes.derivatives import Shifted, Spectrum
 from modefront.modes.lanczos import greatest
-from modefront.modes.result import FullModes, ModeDerivatives, Modes
-from modefront.modes.second_derivatives import SecondDerivatives
+from modefront.modes.result import FullModes, ModeDerivatives, Modes, SecondDerivatives
 
 BLOCK = 8
 """Columns of a block: greatest multiplicity of an eigenvalue that is found at once."""

@@ -16,8 +16,7 @@ judged by the augmented Lagrangian (`modefront.optim.linearised`, which has the 
 curved valley a long step ends on its side, from where another one leads to the floor, far ahead:
 where a step is poor, but the derivatives at its end promise that, the two are judged as one (the
 watchdog; Nocedal & Wright 2006, section 15.6). One attempt is made to leave a stationary point with
-clearly negative curvature. Where the objectives jump, a solution ends, and another one is sought
-from the other side.
+clearly negative curvature.
 """
 
 from __future__ import annotations
@@ -141,52 +140,26 @@ def begin(evaluation: Evaluation) -> Solution:
     return Solution(evaluation, np.zeros(evaluation.J.size), np.inf, status, 0)
 
 
+# More than 60 lines: one step, with all that it changes.
 def solve(
     problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
 ) -> Solution:
     """Solve a programme from the point at which ``start`` ended.
 
     The start itself is not evaluated again where its second derivatives are known. Steps to points
-    at which the objectives are not defined are shortened. Where a solution ends at a jump of the
-    objectives, another one is sought from the other side of it, as long as these become better and
-    iterations are left.
+    at which the objectives are not defined are shortened.
     """
     options = options or Options()
-    best, beyond = _within(problem, programme, start, options)
-    spent = best.evaluations
-    while beyond is not None and spent < options.iterations:
-        other, beyond = _within(problem, programme, begin(beyond), options)
-        spent += other.evaluations
-        if not _total(programme, other.J) < _total(programme, best.J):
-            break
-        best = other
-    return replace(best, evaluations=spent)
-
-
-def _total(programme: Scalarisation, J: Floats) -> float:
-    """Return what is minimised, at objectives (n,)."""
-    y = programme.maximised.at(J)
-    return programme.value(J) + (float(y.max()) if y.size else 0.0)
-
-
-# More than 60 lines: one step, with all that it changes.
-def _within(
-    problem: Problem, programme: Scalarisation, start: Solution, options: Options
-) -> tuple[Solution, Evaluation | None]:
-    """Return the solution within the piece of a start, and the model behind the jump it ends at.
-
-    The objectives are smooth within a piece; None where the solution is not at the end of one.
-    """
     if not start.feasible:
-        return replace(start, status=Status.INFEASIBLE, evaluations=0), None
+        return replace(start, status=Status.INFEASIBLE, evaluations=0)
     evaluation, count = start.evaluation, -1
     if evaluation.derivatives is None:
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
     S = evaluation.H - evaluation.gauss_newton
     trusted, escaped = evaluation.exact, False
-    region, penalty = _Region(options.radius), PENALTY
+    radius, penalty = options.radius, PENALTY
     multipliers: Multipliers | None = None
-    rejected: Evaluation | None = None
+    rejected = False  # whether the last step was
     proposal = np.inf  # length of the last step that the trust region did not hold back
     calm: tuple[float, Solution] | None = None  # where, and how long, steps promised only rounding
     while True:
@@ -195,12 +168,12 @@ def _within(
         local = Linearised(problem, programme, evaluation)
         if local.free and local.f <= options.negligible:
             ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
-            return Solution(evaluation, local.df, 0.0, ended, count), None
+            return Solution(evaluation, local.df, 0.0, ended, count)
         H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
-        qp, step, multipliers = local.step(H, region.radius, multipliers)
+        qp, step, multipliers = local.step(H, radius, multipliers)
         s, w = step.s, multipliers.weights(programme, evaluation.J)
         violation, far = length(local.c), length(s)
-        held = far >= region.radius
+        held = far >= radius
         proposal = proposal if held else far
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
@@ -210,27 +183,26 @@ def _within(
         status: Status | None = None
         if still and violation <= options.constraint:
             status = Status.CONVERGED
-        elif far <= np.finfo(float).eps or region.radius <= options.step:
+        elif far <= np.finfo(float).eps or radius <= options.step:
             met = violation <= 10 * options.constraint
             # Steps that were not held back were below the tolerance: rounding of J stops it here.
             near = Status.CONVERGED if proposal <= options.step else Status.JUMP
             status = near if met else Status.STALLED
         here = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
         if status or count >= options.iterations:
-            return here, rejected if status is Status.JUMP else None
+            return here
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         noise = local.noise(multipliers)
         rests = predicted <= noise
         if calm and rests and far >= calm[0]:  # the objectives tell no more
             if calm[1].violation <= options.constraint:
-                return replace(calm[1], status=Status.CONVERGED, evaluations=count), None
+                return replace(calm[1], status=Status.CONVERGED, evaluations=count)
         else:
             calm = (far, here) if rests else None
         new = local.after(s)
         if not new.feasible:
-            region.refused(far, 0.0)
-            rejected = new
+            radius, rejected = far / 4, True
             continue
         merit = Merit(programme, multipliers, penalty)
         actual = merit.at(evaluation) - merit.at(new)
@@ -241,16 +213,18 @@ def _within(
             S = learned_from(S, evaluation, new, local.span)
         if actual < POOR * predicted:
             H = new.H if trusted else new.gauss_newton
-            new, more = _second_step(problem, merit, evaluation, new, H, region.radius)
+            new, more = _second_step(problem, merit, evaluation, new, H, radius)
             actual, count = merit.at(evaluation) - merit.at(new), count + more
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
-            evaluation, rejected = new, None
+            evaluation, rejected = new, False
             S = evaluation.H - evaluation.gauss_newton if evaluation.exact else S
-            region.taken(far, ratio)
+            if ratio < POOR:
+                radius = far / 2
+            elif ratio > GOOD and far >= radius:
+                radius = min(2 * radius, 1.0)
         else:
-            region.refused(far, abs(miss) if predicted > noise else 0.0)
-            rejected = new
+            radius, rejected = far / 4, True
 
 
 def _second_step(
@@ -269,33 +243,6 @@ def _second_step(
     if not promised < min(merit.at(here), merit.at(new)):
         return new, 0
     return min(new, local.after(step.s), key=merit.at), 1
-
-
-@dataclass
-class _Region:
-    """The trust region, of which ``radius`` is the half width.
-
-    Of smooth objectives, the ``error`` of a prediction falls faster than the step. Where it does
-    not, the radius falls ever faster, by a quarter, a sixteenth and so on: to a jump.
-    """
-
-    radius: float
-    error: float = np.inf
-    fall: float = 4.0
-
-    def taken(self, step: float, ratio: float) -> None:
-        """Adapt it to a step that is taken, with its actual over predicted reduction."""
-        self.error, self.fall = np.inf, 4.0
-        if ratio < POOR:
-            self.radius = step / 2
-        elif ratio > GOOD and step >= self.radius:
-            self.radius = min(2 * self.radius, 1.0)
-
-    def refused(self, step: float, miss: float) -> None:
-        """Shorten the next step after one that is not taken, by which its prediction is missed."""
-        before, self.error = self.error, miss / step
-        self.fall = self.fall**2 if self.error > before else 4.0
-        self.radius = step / self.fall
 
 
 def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:

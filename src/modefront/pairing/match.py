@@ -15,7 +15,7 @@ import numpy as np
 
 from modefront._typing import Complexes, Floats, Ints
 from modefront.data.modal import ModalData
-from modefront.options import check_fields, number, whole
+from modefront.options import checked, number, whole
 from modefront.rounding import TINY
 
 OUTSIDE = 1e3
@@ -27,7 +27,7 @@ UNSEEN = 1e-6
 WINDOW = number("a ratio of frequencies above 1", above=1)
 
 
-@dataclass(frozen=True)
+@checked
 class Pairing:
     """Rule by which measured modes and model modes are paired.
 
@@ -45,9 +45,6 @@ class Pairing:
     method: Literal["mac", "order"] = "mac"
     window: Annotated[float, WINDOW] | None = None
     spare: Annotated[int, whole(0, 1000)] = 3
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 @dataclass(frozen=True)

@@ -20,22 +20,15 @@ if TYPE_CHECKING:
 
     from modefront.plots.canvas import Picture
 
-PLOTS: Mapping[str, tuple[str, tuple[str, ...], str]] = {
-    "front": ("front", (), ""),
-    "parameters": ("quantities", (), ""),
-    "frequencies": ("quantities", (), ""),
-    "mac": ("quantities", (), ""),
-    "modes": ("modes", ("shape",), "mode shapes"),
-    "predictions": ("predictions", ("range",), "predictions"),
-    "uncertainty": (
-        "quantities",
-        ("theta_std", "posterior_std"),
-        "errors of the data or a posterior",
-    ),
-    "minima": ("quantities", (), ""),
+PLOTS: Mapping[str, tuple[tuple[str, ...], str]] = {
+    **dict.fromkeys(("front", "parameters", "frequencies", "mac"), ((), "")),
+    "modes": (("shape",), "mode shapes"),
+    "predictions": (("range",), "predictions"),
+    "uncertainty": (("theta_std", "posterior_std"), "errors of the data or a posterior"),
+    "minima": ((), ""),
 }
-"""Pictures in the order of their files: the module of the package with a function of this name,
-variables or dimensions, one of which it shows, and what results without any lack."""
+"""Pictures in the order of their files: variables or dimensions, one of which each shows, and what
+results without any lack. They are drawn by functions of these names."""
 
 
 @contextmanager
@@ -102,16 +95,17 @@ class Plots:
         return self._draw("minima")
 
     def _draw(self, name: str, **options: Any) -> Picture:
-        module, _, expected = PLOTS[name]
+        module = "modes" if name == "modes" else "quantities"
         with _drawing():
             if not _is_held(self.data, name):
-                raise InputError(Fault("", f"plot of {name}", f"results with {expected}", "none"))
+                expected = f"results with {PLOTS[name][1]}"
+                raise InputError(Fault("", f"plot of {name}", expected, "none"))
             return getattr(import_module(f"modefront.plots.{module}"), name)(self.data, **options)
 
 
 def _is_held(data: xr.Dataset, name: str) -> bool:
     """Return whether results hold what a picture shows."""
-    _, needed, _ = PLOTS[name]
+    needed, _ = PLOTS[name]
     return not needed or any(each in data.variables or each in data.sizes for each in needed)
 
 
@@ -121,11 +115,11 @@ def pictures(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
         if _is_held(data, name):
             yield name, getattr(Plots(data), name)()
             if name == "predictions":
-                yield from figures(name, data)
+                yield from figures("quantities", data)
 
 
 def figures(module: str, *arguments: object) -> Iterator[tuple[str, Picture]]:
-    """Yield names and figures of a module: ``predictions``, ``paper`` or ``identification``."""
+    """Yield names and figures of a module: ``quantities``, ``paper`` or ``identification``."""
     with _drawing():
         yield from import_module(f"modefront.plots.{module}").figures(*arguments)
 

@@ -25,7 +25,7 @@ from modefront.plots.canvas import (
     single,
     titled,
 )
-from modefront.predictions.registry import predictions_in
+from modefront.predictions.base import predictions_in
 
 Studies = Sequence[tuple[str, xr.Dataset]]
 """Results with a name each."""

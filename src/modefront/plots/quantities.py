@@ -1,7 +1,8 @@
-"""Parameters, frequencies and MAC along the front, minima, and the scatter of these."""
+"""The front in the space of errors, quantities along it, minima, their scatter, and predictions."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,18 +12,113 @@ from matplotlib.patches import Ellipse
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from modefront._typing import Floats
+from modefront.front.methods import METHODS
 from modefront.front.point import front_points, position, preferred
-from modefront.plots.along import at_reference, panels_along
 from modefront.plots.canvas import (
     COLOURS,
+    Along,
     Picture,
+    at_reference,
+    branches,
     draw_models,
+    is_path,
     legend,
     names_of,
+    panels_along,
     picture,
     plain,
+    short,
+    shown,
     single,
 )
+from modefront.predictions.base import RecordedPrediction, predictions_in
+
+FAR = 2.5
+"""Error over the greatest of the Pareto-optimal models from which a model is beyond the axes."""
+
+
+def front(data: xr.Dataset, *, log: bool = False) -> Picture:
+    """Return the front in the space of errors, with logarithmic axes if ``log``."""
+    error = data["error"].values
+    if log:
+        error = np.maximum(error, 1e-4 * np.nanmax(error))
+    groups = names_of(data, "group")
+    if len(groups) == 1:
+        return _one(data, error, groups[0])
+    if len(groups) == 2:
+        return _two(data, error, groups, log=log)
+    return _many(data, error, groups, log=log)
+
+
+def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
+    labels = names_of(data, "label", 24)
+    figure, axes = single(4.6, 0.9 + 0.25 * len(labels))
+    draw_models(axes, data, np.column_stack([error[:, 0], np.arange(len(labels))]))
+    axes.set_yticks(range(len(labels)), labels)
+    axes.invert_yaxis()
+    axes.set_xlabel(f"error of {group}")
+    axes.locator_params(axis="x", nbins=5)
+    return figure
+
+
+def _two(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
+    figure, axes = single(5.2, 4.0)
+    method = METHODS.get(data.attrs["method"])
+    if is_path(data) and method is not None and method.programme is not None:
+        for branch in branches(data):
+            axes.plot(*error[branch].T, "-", color=COLOURS[0], lw=1, alpha=0.5)
+    draw_models(axes, data, error)
+    axes.set(xlabel=f"error of {groups[0]}", ylabel=f"error of {groups[1]}")
+    if log:
+        axes.set(xscale="log", yscale="log")
+    else:
+        _limits(axes, data, error)
+    axes.legend()
+    return figure
+
+
+def _limits(axes: Axes, data: xr.Dataset, error: Floats) -> None:
+    """Leave far models out that are not Pareto optimal, and note their number."""
+    chosen = shown(data)
+    most = np.nanmax(error[chosen], axis=0)
+    most = np.where(most > 0, most, 1.0)
+    far = ~chosen & (error > FAR * most).any(axis=1)
+    if not far.any():
+        return
+    most = np.nanmax(error[~far], axis=0)
+    most = np.where(most > 0, most, 1.0)
+    axes.set(xlim=(-0.05 * most[0], 1.1 * most[0]), ylim=(-0.05 * most[1], 1.1 * most[1]))
+    count = int(far.sum())
+    text = f"{count} models"
+    if count == 1:
+        (i,) = np.flatnonzero(far)
+        text = f"{plain(data['label'].values[i])} ({error[i, 0]:.3g}, {error[i, 1]:.3g})"
+    axes.set_title(f"beyond the axes: {text}", loc="right", color="0.35")
+
+
+def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
+    """Draw all pairs of errors."""
+    n = len(groups)
+    size = 2.1 if n < 6 else 1.5
+    figure = picture(max(size * (n - 1), 5.2), size * (n - 1) + 0.2)
+    grid = figure.subplots(n - 1, n - 1, squeeze=False, sharex="col", sharey="row")
+    for i in range(1, n):
+        for j in range(n - 1):
+            axes = grid[i - 1][j]
+            if j >= i:
+                axes.remove()
+                continue
+            draw_models(axes, data, error[:, [j, i]])
+            if log:
+                axes.set(xscale="log", yscale="log")
+            if i == n - 1:
+                axes.set_xlabel(f"error of {short(groups[j])}")
+            if j == 0:
+                axes.set_ylabel(f"error of {short(groups[i])}")
+    handles, labels = grid[0][0].get_legend_handles_labels()
+    once = dict(zip(labels, handles, strict=True))
+    figure.legend(once.values(), once.keys(), loc="upper right")
+    return figure
 
 
 def parameters(data: xr.Dataset) -> Picture:
@@ -188,3 +284,83 @@ def _ellipses(axes: Axes, data: xr.Dataset) -> None:
     first, second = names_of(data, "group")
     axes.set(xlabel=f"error of {first}", ylabel=f"error of {second}")
     axes.set_title("front with its scatter", loc="left")
+
+
+def predictions(data: xr.Dataset) -> Picture:
+    """Return the range of each prediction over the Pareto-optimal models, over the reference.
+
+    Ticks are the posterior's standard deviation to either side; the cross is the nominal model.
+    """
+    best, chosen = position(data), shown(data)
+    nominal = np.flatnonzero(data["kind"].values == "nominal")
+    rows = [
+        (each.name, x)
+        for each in predictions_in(data)
+        for variable in each.kind.ranged
+        for x in each.quantities
+        if x.variable == variable
+    ]
+    figure, axes = single(6.4, 1.0 + 0.24 * max(len(rows), 1))
+    labels, widely = [], False
+    for y, (name, of) in enumerate(rows):
+        value, known = of.values[best], of.values[chosen & np.isfinite(of.values)]
+        positive = known[known > 0]
+        widely |= bool(positive.size and positive.max() > 10 * positive.min())
+        labels.append(f"{short(f'{name}, {of.place}: {of.variable.key}', 40)} ({value:.3g})")
+        if not known.size or not value or np.isnan(value):
+            continue
+        std = np.nan if of.std is None else of.std
+        std = np.exp(std) if of.variable.logarithmic else 1 + abs(std / value)
+        ends = np.array([known.min(), known.max()])
+        axes.plot(ends / value, [y, y], color=COLOURS[0], lw=5, alpha=0.5)
+        axes.plot(known / value, [y] * known.size, "|", color=COLOURS[0], ms=5)
+        axes.plot([1 / std, std], [y, y], "-|", color=COLOURS[1], lw=1.2, ms=8)
+        axes.plot(1, y, "*", color=COLOURS[1], mec="k", mew=0.5, ms=9)
+        axes.plot(of.values[nominal] / value, [y] * nominal.size, "X", color="0.4", ms=6)
+    axes.set_yticks(range(len(rows)), labels)
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    if widely:
+        axes.set_xscale("log")
+    label = plain(data["label"].values[best])
+    axes.set_xlabel(f"over that of {label} (its value in brackets)")
+    axes.plot([], [], color=COLOURS[0], lw=5, alpha=0.5, label="Pareto-optimal models")
+    axes.plot([], [], "-*", color=COLOURS[1], mec="k", mew=0.5, ms=9, label=f"{label}, ± 1 std")
+    if nominal.size:
+        axes.plot([], [], "X", color="0.4", ls="", label="nominal")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower left", ncols=3)
+    return figure
+
+
+def figures(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
+    """Yield a name and a picture of each prediction at all models."""
+    for each in predictions_in(data):
+        yield f"{each.kind.dimension} {each.name}", _page(data, each)
+
+
+def _page(data: xr.Dataset, of: RecordedPrediction) -> Picture:
+    """Return one prediction at all models: of its variables the first one with a range, if any.
+
+    Probabilities are lines of one panel, one a level.
+    """
+    variable = (*of.kind.ranged, *of.kind.variables)[0]
+    quantities = [x for x in of.quantities if x.variable == variable]
+    values = np.column_stack([x.values for x in quantities])
+    std = [x.std for x in quantities if x.std is not None]
+    places = [x.place for x in quantities]
+    if variable.logarithmic:
+        values = np.where(values > 0, values, np.nan)
+        figure, axes = single(4.8, 3.3)
+        axes.set(yscale="log", ylabel=variable.title)
+        along = Along(data)
+        bars = at_reference(data, np.log(values), std)
+        for k, place in enumerate(places):
+            colour = COLOURS[k % len(COLOURS)]
+            along.draw(axes, values[:, k], colour, short(place))
+            if bars is not None:
+                along.bars(axes, np.exp(bars[0][:, k]), np.exp(bars[1][:, k]), colour)
+        along.finish(figure, [axes], 1)
+    else:
+        bars = at_reference(data, values, std)
+        figure = panels_along(data, values, places, variable.title, bars)
+    figure.suptitle(plain(of.name + f" ({of.load})" * bool(of.load)), x=0.01, ha="left")
+    return figure

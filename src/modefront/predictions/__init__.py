@@ -1,27 +1,14 @@
 """Predictions of updated models, one class a file; others are registered as these are."""
 
-from modefront.predictions.base import (
-    NumericalCheck,
-    Prediction,
-    PredictionKind,
-    ResultVariable,
-    Setting,
-)
-from modefront.predictions.first_passage import Passage, SoilFilter
-from modefront.predictions.peak_response import PeakResponse
-from modefront.predictions.registry import CLASSES
+from modefront.predictions.base import CLASSES as CLASSES
+from modefront.predictions.base import NumericalCheck as NumericalCheck
+from modefront.predictions.base import Prediction as Prediction
+from modefront.predictions.base import PredictionKind as PredictionKind
+from modefront.predictions.base import ResultVariable as ResultVariable
+from modefront.predictions.base import Setting as Setting
+from modefront.predictions.first_passage import Passage as Passage
+from modefront.predictions.first_passage import SoilFilter as SoilFilter
+from modefront.predictions.peak_response import PeakResponse as PeakResponse
 
 CLASSES.add(PeakResponse)
 CLASSES.add(Passage)
-
-__all__ = [
-    "CLASSES",
-    "NumericalCheck",
-    "Passage",
-    "PeakResponse",
-    "Prediction",
-    "PredictionKind",
-    "ResultVariable",
-    "Setting",
-    "SoilFilter",
-]

@@ -8,19 +8,53 @@ class from anywhere known to study files.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, is_dataclass, replace
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, refuse
+from modefront.errors import Fault, InputError, refuse
+from modefront.families import Family
 from modefront.models.base import Model
-from modefront.options import TRUE_OR_FALSE, Requirement, check_fields, each_once, text
+from modefront.options import TRUE_OR_FALSE, Requirement, check_fields, checked, each_once, text
 from modefront.residuals.problem import UpdatingProblem
-from modefront.variables import Variable
+from modefront.text import NAME, clean
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+Values = Literal["number", "count", "truth", "text"]
+"""Types of values of a variable."""
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of the results.
+
+    The unit is empty where there is none, or where it is that of the model; ``section`` is a
+    heading of the documentation, ``together`` a name of variables of which a file has all or none.
+    """
+
+    name: str
+    dimensions: tuple[str, ...]
+    meaning: str
+    values: Values = "number"
+    unit: str = ""
+    section: str = ""
+    required: bool = False
+    together: str = ""
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """Attributes of the variable in a file (CF conventions)."""
+        return {"long_name": self.meaning} | ({"units": self.unit} if self.unit else {})
+
 
 IDENTIFIER = Requirement(
     "a name of small letters, digits and _, a letter first",
@@ -43,7 +77,7 @@ def _all_of(record: type, words: str) -> Requirement:
     )
 
 
-@dataclass(frozen=True)
+@checked
 class ResultVariable:
     """A variable of the results that a prediction has one value of for each model and place.
 
@@ -69,9 +103,6 @@ class ResultVariable:
     symbol: Annotated[str, ANY_WORDS] = ""
     mean: Annotated[str, ANY_WORDS] = ""
 
-    def __post_init__(self) -> None:
-        check_fields(self)
-
     @property
     def logarithmic(self) -> bool:
         """Whether its logarithm is linearised."""
@@ -83,7 +114,7 @@ class ResultVariable:
         return f"{self.key}, {self.unit}" if self.unit else self.key
 
 
-@dataclass(frozen=True)
+@checked
 class Setting:
     """An option of predictions, as a variable of the results.
 
@@ -104,15 +135,12 @@ class Setting:
     unit: Annotated[str, ANY_WORDS] = ""
     dimensions: Annotated[tuple[str, ...], _all_of(str, "names of dimensions")] = ()
 
-    def __post_init__(self) -> None:
-        check_fields(self)
-
 
 VARIABLES = _all_of(ResultVariable, "ResultVariable")
 SETTINGS = _all_of(Setting, "Setting")
 
 
-@dataclass(frozen=True)
+@checked
 class NumericalCheck:
     """A comparison with finer numerics, made at the reference model.
 
@@ -128,9 +156,6 @@ class NumericalCheck:
     name: Annotated[str, WORDS]
     variables: Annotated[tuple[ResultVariable, ...], VARIABLES]
     label: ResultVariable
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 @dataclass(frozen=True)
@@ -287,3 +312,162 @@ class Prediction(Protocol):
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence, /
     ) -> Mapping[str, Floats]:
         """Return the result of the kind's check at a model, (places,) each; empty without one."""
+
+
+ATTRIBUTE = "prediction_kinds"
+"""Attribute of results that holds the kinds of their predictions, in JSON."""
+
+
+def _faults(prediction: Any) -> Iterator[Fault]:
+    place = f"prediction class {getattr(prediction, '__qualname__', prediction)!s}"
+    if not (isinstance(prediction, type) and is_dataclass(prediction)):
+        yield Fault("", place, "a frozen dataclass", clean(repr(prediction), NAME))
+        return
+    kind = getattr(prediction, "kind", None)
+    if not isinstance(kind, PredictionKind):
+        yield Fault("", place, "an attribute kind, a PredictionKind", clean(repr(kind), NAME))
+        return
+    methods = ("places", "heading", "settings", "faults", "complete", "evaluate", "check")
+    missing = [name for name in methods if not hasattr(prediction, name)]
+    if "name" not in prediction.__dataclass_fields__:
+        missing.append("name")
+    if missing:
+        yield Fault("", place, "what modefront.Prediction has", f"no {', '.join(missing)}")
+    other: Any = CLASSES.added.get(kind.table)
+    names = [(x.__module__, x.__qualname__) for x in (other or prediction, prediction)]
+    if names[0] != names[1]:
+        yield Fault("", place, "a table of its own", f"'{kind.table}', of {other.__qualname__}")
+
+
+CLASSES: Family[type[Prediction]] = Family(
+    "modefront.predictions",
+    "a class of predictions",
+    lambda each: isinstance(each, type),
+    lambda each: each.kind.table,
+    faults=_faults,
+)
+"""Classes of predictions by the names of their tables in study files."""
+
+
+def as_text(kinds: Iterable[PredictionKind]) -> str:
+    """Return kinds in JSON."""
+    return json.dumps([asdict(kind) for kind in kinds])
+
+
+@cache
+def kinds_from(text: str) -> tuple[PredictionKind, ...]:
+    """Return kinds from JSON; raises ValueError for what `as_text` does not make."""
+    try:
+        kinds = tuple(_kind(**values) for values in json.loads(text)) if text else ()
+        refuse(each_once("dimension", [kind.dimension for kind in kinds]))
+    except (TypeError, KeyError, RecursionError, InputError) as error:
+        raise ValueError(clean(str(error), NAME)) from None
+    return kinds
+
+
+def _kind(variables: Any, settings: Any, check: Any, **values: Any) -> PredictionKind:
+    if check is not None:
+        compared = tuple(ResultVariable(**each) for each in check["variables"])
+        check = NumericalCheck(check["name"], compared, ResultVariable(**check["label"]))
+    return PredictionKind(
+        variables=tuple(ResultVariable(**each) for each in variables),
+        settings=tuple(Setting(**each) for each in settings),
+        check=check,
+        **values,
+    )
+
+
+def kinds_in(data: xr.Dataset) -> tuple[PredictionKind, ...]:
+    """Return the kinds of which sound results have predictions."""
+    return kinds_from(str(data.attrs.get(ATTRIBUTE, "")))
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number that models predict, as results hold it: one variable at one place.
+
+    Attributes
+    ----------
+    variable : what it is
+    place : where, without the name of the prediction
+    label : of the place, with that name
+    values : (points,) of all models
+    extent : least, greatest and their ratio over the Pareto-optimal models; NaN for none
+    std : standard deviation by the posterior, of the logarithm where that is linearised, as a
+        factor then; None where it is not known to the results
+    drawn : statistics over the models drawn from the posterior, by name; none without draws
+    """
+
+    variable: ResultVariable
+    place: str
+    label: str
+    values: Floats
+    extent: Floats
+    std: float | None
+    drawn: Mapping[str, float]
+
+
+def quantity(
+    data: xr.Dataset, variable: ResultVariable, i: int, of: str = "", log_std: str = ""
+) -> Quantity:
+    """Return the quantity that is the i-th column of a variable of results.
+
+    ``of`` is the name of its prediction, ``log_std`` names the variable with the standard deviation
+    of its logarithm.
+    """
+    name, values = variable.name, data[variable.name]
+    label = str(values[values.dims[1]].values[i])
+    extent, std, drawn = np.full(3, np.nan), None, {}
+    if variable.ranged:
+        extent = data[f"{name}_range"].values[:, i]
+        if (deviations := data.get(log_std or f"posterior_{name}_std")) is not None:
+            std = float(deviations.values[i])
+        if (statistics := data.get(f"posterior_{name}")) is not None:
+            of_draws = zip(statistics["statistic"].values, statistics.values[:, i], strict=True)
+            drawn = {str(statistic): float(value) for statistic, value in of_draws}
+    place = label.removeprefix(f"{of}: ")
+    return Quantity(variable, place, label, values.values[:, i], extent, std, drawn)
+
+
+@dataclass(frozen=True)
+class RecordedPrediction:
+    """A prediction in results.
+
+    Attributes
+    ----------
+    kind : what it is
+    name : of the prediction
+    heading : its load case and options
+    load : its load; empty where the kind has no such setting
+    positions : of its values along the dimension of the kind
+    quantities : of each place in turn, one a variable
+    """
+
+    kind: PredictionKind
+    name: str
+    heading: str
+    load: str
+    positions: tuple[int, ...]
+    quantities: tuple[Quantity, ...]
+
+
+def predictions_in(data: xr.Dataset) -> Iterator[RecordedPrediction]:
+    """Yield the predictions of sound results."""
+    for kind in kinds_in(data):
+        start = kind.dimension
+        names, load = data[f"{start}_name"].values.tolist(), data.get(f"{start}_load")
+        for name in dict.fromkeys(names):
+            positions = tuple(i for i, each in enumerate(names) if each == name)
+            quantities = tuple(
+                quantity(data, x, i, name, f"posterior_{start}_log_std" * x.logarithmic)
+                for i in positions
+                for x in kind.variables
+            )
+            yield RecordedPrediction(
+                kind,
+                str(name),
+                str(data[f"{start}_heading"].values[positions[0]]),
+                "" if load is None else str(load.values[positions[0]]),
+                positions,
+                quantities,
+            )

@@ -6,18 +6,22 @@ import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
-from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, NUMBER, array, pair
 from modefront.models.base import Model
 from modefront.options import (
+    ABOVE_ZERO,
+    NOT_NEGATIVE,
+    NUMBER,
     Requirement,
+    array,
     check_fields,
+    checked,
     nested,
     number,
     numbers,
@@ -26,7 +30,15 @@ from modefront.options import (
     whole,
 )
 from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVariable, Setting
-from modefront.predictions.load_model import (
+from modefront.predictions.reliability import (
+    LARGEST_ANGLE,
+    METHODS,
+    FirstPassage,
+    Share,
+    estimate,
+    step_effect,
+)
+from modefront.predictions.system import (
     ABOVE,
     EITHER,
     MEASURED,
@@ -34,22 +46,14 @@ from modefront.predictions.load_model import (
     Damping,
     Forces,
     ModalLoadModel,
+    ModalSystem,
     ModeCount,
     Name,
     Response,
-    complete_modes,
-    contradictions,
     filled,
     highest_frequency,
-    load_case_of,
-    load_faults,
-    nominal_system,
 )
-from modefront.reliability.estimate import Prepare, estimate, step_effect
-from modefront.reliability.methods import METHODS
-from modefront.reliability.problem import LARGEST_ANGLE, FirstPassage
 from modefront.residuals.problem import UpdatingProblem
-from modefront.response.system import ModalSystem
 from modefront.rounding import ACCUMULATED
 
 MOST_WORKERS = 8
@@ -65,30 +69,20 @@ WHOLE = 1e-6
 """Difference from a whole number of time steps that passes for the digits of their length."""
 
 
-def _is_modulation(value: list[list[float]]) -> bool:
-    return rising([t for t, _ in value]) and any(factor != 0 for _, factor in value)
-
-
-SOIL_FREQUENCY = number("a frequency of the soil above 0 Hz", above=0)
-SOIL_DAMPING = number("a damping ratio of the soil above 0", above=0)
-DENSITY = number("a spectral density above 0", above=0)
-DURATION = number("a duration above 0 s", above=0)
-STEP = number("a time step above 0 s", above=0)
-
-LEVELS = numbers(
-    "a list of different levels above 0",
-    array(ABOVE_ZERO, 1, once=True),
-)
+LEVELS = numbers("a list of different levels above 0", array(ABOVE_ZERO, 1, once=True))
 
 MODULATION = Requirement(
     "a list of [time in s, factor], times rising from 0 or more, one factor not zero",
-    {**array(pair(NOT_NEGATIVE, NUMBER), 1), "contains": {"items": [{}, {"not": {"const": 0}}]}},
+    {
+        **array(array([NOT_NEGATIVE, NUMBER], 2, 2), 1),
+        "contains": {"items": [{}, {"not": {"const": 0}}]},
+    },
     lambda value: tuple((float(t), float(q)) for t, q in value),
-    _is_modulation,
+    lambda value: rising([t for t, _ in value]) and any(factor for _, factor in value),
 )
 
 
-@dataclass(frozen=True)
+@checked
 class SoilFilter:
     """A filter of white noise by a layer of soil, after Kanai and Tajimi.
 
@@ -100,11 +94,8 @@ class SoilFilter:
     damping : damping ratio of the soil, above 0
     """
 
-    frequency: Annotated[float, SOIL_FREQUENCY]
-    damping: Annotated[float, SOIL_DAMPING]
-
-    def __post_init__(self) -> None:
-        check_fields(self)
+    frequency: Annotated[float, number("a frequency of the soil above 0 Hz", above=0)]
+    damping: Annotated[float, number("a damping ratio of the soil above 0", above=0)]
 
     @property
     def omega(self) -> float:
@@ -145,13 +136,13 @@ class Passage:
 
     name: Name
     response: Response
-    density: Annotated[float, DENSITY]
+    density: Annotated[float, number("a spectral density above 0", above=0)]
     sided: Literal["one", "two"]
     levels: Annotated[Sequence[float], LEVELS]
-    duration: Annotated[float, DURATION]
+    duration: Annotated[float, number("a duration above 0 s", above=0)]
     force: Forces | None = None
     base: Base | None = None
-    step: Annotated[float, STEP] | None = None
+    step: Annotated[float, number("a time step above 0 s", above=0)] | None = None
     filter: Annotated[SoilFilter, FILTER] | None = None
     modulation: Annotated[Sequence[tuple[float, float]], MODULATION] | None = None
     samples: Annotated[int, whole(2, 10**8)] = 2000
@@ -212,7 +203,7 @@ class Passage:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        faults = list(contradictions(self.loads))
+        faults = list(self.loads.contradictions())
         steps = 1.0 if self.step is None else self.duration / self.step
         if steps > MOST_STEPS:
             faults.append(Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}"))
@@ -224,8 +215,8 @@ class Passage:
     @property
     def loads(self) -> ModalLoadModel:
         """Load case, outputs, modes and damping."""
-        load_case = load_case_of(self.response, self.force, self.base)
-        return ModalLoadModel(load_case, self.modes, self.damping, static=False)
+        forces: Any = self.force or ()
+        return ModalLoadModel.of(self, forces, static=False)
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -264,7 +255,7 @@ class Passage:
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""
-        yield from load_faults(self.loads, model, data)
+        yield from self.loads.faults(model, data)
         number_known = self.modes is not None or isinstance(self.damping, tuple)
         if highest_frequency(data) is None and not number_known:
             yield Fault("", "modes", "how many modes, as no frequency was measured", "nothing")
@@ -276,8 +267,8 @@ class Passage:
         """
         refuse(self.faults(problem.model, problem.data))
         top = ABOVE * (highest_frequency(problem.data) or 0.0)
-        out = replace(self, modes=complete_modes(self.loads, problem, top))
-        return replace(out, step=out._step(nominal_system(out.loads, problem)))
+        out = replace(self, modes=self.loads.complete_modes(problem, top))
+        return replace(out, step=out._step(out.loads.nominal(problem)))
 
     def _step(self, system: ModalSystem) -> float:
         """Return the time step.
@@ -335,7 +326,7 @@ class Passage:
 
     def _sampled(
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
-    ) -> tuple[Prepare, FirstPassage, Floats, int, np.random.SeedSequence, int]:
+    ) -> tuple[Share | None, FirstPassage, Floats, int, np.random.SeedSequence, int]:
         """Return what estimates at a model take."""
         method, passage = METHODS[self.method], self.problem(problem, theta)
         # How many threads there are changes no digit, only memory and time.

@@ -21,17 +21,18 @@ item      meaning (words of the header, counted from 1)
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.inputs import counted, wrong
+from modefront.errors import reason
+from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.models.files import read_entries
 from modefront.programs.base import JobOptions
-from modefront.programs.reading import Entries, Listed, existing, given_table, unlabelled
+from modefront.programs.reading import Listed, entries_of, existing, given_table, unlabelled
 
 MATRICES = {"stiffness": ("_K", "K", "_stiff", "_STIFF"), "mass": ("_M", "M", "_mass", "_MASS")}
 
@@ -49,85 +50,80 @@ def read(path: Path, options: JobOptions) -> Listed:
 # .full
 
 
-@dataclass(frozen=True, eq=False)
 class _Words:
-    path: Path
-    words: np.ndarray
+    """Words of 4 bytes of a file, and where in them the next record is."""
 
-    def record(self, start: int) -> tuple[np.ndarray, int]:
-        """Return the words of the record at a position, and the position of the next."""
-        size = self.words.size - 3
-        count = int(self.words[start]) if 0 <= start <= size else -1
-        if not 0 <= count <= size - start or self.words[start + count + 2] != count:
-            raise wrong(self.path, "whole records of Ansys", "a file that is cut off, or another")
-        flags = (int(self.words[start + 1]) >> 24) & 0xFF
-        if flags not in (0x80, 0):  # integers, or doubles
-            raise wrong(self.path, "records that are not compressed (/FCOMP,FULL,0)", "others")
-        return self.words[start + 2 : start + 2 + count], start + count + 3
+    def __init__(self, path: Path) -> None:
+        data = np.fromfile(path, dtype=np.uint8)
+        self.words, self.position = data[: data.size // 4 * 4].view("<i4"), 103
 
-    def long(self, header: np.ndarray, low: int, high: int) -> int:
-        """Return a number of two words of the header, counted from 1."""
-        return (int(header[low - 1]) & 0xFFFFFFFF) + (int(header[high - 1]) << 32)
+    def record(self, position: int | None = None, kind: str = "<i4") -> np.ndarray:
+        """Return the content of the record at a position, the next one unless given."""
+        start = self.position if position is None else position
+        count = int(self.words[start]) if 0 <= start < self.words.size else -1
+        self.position = start + count + 3
+        if count < 0 or self.position > self.words.size or self.words[start + count + 2] != count:
+            raise ValueError("a file that is cut off, or another")
+        if (int(self.words[start + 1]) >> 24) & 0xFF not in (0x80, 0):  # integers, or doubles
+            raise ValueError("records that are compressed: /FCOMP,FULL,0 writes others")
+        return np.ascontiguousarray(self.words[start + 2 : start + 2 + count]).view(kind)
 
 
 def _from_full(path: Path) -> Listed:
-    data = np.fromfile(path, dtype=np.uint8)
-    words = _Words(path, data[: data.size // 4 * 4].view("<i4"))
-    header, position = words.record(103)
+    try:
+        return _content_of(_Words(path), path)
+    except ValueError as error:
+        expected = "whole records of an assembled matrix of Ansys (.full)"
+        raise wrong(path, expected, reason(error)) from None
+
+
+def _content_of(words: _Words, path: Path) -> Listed:
+    header = words.record()
+
+    def long(low: int, high: int) -> int:
+        """Return a number of two words of the header, counted from 1."""
+        return (int(header[low - 1]) & 0xFFFFFFFF) + (int(header[high - 1]) << 32)
+
     if words.words[0] != 100 or header.size < 64 or header[0] >= 0:
-        raise wrong(path, "an assembled matrix of Ansys (.full)", "another file")
+        raise ValueError("another file")
     if header[13]:
-        expected = "symmetric matrices"
-        raise wrong(path, expected, "unsymmetric ones (NROPT, contact, rotors, fluids)")
+        raise ValueError("unsymmetric matrices (NROPT, contact, rotors, fluids)")
     if header[20]:
-        expected = "matrices without constraint equations (CE, RBE3, rigid contact), which are "
-        expected += "kept apart: *EXPORT, which applies them"
-        raise wrong(path, expected, f"{header[20]} constraint equations")
-    size = int(header[1])
-    _, position = words.record(position)
-    nodes, _ = words.record(position)
-    counts, position = words.record(words.long(header, 36, 37))
-    identifiers, _ = words.record(position)
+        found = f"{header[20]} constraint equations (CE, RBE3, rigid contact), which are kept apart"
+        raise ValueError(f"{found}: *EXPORT applies them")
+    size, terms = int(header[1]), long(34, 22)
+    if terms == 0:
+        raise ValueError("no mass matrix (ANTYPE,MODAL writes one)")
+    words.record()
+    nodes, counts, identifiers = words.record(), words.record(long(36, 37)), words.record()
     if identifiers.size != size or counts.sum() != size or counts.size != nodes.size:
-        raise wrong(path, f"{size} degrees of freedom", f"{identifiers.size} of {counts.sum()}")
+        raise ValueError(f"{identifiers.size} of {counts.sum()} degrees of freedom, not {size}")
     node = np.repeat(nodes, counts).astype(np.intp)
     dofs = DofTable(node, np.abs(identifiers).astype(np.intp), np.ones(size))
-    terms = words.long(header, 34, 22)
-    stiffness = _rows(words, words.long(header, 19, 20), words.long(header, 9, 10), size)
-    if terms == 0:
-        raise wrong(path, "a mass matrix (ANTYPE,MODAL)", "none")
-    position = words.long(header, 27, 28)
+    K = _rows(words, long(19, 20), long(9, 10), size)
     if header[10]:  # lumped
-        value, _ = words.record(position)
-        if value.size != 2 * size:
-            raise wrong(path, f"{size} lumped masses", f"{value.size // 2}")
         diagonal = np.arange(size)
-        mass = Entries(diagonal, diagonal, np.ascontiguousarray(value).view("<f8"))
+        M = entries_of(diagonal, diagonal, words.record(long(27, 28), "<f8"), size)
     else:
-        mass = _rows(words, position, terms, size)
+        M = _rows(words, long(27, 28), terms, size)
     notes = ["there is a damping matrix, which is left out"] if int(header[34]) else []
-    return Listed((path, path), (stiffness, mass), dofs, identifiers > 0, notes=notes)
+    return Listed((path, path), (K, M), dofs, free=identifiers > 0, notes=notes)
 
 
-def _rows(words: _Words, position: int, terms: int, size: int) -> Entries:
-    columns, values, count = list[np.ndarray](), list[np.ndarray](), 0
-    while count < terms:
-        index, position = words.record(position)
-        value, position = words.record(position)
-        if index.size == 0 or value.size != 2 * index.size:
-            raise wrong(words.path, "columns and values of a row", "others")
-        columns.append(index)
-        values.append(value)
-        count += index.size
-    counted(words.path, "records of rows", "terms of a matrix", terms, count)
-    counted(words.path, "records of rows", "rows", size, len(columns))
+def _rows(words: _Words, position: int, terms: int, size: int) -> scipy.sparse.coo_array:
+    columns, values = list[np.ndarray](), list[np.ndarray]()
+    words.position = position
+    for _ in range(size):
+        columns.append(words.record())
+        values.append(words.record(kind="<f8"))
     length = np.array([index.size for index in columns])
     column = np.concatenate(columns) - 1
+    if length.sum() != terms or [x.size for x in values] != length.tolist():
+        raise ValueError(f"{column.size} terms of {size} rows, not {terms} with as many values")
     diagonal = column[np.cumsum(length) - 1]
     if (diagonal != np.arange(size)).any():
-        raise wrong(words.path, "rows in their order, each to its diagonal", "others")
-    row = np.repeat(diagonal, length)
-    return Entries(row, column, np.concatenate(values).view("<f8"))
+        raise ValueError("rows that are not in their order, each to its diagonal")
+    return entries_of(np.repeat(diagonal, length), column, np.concatenate(values), size)
 
 
 def _from_market(path: Path, options: JobOptions) -> Listed:
@@ -141,8 +137,7 @@ def _from_market(path: Path, options: JobOptions) -> Listed:
     if matrices[1].shape[0] != size:
         raise wrong(path, f"a mass matrix of {size} rows", str(matrices[1].shape[0]))
     dofs = given_table(options, size) or _labels(path, size)
-    K, M = (Entries(matrix.row, matrix.col, matrix.data) for matrix in matrices)
-    return Listed((files[0], files[1]), (K, M), dofs)
+    return Listed((files[0], files[1]), matrices, dofs)
 
 
 def _labels(path: Path, size: int) -> DofTable:

@@ -46,17 +46,21 @@ class ProgramMesh:
     cells: Mapping[str, Ints]
 
 
-def mesh_of(nodes: Mapping[int, Floats], elements: Mapping[str, list[list[int]]]) -> ProgramMesh:
-    """Return the mesh of nodes and of elements, of which those with unknown nodes are left out."""
+def mesh_of(nodes: Mapping[int, Floats], elements: Iterable[tuple[str, list[int]]]) -> ProgramMesh:
+    """Return the mesh of nodes and of elements, each a type of cell and nodes, corners first.
+
+    Elements with unknown nodes, or fewer than corners, are left out.
+    """
     number = np.array(sorted(nodes), dtype=np.intp)
     coordinates = np.array([nodes[n] for n in number.tolist()], dtype=float).reshape(-1, 3)
-    cells: dict[str, Ints] = {}
-    for kind, rows in elements.items():
-        table = np.array(rows, dtype=np.intp).reshape(-1, CORNERS[kind])
-        table = table[np.isin(table, number).all(axis=1)]
-        if len(table):
-            cells[kind] = table
-    return ProgramMesh(number, coordinates, cells)
+    cells: dict[str, list[list[int]]] = {}
+    for kind, members in elements:
+        corners = members[: CORNERS[kind]]
+        if len(corners) == CORNERS[kind] and nodes.keys() >= set(corners):
+            cells.setdefault(kind, []).append(corners)
+    return ProgramMesh(
+        number, coordinates, {kind: np.array(x, np.intp) for kind, x in cells.items()}
+    )
 
 
 def refuse_unknown_nodes(path: Path, known: Collection[int], nodes: Iterable[int]) -> None:
@@ -115,7 +119,7 @@ class Job:
     Attributes
     ----------
     name : file or files, for messages
-    stiffness, mass : upper triangles (N, N), rows compressed
+    stiffness, mass : (N, N), symmetric, rows compressed
     dofs : node and direction of each degree of freedom
     precision : relative error of the numbers as they are written
     mesh : nodes and elements where the deck is at hand; None where it is not
@@ -163,37 +167,19 @@ class JobOptions:
     deck: Path | None = None
 
 
-@dataclass(frozen=True)
-class Program:
-    """A finite-element program.
+def read_job(program: str, path: Path, options: JobOptions) -> Job:
+    """Return a job of a program; raises InputError where its files cannot be read, for any cause.
 
-    Attributes
-    ----------
-    name : as the command line names it, and the module beside this one has it, whose function
-        ``read`` takes a path and options, and returns `modefront.programs.reading.Listed`
-    eliminates : whether degrees of freedom of negative nodes are to be eliminated where that is
-        exact; they are kept otherwise
+    A program is a module beside this one, whose function ``read`` takes a path and options, and
+    returns `modefront.programs.reading.Listed`.
     """
-
-    name: str
-    eliminates: bool = False
-
-    def job(self, path: Path, options: JobOptions) -> Job:
-        """Return a job; raises InputError where its files cannot be read, whatever the cause."""
-        texts = (str(text or "") for text in astuple(options))
-        reader = "modefront.programs.reading:read_job"
-        try:
-            arrays, (name, precision, notes) = isolated(reader, path, arguments=(self.name, *texts))
-        except IsolatedError as error:
-            raise wrong(path, f"a job of {self.name}", str(error)) from None
-        dofs = DofTable(*(arrays.pop(part) for part in ("node", "direction", "weight")))
-        shape, parts = (dofs.size, dofs.size), range(3)
-        K, M = (Matrix(tuple(arrays.pop(f"{A}{k}") for k in parts), shape=shape) for A in "KM")
-        mesh = mesh_from(arrays) if arrays else None
-        return Job(name, K, M, dofs, precision, mesh, tuple(notes))
-
-
-def whole(triangle: Matrix) -> Matrix:
-    """Return the symmetric matrix of an upper triangle."""
-    strict = scipy.sparse.triu(triangle, k=1, format="csr")
-    return Matrix(triangle + strict.T)
+    given = (program, *(str(text or "") for text in astuple(options)))
+    try:
+        arrays, texts = isolated("modefront.programs.reading:parts_of_job", path, arguments=given)
+    except IsolatedError as error:
+        raise wrong(path, f"a job of {program}", str(error)) from None
+    dofs = DofTable(*(arrays.pop(part) for part in ("node", "direction", "weight")))
+    shape, parts = (dofs.size, dofs.size), range(3)
+    K, M = (Matrix(tuple(arrays.pop(f"{A}{k}") for k in parts), shape=shape) for A in "KM")
+    name, precision, notes = texts
+    return Job(name, K, M, dofs, precision, mesh_from(arrays) if arrays else None, tuple(notes))

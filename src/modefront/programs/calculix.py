@@ -14,7 +14,6 @@ modes) moves with the model, and belongs to no node.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 
@@ -24,7 +23,7 @@ from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.programs.base import JobOptions
 from modefront.programs.inp import Deck, deck_of
-from modefront.programs.reading import Entries, Listed, columns, existing
+from modefront.programs.reading import Listed, columns, entries_of, existing
 
 SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
 
@@ -42,11 +41,19 @@ def read(path: Path, options: JobOptions) -> Listed:
         existing(file, "a matrix or table of CalculiX", ADVICE)
     labels = columns(files[".dof"], ".", "ii", comment="#")
     node, direction = (column.astype(np.intp) for column in labels)
-    entries = {}
+    matrices = []
     for suffix in (".sti", ".mas"):
         row, column, value = columns(files[suffix], r"\s+", "iif", comment="#")
-        entries[suffix] = Entries(row - 1, column - 1, value, precision=1e-13)
-    _refuse_cut_off(files, entries, node.size)
+        last = max(int(row.max(initial=0)), int(column.max(initial=0)))
+        if last != node.size:
+            expected = f"entries up to row {node.size}, as '{files['.dof'].name}' has"
+            raise wrong(files[suffix], expected, f"entries up to row {last}; is it cut off?")
+        matrices.append(entries_of(row - 1, column - 1, value, node.size))
+    K, M = matrices
+    if not (np.array_equal(K.row, M.row) and np.array_equal(K.col, M.col)):
+        expected = f"entries at the places of '{files['.sti'].name}', one after the other"
+        found = f"{M.nnz} in place of {K.nnz}, or others; is one of them cut off?"
+        raise wrong(files[".mas"], expected, found)
     own, notes = job.with_name(job.name + ".inp"), list[str]()
     missing = ", and held nodes of shells and beams cannot be told from others"
     deck = deck_of(options.deck or own, notes, missing)
@@ -61,73 +68,44 @@ def read(path: Path, options: JobOptions) -> Listed:
     nodes = np.unique(dofs.node[dofs.node > 0])
     if dead := np.setdiff1d(nodes, dofs.node[dofs.weight != 0]).size:
         notes.append(f"{dead} nodes are held: there are no sensors at them")
-    pair = entries[".sti"], entries[".mas"]
     mesh = deck.mesh if deck else None
-    return Listed((files[".sti"], files[".mas"]), pair, dofs, mesh=mesh, notes=notes)
-
-
-def _refuse_cut_off(files: dict[str, Path], entries: dict[str, Entries], size: int) -> None:
-    """Refuse matrices that do not reach their last row, or have different patterns."""
-    for suffix, matrix in entries.items():
-        last = int(max(matrix.row.max(initial=-1), matrix.column.max(initial=-1))) + 1
-        if last != size:
-            expected = f"entries up to row {size}, as '{files['.dof'].name}' has"
-            raise wrong(files[suffix], expected, f"entries up to row {last}; is it cut off?")
-    first, second = entries.values()
-    pairs = (first.row, second.row), (first.column, second.column)
-    if not all(np.array_equal(a, b) for a, b in pairs):
-        expected = f"entries at the places of '{files['.sti'].name}', one after the other"
-        sizes = f"{second.row.size} in place of {first.row.size}"
-        raise wrong(files[".mas"], expected, f"{sizes}, or others; is one of them cut off?")
+    return Listed((files[".sti"], files[".mas"]), (K, M), dofs, 1e-13, mesh=mesh, notes=notes)
 
 
 def _table(labels: DofTable, deck: Deck | None) -> DofTable:
     """Return the degrees of freedom with their shares in the motion of their node."""
-    node, direction = labels.node.copy(), labels.direction
+    blocks, leading = _own_blocks(labels, deck)
+    itself = np.zeros(labels.size, bool)  # not one of those that were made of the node
+    for first, behind in blocks.values():
+        itself[first:behind] = True
+    pairs = np.column_stack([labels.node, labels.direction])
+    _, group = np.unique(pairs, axis=0, return_inverse=True)
+    nodes, owner = np.unique(labels.node, return_inverse=True)
+    of_group = np.bincount(group.ravel(), itself), np.bincount(group.ravel(), ~itself)
+    own, made = (count[group.ravel()] for count in of_group)
+    most = np.zeros(nodes.size)
+    np.maximum.at(most, owner, made)
+    # Where the program eliminated one of them, the mean of all is held.
+    counted = itself | ((own == 0) & (made == most[owner]))
+    node = labels.node.copy()
     if deck is not None:
         node[~np.isin(node, deck.mesh.number)] *= -1
-    weight = np.zeros(node.size)
-    blocks, leading = _own_blocks(labels, deck)
-    order = np.lexsort((direction, labels.node))
-    keys = np.column_stack([labels.node, direction])[order]
-    starts = np.flatnonzero((keys[1:] != keys[:-1]).any(axis=1)) + 1
-    parts, most = {}, dict[int, int]()
-    for group in np.split(order, starts):  # of the node itself, and those that were made of it
-        number, along = int(labels.node[group[0]]), int(direction[group[0]])
-        first, behind = blocks.get(number, (0, 0))
-        inside = (group >= first) & (group < behind)
-        parts[number, along] = group[inside], group[~inside]
-        most[number] = max(most.get(number, 0), int((~inside).sum()))
-    follow = _followers(labels, deck, blocks, most, leading)
-    known = set() if deck is None else set(deck.mesh.number.tolist())
-    for (number, along), (itself, made) in parts.items():
-        if deck and (number not in known or number in follow or (number, along) in deck.held):
-            continue
-        if itself.size:
-            weight[itself] = 1.0 / itself.size
-        elif made.size == most[number]:  # else the program eliminated one: the mean of all is held
-            weight[made] = 1.0 / made.size
-    return DofTable(node, direction, weight)
+        single = set(nodes[most == 1].tolist()) & (deck.expanded - deck.others - blocks.keys())
+        follow = list(_followers(labels, deck, single, leading))
+        held = [pair in deck.held for pair in map(tuple, pairs.tolist())]
+        counted &= (node > 0) & ~np.isin(node, follow) & ~np.array(held, bool)
+    return DofTable(node, labels.direction, counted / np.where(itself, own, made).clip(1))
 
 
-def _followers(
-    labels: DofTable,
-    deck: Deck | None,
-    blocks: Mapping[int, tuple[int, int]],
-    most: Mapping[int, int],
-    leading: int,
-) -> set[int]:
+def _followers(labels: DofTable, deck: Deck, single: set[int], leading: int) -> set[int]:
     """Return the nodes of shells and beams that follow a rigid body, and its reference nodes.
 
-    The program eliminates all but one of the nodes that it makes of such a node. What is left does
-    not tell how the node moves, nor does the motion that it prints for the reference node agree
-    with that of its degrees of freedom. ``leading`` degrees of freedom are of nodes themselves.
+    The program eliminates all but one of the nodes that it makes of such a node, which are
+    ``single``. What is left does not tell how the node moves, nor does the motion that it prints
+    for the reference node agree with that of its degrees of freedom. ``leading`` degrees of freedom
+    are of nodes themselves.
     """
-    if deck is None:
-        return set()
-    single = {n for n in deck.expanded - deck.others - blocks.keys() if most.get(n) == 1}
-    behind = set(labels.node[leading:].tolist())
-    out = single & (behind | set(deck.nodes_of(deck.bodies)))
+    out = single & {*labels.node[leading:].tolist(), *deck.nodes_of(deck.bodies)}
     return out | set(deck.nodes_of(deck.guides)) if out else out
 
 

@@ -27,7 +27,7 @@ from modefront.errors import Fault, InputError, wrong
 from modefront.linalg.affine import Monomials
 from modefront.models.dofs import DofTable, name_of
 from modefront.models.parameters import BASE, term_exponents
-from modefront.programs.base import Job, Matrix, Quantity, whole
+from modefront.programs.base import Job, Matrix, Quantity
 from modefront.rounding import ACCUMULATED
 
 AFFINE = 1e-10
@@ -50,7 +50,7 @@ class Term:
     Attributes
     ----------
     name : as `modefront.models.parameters` has it
-    matrices : upper triangles by quantity; only those that are not zero
+    matrices : symmetric ones by quantity; only those that are not zero
     dofs : number of degrees of freedom on which the term acts
     rank : of the stiffness, or of the mass where there is no stiffness; None where not found
     """
@@ -79,7 +79,7 @@ class Terms:
     dofs: DofTable
 
     def of(self, quantity: Quantity) -> dict[str, Matrix]:
-        """Return the upper triangles of a quantity by the names of the terms, the base first."""
+        """Return the matrices of a quantity by the names of the terms, the base first."""
         every = (self.base, *self.terms)
         return {x.name: x.matrices[quantity] for x in every if quantity in x.matrices}
 
@@ -104,7 +104,7 @@ class Differences:
         order = matching(self.nominal, job, label)
         differences: dict[Quantity, Matrix] = {}
         for quantity, A in self.nominal.matrices.items():
-            D = scipy.sparse.coo_array(reordered(job.matrices[quantity], order) - A)
+            D = scipy.sparse.coo_array(job.matrices[quantity][order][:, order] - A)
             size, greatest = np.abs(D.data), np.abs(A.data).max(initial=0.0)
             noise = (size <= 1e-13 * greatest) & (size <= 1e-10 * _joint(D, A))
             differences[quantity] = _with(D, ~noise & (D.data != 0))
@@ -175,7 +175,7 @@ class Differences:
         shifts = self.coefficients.values(values) - 1.0
         worst = 0.0
         for quantity, A in self.nominal.matrices.items():
-            E = change = (reordered(job.matrices[quantity], order) - A).tocsr()
+            E = change = (job.matrices[quantity][order][:, order] - A).tocsr()
             for shift, term in zip(shifts, terms.terms, strict=True):
                 if quantity in term.matrices:
                     E = E - shift * term.matrices[quantity]
@@ -229,8 +229,8 @@ def _share(
     return float((inside.data**2).sum() / (E.data**2).sum())
 
 
-def matching(nominal: Job, job: Job, label: str) -> Ints | None:
-    """Return where each degree of freedom of ``job`` is among the nominal ones; None for the same.
+def matching(nominal: Job, job: Job, label: str) -> Ints | slice:
+    """Return where each nominal degree of freedom is among those of ``job``.
 
     They are matched by node and direction, and those of the same label in their order. Raises
     InputError where there are others.
@@ -240,7 +240,7 @@ def matching(nominal: Job, job: Job, label: str) -> Ints | None:
         if nominal.size != job.size:
             expected = f"{nominal.size} degrees of freedom, as '{nominal.name}' has"
             raise wrong(label, expected, job.size)
-        return None
+        return slice(None)
     labels = [np.column_stack([table.node, table.direction]) for table in tables]
     orders = [np.lexsort(each.T[::-1]) for each in labels]
     known = [each[order] for each, order in zip(labels, orders, strict=True)]
@@ -250,19 +250,7 @@ def matching(nominal: Job, job: Job, label: str) -> Ints | None:
         node, direction = min((before - after) or (after - before))
         found = f"{after[node, direction] or 'none'} at node {node} {name_of(direction)}"
         raise wrong(label, expected, f"{found}, {job.size} in all")
-    out = np.zeros(nominal.size, np.intp)
-    out[orders[1]] = orders[0]
-    return out
-
-
-def reordered(A: Matrix, order: Ints | None) -> Matrix:
-    """Return an upper triangle whose rows and columns move to other places."""
-    if order is None:
-        return A
-    entries = scipy.sparse.coo_array(A)
-    row, column = order[entries.row], order[entries.col]
-    places = np.minimum(row, column), np.maximum(row, column)
-    return scipy.sparse.coo_array((entries.data, places), shape=A.shape).tocsr()
+    return np.asarray(orders[1][np.argsort(orders[0])])
 
 
 def _joint(E: scipy.sparse.coo_array, A: Matrix) -> Floats:
@@ -296,7 +284,7 @@ def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]
     dofs = _support(term)
     if dofs.size == 0 or dofs.size > 60:  # decomposing many takes long
         return term, None if dofs.size else 0
-    dense = whole(term)[dofs][:, dofs].toarray()
+    dense = term[dofs][:, dofs].toarray()
     values, vectors = np.linalg.eigh(dense)
     limit = max(noise * float(np.abs(A.diagonal()[dofs]).max()), ACCUMULATED * np.abs(values).max())
     strong = np.abs(values) > limit
@@ -305,7 +293,7 @@ def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]
         return term, rank or dofs.size
     part = (vectors[:, strong] * values[strong]) @ vectors[:, strong].T
     part[np.abs(part) <= CANCELLED * np.abs(part).max()] = 0.0
-    small = scipy.sparse.coo_array(np.triu(part))
+    small = scipy.sparse.coo_array((part + part.T) / 2)
     places = dofs[small.row], dofs[small.col]
     return scipy.sparse.coo_array((small.data, places), shape=term.shape).tocsr(), rank
 
@@ -313,35 +301,38 @@ def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]
 def condensed(terms: Terms) -> tuple[Terms, int, int]:
     """Return the terms without internal degrees of freedom, and how many went and stayed.
 
-    Raises InputError for Lagrange multipliers: constraints cannot be eliminated so.
+    Those that are joined go together, where one term alone acts on them, without mass. Raises
+    InputError for Lagrange multipliers: constraints cannot be eliminated so.
     """
     internal = np.flatnonzero(terms.dofs.node < 0)
     if internal.size == 0:
         return terms, 0, 0
-    stiffness = {name: whole(A) for name, A in terms.of("stiffness").items()}
-    mass = terms.of("mass")
-    acting = [abs(A[internal][:, internal]) for A in stiffness.values()]
-    _, groups = connected_components(sum(acting[1:], acting[0]), directed=False)
-    owner = _owners(stiffness, mass, internal, groups)
-    diagonal = sum(np.abs(A.diagonal()[internal]) for A in stiffness.values())
-    zero = np.flatnonzero(diagonal == 0)
+    stiffness, mass = terms.of("stiffness"), terms.of("mass")
+    inner = {name: abs(A[internal]) for name, A in stiffness.items()}
+    zero = np.flatnonzero(sum(A[:, internal].diagonal() for A in inner.values()) == 0)
     if zero.size:
         label = f"node {terms.dofs.node[internal[zero[0]]]}"
         expected = "degrees of freedom with stiffness; constraints with Lagrange multipliers "
         expected += "(contact, connectors, incompressible elements) cannot be imported"
         raise InputError(Fault("", label, expected, f"none at {zero.size} of the program's own"))
-    gone = np.zeros(internal.size, bool)
-    for position, name in enumerate(stiffness):
-        if (part := owner[groups] == position).any():
-            stiffness[name], done = _eliminated(stiffness[name], internal[part], groups[part])
-            gone[part] = done
+    _, group = connected_components(sum(A[:, internal] for A in inner.values()), directed=False)
+
+    def touched(rows: Matrix) -> Bools:
+        return np.bincount(group, rows.sum(axis=1)) > 0
+
+    acting = np.column_stack([touched(A) for A in inner.values()])
+    heavy = np.any([touched(abs(M[internal])) for M in mass.values()], axis=0)
+    alone, gone = (acting.sum(axis=1) == 1) & ~heavy, np.zeros(internal.size, bool)
+    for acts, name in zip(acting.T, stiffness, strict=True):
+        part = (alone & acts)[group]
+        stiffness[name], gone[part] = _eliminated(stiffness[name], internal[part], group[part])
     kept = np.setdiff1d(np.arange(terms.dofs.size), internal[gone])
 
     def restricted(term: Term) -> Term:
         both = dict(term.matrices)
-        if "stiffness" in both:
+        if term.name in stiffness:
             both["stiffness"] = stiffness[term.name]
-        rows = {x: scipy.sparse.triu(A[kept][:, kept], format="csr") for x, A in both.items()}
+        rows = {x: A[kept][:, kept].tocsr() for x, A in both.items()}
         return replace(term, matrices={x: A for x, A in rows.items() if A.nnz})
 
     dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
@@ -349,27 +340,12 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
     return Terms(terms.parameters, base, others, dofs), int(gone.sum()), int((~gone).sum())
 
 
-def _owners(
-    stiffness: Mapping[str, Matrix], mass: Mapping[str, Matrix], internal: Ints, groups: Ints
-) -> Ints:
-    """Return for each group the only term that acts on it; -1 where several do, or mass."""
-
-    def touched(A: Matrix) -> Bools:
-        return np.bincount(groups, abs(A[internal]).sum(axis=1)) > 0
-
-    acting = np.column_stack([touched(A) for A in stiffness.values()])
-    heavy = np.any([touched(whole(M)) for M in mass.values()], axis=0)
-    alone = (acting.sum(axis=1) == 1) & ~heavy
-    return np.where(alone, acting.argmax(axis=1), -1)
-
-
 def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]:
-    """Return a matrix with the effect of internal degrees of freedom in it, and which went."""
+    """Return a matrix with the effect of groups of degrees of freedom in it, and which went."""
     order = np.argsort(groups, kind="stable")
     _, starts, sizes = np.unique(groups[order], return_index=True, return_counts=True)
-    rows, columns, values = [], [], []
-    done = np.zeros(internal.size, bool)
-    inner = A[internal][:, internal].tocsr()
+    done, inner = np.zeros(internal.size, bool), A[internal][:, internal].tocsr()
+    rows, columns, values = ([np.zeros(0, kind)] for kind in (np.intp, np.intp, float))
     for size in np.unique(sizes).tolist():
         members = order[starts[sizes == size][:, None] + np.arange(size)]
         row, column = np.repeat(members, size, axis=1), np.tile(members, (1, size))

@@ -14,7 +14,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.errors import reason
 from modefront.inputs import ended, wrong
-from modefront.programs.base import CORNERS, ProgramMesh, mesh_of, refuse_unknown_nodes
+from modefront.programs.base import ProgramMesh, mesh_of, refuse_unknown_nodes
 
 DEEPEST = 20
 """Decks that include each other, one in the other, at most."""
@@ -38,7 +38,7 @@ class Deck:
     Attributes
     ----------
     nodes : coordinates by number
-    cells : corners of elements by the type of the cell
+    cells : types and nodes of elements
     sets : nodes by the name of their set
     supports : node or set, first and last direction, from 1
     elements : numbers
@@ -50,7 +50,7 @@ class Deck:
     """
 
     nodes: dict[int, Floats] = field(default_factory=dict)
-    cells: dict[str, list[list[int]]] = field(default_factory=dict)
+    cells: list[tuple[str, list[int]]] = field(default_factory=list)
     sets: dict[str, list[int]] = field(default_factory=dict)
     supports: list[tuple[str, int, int]] = field(default_factory=list)
     elements: set[int] = field(default_factory=set)
@@ -186,8 +186,8 @@ def _elements(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> Non
         target.update(n for n in nodes if n)  # ends of networks are 0
         if re.match(r"B[23]2|T[23]D3|PIPE[23]2", name) and len(nodes) == 3:
             nodes = [nodes[0], nodes[2]]  # that in the middle is listed between the ends
-        if cell and len(nodes) >= CORNERS[cell]:
-            deck.cells.setdefault(cell, []).append(nodes[: CORNERS[cell]])
+        if cell:
+            deck.cells.append((cell, nodes))
 
 
 def _add_set(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None:

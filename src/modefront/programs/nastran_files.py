@@ -20,18 +20,19 @@ of 0 is a scalar point.
 from __future__ import annotations
 
 import re
-from collections import deque
 from collections.abc import Iterator, Mapping
+from operator import length_hint
 from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
+import scipy.sparse
 from scipy.io import FortranEOFError, FortranFile
 
 from modefront._typing import Floats, Ints
 from modefront.errors import reason
-from modefront.inputs import counted, ended, fortran, wrong
-from modefront.programs.reading import Entries, fixed_width
+from modefront.inputs import ended, fortran, wrong
+from modefront.programs.reading import fixed_width
 
 STRING = 65536
 """Unit of the length in the header of a string."""
@@ -39,59 +40,60 @@ STRING = 65536
 PRECISIONS = {1: 6e-8, 2: 1e-15}
 """Relative errors of the types of numbers: single and double; others are complex."""
 
-EXPECTED = "a matrix of Nastran's OUTPUT4"
+Op4Matrix: TypeAlias = tuple[scipy.sparse.coo_array, float]
+"""A matrix and the relative error of its entries."""
 
 
-def read_op4(path: Path) -> Mapping[str, Entries]:
+def read_op4(path: Path) -> Mapping[str, Op4Matrix]:
     """Return all matrices of a file by their names.
 
     Raises InputError for a file that is none of OUTPUT4, is cut off or holds complex numbers.
     """
     data = path.read_bytes()
-    if len(data) < 8:
-        raise wrong(path, EXPECTED, f"{len(data)} bytes")
-    for order in "<>":
-        length = int(np.frombuffer(data, order + "i4", 1)[0])
-        if length in (24, 48):
-            return dict(_binary(path, order, length // 6))
-    return dict(_text(path, deque(line.rstrip() for line in data.split(b"\n"))))
+    lengths = {order: int(np.frombuffer(data[:4].ljust(4), order + "i4")[0]) for order in "<>"}
+    binary = next(((order, x // 6) for order, x in lengths.items() if x in (24, 48)), None)
+    lines = [] if binary else data.split(b"\n")
+    ahead = iter(lines)
+    try:
+        return dict(_binary(path, *binary) if binary else _text(ahead))
+    except (ValueError, OSError, TypeError) as error:  # Fortran's errors are any of these
+        expected = "whole matrices of real numbers of Nastran's OUTPUT4"
+        place = f"line {len(lines) - length_hint(ahead)}" if lines else "file"
+        raise wrong(path, expected, f"{reason(error)}; is it cut off?", place) from None
 
 
-class _Pieces:
-    """Values in consecutive rows of the columns of a matrix, in the order of a file."""
+class _Columns:
+    """Columns of a matrix: values in consecutive rows, in the order of a file."""
 
-    def __init__(self, path: Path, name: str, header: list[int]) -> None:
+    def __init__(self, name: str, header: list[int]) -> None:
         self.columns, rows, _, kind = header
-        if kind not in PRECISIONS:
-            raise wrong(path, "real numbers", f"numbers of type {kind} (complex) in '{name}'")
-        if rows == 0:
-            raise wrong(path, "matrices with rows", f"none in '{name}'")
-        self.path, self.name, self.precision = path, name, PRECISIONS[kind]
+        self.name, self.precision = name.strip().upper(), PRECISIONS.get(kind, 0.0)
+        if not self.precision:
+            raise ValueError(f"numbers of type {kind} (complex) in '{self.name}'")
         self.rows, self.big, self.column = abs(rows), rows < 0, 0
-        self.places: list[tuple[int, int, int]] = []  # column, first row, length
+        self.places: list[tuple[int, int, int]] = []  # column, first row, words
 
     def begin(self, column: int) -> bool:
         """Begin a column; return whether it is not the one beyond the last, which ends all."""
         if not self.column < column <= self.columns + 1:
-            expected = f"columns of '{self.name}' once, from 1 to {self.columns + 1}"
-            raise wrong(self.path, expected, f"{column} behind {self.column}")
+            raise ValueError(f"column {column} of '{self.name}' behind {self.column}")
         self.column = column
         return column <= self.columns
 
-    def matrix(self, values: np.ndarray, precision: float = 0.0) -> tuple[str, Entries]:
-        """Return name and matrix with the values of all pieces, one behind the other."""
-        column, first, length = np.array(self.places, dtype=np.intp).reshape(-1, 3).T
+    def matrix(self, values: Floats, length: Ints, precision: float = 0.0) -> tuple[str, Op4Matrix]:
+        """Return name and matrix with the values of all strings, of which each has a length."""
+        column, first, _ = np.array(self.places, dtype=np.intp).reshape(-1, 3).T
         start = first - 1 - (np.cumsum(length) - length)
         row = (np.repeat(start, length) + np.arange(values.size)).astype(np.int32)
         column = np.repeat(column - 1, length).astype(np.int32)
         used = values != 0
-        shape, precision = (self.rows, self.columns), max(self.precision, precision)
-        entries = Entries(row[used], column[used], values[used].astype(float), shape, precision)
-        return self.name, entries
+        entries = values[used].astype(float), (row[used], column[used])
+        A = scipy.sparse.coo_array(entries, shape=(self.rows, self.columns))
+        return self.name, (A, max(self.precision, precision))
 
 
-def _binary(path: Path, order: str, word: int) -> Iterator[tuple[str, Entries]]:
-    integer = f"{order}i{word}"
+def _binary(path: Path, order: str, word: int) -> Iterator[tuple[str, Op4Matrix]]:
+    integer = np.dtype(f"{order}i{word}")
     with FortranFile(path, header_dtype=order + "u4") as file:
 
         def record() -> bytes:
@@ -99,131 +101,102 @@ def _binary(path: Path, order: str, word: int) -> Iterator[tuple[str, Entries]]:
                 return bytes(file.read_record("u1"))
             except FortranEOFError:
                 return b""
-            except (OSError, ValueError) as error:
-                expected = f"whole records of Fortran ({EXPECTED})"
-                raise wrong(path, expected, f"a file that is cut off: {reason(error)}") from None
 
         while head := record():
             if len(head) != 6 * word:
-                raise wrong(path, "the header of a matrix", f"a record of {len(head)} bytes")
-            name = head[4 * word :].decode("latin-1").strip().upper()
+                raise ValueError(f"a record of {len(head)} bytes in place of a header")
             header = np.frombuffer(head, integer, 4).tolist()
-            pieces, values = _Pieces(path, name, header), [np.zeros(0)]
+            matrix, bodies = _Columns(head[4 * word :].decode("latin-1"), header), list[Ints]()
             real = np.dtype(f"{order}f{8 if word == 8 or header[3] == 2 else 4}")
             while True:
                 content = record()
-                if len(content) < 3 * word:
-                    found = f"a record of {len(content)} bytes in '{name}'; is it cut off?"
-                    raise wrong(path, "columns of a matrix, and its end", found)
                 column, row, count = np.frombuffer(content, integer, 3).tolist()
-                if not pieces.begin(column):
+                if not matrix.begin(column):
                     break
-                body = content[3 * word :]
-                counted(path, f"column {column} of '{name}'", "words", count, len(body) / word)
+                if len(content) != (3 + count) * word:
+                    found = f"{len(content) / word - 3:g} of {count} words"
+                    raise ValueError(f"{found} in column {column} of '{matrix.name}'")
+                body = np.frombuffer(content, integer, offset=3 * word)
+                bodies.append(body if row > 0 else _strings(matrix, body))
                 if row > 0:
-                    values.append(np.frombuffer(body, real))
-                    pieces.places.append((column, row, values[-1].size))
-                else:
-                    values.append(_strings(pieces, np.frombuffer(body, integer), real))
-            yield pieces.matrix(np.concatenate(values))
+                    matrix.places.append((column, row, count))
+            values = np.concatenate([np.zeros(0, integer), *bodies]).astype(integer).view(real)
+            words = np.array([x for *_, x in matrix.places], dtype=np.intp)
+            per_value = real.itemsize // word
+            if (words % per_value).any():
+                raise ValueError(f"half a value in '{matrix.name}'")
+            yield matrix.matrix(values, words // per_value)
 
 
-def _strings(pieces: _Pieces, body: np.ndarray, real: np.dtype[np.floating]) -> np.ndarray:
-    """Return the values of all strings of a column, given as words; they have to fill it."""
+def _strings(matrix: _Columns, body: Ints) -> Ints:
+    """Return the words of the values of all strings of a column, given as words."""
     words = body.astype(body.dtype.newbyteorder("=")).data  # Python's integers only where needed
-    position, header, per_value = 0, 1 + pieces.big, max(real.itemsize // body.itemsize, 1)
+    position, header = 0, 1 + matrix.big
     keep = np.ones(body.size, bool)
     while position < body.size:
-        if pieces.big and position + 1 < body.size:
+        if matrix.big and position + 1 < body.size:
             length, row = words[position] - 1, words[position + 1]
         else:
             length, row = words[position] // STRING - 1, words[position] % STRING
         after = position + header + length
-        if length <= 0 or row <= 0 or after > body.size or length % per_value:
-            found = f"others in column {pieces.column} of '{pieces.name}'"
-            raise wrong(pieces.path, "strings that fill a column", found)
+        if length <= 0 or row <= 0 or after > body.size:
+            found = f"strings that do not fill column {matrix.column} of '{matrix.name}'"
+            raise ValueError(found)
         keep[position : position + header] = False
-        pieces.places.append((pieces.column, row, length // per_value))
+        matrix.places.append((matrix.column, row, length))
         position = after
-    return body[keep].view(real)
+    return body[keep]
 
 
-def _text(path: Path, lines: deque[bytes]) -> Iterator[tuple[str, Entries]]:
-    """Yield the matrices of a text; lines of values are those with a point."""
-    while lines:
-        if not (text := lines.popleft().decode("latin-1")):
+def _text(lines: Iterator[bytes]) -> Iterator[tuple[str, Op4Matrix]]:
+    """Yield the matrices of a text.
+
+    Lines of values are those with a point, and headers of strings are shorter than those of
+    columns. Headers count words: of a double either two, or one. Those of columns count the
+    headers of strings, or not.
+    """
+    for head in map(bytes.rstrip, lines):
+        if not head:
             continue
-        try:
-            header = [int(text[k : k + 8]) for k in range(0, 32, 8)]
-        except ValueError:
-            raise wrong(path, EXPECTED, repr(text[:60])) from None
+        text = head.decode("latin-1")
+        matrix = _Columns(text[32:40], [int(text[k : k + 8]) for k in range(0, 32, 8)])
         form = re.search(r"\d+[EDG](\d+)\.(\d+)", text[40:].upper())
         if form is None:
-            raise wrong(path, f"{EXPECTED} with its format, such as 1P,3E23.16", repr(text[:60]))
-        pieces, width = _Pieces(path, text[32:40].strip().upper(), header), int(form[1])
-        texts = _columns(pieces, lines, width)
-        if not lines or b"." not in lines.popleft():
-            raise wrong(path, f"a value behind the last column of '{pieces.name}'", "none")
-        try:
-            values = fixed_width(b"".join(texts), width)
-        except ValueError as error:
-            raise wrong(path, f"numbers of {width} characters", reason(error)) from None
-        yield pieces.matrix(values, 10.0 ** -int(form[2]))
-
-
-def _columns(pieces: _Pieces, lines: deque[bytes], width: int) -> list[bytes]:
-    """Take the lines of all columns, and return their values as text.
-
-    Headers count words: of a double either two, or one. They count those of headers of strings,
-    or not.
-    """
-    texts: list[bytes] = []
-    sizes, headers = {1, 2}, {0, 1}
-    path, name = pieces.path, pieces.name
-
-    def numbers(*fields: bytes) -> list[int]:
-        """Return the whole numbers in fields of a header."""
-        try:
-            return [int(field) for field in fields]
-        except ValueError:
-            found = repr(b"".join(fields).decode("latin-1")[:40])
-            raise wrong(path, f"headers of columns in '{name}'", found) from None
-
-    def take(row: int, words: int) -> None:
-        """Take the lines of values from the present one on, so many words in all."""
-        count = 0
-        while lines and b"." in lines[0]:
-            fields = -(-len(lines[0]) // width)
-            texts.append(lines.popleft().ljust(fields * width))
-            count += fields
-        sizes.intersection_update(size for size in (1, 2) if words == size * count)
-        if not sizes:
-            expected = f"as many values in every column of '{name}' as its headers say"
-            raise wrong(path, expected, f"{count} values in {words} words")
-        pieces.places.append((pieces.column, row, count))
-
-    while True:
-        if not lines or not lines[0]:
-            raise wrong(path, f"all columns of '{name}', and its end", "a file that is cut off")
-        line = lines.popleft()
-        column, row, words = numbers(line[:8], line[8:16], line[16:])
-        if not pieces.begin(column):
-            return texts
-        if row:
-            take(row, words)
-            continue
-        strings = count = 0
-        while lines and 0 < len(lines[0]) <= 16:
-            line = lines.popleft()
-            length, first = (
-                numbers(line[:8], line[8:]) if pieces.big else divmod(numbers(line)[0], STRING)
-            )
-            take(first, length - 1)
-            strings, count = strings + length - 1, count + 1 + pieces.big
-        headers.intersection_update(k for k in (0, 1) if strings + k * count == words)
-        if not headers:
-            expected = f"as many words in column {column} of '{name}' as its header says"
-            raise wrong(path, expected, str(words))
+            raise ValueError(f"{text[:60]!r} without a format, such as 1P,3E23.16")
+        width, texts, counts, sums = int(form[1]), list[bytes](), list[int](), list[list[int]]()
+        for line in map(bytes.rstrip, lines):
+            if b"." in line and counts:
+                fields = -(-len(line) // width)
+                texts.append(line.ljust(fields * width))
+                counts[-1] += fields
+                continue
+            if len(line) <= 16 and sums:
+                whole = int(line[:8] if matrix.big else line)
+                length, row = (whole, int(line[8:])) if matrix.big else divmod(whole, STRING)
+                sums[-1][1] += length - 1
+                sums[-1][2] += 1 + matrix.big
+                matrix.places.append((matrix.column, row, length - 1))
+            else:
+                column, row, words = int(line[:8]), int(line[8:16]), int(line[16:])
+                if not matrix.begin(column):
+                    break
+                if not row:
+                    sums.append([words, 0, 0])
+                    continue
+                matrix.places.append((column, row, words))
+            counts.append(0)
+        else:
+            raise ValueError(f"the end of the file in '{matrix.name}'")
+        if b"." not in next(lines, b""):
+            raise ValueError(f"no value behind the last column of '{matrix.name}'")
+        stated, given = np.array([words for *_, words in matrix.places]), np.array(counts)
+        total, strings, headers = np.array(sums).reshape(-1, 3).T
+        if not any((stated == size * given).all() for size in (1, 2)) or not any(
+            (total == strings + k * headers).all() for k in (0, 1)
+        ):
+            raise ValueError(f"other numbers of values in '{matrix.name}' than its headers say")
+        values = fixed_width(b"".join(texts), width)
+        yield matrix.matrix(values, given, 10.0 ** -int(form[2]))
 
 
 DmigMatrix: TypeAlias = tuple[Ints, Floats, float]
@@ -237,47 +210,41 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
     Raises InputError for a file without any, with complex numbers, or cut off.
     """
     ended(path)
-    entries: dict[str, list[tuple[list[int], str]]] = {}
-    header, column, name = None, list[int](), ""
+    entries: dict[str, list[tuple[tuple[int, ...], float, str]]] = {}
     with path.open(encoding="latin-1") as stream:
+        header, column, name = "", tuple[int, ...](), ""
         for number, line in enumerate(stream, start=1):
-            place = f"line {number}"
-            if line.startswith("DMIG "):
-                header, column = line[8:16].strip(), []
-                if header.upper() in entries:
-                    expected = f"the header 'DMIG {header}' once, before its columns"
-                    raise wrong(path, expected, "one after them", place)
-                kind = line[32:40].strip()
-                if kind.isdigit() and int(kind) in (3, 4):
-                    raise wrong(path, "real numbers", f"type {int(kind)} (complex)", place)
-            elif line.startswith("DMIG*"):
-                name = line[8:24].strip()
-                if header not in (None, name):
-                    expected = f"a header 'DMIG {name}' before its columns"
-                    raise wrong(path, expected, repr(header), place)
-                column = _label(path, place, line[24:40], line[40:56])
-                entries.setdefault(name.upper(), [])
-            elif line.startswith("*") and line.strip() != "*" and (entries or header is not None):
-                if not column:
-                    raise wrong(path, "a column ('DMIG*') before its entries", "none", place)
-                label = _label(path, place, line[8:24], line[24:40])
-                entries[name.upper()].append(([*label, *column], line[40:56]))
+            fields = line[8:24].strip(), line[24:40].strip(), line[40:56].strip()
+            try:
+                if line.startswith("DMIG "):
+                    header, column = line[8:16].strip().upper(), ()
+                    if header in entries:
+                        raise ValueError(f"the header of '{header}' again")
+                    if line[32:40].strip() in ("3", "4"):
+                        raise ValueError("complex numbers")
+                elif line.startswith("DMIG*"):
+                    name, column = fields[0].upper(), (int(fields[1]), int(fields[2]))
+                    if header not in ("", name):
+                        raise ValueError(f"a column of '{name}' behind the header of '{header}'")
+                    entries.setdefault(name, [])
+                elif line.startswith("*") and line.strip() != "*" and (entries or header):
+                    if not column:
+                        raise ValueError("an entry without a column ('DMIG*') before it")
+                    label = int(fields[0]), int(fields[1]), *column
+                    entries[name].append((label, fortran(fields[2]), fields[2]))
+            except ValueError as error:
+                expected = "a line of DMIG of real numbers, in large fields"
+                raise wrong(path, expected, reason(error), f"line {number}") from None
     if not entries:
         raise wrong(path, "DMIG entries in large fields ('DMIG*')", "none")
-    known = (text.strip().lstrip("+-").upper() for x in entries.values() for _, text in x[: 10**4])
+    known = (text.lstrip("+-").upper() for x in entries.values() for *_, text in x[: 10**4])
     behind = (re.split("[DE+-]", text)[0].partition(".")[2] for text in known)
-    precision, out = 10.0 ** -max(map(len, behind), default=15), dict[str, DmigMatrix]()
-    for each, rows in entries.items():
-        labels = np.array([labels for labels, _ in rows], dtype=np.intp).reshape(-1, 4)
-        try:
-            out[each] = labels, np.array([fortran(text) for _, text in rows]), precision
-        except ValueError as error:
-            raise wrong(path, "numbers in the fourth field", reason(error)) from None
-    return out
-
-
-def _label(path: Path, place: str, *fields: str) -> list[int]:
-    try:
-        return [int(field) for field in fields]
-    except ValueError as error:
-        raise wrong(path, "nodes and components in fields of 16", reason(error), place) from None
+    precision = 10.0 ** -max(map(len, behind), default=15)
+    return {
+        name: (
+            np.array([label for label, *_ in rows], dtype=np.intp).reshape(-1, 4),
+            np.array([value for _, value, _ in rows]),
+            precision,
+        )
+        for name, rows in entries.items()
+    }

@@ -18,7 +18,7 @@ from modefront.inputs import ended, once, wrong
 from modefront.models.dofs import read_dofs
 from modefront.models.files import read_entries
 from modefront.programs.base import JobOptions, ProgramMesh, mesh_of, refuse_unknown_nodes
-from modefront.programs.reading import Entries, Listed, existing
+from modefront.programs.reading import Listed, existing
 
 ADVICE = "the snippet in docs/import.md writes it"
 
@@ -37,9 +37,8 @@ def read(path: Path, options: JobOptions) -> Listed:
             expected = f"{dofs.size} rows and columns, as '{table.name}' has rows"
             raise wrong(file, expected, " x ".join(map(str, matrix.shape)))
         files.append(file)
-        entries.append(Entries(matrix.row, matrix.col, matrix.data))
-    pair = entries[0], entries[1]
-    return Listed((files[0], files[1]), pair, dofs, mesh=_mesh(path))
+        entries.append(matrix)
+    return Listed((files[0], files[1]), entries, dofs, mesh=_mesh(path))
 
 
 def _mesh(path: Path) -> ProgramMesh | None:
@@ -55,8 +54,7 @@ def _mesh(path: Path) -> ProgramMesh | None:
         raise wrong(nodes, expected, reason(error)) from None
     refuse_unknown_nodes(elements, points, (n for row in rows for n in row[1:]))
     kinds = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
-    cells = {cell: [x[1:] for x in rows if len(x) == 1 + k] for k, cell in kinds.items()}
-    return mesh_of(points, cells)
+    return mesh_of(points, ((kinds[len(x)], x) for _, *x in rows if len(x) in kinds))
 
 
 def _rows(path: Path, number: type) -> list[list[Any]]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -21,27 +21,8 @@ from modefront.errors import reason
 from modefront.inputs import ended, file_size, first_repeated, fortran, wrong
 from modefront.isolated import Read
 from modefront.models.dofs import DofTable, read_dofs
+from modefront.models.matrices import symmetrised
 from modefront.programs.base import JobOptions, Matrix, ProgramMesh, arrays_of
-from modefront.rounding import LARGEST, SYMMETRY
-
-
-@dataclass(frozen=True, eq=False)
-class Entries:
-    """Entries of a matrix as a file lists them: one triangle, or both.
-
-    Attributes
-    ----------
-    row, column : (entries,) from 0
-    value : (entries,)
-    shape : numbers of rows and columns, where the file tells them
-    precision : relative error of the values, that of binary doubles unless given
-    """
-
-    row: Ints
-    column: Ints
-    value: Floats = field(repr=False)
-    shape: tuple[int, int] | None = None
-    precision: float = 1e-15
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,21 +32,28 @@ class Listed:
     Attributes
     ----------
     files : that of the stiffness, and that of the mass
-    entries : those of the stiffness, and those of the mass
+    matrices : stiffness and mass as they are listed, one triangle or both
     dofs : node and direction of each row; those of `unlabelled` where no file tells them
-    free : which rows are not held, (N,), or what returns it, given both triangles; None for all
+    precision : relative error of the numbers, that of binary doubles unless given
+    free : which rows are not held, (N,), or what returns it, given both matrices; None for all
     counted : whether files say how many entries they have; else those that are cut off at a line
         show by mass without stiffness, which is refused
     mesh, notes : as in `Job`
     """
 
     files: tuple[Path, Path]
-    entries: tuple[Entries, Entries]
+    matrices: Sequence[scipy.sparse.coo_array]
     dofs: DofTable
+    precision: float = 1e-15
     free: Bools | Callable[[Matrix, Matrix], Bools] | None = None
     counted: bool = True
     mesh: ProgramMesh | None = None
     notes: Sequence[str] = ()
+
+
+def entries_of(row: Ints, column: Ints, value: Floats, size: int) -> scipy.sparse.coo_array:
+    """Return the entries of a matrix (size, size); raises ValueError where one is beyond it."""
+    return scipy.sparse.coo_array((value, (row, column)), shape=(size, size))
 
 
 def unlabelled(size: int) -> DofTable:
@@ -81,18 +69,15 @@ def given_table(options: JobOptions, size: int) -> DofTable | None:
     return table
 
 
-def read_job(path: Path, program: str, *given: str) -> Read:
+def parts_of_job(path: Path, program: str, *given: str) -> Read:
     """Return the parts of a job of a program once it is checked; options are given as texts."""
     stiffness, mass, *files = (text or None for text in given)
     options = JobOptions(stiffness, mass, *(Path(file) if file else None for file in files))
     listed: Listed = importlib.import_module(f"modefront.programs.{program}").read(path, options)
-    K, M = (
-        upper(file, entries, listed.dofs)
-        for file, entries in zip(listed.files, listed.entries, strict=True)
-    )
+    pairs = zip(listed.files, listed.matrices, strict=True)
+    K, M = (whole(file, entries, listed.dofs) for file, entries in pairs)
     table, notes = listed.dofs, list(listed.notes)
-    stiff = abs(K).sum(axis=0) + abs(K).sum(axis=1) > 0
-    alone = np.flatnonzero(~stiff & (M.diagonal() != 0))
+    alone = np.flatnonzero((abs(K).sum(axis=0) == 0) & (M.diagonal() != 0))
     if alone.size and not listed.counted:  # a text of the stiffness that is cut off at a line
         found = f"none at {alone.size} of them, the first {table.label(int(alone[0]))}"
         expected = "stiffness at all degrees of freedom that have mass (is the file cut off?)"
@@ -109,51 +94,28 @@ def read_job(path: Path, program: str, *given: str) -> Read:
         arrays |= {f"{letter}{k}": x for k, x in enumerate((A.data, A.indices, A.indptr))}
     if listed.mesh is not None:
         arrays |= arrays_of(listed.mesh)
-    return arrays, [str(listed.files[0]), max(x.precision for x in listed.entries), notes]
+    return arrays, [str(listed.files[0]), listed.precision, notes]
 
 
-def upper(path: Path, entries: Entries, dofs: DofTable) -> Matrix:
-    """Return the upper triangle of a symmetric matrix of which one triangle or both are listed.
+def whole(path: Path, listed: scipy.sparse.coo_array, dofs: DofTable) -> Matrix:
+    """Return the symmetric matrix of which one triangle or both are listed.
 
     Entries on both sides of the diagonal are both triangles, or one of them whose entries are
     turned here and there; in the latter no pair of places is given twice. Raises InputError where
-    an index is beyond the size, a value is no number, an entry is listed again, or both triangles
-    are listed and differ.
+    a value is no number, an entry is listed again, or both triangles are listed and differ.
     """
-    row, column, value, size = entries.row, entries.column, entries.value, dofs.size
 
     def label(i: int, j: int) -> str:
-        return f"{dofs.label(int(i))} and {dofs.label(int(j))}"
+        return f"{dofs.label(i)} and {dofs.label(j)}"
 
-    if row.size and (min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= size):
-        found = f"row {int(max(row.max(), column.max())) + 1}"
-        raise wrong(path, f"rows and columns from 1 to {size}", found)
-    if not (good := np.abs(value) <= LARGEST).all():
-        k = int(np.argmin(good))
-        raise wrong(path, "finite numbers", f"{value[k]:g} at {label(row[k], column[k])}")
-    if (again := first_repeated(row, column, size)) is not None:
-        raise wrong(path, "each entry once", f"the one at {label(row[again], column[again])} again")
-    below = row > column
-    A, B = (
-        scipy.sparse.coo_array((value[part], (i[part], j[part])), shape=(size, size)).tocsr()
-        for part, i, j in ((~below, row, column), (below, column, row))
-    )
-    off = scipy.sparse.triu(A, k=1, format="csr")
-    if (abs(off).sign() * abs(B).sign()).nnz == 0:
-        return (A + B).tocsr()
-    difference = scipy.sparse.coo_array(off - B)
-    greatest = max(np.abs(A.data).max(initial=0), np.abs(B.data).max(initial=0))
-    if np.abs(difference.data).max(initial=0) > SYMMETRY * greatest:
-        k = int(np.argmax(np.abs(difference.data)))
-        i, j = int(difference.row[k]), int(difference.col[k])
-        raise wrong(
-            path,
-            "a symmetric matrix (damping, contact, friction and rotors make it unsymmetric)",
-            f"{A[i, j]:.6g} at {label(i, j)}, and {B[i, j]:.6g} across",
-        )
-    half = Matrix(A - difference / 2)
-    half.sort_indices()
-    return half
+    if (again := first_repeated(listed.row, listed.col, dofs.size)) is not None:
+        place = label(listed.row[again], listed.col[again])
+        raise wrong(path, "each entry once", f"the one at {place} again")
+    A = Matrix(listed)
+    other = A - scipy.sparse.diags_array(A.diagonal(), format="csr")
+    if not (abs(other).sign() * abs(other.T).sign()).nnz:
+        A = A + other.T
+    return Matrix(symmetrised(A, str(path), "", label))
 
 
 def existing(path: Path, expected: str, advice: str) -> Path:

@@ -1,20 +1,272 @@
-"""The page of a report: one file, whose content-security policy lets no request leave it."""
+"""The page of a report: one file, whose content-security policy lets no request leave it.
+
+Its data is gzip of four bytes that hold the length of the JSON, the JSON, and the arrays behind
+each other, all little-endian. Coordinates and columns of the basis of mode shapes are 16-bit
+integers with a common unit: columns that matter less have smaller integers, which compress well.
+"""
 
 from __future__ import annotations
 
 import base64
+import gzip
 import hashlib
 import html
-from collections.abc import Sequence
+import json
+import re
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import xarray as xr
 
+from modefront._typing import Floats
+from modefront._version import __version__
 from modefront.errors import Fault, InputError, writing
+from modefront.findings.catalogue import Severity
+from modefront.front.methods import METHODS
+from modefront.front.point import front_points, position
 from modefront.outputs import write_text
-from modefront.reports.payload import payload
-from modefront.results.compare import read_together
+from modefront.predictions.base import Quantity, RecordedPrediction, predictions_in
+from modefront.results.compare import read_together, short_names
+from modefront.results.remarks import findings_of, verdict
+
+INFINITE = 10**400
+"""An integer that JavaScript reads as Infinity, for which JSON has no word."""
+
+LARGEST = 32767
+"""Of a 16-bit integer."""
+
+CITE = (
+    "The modefront developers, modefront {version}: structural model updating with all "
+    "Pareto-optimal models. Software, BSD-3-Clause.",
+    "K. Christodoulou, E. Ntotsios, C. Papadimitriou and P. Panetsos, Structural model updating "
+    "and prediction variability using Pareto optimal models, Computer Methods in Applied Mechanics "
+    "and Engineering 198 (2008) 138–149, doi:10.1016/j.cma.2008.04.010.",
+)
+"""What to cite, the program and the paper whose methods it implements."""
+
+
+def payload(results: Sequence[tuple[str, xr.Dataset]]) -> tuple[str, str]:
+    """Return the title of a report, and its data in base64.
+
+    ``results`` are sound datasets, as `modefront.results.files.read_dataset` returns them, with the
+    names of their folders.
+    """
+    arrays = _Arrays()
+    names = short_names([name for name, _ in results])
+    with np.errstate(all="ignore"):  # what is no number is shown as unknown
+        fronts = [
+            _front(name, data, arrays) for name, (_, data) in zip(names, results, strict=True)
+        ]
+    studies = [front["study"] or front["name"] for front in fronts]
+    title = studies[0] if len(studies) == 1 else f"{len(studies)} studies compared"
+    report = {
+        "title": title,
+        "version": __version__,
+        "cite": [text.format(version=__version__) for text in CITE],
+        "fronts": fronts,
+    }
+    text = json.dumps(report, separators=(",", ":"), allow_nan=False).encode()
+    content = len(text).to_bytes(4, "little") + text + arrays.content
+    packed = gzip.compress(content, 9, mtime=0)
+    return title, base64.b64encode(packed).decode("ascii")
+
+
+class _Arrays:
+    """The binary part: arrays behind each other, each at a multiple of four bytes."""
+
+    def __init__(self) -> None:
+        self.content = bytearray()
+
+    def whole(self, values: Floats) -> dict[str, Any]:
+        """Add numbers as 16-bit integers of a common unit, and return where they are."""
+        values = np.asarray(values, dtype=float)
+        unit = float(np.abs(values).max(initial=0.0)) / LARGEST or 1.0
+        return self._add("int16", np.rint(values / unit).astype("<i2")) | {"scale": unit}
+
+    def numbers(self, values: Any) -> dict[str, Any]:
+        """Add integers, and return where they are."""
+        return self._add("int32", np.asarray(values).astype("<i4"))
+
+    def _add(self, kind: str, values: np.ndarray[Any, Any]) -> dict[str, Any]:
+        out = {"at": len(self.content), "type": kind, "shape": list(values.shape)}
+        self.content += values.tobytes()
+        self.content += bytes(-len(self.content) % 4)
+        return out
+
+
+VARIABLES = (
+    *("theta", "objective", "error", "frequency", "mac", "theta_std", "frequency_std", "mac_std"),
+    *("mac_matrix", "paired_mode", "model_frequency", "shape", "measured_shape"),
+)
+"""Variables of the page, which has other capitals in their names; null where there are none."""
+
+POSTERIOR: Mapping[str, str] = {
+    "theta": "posterior_std",
+    "frequency": "posterior_frequency_std",
+    "mac": "posterior_mac_std",
+}
+"""Variables of the posterior, by their names on the page: all or none."""
+
+
+def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
+    """Return all that the page shows of one study."""
+
+    def names(of: str) -> list[str]:
+        return data[of].values.tolist() if of in data.variables else []
+
+    def known(of: str) -> Any:
+        return plain(data[of].values) if of in data else None
+
+    kinds, interval = names("kind"), data.get("interval")
+    posterior = {key: known(of) for key, of in POSTERIOR.items()}
+    reported = [i for i, kind in enumerate(kinds) if kind != "nominal"]
+    return {
+        "name": name,
+        "study": str(data.attrs.get("study", "")),
+        "inputs": str(data.attrs.get("inputs", "")),
+        "version": str(data.attrs["version"]),
+        "method": str(data.attrs["method"]),
+        "reference": position(data),
+        "nominal": kinds.index("nominal") if "nominal" in kinds else None,
+        "groups": names("group"),
+        "parameters": names("parameter"),
+        "modes": [int(mode) for mode in data["mode"].values],
+        "sensors": names("sensor"),
+        "sets": names("set"),
+        "label": names("label"),
+        "kind": kinds,
+        "pareto": data["pareto"].values.astype(bool).tolist(),
+        "converged": data["converged"].values.astype(bool).tolist(),
+        "piece": list(map(int, data["piece"].values)) if "piece" in data else [1] * len(kinds),
+        "order": front_points(data).tolist() or reported or [0],
+        **{re.sub("_(.)", lambda x: x[1].upper(), name): known(name) for name in VARIABLES},
+        "posterior": None if None in posterior.values() else posterior,
+        "bounds": plain(data["bounds"].values),
+        "interval": None if interval is None else plain(interval.values[:, [0, -1]]),
+        "noise": plain(_noise(data)),
+        "measured": plain(data["measured_frequency"].values),
+        "measuredStd": plain(_measured_std(data)),
+        "ends": known("end_objective") or [],
+        "geometry": _geometry(data, arrays),
+        "predictions": [
+            _prediction(each, x)
+            for each in predictions_in(data)
+            for x in each.quantities
+            if x.variable.ranged
+        ],
+        "words": [{"heading": x, "sentences": said} for x, said in topics(data).items()],
+    }
+
+
+def _noise(data: xr.Dataset) -> Floats:
+    """Return the error that is expected of each group at the reference; NaN where unknown."""
+    if "misfit" not in data:
+        return np.full(data.sizes["group"], np.nan)
+    misfit, error = data["misfit"].values, data["error"].values[position(data)]
+    return np.divide(error, misfit, out=np.full(error.shape, np.nan), where=misfit > 0)
+
+
+def _measured_std(data: xr.Dataset) -> Floats:
+    """Return the standard deviation of the mean of each measured frequency; NaN where unknown."""
+    if "set_frequency" not in data:
+        return np.full(data.sizes["mode"], np.nan)
+    f, std = data["set_frequency"].values, data["set_frequency_std"].values
+    known = np.isfinite(f)
+    count = known.sum(axis=0)
+    deviation = np.where(known, f - np.nansum(f, axis=0) / count, 0.0)
+    scatter = np.sqrt((deviation**2).sum(axis=0) / (count - 1) / count)
+    given = np.sqrt((np.where(known, std, 0.0) ** 2).sum(axis=0)) / count
+    out: Floats = np.where(np.isfinite(given), given, np.where(count > 1, scatter, np.nan))
+    return out
+
+
+def _geometry(data: xr.Dataset, arrays: _Arrays) -> dict[str, Any] | None:
+    if "node" not in data:
+        return None
+    nodes = data["node"].values
+    return {
+        "kind": "chain" if data.attrs.get("geometry") == "chain" else "mesh",
+        "nodes": arrays.whole(nodes - (nodes.min(axis=0) if len(nodes) else 0.0)),
+        "lines": arrays.numbers(data["line_nodes"].values),
+        "faces": arrays.numbers(data["face_nodes"].values),
+        "sensorNode": [int(x) for x in data["sensor_node"].values],
+        "sensorDirection": plain(data["sensor_direction"].values),
+        "basis": arrays.whole(data["shape_basis"].values),
+        "columns": data.sizes["basis"],
+        "coefficient": plain(data["shape_coefficient"].values.astype(np.float32)),
+    }
+
+
+def _prediction(of: RecordedPrediction, x: Quantity) -> dict[str, Any]:
+    """Return a quantity that all models predict."""
+    return {
+        "title": of.name,
+        "place": x.label,
+        "quantity": x.variable.key,
+        "unit": x.variable.unit,
+        "log": x.variable.logarithmic,
+        "values": plain(x.values),
+        "range": plain(x.extent),
+        "std": None if x.std is None else plain(x.std),
+        "drawn": [plain(x.drawn[end]) for end in ("5 %", "95 %")] if x.drawn else None,
+        "note": f"Load: {of.load}." if of.load else "",
+    }
+
+
+def plain(values: Any) -> Any:
+    """Return numbers as JSON has them: null for NaN, an integer beyond all numbers for infinity."""
+    array = np.asarray(values)
+    if array.ndim:
+        return [plain(part) for part in array]
+    value = array.item()
+    if isinstance(value, float):
+        if np.isnan(value):
+            return None
+        if np.isinf(value):
+            return INFINITE if value > 0 else -INFINITE
+        if array.dtype == np.float32:
+            return float(f"{value:.7g}")
+    return value
+
+
+def topics(data: xr.Dataset) -> dict[str, tuple[str, ...]]:
+    """Return the sentences on each question by its heading, which the first answer has none of."""
+    found = findings_of(data)
+
+    def of(*severities: Severity) -> tuple[str, ...]:
+        return tuple(
+            f"{text[:1].upper()}{text[1:]}".rstrip(".") + "."
+            for text in (str(x) for x in found if x.severity in severities)
+        )
+
+    failed = of(Severity.FAILURE) or ("All models that were solved for converged.",)
+    every = {
+        "": tuple(verdict(data)),
+        "How well the best models do": of(Severity.FIT),
+        "What to beware of": (*failed, *of(Severity.CAUTION)),
+        "What the data leave open": of(Severity.OPEN),
+        "What was studied": (_study(data),),
+    }
+    return {heading: sentences for heading, sentences in every.items() if sentences}
+
+
+def _study(data: xr.Dataset) -> str:
+    groups, method = data["group"].values.tolist(), str(data.attrs["method"])
+    title = METHODS[method].title if method in METHODS else method
+    nouns = ("parameter", "measured mode", "group", "eigenproblem")
+    sizes = [data.sizes[x] for x in ("parameter", "mode", "group")]
+    sizes.append(int(data.attrs["model_evaluations"]))
+    counts = [f"{n} {noun}{'s' * (n != 1)}" for n, noun in zip(sizes, nouns, strict=True)]
+    remark = f" {data.attrs['remark']}." if data.attrs.get("remark") else ""
+    return (
+        f"A model with {counts[0]} is compared with {counts[1]} in {counts[2]} of measured "
+        f"properties: {', '.join(groups)}. The front is found by {title}, and {counts[3]} were "
+        f"solved in all.{remark}"
+    )
+
 
 SUFFIXES = (".html", ".htm")
 

@@ -9,8 +9,7 @@ from typing import Literal, get_args
 from modefront.data.modal import ModalData
 from modefront.errors import suggestion
 from modefront.families import Family
-from modefront.json_schema import WHOLE, any_of, array, whole_number
-from modefront.options import Requirement, plain
+from modefront.options import WHOLE, Requirement, any_of, array, plain, whole_number
 from modefront.residuals.base import Member, ResidualKind, Scale, Stack
 from modefront.residuals.frequency import FrequencyKind
 from modefront.residuals.shape import ShapeKind

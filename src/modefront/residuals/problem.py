@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.brief import as_html
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model
@@ -93,8 +92,6 @@ class UpdatingProblem:
             f"UpdatingProblem({p} parameters, {len(data.modes)} modes at {len(data.sensors)} "
             f"sensors in {sets}, groups {', '.join(self.objectives)})"
         )
-
-    _repr_html_ = as_html
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without the whole model, which no other process needs."""

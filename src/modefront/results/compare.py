@@ -22,7 +22,7 @@ from scipy.spatial.distance import cdist, pdist, squareform
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, refuse
 from modefront.front.point import Kind, front_points, position, preferred
-from modefront.predictions.registry import kinds_in
+from modefront.predictions.base import kinds_in
 from modefront.results.files import read_dataset
 
 if TYPE_CHECKING:

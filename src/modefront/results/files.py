@@ -28,7 +28,7 @@ from modefront.text import NAME, clean
 
 FILE = "results.nc"
 
-READER, SECONDS = "modefront.results.netcdf:contents", 120.0
+READER, SECONDS = "modefront.hdf5:contents", 120.0
 """Function that reads the file, and the time that it may take."""
 
 CHECKSUM = "checksum"

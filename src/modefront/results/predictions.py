@@ -1,27 +1,32 @@
 """Predictions of all models of a study, and their scatter by the posterior, as values of results.
 
-To first order the scatter needs two models along each axis of the posterior; with draws, the models
-drawn.
+There is a task for each model. Every one gets the same random numbers (common random numbers), so
+that predictions differ by the models alone. To first order the scatter needs two models along each
+axis of the posterior; with draws, the models drawn.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import chain, compress
+from pathlib import Path
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats
+from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found, from_text
 from modefront.front.point import position, preferred
+from modefront.models.base import full_of, is_reduced
 from modefront.optim.lexicographic import RANK
-from modefront.predictions import Prediction, PredictionKind
-from modefront.predictions.ranges import Sampled
-from modefront.predictions.registry import ATTRIBUTE, as_text, kinds_in
-from modefront.predictions.runner import PredictionRunner
+from modefront.predictions import Prediction, PredictionKind, ResultVariable
+from modefront.predictions.base import ATTRIBUTE, as_text, kinds_in
+from modefront.predictions.ranges import Sampled, extreme
+from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import ALL, Values, left_open
 from modefront.results.findings import as_values
 from modefront.results.schema import described
@@ -35,15 +40,196 @@ from modefront.uncertainty.prediction import (
     summary,
 )
 from modefront.uncertainty.scatter import Posterior
-from modefront.work.task import seed_sequence
+from modefront.work.codec import record
+from modefront.work.store import hash_text
+from modefront.work.task import Executor, Part, Task, seed_sequence
+from modefront.work.transfer import is_shared
+
+Arrays = Mapping[str, Floats]
+
+T = TypeVar("T")
+
+STEP, ROUGH = 1e-4, 1e-2
+"""Steps of differences of a prediction over the ranges of the parameters: of smooth ones, and of
+those that are estimated from samples."""
+
+
+@record
+@dataclass(frozen=True)
+class Predicted:
+    """A prediction of a model.
+
+    Attributes
+    ----------
+    values : arrays (places,) by key; NaN where the model cannot be solved
+    solved : whether it can
+    """
+
+    values: Arrays
+    solved: bool = True
+
+
+@dataclass(frozen=True)
+class PredictionRunner:
+    """Runs the predictions of a study.
+
+    Attributes
+    ----------
+    file : of the study, named in messages
+    """
+
+    problem: UpdatingProblem
+    predictions: Sequence[Prediction]
+    seed: int
+    work: Executor
+    file: Path
+
+    def at_models(
+        self,
+        prediction: Prediction,
+        thetas: Sequence[Floats] | Floats,
+        name: str,
+        labels: Sequence[str] = (),
+        method: Literal["evaluate", "check"] = "evaluate",
+    ) -> list[Predicted]:
+        """Return a prediction at models (m, p), or the kind's comparison with finer numerics.
+
+        Models with ``labels`` raise InputError where an option does not suit them, and
+        UnfinishedError where they have not the modes that are needed; others have NaN then.
+        """
+        parts: list[tuple[Part, ...]] = [(name, label) for label in labels]
+        if not labels:
+            marks = (hash_text(f"{theta.tolist()}")[:8] for theta in thetas)
+            parts = [(name, i, mark) for i, mark in enumerate(marks, start=1)]
+        file = str(self.file) if labels else ""
+        return self.work.run(
+            [
+                self._task(prediction, part, _predicted, (theta, method, file, part[-1]))
+                for part, theta in zip(parts, thetas, strict=True)
+            ]
+        )
+
+    def extremes(self, prediction: Prediction, front: Sampled, values: Arrays) -> dict[str, Floats]:
+        """Return least and greatest values over a front, and over all models that are equivalent.
+
+        ``values`` (m, places) are those of its m models by key. The ends have the shape
+        (2, places), by the key of each variable of which the range is reported.
+        """
+        mark = hash_text(f"{front.theta.tolist()} {front.is_open} {front.slack}")[:8]
+        ends: list[End] = [
+            (variable, i, sign)
+            for variable in prediction.kind.ranged
+            for sign in (1.0, -1.0)
+            for i in range(len(prediction.places))
+        ]
+        # Ends share what is solved between points; over equivalent models each is work of its own.
+        parts = [[end] for end in ends] if front.is_open else [ends]
+        tasks = [
+            self._task(prediction, ("ends", k + 1, mark), _ends, (front, values, part))
+            for k, part in enumerate(parts)
+        ]
+        found = np.concatenate(self.work.run(tasks))
+        shape = (len(prediction.kind.ranged), 2, len(prediction.places))
+        keys = (variable.key for variable in prediction.kind.ranged)
+        return dict(zip(keys, found.reshape(shape), strict=True))
+
+    def _task(
+        self,
+        prediction: Prediction,
+        part: tuple[Part, ...],
+        function: Callable[..., T],
+        arguments: tuple[Any, ...],
+    ) -> Task[T]:
+        """Return a task whose key tells apart all that the prediction depends on."""
+        mark = hash_text(f"{prediction!r} {self.seed}")[:8]
+        numbers = seed_sequence(self.seed, "predict", prediction.name)
+        key = ("predict", prediction.name, *part, mark)
+        full = full_of(self.problem.model)
+        return Task(
+            key,
+            function,
+            (self.problem, prediction, numbers, *arguments),
+            # Responses are those of the full model.
+            memory=full.footprint if is_reduced(self.problem.model) and is_shared(full) else 0.0,
+        )
+
+
+# 7 arguments: the problem and the prediction, and the model with its label.
+def _predicted(
+    problem: UpdatingProblem,
+    prediction: Prediction,
+    numbers: np.random.SeedSequence,
+    theta: Floats,
+    method: Literal["evaluate", "check"] = "evaluate",
+    file: str = "",
+    label: str = "",
+) -> Predicted:
+    """Return a prediction at a model; without a file, NaN where it cannot be solved."""
+    try:
+        return Predicted(getattr(prediction, method)(problem, theta, numbers))
+    except (InputError, ModelError) as error:
+        if not file:
+            unknown = np.full(len(prediction.places), np.nan)
+            return Predicted({x.key: unknown for x in prediction.kind.variables}, solved=False)
+        if isinstance(error, ModelError):
+            text = f"no prediction '{prediction.name}' of '{label}': {error}"
+            raise UnfinishedError(text) from None
+        place = f"[[predict.{prediction.kind.table}]] ({prediction.name!r})"
+        raise InputError(
+            Fault(file, f"{place} {fault.place}", f"{fault.expected} of '{label}'", fault.found)
+            for fault in error.faults
+        ) from None
+
+
+End = tuple[ResultVariable, int, float]
+"""A variable at a place, and whether its least (1) or its greatest value (-1) is sought."""
+
+
+def _ends(
+    problem: UpdatingProblem,
+    prediction: Prediction,
+    numbers: np.random.SeedSequence,
+    front: Sampled,
+    values: Arrays,
+    ends: Sequence[End],
+) -> Floats:
+    """Return the ends of ranges over a front of which the predictions are known."""
+    known: dict[bytes, Arrays] = {}
+
+    def at(theta: Floats) -> Arrays:
+        key = theta.tobytes()
+        if key not in known:
+            known[key] = _predicted(problem, prediction, numbers, theta).values
+        return known[key]
+
+    own = replace(front, between={})  # the same work, whatever was done before in this process
+    return np.array([_end(problem, own, values, at, end) for end in ends])
+
+
+def _end(
+    problem: UpdatingProblem,
+    front: Sampled,
+    values: Arrays,
+    at: Callable[[Floats], Arrays],
+    end: End,
+) -> float:
+    variable, place, sign = end
+
+    def scaled(values: Arrays) -> Floats:
+        own = values[variable.key][..., place]
+        if not variable.logarithmic:
+            return own
+        return np.log(own, out=np.full(own.shape, np.nan), where=own > 0)
+
+    step = ROUGH if variable.logarithmic else STEP
+    found = extreme(
+        problem, front, scaled(values), lambda theta: float(scaled(at(theta))), sign, step
+    )
+    return float(np.exp(found)) if variable.logarithmic else found
+
 
 RANGE = ("minimum", "maximum", "spread")
 """Over the Pareto-optimal models and all that are equivalent; the spread is greatest over least."""
-
-
-def extent(predictions: Sequence[Prediction], models: int) -> dict[str, int]:
-    """Return the expected number of tasks of the predictions of so many models, and of ranges."""
-    return {"predict": sum(models + 1 + (each.kind.check is not None) for each in predictions)}
 
 
 def _by_kind(
@@ -54,24 +240,61 @@ def _by_kind(
         yield kind, [each for each in predictions if each.kind == kind]
 
 
-def with_predictions(data: xr.Dataset, runner: PredictionRunner, slack: float) -> xr.Dataset:
-    """Return results with the predictions of every point.
+# 6 arguments: the results and their predictions, and models drawn from the posterior.
+def with_predictions(
+    data: xr.Dataset,
+    runner: PredictionRunner,
+    slack: float,
+    posterior: Posterior | None,
+    draws: int,
+    drawn: Floats | None = None,
+) -> xr.Dataset:
+    """Return results with the predictions of every point, and their scatter by the posterior.
 
     ``slack`` is the share by which objectives of models may be greater that count in ranges.
-    Raises what `PredictionRunner.at_points` raises.
+    ``drawn`` (draws or more, p) are models of the posterior; so many are drawn around the reference
+    where it is None. Raises what `PredictionRunner.at_models` raises.
     """
     if not runner.predictions:
         return data
+    samples = np.empty((0, runner.problem.start.size)) if drawn is None else drawn[:draws]
+    differences, samples, limits = _around(data, runner, posterior, draws, samples)
+    models = data.sizes["point"] + 2 * len(differences.theta if differences else ()) + len(samples)
+    count = sum(models + 1 + (each.kind.check is not None) for each in runner.predictions)
+    runner.work.expect({"predict": count})
+    data = _at_points(data, runner, slack)
+    values: Values = {}
+    coordinates: dict[str, object] = {}
+    for kind, predictions in _by_kind(runner.predictions):
+        if differences is not None:
+            values |= _to_first_order(data, runner, differences, predictions, limits)
+            coordinates[f"{kind.dimension}_other"] = data[kind.dimension].values
+        if len(samples):
+            values |= _of_samples(data, runner, samples, predictions, limits)
+    if len(samples):
+        values["draw_theta"] = samples
+        coordinates["statistic"] = np.array(SUMMARY)
+    kept = zip(data["finding"].values.tolist(), data["finding_record"].values, strict=True)
+    values |= as_values([*(from_text(str(text), each) for each, text in kept), *limits])
+    data = data.drop_vars(["finding", "finding_record"])
+    return data.assign(described(values, kinds_in(data))).assign_coords(coordinates)
+
+
+def _at_points(data: xr.Dataset, runner: PredictionRunner, slack: float) -> xr.Dataset:
+    """Return results with the predictions of every point, and their ranges."""
     optimal = data["pareto"].values
     values: Values = {"frequency_range": _range(data["frequency"].values, optimal)}
     coordinates = {"range": list(RANGE)}
-    points = list(zip(map(str, data["label"].values), data["theta"].values, strict=True))
-    reference = next(point for point in points if point[0] == preferred(data.attrs))
+    labels, thetas = list(map(str, data["label"].values)), data["theta"].values
+    reference = [preferred(data.attrs)]
     theta, J = (data[name].values[optimal] for name in ("theta", "objective"))
     front = Sampled(theta, J, slack > 0 or _leaves_open(data), slack)
     kinds = []
     for kind, predictions in _by_kind(runner.predictions):
-        rows = [runner.at_points(each, points) for each in predictions]
+        rows = [
+            [x.values for x in runner.at_models(each, thetas, "point", labels)]
+            for each in predictions
+        ]
         best = [list(compress(row, optimal)) for row in rows]
         ends = [
             runner.extremes(each, front, {key: np.array([x[key] for x in row]) for key in row[0]})
@@ -94,10 +317,13 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner, slack: float) -
             values[f"{kind.dimension}_{name}"] = list(chain.from_iterable(every))
         coordinates[kind.dimension] = list(chain.from_iterable(x.places for x in predictions))
         if kind.check:
-            checks = [runner.checked(each, *reference) for each in predictions]
+            here, name = thetas[[position(data)]], kind.check.name
+            checks = [
+                runner.at_models(each, here, name, reference, "check")[0] for each in predictions
+            ]
             for variable in kind.check.variables:
-                values[variable.name] = np.concatenate([x[variable.key] for x in checks])
-            values[kind.check.label.name] = [reference[0]] * len(coordinates[kind.dimension])
+                values[variable.name] = np.concatenate([x.values[variable.key] for x in checks])
+            values[kind.check.label.name] = reference * len(coordinates[kind.dimension])
         kinds.append(kind)
     out = data.assign(described(values, kinds)).assign_coords(coordinates)
     return out.assign_attrs({ATTRIBUTE: as_text(kinds)})
@@ -122,47 +348,21 @@ def _range(values: Floats, optimal: Bools) -> Floats:
     return np.array([least, greatest, ratio])
 
 
-@dataclass(frozen=True)
-class PosteriorModels:
-    """Models around the reference.
-
-    Attributes
-    ----------
-    differences : finite-difference models along the axes of the posterior; None for none
-    samples : (draws, p) samples of the posterior
-    limits : what limits them
-    """
-
-    differences: Stencil | None
-    samples: Floats
-    limits: Sequence[Finding]
-
-    @property
-    def count(self) -> int:
-        """Number of models."""
-        along = 2 * len(self.differences.theta) if self.differences else 0
-        return along + len(self.samples)
-
-
-def posterior_models(
+def _around(
     data: xr.Dataset,
     runner: PredictionRunner,
     posterior: Posterior | None,
     draws: int,
-    drawn: Floats | None = None,
-) -> PosteriorModels:
-    """Return the models around the reference at which predictions are evaluated.
+    samples: Floats,
+) -> tuple[Stencil | None, Floats, list[Finding]]:
+    """Return models around the reference: differences along the axes of the posterior, and draws.
 
-    ``drawn`` (draws or more, p) are models of the posterior; they are drawn around the reference
-    where it is None.
+    Beside them is what limits them.
     """
-    problem, limits = runner.problem, []
-    samples = np.empty((0, problem.start.size)) if drawn is None else drawn[:draws]
-    if not runner.predictions:
-        return PosteriorModels(None, samples[:0], [])
+    problem = runner.problem
     if posterior is None:
-        limits = [found("no-posterior")] if draws and not len(samples) else []
-        return PosteriorModels(None, samples, limits)
+        return None, samples, [found("no-posterior")] if draws and not len(samples) else []
+    limits = []
     theta, best = data["theta"].values[position(data)], preferred(data.attrs)
     names = list(compress(problem.model.parameters, left_open(posterior.free)))
     if names:
@@ -170,40 +370,14 @@ def posterior_models(
     differences = stencil(theta, posterior.axes, problem.lower, problem.upper)
     if differences is None:
         limits.append(found("no-room", str(best)))
-    if draws and drawn is None:
+    if draws and not len(samples):
         rng = np.random.default_rng(seed_sequence(runner.seed, "posterior"))
         bounds = problem.lower, problem.upper
         try:
             samples = draw(theta, posterior.axes, rng, draws, bounds)
         except TruncationError as error:
             limits.append(found("no-draws", str(error)))
-    return PosteriorModels(differences, samples, limits)
-
-
-def with_posterior(
-    data: xr.Dataset, runner: PredictionRunner, models: PosteriorModels
-) -> xr.Dataset:
-    """Return results that have predictions with the scatter of these by the posterior."""
-    values: Values = {}
-    limits = list(models.limits)
-    coordinates: dict[str, object] = {}
-    for kind, predictions in _by_kind(runner.predictions):
-        if models.differences is not None:
-            variables, more = _to_first_order(data, runner, models.differences, predictions)
-            values |= variables
-            limits += more
-            coordinates[f"{kind.dimension}_other"] = data[kind.dimension].values
-        if len(models.samples):
-            variables, more = _of_samples(data, runner, models.samples, predictions)
-            values |= variables
-            limits += more
-    if len(models.samples):
-        values["draw_theta"] = models.samples
-        coordinates["statistic"] = np.array(SUMMARY)
-    kept = zip(data["finding"].values.tolist(), data["finding_record"].values, strict=True)
-    values |= as_values([*(from_text(str(text), each) for each, text in kept), *limits])
-    data = data.drop_vars(["finding", "finding_record"])
-    return data.assign(described(values, kinds_in(data))).assign_coords(coordinates)
+    return differences, samples, limits
 
 
 def _stacked(
@@ -221,8 +395,12 @@ def _to_first_order(
     runner: PredictionRunner,
     differences: Stencil,
     predictions: Sequence[Prediction],
-) -> tuple[Values, list[Finding]]:
-    """Return standard deviations and covariances, of the logarithms where these are linearised."""
+    limits: list[Finding],
+) -> Values:
+    """Return standard deviations and covariances, of the logarithms where these are linearised.
+
+    What limits them is added to ``limits``.
+    """
     kind = predictions[0].kind
     m, _, p = differences.theta.shape
     thetas = differences.theta.reshape(2 * m, p)
@@ -247,10 +425,11 @@ def _to_first_order(
         else:
             out |= {f"{name}_std": std, f"{name}_covariance": C}
     best = preferred(data.attrs)
-    return out, [
+    limits += [
         found("no-deviation", str(name), reference=best, undefined=kind.undefined)
         for name in data[kind.dimension].values[unknown]
     ]
+    return out
 
 
 def _of_samples(
@@ -258,7 +437,9 @@ def _of_samples(
     runner: PredictionRunner,
     samples: Floats,
     predictions: Sequence[Prediction],
-) -> tuple[Values, list[Finding]]:
+    limits: list[Finding],
+) -> Values:
+    """Return values at draws and their statistics; what limits them is added to ``limits``."""
     kind, n = predictions[0].kind, len(samples)
     rows = [runner.at_models(each, samples, "draw") for each in predictions]
     values = _stacked(kind, [[x.values for x in row] for row in rows])
@@ -267,7 +448,7 @@ def _of_samples(
         out[f"draw_{variable.name}"] = values[variable.key]
         out[f"posterior_{variable.name}"] = summary(values[variable.key])
     failed = [sum(not x.solved for x in row) for row in rows]
-    limits = [
+    limits += [
         found("unsolved-draws", each.name, count=count, drawn=n, what="cannot be solved")
         for each, count in zip(predictions, failed, strict=True)
         if count
@@ -281,4 +462,4 @@ def _of_samples(
         for name, count in zip(data[kind.dimension].values, missing, strict=True)
         if count > 0
     ]
-    return out, limits
+    return out

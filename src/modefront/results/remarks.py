@@ -15,7 +15,7 @@ from modefront.findings.catalogue import Severity
 from modefront.findings.record import Finding, found, from_text, in_order
 from modefront.front.point import Kind, front_points, preferred
 from modefront.optim.problem import at_bounds
-from modefront.predictions.registry import predictions_in
+from modefront.predictions.base import predictions_in
 from modefront.rounding import ACCUMULATED
 
 CHANGED = "changed"
@@ -89,11 +89,6 @@ def findings_of(data: xr.Dataset, *, full: bool = False) -> list[Finding]:
     if full:
         out += [*_weights(data), *_numerics(data)]
     return in_order(x for x in out if full or x.severity is not Severity.DETAIL)
-
-
-def remarks(data: xr.Dataset) -> list[str]:
-    """Return the sentences of all findings of results."""
-    return [str(finding) for finding in findings_of(data, full=True)]
 
 
 def headlines(data: xr.Dataset) -> list[str]:

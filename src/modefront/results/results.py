@@ -15,7 +15,6 @@ import scipy.sparse
 import xarray as xr
 
 from modefront._typing import Floats
-from modefront.brief import as_html, brief
 from modefront.errors import ModelError
 from modefront.front.point import Kind, front_points, position, preferred
 from modefront.models.base import matrices_at
@@ -25,6 +24,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.remarks import CHANGED, headlines, verdict
 from modefront.results.shapes import PairedShapes, paired_shapes, write_vtu
+from modefront.text import brief
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,7 +52,6 @@ class FullShapes:
     shape: Floats
 
     __repr__ = brief
-    _repr_html_ = as_html
 
 
 @dataclass(frozen=True, repr=False)
@@ -79,7 +78,6 @@ class ReportedModel:
     problem: UpdatingProblem | None = None
 
     __repr__ = brief
-    _repr_html_ = as_html
 
     @property
     def stiffness(self) -> scipy.sparse.csc_array:

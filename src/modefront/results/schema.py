@@ -15,10 +15,8 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from modefront.errors import Fault, InputError
-from modefront.predictions.base import PredictionKind
-from modefront.predictions.registry import kinds_in
-from modefront.variables import Values, Variable
+from modefront.errors import wrong
+from modefront.predictions.base import PredictionKind, Values, Variable, kinds_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -306,11 +304,8 @@ def variables_of(kinds: Iterable[PredictionKind]) -> dict[str, Variable]:
         taken = [("a dimension", x) for x in dimensions if x == kind.dimension]
         taken += [("variables", x) for x in own if x in out]
         for what, name in taken:
-            place, expected = (
-                f"predictions of the kind '{kind.table}'",
-                "that nothing else of the results has",
-            )
-            raise InputError(Fault("", place, f"{what} {expected}", f"'{name}'"))
+            expected = f"{what} that nothing else of the results has"
+            raise wrong(f"predictions of the kind '{kind.table}'", expected, f"'{name}'")
         dimensions.append(kind.dimension)
         out |= own
     return out

@@ -22,7 +22,6 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats, Ints
-from modefront.brief import as_html, brief
 from modefront.errors import Fault, InputError, ModelError, writing
 from modefront.models.base import full_of, geometry_of, shapes_at
 from modefront.models.geometry import Cells, Geometry
@@ -32,6 +31,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values
 from modefront.results.schema import described
 from modefront.rounding import TINY
+from modefront.text import brief
 from modefront.work.codec import record
 
 TOLERANCE = 1e-3
@@ -81,7 +81,6 @@ class PairedShapes:
     geometry: Geometry | None
 
     __repr__ = brief
-    _repr_html_ = as_html
 
 
 def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:
@@ -121,12 +120,8 @@ def _scaled(
     at the nodes is 1, with the sign of the first measured shape. A model without geometry has
     nothing at nodes, and a greatest component of 1.
     """
-    geometry, computed, displacement, measured = (
-        geometry_of(problem.model),
-        phi.T,
-        None,
-        problem.data.shape,
-    )
+    geometry, measured = geometry_of(problem.model), problem.data.shape
+    computed, displacement = phi.T, None
     size = np.abs(computed).max(axis=1)
     if geometry is not None and Phi is not None:
         displacement = geometry.displacement(Phi)
@@ -213,20 +208,11 @@ class ModeShapes:
     coefficient: Floats | None
 
 
-@dataclass(frozen=True, eq=False)
-class Drawing:
-    """Nodes of a geometry that pictures show (ascending), lines (n, 2) and faces (n, 4) of these.
+def drawing(geometry: Geometry) -> tuple[Ints, Ints, Ints]:
+    """Return the nodes of a geometry that pictures show, lines (n, 2) and faces (n, 4) of these.
 
-    A triangle has -1 in the last column.
+    The nodes ascend; a triangle has -1 in the last column.
     """
-
-    nodes: Ints
-    lines: Ints
-    faces: Ints
-
-
-def drawing(geometry: Geometry) -> Drawing:
-    """Return lines and faces of the cells of a geometry, and the nodes that these have."""
     none = np.empty((0, 4), dtype=np.int64)
     lines, shells, solids = [none[:, :2]], [none], [none]
     for cells in geometry.cells:
@@ -248,7 +234,7 @@ def drawing(geometry: Geometry) -> Drawing:
     nodes = np.unique(np.concatenate(used)).astype(np.int64)
     number = np.full(len(geometry.nodes) + 1, -1, dtype=np.int64)  # the last one stands for none
     number[nodes] = np.arange(len(nodes))
-    return Drawing(nodes, number[all_lines], number[all_faces])
+    return nodes, number[all_lines], number[all_faces]
 
 
 def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> ModeShapes:
@@ -259,7 +245,7 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> Mod
     data, model = problem.data, problem.model
     count = modes_needed(problem.pairing, data, model.size)
     geometry = geometry_of(model)
-    drawn = drawing(geometry).nodes if geometry else np.empty(0, dtype=np.int64)
+    drawn = drawing(geometry)[0] if geometry else np.empty(0, dtype=np.int64)
     points, modes = paired.shape
     frequency = np.full((points, count), np.nan)
     mac = np.full((points, modes, count), np.nan)
@@ -324,12 +310,12 @@ def with_mode_shapes(data: xr.Dataset, problem: UpdatingProblem, shapes: ModeSha
     coordinates: dict[str, object] = {"set": list(measured.sets), "sensor": list(measured.sensors)}
     geometry = geometry_of(problem.model)
     if geometry is not None and shapes.basis is not None:
-        drawn = drawing(geometry)
+        nodes, lines, faces = drawing(geometry)
         values |= {
-            "node": geometry.nodes[drawn.nodes],
-            "line_nodes": drawn.lines,
-            "face_nodes": drawn.faces,
-            "sensor_node": np.searchsorted(drawn.nodes, geometry.sensor_nodes),
+            "node": geometry.nodes[nodes],
+            "line_nodes": lines,
+            "face_nodes": faces,
+            "sensor_node": np.searchsorted(nodes, geometry.sensor_nodes),
             "sensor_direction": geometry.sensor_directions,
             "shape_basis": shapes.basis.astype(np.float32),
             "shape_coefficient": shapes.coefficient,

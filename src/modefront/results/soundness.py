@@ -8,10 +8,9 @@ import numpy as np
 import xarray as xr
 
 from modefront.front.point import REFERENCES, Kind, preferred
-from modefront.predictions.registry import ATTRIBUTE, kinds_from
+from modefront.predictions.base import ATTRIBUTE, Values, Variable, kinds_from
 from modefront.results.schema import ATTRIBUTES, DIMENSIONS, VARIABLES, variables_in, variables_of
 from modefront.text import NAME, clean
-from modefront.variables import Values, Variable
 
 DTYPES: Mapping[Values, str] = {"number": "fiu", "count": "iuf", "truth": "biu", "text": "UOST"}
 """Kinds of NumPy types that each of these may have in a file."""

@@ -22,7 +22,6 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from modefront._typing import Floats
-from modefront.brief import as_html
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
 from modefront.diagnosis.search import diagnose
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
@@ -119,8 +118,6 @@ class Findings:
         more = [f"and {count - SHOWN} more: see warnings"] * (count > SHOWN)
         first = f"Findings: derivatives {agree} finite differences; {count or 'no'} warnings"
         return "\n".join([first, *warnings[:SHOWN], *more])
-
-    _repr_html_ = as_html
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
-from modefront.brief import as_html
 from modefront.errors import Fault, InputError, refuse
 from modefront.findings.record import Finding
 from modefront.front.given import Weighted
@@ -97,8 +96,6 @@ class Study:
     def __repr__(self) -> str:
         """Return a line with the sizes of the problem."""
         return f"Study({self.name!r}, {self.problem}, method={self.pareto.method!r})"
-
-    _repr_html_ = as_html
 
     def _contradictions(self) -> Iterator[Fault]:
         kinds = dict.fromkeys(prediction.kind for prediction in self.predictions)

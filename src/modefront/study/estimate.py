@@ -24,15 +24,15 @@ from modefront.identifiability.combinations import LEAST
 from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.options import estimate as reduced_cost
+from modefront.optim.lexicographic import Lexicographic
 from modefront.optim.sqp import Solution, begin
 from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
 from modefront.uncertainty.most_probable import STARTS as MAXIMA
 from modefront.uncertainty.sampling import DRAWS, extent
-from modefront.work.costs import uncounted
 from modefront.work.progress import Plan, Span
-from modefront.work.task import seed_sequence
+from modefront.work.task import seed_sequence, uncounted
 
 NEAR = 0.4, 2.0
 """Time of a search from a known model over that of one from anywhere, from and to."""
@@ -169,7 +169,10 @@ def _search(study: Study) -> tuple[float, float] | None:
     ends: list[Solution] = []
     for k in range(TIMED if seconds < WITHIN else 0):
         if sum(spent for spent, _ in found) < WITHIN:
-            edge, theta = Least(k % n, sizes, ""), rng.uniform(problem.lower, problem.upper)
+            edge, theta = (
+                Least(Lexicographic(k % n, sizes), ""),
+                rng.uniform(problem.lower, problem.upper),
+            )
             began = time.process_time()
             start = begin(problem.evaluate(theta, second=True))
             if start.feasible:

@@ -17,7 +17,6 @@ import scipy.io
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.brief import as_html, brief
 from modefront.data.uff import dataset_55
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError, suggestion, writing
 from modefront.front.point import preferred
@@ -34,7 +33,7 @@ from modefront.results.results import ReportedModel, Results
 from modefront.results.shapes import write_grid
 from modefront.study.definition import Study
 from modefront.study.file import load
-from modefront.text import file_name
+from modefront.text import brief, file_name
 from modefront.work.store import FOLDER, NOTE
 
 ELEMENTS = {"line": 11, "triangle": 91, "quad": 94, "tetra": 111, "wedge": 112, "hexahedron": 115}
@@ -57,7 +56,6 @@ class Exported:
     missing: tuple[str, ...]
 
     __repr__ = brief
-    _repr_html_ = as_html
 
 
 def export(

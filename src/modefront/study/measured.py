@@ -20,11 +20,10 @@ from modefront.fem.check import unit_vector
 from modefront.fem.section import FemError
 from modefront.findings.record import found
 from modefront.inputs import file_size, wrong
-from modefront.json_schema import NAME, any_of, closed
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
-from modefront.options import Requirement, Table, keys, text, whole
+from modefront.options import NAME, Requirement, Table, any_of, closed, keys, text, whole
 
 FILE = text("the name of a file of modal data")
 COVARIANCE = text("the name of a file of covariances of shapes, in CSV")

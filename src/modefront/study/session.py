@@ -29,8 +29,8 @@ from modefront.identifiability.options import Identifiability
 from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text
 from modefront.predictions import Prediction
-from modefront.predictions.runner import PredictionRunner
 from modefront.residuals.problem import UpdatingProblem
+from modefront.results.predictions import PredictionRunner
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
 from modefront.uncertainty.inference import infer
@@ -39,10 +39,9 @@ from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress
-from modefront.work.run import Run
-from modefront.work.store import FOLDER, NOTE, Store, locked
-from modefront.work.task import Backend, Task, Within
-from modefront.work.workers import backend
+from modefront.work.store import FOLDER, NOTE, Run, Store, locked
+from modefront.work.task import Task, Within
+from modefront.work.workers import Workers, backend
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -97,7 +96,7 @@ def run(
     fresh: bool = False,
     refined: float | None = None,
     progress: Progress | None = None,
-    workers: int | AbstractContextManager[Backend] = 1,
+    workers: int | AbstractContextManager[Workers] = 1,
     scheduler: str | None = None,
 ) -> Results:
     """Return the results of a study or a problem, and write them to ``results.nc`` in a folder.
@@ -191,12 +190,7 @@ def worked(study: Study, work: Run) -> xr.Dataset:
     """
     from modefront.results.analysis import with_intervals
     from modefront.results.assemble import dataset
-    from modefront.results.predictions import (
-        extent,
-        posterior_models,
-        with_posterior,
-        with_predictions,
-    )
+    from modefront.results.predictions import with_predictions
     from modefront.results.shapes import mode_shapes, with_mode_shapes
     from modefront.results.verdict import with_verdict
 
@@ -235,9 +229,8 @@ def worked(study: Study, work: Run) -> xr.Dataset:
         data = with_intervals(data, inference)
         gaussian, drawn = inference.gaussian, inference.draws.theta
     runner = PredictionRunner(problem, study.predictions, seed, work, study.file)
-    models = posterior_models(data, runner, gaussian, study.uncertainty.draws, drawn)
-    work.expect(extent(study.predictions, data.sizes["point"] + models.count))
-    data = with_posterior(with_predictions(data, runner, study.slack), runner, models)
+    draws = study.uncertainty.draws
+    data = with_predictions(data, runner, study.slack, gaussian, draws, drawn)
     data = with_verdict(data)
     data.attrs |= _attributes(study, work, front)
     return data

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from modefront._typing import Bools, Floats
 from modefront.optim.problem import at_bounds
@@ -200,7 +200,7 @@ def unfixed(noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor) ->
     known = problem.model.parameters
     at = every, _placed(every, known, theta), known
     (promises,) = work.run([Task(("most-probable", "promises"), _promises, at)])
-    least, far = float(chi2.isf(CHANCE / len(fixed), 1)), (misfit > LARGE).any()
+    least, far = float(chdtri(1, CHANCE / len(fixed))), (misfit > LARGE).any()
     order = [k for k in np.argsort(-promises).tolist() if far or promises[k] > least]
     tasks, tried = [], [fixed[k].name for k in order[:TRIED]]
     for k, name in enumerate(tried):

@@ -15,7 +15,7 @@ import numpy as np
 from modefront._typing import Bools, Floats
 from modefront.data.modal import ModalData
 from modefront.errors import UnfinishedError
-from modefront.front.simplex import spanned
+from modefront.front.simplex import payoff
 from modefront.front.subproblems import Point, near_best
 from modefront.optim.problem import Problem
 from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
@@ -121,7 +121,7 @@ def _again(
         return near_best(problem, best, role.objective, role.tolerance, sizes, [start])
     else:
         ends = [solved[label] for label in role.ends]
-        target = spanned(ends, role.worst, sizes)
+        target = payoff(ends, sizes, role.worst)
         beta = point.solution.beta
         if target is None or beta is None:
             return start

@@ -18,7 +18,7 @@ from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
 from modefront.optim.scalarisation import LogSum, Rows, no_rows
-from modefront.options import check_fields, number
+from modefront.options import checked, number
 from modefront.residuals.base import NEGLIGIBLE
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem
@@ -35,7 +35,7 @@ FARTHEST = 7.0
 """Distance from the median of a prior, in standard deviations, beyond which nobody looks."""
 
 
-@dataclass(frozen=True)
+@checked
 class NoisePrior:
     """What is expected of the errors of measurement and model together.
 
@@ -51,9 +51,6 @@ class NoisePrior:
     frequency: Annotated[float, number("a number above 0", above=0)] = 0.005
     shape: Annotated[float, number("a number above 0", above=0)] = 0.03
     weight: Annotated[float, number("a number of 0 or more", least=0)] = 4.0
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
     def of(self, problem: UpdatingProblem, source: Source | None) -> NoiseModel | None:
         """Return the model of the errors of a problem; None without weight.

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 
-from modefront.work.costs import Costs
+from modefront.work.task import Costs
 
 Span = tuple[float, float]
 """From and to."""

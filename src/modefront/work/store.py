@@ -1,6 +1,7 @@
-"""Results of tasks in a folder, one small file a task, so that an interrupted run loses only one.
+"""The executor of a run, and results of tasks, so that an interrupted run loses only one.
 
-A file ends with a checksum, which alone says whether it is whole; arrays are stored exactly.
+There is one small file a task in a folder. It ends with a checksum, which alone says whether it is
+whole; arrays are stored exactly.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ import re
 import socket
 import tempfile
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +27,9 @@ from modefront.errors import Fault, InputError, writing
 from modefront.outputs import write_bytes, write_text
 from modefront.text import NAME, clean
 from modefront.work.codec import decode, encode
-from modefront.work.costs import Costs
-from modefront.work.task import Task
+from modefront.work.progress import Progress
+from modefront.work.task import Costs, Key, R, Task
+from modefront.work.workers import Workers
 
 FOLDER, NOTE = "tasks", "study"
 """Folder of the kept results within that of a run's results, and the file in it with the path of
@@ -136,3 +138,53 @@ def locked(folder: Path) -> Iterator[None]:
         with suppress(OSError):  # the folder may have been taken away
             holder.unlink()
         lock.release()
+
+
+@dataclass
+class Run:
+    """Has a backend carry out tasks, keeps results in a store, and counts the costs of all."""
+
+    store: Store | None = None
+    progress: Progress = field(default_factory=Progress)
+    backend: Workers = field(default_factory=Workers)
+    costs: dict[tuple[Key, Key], Costs] = field(default_factory=dict)
+
+    def expect(self, stages: Mapping[str, int]) -> None:
+        """Note the number of tasks of each stage that are still to come."""
+        self.progress.expect(stages)
+
+    def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
+        """Return the results of the tasks, kept ones where there are any.
+
+        Raises ValueError for a key that another task of the run had.
+        """
+        results: dict[int, R] = {}
+        names = [task.identity for task in tasks]
+        for k, task in enumerate(tasks):
+            if names[k] in self.costs or names[k] in names[:k]:
+                raise ValueError(f"two tasks are named {task.name}")
+        for k, task in enumerate(tasks):
+            kept = self.store.read(task) if self.store else None
+            if kept is not None:
+                self.progress.start(task.stage)
+                results[k], self.costs[names[k]] = kept
+                self.progress.end(task.stage, None)
+        left = [k for k in range(len(tasks)) if k not in results]
+        chosen = [tasks[k] for k in left]
+        for position, done in self.backend.compute(chosen, self.progress.start):
+            task = chosen[position]
+            results[left[position]] = done.result
+            self.costs[task.identity] = done.costs
+            self.progress.spent.add(done.costs)
+            if self.store:
+                self.store.write(task, done.result, done.costs)
+            self.progress.end(task.stage, done.seconds)
+        return [results[k] for k in range(len(tasks))]
+
+    def total(self, chosen: Callable[[str], bool] = lambda _: True) -> Costs:
+        """Return the costs of the tasks of the chosen stages."""
+        out = Costs()
+        for (key, _), costs in self.costs.items():
+            if chosen(str(key[0])):
+                out.add(costs)
+        return out

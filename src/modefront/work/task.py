@@ -1,6 +1,7 @@
-"""Tasks and executors: the work of a run, apart from who does it.
+"""Tasks and executors: the work of a run, apart from who does it, and its costs.
 
 Tasks of one call of `Executor.run` are independent, and their results come back in their order.
+Costs are counted where an eigenproblem is solved, by all counts that are open there.
 """
 
 from __future__ import annotations
@@ -8,12 +9,73 @@ from __future__ import annotations
 import time
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from modefront.work.costs import Costs, counted
+
+@dataclass
+class Costs:
+    """Numbers of solutions, and seconds that they took.
+
+    Eigenproblems are solved in full, ``corrected`` ones with the factor of another one, ``reduced``
+    ones in a basis; ``certificates`` are estimates of the error of these.
+    """
+
+    eigenproblems: int = 0
+    corrected: int = 0
+    factorisations: int = 0
+    reduced: int = 0
+    certificates: int = 0
+    full_time: float = 0.0
+    corrected_time: float = 0.0
+    reduced_time: float = 0.0
+    certificate_time: float = 0.0
+
+    @property
+    def model_evaluations(self) -> int:
+        """Eigenproblems solved in full or in a reduced basis."""
+        return self.eigenproblems + self.reduced
+
+    def add(self, other: Costs) -> None:
+        """Add other costs to these."""
+        for name, spent in vars(other).items():
+            if spent:
+                setattr(self, name, getattr(self, name) + spent)
+
+
+_OPEN: ContextVar[tuple[Costs, ...]] = ContextVar("open", default=())
+
+
+def spend(costs: Costs) -> None:
+    """Add costs to all counts that are open."""
+    for count in _OPEN.get():
+        count.add(costs)
+
+
+@contextmanager
+def counted() -> Iterator[Costs]:
+    """Count what is spent until the context ends."""
+    costs = Costs()
+    before = _OPEN.set((*_OPEN.get(), costs))
+    try:
+        yield costs
+    finally:
+        _OPEN.reset(before)
+
+
+@contextmanager
+def uncounted() -> Iterator[None]:
+    """Count nothing until the context ends: the same work was counted before."""
+    before = _OPEN.set(())
+    try:
+        yield
+    finally:
+        _OPEN.reset(before)
+
 
 Part = str | int | tuple[int, ...]
 
@@ -124,37 +186,9 @@ class Done:
     seconds: float
 
 
-class Backend(Protocol):
-    """Computes tasks."""
-
-    @property
-    def workers(self) -> int:
-        """Number of tasks that are computed at the same time."""
-
-    def compute(
-        self, tasks: Sequence[Task[Any]], begun: Callable[[int], None], /
-    ) -> Iterator[tuple[int, Done]]:
-        """Yield positions and results of tasks as they end; ``begun`` is called at their start."""
-
-
 def computed(task: Task[Any]) -> Done:
     """Return the result of a task, computed here and now."""
     began = time.perf_counter()
     with counted() as costs:
         result = task()
     return Done(result, costs, time.perf_counter() - began)
-
-
-@dataclass(frozen=True)
-class InTurn:
-    """Computes one task after another in the calling process."""
-
-    workers: int = 1
-
-    def compute(
-        self, tasks: Sequence[Task[Any]], begun: Callable[[int], None], /
-    ) -> Iterator[tuple[int, Done]]:
-        """Yield the results in the order of the tasks, each as it is wanted."""
-        for k, task in enumerate(tasks):
-            begun(k)
-            yield k, computed(task)

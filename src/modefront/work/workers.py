@@ -30,8 +30,7 @@ from threadpoolctl import threadpool_limits
 
 from modefront.errors import Fault, InputError, UnfinishedError, wrong
 from modefront.inputs import available_memory
-from modefront.work.costs import spend
-from modefront.work.task import Backend, Done, InTurn, Key, Task, computed
+from modefront.work.task import Done, Key, Task, computed, spend
 from modefront.work.transfer import Message, Reply, Sender, work
 
 SHORT, TINY = 0.02, 0.005
@@ -245,6 +244,7 @@ class _Call:
     not know them.
     """
 
+    pool: Pool
     tasks: Sequence[Task[Any]]
     pending: deque[int]
     alone: deque[int] = field(default_factory=deque)
@@ -256,9 +256,12 @@ class _Call:
 
 @dataclass
 class Workers:
-    """Hands tasks to the processes of a pool, which may take so many bytes of memory together."""
+    """Hands tasks to the processes of a pool, which may take so many bytes of memory together.
 
-    pool: Pool
+    Without a pool, it computes them in this process, one after another.
+    """
+
+    pool: Pool | None = None
     memory: float = field(default_factory=lambda: SHARE * available_memory())
     _sender: Sender = field(default_factory=Sender)
     _seconds: dict[str, float] = field(default_factory=dict)
@@ -267,28 +270,34 @@ class Workers:
     @property
     def workers(self) -> int:
         """Number of processes."""
-        return self.pool.count
+        return self.pool.count if self.pool else 1
 
     def __enter__(self) -> Workers:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.pool.close()
+        if self.pool:
+            self.pool.close()
 
     def compute(
-        self, tasks: Sequence[Task[Any]], begun: Callable[[int], None], /
+        self, tasks: Sequence[Task[Any]], begun: Callable[[str], object], /
     ) -> Iterator[tuple[int, Done]]:
-        """Yield the results of the tasks as they end.
+        """Yield positions and results of the tasks as they end; ``begun`` hears of their stages.
 
         Raises UnfinishedError where a task was lost twice or the cluster is gone, InputError where
         the model cannot be sent to another process, and what tasks raise; but for a cluster that
         is gone, all other tasks are computed first.
         """
-        call = _Call(tasks, deque(range(len(tasks))))
+        if self.pool is None:
+            for k, task in enumerate(tasks):
+                begun(task.stage)
+                yield k, computed(task)
+            return
+        call = _Call(self.pool, tasks, deque(range(len(tasks))))
         while call.pending or call.alone or call.flying:
             if self._is_for_this_process(call):
                 k = call.pending.popleft()
-                begun(k)
+                begun(call.tasks[k].stage)
                 done = computed(tasks[k])
                 self._learn(tasks[k], done.seconds)
                 yield k, done
@@ -300,27 +309,30 @@ class Workers:
             raise call.errors[min(call.errors)]
 
     def _is_for_this_process(self, call: _Call) -> bool:
-        """Return whether the next task is computed here: a single one, and while the pool starts.
+        """Return whether the next task is computed here: one of this process, and a single one.
 
-        So are tiny ones. Where a process was lost, none is: it might have been the fault of a task.
+        So are tiny ones, and others while the pool starts. Where a process was lost, none of these
+        is: it might have been the fault of a task.
         """
+        if call.pending and call.tasks[call.pending[0]].in_process:
+            return True
         if not call.pending or self._losses:
             return False
-        if not self.pool.ready:
+        if not call.pool.ready:
             return True
         lone = len(call.pending) == 1 and not call.flying
         seconds = (self._seconds.get(_kind(call.tasks[k]), SHORT) for k in call.pending)
         return lone or sum(seconds) < TINY
 
-    def _send(self, call: _Call, begun: Callable[[int], None]) -> None:
+    def _send(self, call: _Call, begun: Callable[[str], object]) -> None:
         """Send tasks of a call, as many as the processes have room for."""
         if call.alone:
             if not call.flying:
                 positions = [call.alone.popleft()]
                 self._submit(call, positions, self._message(call, positions))
             return
-        while call.pending and len(call.flying) < QUEUED * self.pool.count:
-            share = math.ceil(len(call.pending) / self.pool.count)
+        while call.pending and len(call.flying) < QUEUED * call.pool.count:
+            share = math.ceil(len(call.pending) / call.pool.count)
             each = self._seconds.get(_kind(call.tasks[call.pending[0]]), SHORT)
             count = max(1, min(share, int(SHORT / max(each, SHORT / 1000))))
             positions = [call.pending[k] for k in range(count)]
@@ -331,7 +343,7 @@ class Workers:
             self._submit(call, positions, message)
             for k in positions:
                 call.pending.popleft()
-                begun(k)
+                begun(call.tasks[k].stage)
 
     def _message(self, call: _Call, positions: Sequence[int]) -> Message:
         try:
@@ -349,19 +361,19 @@ class Workers:
     ) -> None:
         objects = self._sender.objects([name for name in message.names if name in lacked])
         try:
-            call.flying[self.pool.submit(message, objects)] = positions, message, lacked
-        except self.pool.gone:
+            call.flying[call.pool.submit(message, objects)] = positions, message, lacked
+        except call.pool.gone:
             raise UnfinishedError(GONE) from None
 
     def _received(self, call: _Call, future: Future[Reply]) -> Iterator[tuple[int, Done]]:
         positions, message, lacked = call.flying.pop(future)
         try:
             reply = future.result()
-        except self.pool.lost:
+        except call.pool.lost:
             for k in positions:
                 self._lose(call, k, "the process that computed it ended")
             return
-        except self.pool.gone:
+        except call.pool.gone:
             raise UnfinishedError(GONE) from None
         if reply.lacking:
             self._submit(call, positions, message, lacked.union(reply.lacking))
@@ -402,8 +414,8 @@ def _kind(task: Task[Any]) -> str:
 @contextmanager
 def backend(
     workers: int, scheduler: str | None = None, warm: Sequence[str] = WARM
-) -> Iterator[Backend]:
-    """Open the backend of so many processes, or of the cluster with this scheduler.
+) -> Iterator[Workers]:
+    """Open the workers of so many processes, or of the cluster with this scheduler.
 
     Processes import the modules ``warm`` when they start. Raises InputError for a number of
     processes that is not possible, and what `Cluster` raises.
@@ -412,9 +424,10 @@ def backend(
         raise wrong("workers", f"a whole number from 1 to {MOST}", workers)
     if scheduler is not None and workers > 1:
         raise wrong("workers", "1, since the cluster has its own", workers)
-    if scheduler is None and workers == 1:
-        yield InTurn()
-        return
-    pool = LocalPool(workers, warm) if scheduler is None else Cluster(scheduler)
+    pool: Pool | None = None
+    if scheduler is not None:
+        pool = Cluster(scheduler)
+    elif workers > 1:
+        pool = LocalPool(workers, warm)
     with Workers(pool) as out:
         yield out

@@ -185,7 +185,7 @@ def beam(
     bows = material.rho * w * L[:, None, None] ** 2 / 12
     M += integral(df, bows * [A, 0, 0, polar, 0, 0]) + integral(gamma, bows * sheared)
     K_G = integral(df, w * [0, 1, 1, polar / A, 0, 0])
-    a = centre @ attachment(R, np.broadcast_to(r, (len(L), 2, 3)))
+    a = centre @ attachment(np.broadcast_to(r, (len(L), 2, 3)), R).reshape(-1, 12, 12)
     if released:
         a = release(K, released) @ a
     elongation = L[:, None] * (df[:, :1, U] @ a)[:, 0]

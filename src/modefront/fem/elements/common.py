@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.fem.elements.shapes import Cell, Rule, gradients
 from modefront.fem.section import Material, Orthotropic
 
 ByPower = dict[int, Floats]
@@ -72,14 +73,6 @@ def ply(material: Material | Orthotropic) -> Ply:
     return Ply(D, (1 / S[4, 4], 1 / S[3, 3]))
 
 
-def condense(K: Floats, kept: int) -> Floats:
-    """Static condensation of the last DOFs: K_kk - K_ki K_ii^-1 K_ik."""
-    K_ki = K[:, :kept, kept:]
-    return symmetric(
-        K[:, :kept, :kept] - K_ki @ np.linalg.solve(K[:, kept:, kept:], K[:, kept:, :kept])
-    )
-
-
 def cross_matrix(r: Floats) -> Floats:
     """[r]x of shape (..., 3, 3), with [r]x a = r x a."""
     zero = np.zeros(r.shape[:-1])
@@ -88,19 +81,20 @@ def cross_matrix(r: Floats) -> Floats:
     return np.stack([np.stack(row, -1) for row in rows], -2)
 
 
-def attachment(R: Floats, r: Floats) -> Floats:
-    """A (elements, 6 nodes, 6 nodes) from node DOFs (global) to element DOFs (local axes).
+def attachment(r: Floats, R: Floats | None = None) -> Floats:
+    """A (elements, nodes, 6, 6 nodes) from node DOFs (global) to element DOFs (local axes).
 
-    R (elements, 3, 3) has local axes in rows, and r (elements, nodes, 3) the offsets of the
-    element's points from its nodes, global.
+    r (elements, nodes, 3) has the offsets of the element's points from its nodes, global, and
+    R (elements, 3, 3) or (3, 3) local axes in rows, the global ones unless given.
     """
     count, nodes = r.shape[:2]
     A = np.zeros((count, nodes, 6, nodes, 6))
-    lever = -R[:, None] @ cross_matrix(r)
+    axes = np.broadcast_to(np.eye(3) if R is None else R, (count, 3, 3))
+    lever = -axes[:, None] @ cross_matrix(r)
     for n in range(nodes):
-        A[:, n, :3, n, :3] = A[:, n, 3:, n, 3:] = R
+        A[:, n, :3, n, :3] = A[:, n, 3:, n, 3:] = axes
         A[:, n, :3, n, 3:] = lever[:, n]
-    return A.reshape(count, 6 * nodes, 6 * nodes)
+    return A.reshape(count, nodes, 6, 6 * nodes)
 
 
 def congruence(A: Floats, K: Floats) -> Floats:
@@ -118,30 +112,61 @@ def elasticity(material: Material | Orthotropic, R: Floats) -> Floats:
     return np.asarray(np.einsum("abcd,ai,bj,ck,dl->ijkl", C, R, R, R, R, optimize=True))
 
 
-def solid_stiffness(g: Floats, weight: Floats, C: Floats) -> Floats:
-    """Stiffness (elements, 3 nodes, 3 nodes) of a solid.
+@dataclass(frozen=True)
+class Stresses:
+    """Stresses of shells and solids, and the geometric stiffness that they make.
 
-    From the energy C_ijkl u_i,j u_k,l / 2 with gradients g of the shape functions,
+    Stresses S = D sym grad u, integrated over the thickness of shells, are taken at the centre of
+    each element, from the displacements of its mid-surface in the plane of the centre. With the
+    gradients g of the shape functions there,
 
-        K_(ai)(bk) = C_ijkl int g_aj g_bl dV.
+        K_G = int S_ab u_,a . u_,b,   (K_G)_(ni)(mi) = sum_points w g_na S_ab g_mb.
 
-    g are gradients of the shape functions (elements, points, 3, nodes), ``weight`` is w det J, and
-    C `elasticity`.
+    Drilling rotations and rotary terms are left out.
+
+    Attributes
+    ----------
+    x : nodes of the mid-surface (elements, nodes, dim) in the axes R
+    R, D : axes (elements, dim, 3), and stresses of gradients (elements, dim, dim, dim, dim)
+    P : displacements of the nodes by the DOFs (elements, nodes, 3, n); None where they are these
+    cell, rule : shape functions and quadrature
     """
-    count, points, _, nodes = g.shape
-    flat = np.swapaxes(g, 2, 3).reshape(count, points, 3 * nodes)
-    P = np.swapaxes(flat, 1, 2) @ (flat * weight[..., None])
-    P = P.reshape(count, nodes, 3, nodes, 3).transpose(0, 1, 3, 2, 4).reshape(-1, 9)
-    K = (P @ C.transpose(1, 3, 0, 2).reshape(9, 9)).reshape(count, nodes, nodes, 3, 3)
-    return symmetric(K.transpose(0, 1, 3, 2, 4).reshape(count, 3 * nodes, 3 * nodes))
 
+    x: Floats
+    R: Floats
+    D: Floats
+    P: Floats | None
+    cell: Cell
+    rule: Rule
 
-def solid_mass(N: Floats, weight: Floats) -> Floats:
-    """Consistent mass (elements, 3 nodes, 3 nodes) per density of a solid.
+    def _centre(self) -> tuple[Floats, Floats]:
+        """Return gradients (elements, dim, nodes) at the centre, and volumes (elements,)."""
+        xi, w = self.rule
+        centre = (w @ xi / w.sum())[None]
+        g, _ = gradients(self.x, self.cell.shape(centre)[1])
+        _, det = gradients(self.x, self.cell.shape(xi)[1])
+        return g[:, 0], det @ w
 
-    N are shape functions (points, nodes), and ``weight`` is w det J (elements, points).
-    """
-    count, nodes = len(weight), N.shape[1]
-    products = (N[:, :, None] * N[:, None, :]).reshape(len(N), -1)
-    m = symmetric((weight @ products).reshape(count, nodes, nodes))
-    return np.einsum("enm,ij->enimj", m, np.eye(3)).reshape(count, 3 * nodes, 3 * nodes)
+    def free_forces(self, strain: float) -> Floats:
+        """Return forces (elements, n) that make a free strain."""
+        g, volume = self._centre()
+        S = strain * np.trace(self.D, axis1=3, axis2=4)
+        f = volume[:, None, None] * np.swapaxes(g, 1, 2) @ S @ self.R
+        if self.P is None:
+            return np.asarray(f.reshape(len(f), -1))
+        return np.asarray(np.einsum("enj,enjk->ek", f, self.P))
+
+    def stiffness(self, q: Floats, strain: float) -> Floats:
+        """Return K_G (elements, n, n) of displacements q (elements, n) and a free strain."""
+        count, nodes, dim = self.x.shape
+        P = self.P
+        u = q.reshape(count, nodes, 3) if P is None else np.einsum("enjk,ek->enj", P, q)
+        slopes = self._centre()[0] @ u @ np.swapaxes(self.R, 1, 2) - strain * np.eye(dim)
+        S = np.einsum("eabcd,ecd->eab", self.D, slopes)
+        xi, w = self.rule
+        g, det = gradients(self.x, self.cell.shape(xi)[1])
+        K = np.einsum("eg,egan,eab,egbm->enm", det * w, g, S, g, optimize=True)
+        if P is None:
+            return symmetric(np.einsum("enm,ij->enimj", K, np.eye(3)).reshape(count, 3 * nodes, -1))
+        right = (K @ P.reshape(count, nodes, -1)).reshape(count, 3 * nodes, -1)
+        return symmetric(np.swapaxes(P.reshape(count, 3 * nodes, -1), 1, 2) @ right)

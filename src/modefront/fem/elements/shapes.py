@@ -27,6 +27,8 @@ WEDGE_EDGES = ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (
 TRIANGLE_EDGES = TETRAHEDRON_EDGES[:3]
 
 Edges = Sequence[tuple[int, int]]
+Rule = tuple[Floats, Floats]
+"""Points (points, dim) and weights of a quadrature."""
 
 
 @dataclass(frozen=True)

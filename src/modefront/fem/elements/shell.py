@@ -22,17 +22,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.fem.elements.common import (
-    ByPower,
-    ElementMatrices,
-    attachment,
-    cross_matrix,
-    ply,
-    symmetric,
-)
-from modefront.fem.elements.internal import centre_axes
+from modefront.fem.elements import common
 from modefront.fem.elements.membrane import membrane
 from modefront.fem.elements.plate import Elements, Rows, mass, shear_and_bending
+from modefront.fem.elements.shapes import SQUARE_4, TRIANGLE_3, gauss_box
 from modefront.fem.section import Material, Orthotropic
 
 FOLD = 20.0
@@ -41,6 +34,12 @@ FOLD = 20.0
 DIVISIONS = {3: ((0, 1, 2),), 4: ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))}
 """Corners of the triangles that make an element; in quadrilaterals, their third side is inside."""
 
+
+SURFACES = {
+    3: (TRIANGLE_3, (np.full((1, 2), 1 / 3), np.array([0.5]))),
+    4: (SQUARE_4, gauss_box(2, 2)),
+}
+"""Cells and quadrature of shells by their number of nodes."""
 
 AT_ONCE = 1000
 """Elements at a time, so that their rows stay in the cache of a processor."""
@@ -117,7 +116,7 @@ def shell(
     thickness: float,
     offset: float,
     varied: bool,
-) -> ElementMatrices:
+) -> common.ElementMatrices:
     """Matrices of shells, DOFs (u, r) node by node in global axes.
 
     Parameters
@@ -136,18 +135,18 @@ def shell(
             for some in (slice(k, k + AT_ONCE) for k in range(0, len(X), AT_ONCE))
         ]
         K, M = (_joined([getattr(x, y) for x in pieces]) for y in ("stiffness", "mass"))
-        return ElementMatrices(K, M)
+        return common.ElementMatrices(K, M)
     t, r = thickness, offset * d
     x = X + r
-    A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
+    A = common.attachment(r)
     U, omega = A[:, :, :3], A[:, :, 3:]
-    V = -cross_matrix(d) @ omega
+    V = -common.cross_matrix(d) @ omega
     quadrilateral = X.shape[1] == 4
     squares = ((x[:, 2:] - x[:, :-2]) ** 2).sum(2)
     across = squares / areas(x)[:, None] ** 2
     shares = squares**2 / (squares**2).sum(1, keepdims=True)
     parts: list[list[Rows]] = [[], [], [], [], []]
-    own = ply(material)
+    own = common.ply(material)
     for chosen in DIVISIONS[X.shape[1]]:
         corners, odd = list(chosen), chosen[1] % 2
         R = centre_axes(x[:, corners])
@@ -173,14 +172,14 @@ def shell(
     K_1, K_3 = t * sheared, t**3 * bent
     M_1, M_3 = material.rho * t * moved, material.rho * t**3 * turned
     if not varied:
-        return ElementMatrices({0: t * stretched + K_1 + K_3}, {0: M_1 + M_3})
+        return common.ElementMatrices({0: t * stretched + K_1 + K_3}, {0: M_1 + M_3})
     n = A.shape[-1]
     (K1, K2, K3), (more, K4, K5) = _by_order(K_1, n), _by_order(K_3, n)
     K = {1: t * stretched + K1, 2: K2, 3: K3 + more, 4: K4, 5: K5}
-    return ElementMatrices(K, {1: M_1, 3: M_3})
+    return common.ElementMatrices(K, {1: M_1, 3: M_3})
 
 
-def _joined(parts: Sequence[ByPower]) -> ByPower:
+def _joined(parts: Sequence[common.ByPower]) -> common.ByPower:
     return {power: np.concatenate([each[power] for each in parts]) for power in parts[0]}
 
 
@@ -192,4 +191,29 @@ def _by_order(K: Floats, n: int) -> tuple[Floats, Floats, Floats]:
 def products(B: Floats, D: Floats) -> Floats:
     """Return the sum over points of B^T D B (elements, n, n)."""
     rows = B.reshape(len(B), -1, B.shape[-1])
-    return symmetric(np.swapaxes(rows, 1, 2) @ (D @ B).reshape(rows.shape))
+    return common.symmetric(np.swapaxes(rows, 1, 2) @ (D @ B).reshape(rows.shape))
+
+
+def centre_axes(x: Floats) -> Floats:
+    """Return axes (elements, 3, 3) at the centre of shells x (.., nodes, 3), the third across."""
+    cell, (xi, w) = SURFACES[x.shape[1]]
+    a = np.swapaxes(cell.shape((w @ xi / w.sum())[None])[1][0], 0, 1) @ x
+    normal = np.cross(a[:, 0], a[:, 1])
+    R = np.stack([a[:, 0], np.cross(normal, a[:, 0]), normal], 1)
+    return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
+
+
+def shell_stresses(
+    X: Floats, r: Floats, m: Floats, material: common.Ply, t: float
+) -> common.Stresses:
+    """Return the stresses of shells of thickness t with nodes X (elements, nodes, 3).
+
+    r are offsets of the mid-surface from them, and m vectors (elements, 3) in the shell along axis
+    1 of the material.
+    """
+    cell, rule = SURFACES[X.shape[1]]
+    R = centre_axes(X + r)[:, :2]
+    x = (X + r) @ np.swapaxes(R, 1, 2)
+    plane = np.array([[0, 2], [2, 1]])
+    D = t * material.turned((R @ m[:, :, None])[..., 0])[:, plane[:, :, None, None], plane]
+    return common.Stresses(x, R, D, common.attachment(r)[:, :, :3], cell, rule)

@@ -19,22 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.common import ElementMatrices, condense, solid_mass, solid_stiffness
-from modefront.fem.elements.shapes import (
-    CUBE_8,
-    CUBE_20,
-    TETRAHEDRON_10,
-    WEDGE_15,
-    Cell,
-    gauss_box,
-    gauss_simplex,
-    gauss_tetrahedron_4,
-    gauss_wedge,
-    gradients,
-    jacobian,
-)
+from modefront.fem.elements import common, shapes
 
-Rule = tuple[Floats, Floats]
 QUADS = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 """Faces of a brick."""
 
@@ -46,10 +32,10 @@ class Solid:
     The rules are exact for straight edges.
     """
 
-    cell: Cell
+    cell: shapes.Cell
     faces: tuple[tuple[int, ...], ...]
-    stiffness: Rule
-    mass: Rule
+    stiffness: shapes.Rule
+    mass: shapes.Rule
 
     @property
     def corners(self) -> int:
@@ -62,28 +48,51 @@ SIDES = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
 """Faces of a tetrahedron, and of a wedge."""
 
 SOLIDS = {
-    8: Solid(CUBE_8, QUADS, gauss_box(2, 3), gauss_box(3, 3)),
-    10: Solid(TETRAHEDRON_10, TRIANGLES, gauss_tetrahedron_4(), gauss_simplex(3, 3)),
-    15: Solid(WEDGE_15, SIDES, gauss_wedge(3), gauss_wedge(3)),
-    20: Solid(CUBE_20, QUADS, gauss_box(3, 3), gauss_box(3, 3)),
+    8: Solid(shapes.CUBE_8, QUADS, shapes.gauss_box(2, 3), shapes.gauss_box(3, 3)),
+    10: Solid(
+        shapes.TETRAHEDRON_10, TRIANGLES, shapes.gauss_tetrahedron_4(), shapes.gauss_simplex(3, 3)
+    ),
+    15: Solid(shapes.WEDGE_15, SIDES, shapes.gauss_wedge(3), shapes.gauss_wedge(3)),
+    20: Solid(shapes.CUBE_20, QUADS, shapes.gauss_box(3, 3), shapes.gauss_box(3, 3)),
 }
 """Kinds of solids by their number of nodes."""
 
 
-def solid(X: Floats, rho: float, C: Floats) -> ElementMatrices:
+def solid(X: Floats, rho: float, C: Floats) -> common.ElementMatrices:
     """Matrices of solids X (elements, nodes, 3), DOFs u node by node in global axes.
 
-    C is `modefront.fem.elements.common.elasticity`.
+    C is `modefront.fem.elements.common.elasticity`. From the energy C_ijkl u_i,j u_k,l / 2 with
+    gradients g of the shape functions,
+
+        K_(ai)(bk) = C_ijkl int g_aj g_bl dV.
     """
     kind, size = SOLIDS[X.shape[1]], 3 * X.shape[1]
     xi, w = kind.stiffness
-    g, det = gradients(X, kind.cell.shape(xi)[1])
-    if kind.cell is CUBE_8:
-        J0 = jacobian(X, CUBE_8.shape(np.zeros((1, 3)))[1])
+    g, det = shapes.gradients(X, kind.cell.shape(xi)[1])
+    if kind.cell is shapes.CUBE_8:
+        J0 = shapes.jacobian(X, shapes.CUBE_8.shape(np.zeros((1, 3)))[1])
         g_modes = np.linalg.inv(J0) @ (-2 * xi[:, :, None] * np.eye(3))
         g = np.concatenate([g, g_modes * (np.linalg.det(J0) / det)[..., None, None]], -1)
-    K = solid_stiffness(g, det * w, C)
+    count, points, _, n = g.shape
+    flat = np.swapaxes(g, 2, 3).reshape(count, points, 3 * n)
+    P = np.swapaxes(flat, 1, 2) @ (flat * (det * w)[..., None])
+    P = P.reshape(count, n, 3, n, 3).transpose(0, 1, 3, 2, 4).reshape(-1, 9)
+    K = (P @ C.transpose(1, 3, 0, 2).reshape(9, 9)).reshape(count, n, n, 3, 3)
+    K = common.symmetric(K.transpose(0, 1, 3, 2, 4).reshape(count, 3 * n, 3 * n))
+    if 3 * n > size:  # the amplitudes of the modes are condensed out
+        K_ki = K[:, :size, size:]
+        within = K_ki @ np.linalg.solve(K[:, size:, size:], K[:, size:, :size])
+        K = common.symmetric(K[:, :size, :size] - within)
     xi, w = kind.mass
     N, dN = kind.cell.shape(xi)
-    M = rho * solid_mass(N, np.linalg.det(jacobian(X, dN)) * w)
-    return ElementMatrices({0: condense(K, size) if len(K[0]) > size else K}, {0: M})
+    weight = np.linalg.det(shapes.jacobian(X, dN)) * w
+    products = (N[:, :, None] * N[:, None, :]).reshape(len(N), -1)
+    m = common.symmetric((weight @ products).reshape(count, X.shape[1], -1))
+    M = rho * np.einsum("enm,ij->enimj", m, np.eye(3)).reshape(count, size, size)
+    return common.ElementMatrices({0: K}, {0: M})
+
+
+def solid_stresses(X: Floats, C: Floats) -> common.Stresses:
+    """Return the stresses of solids X (elements, nodes, 3) of the elasticity C."""
+    kind = SOLIDS[X.shape[1]]
+    return common.Stresses(X, np.eye(3)[None], C[None], None, kind.cell, kind.stiffness)

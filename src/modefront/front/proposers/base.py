@@ -13,14 +13,11 @@ from modefront.front.archive import Outcome
 from modefront.front.state import Place, State
 from modefront.front.subproblems import Subproblem
 from modefront.optim.problem import Evaluation, Problem
-from modefront.optim.sqp import Options, Solution, begin, solve
+from modefront.optim.sqp import Solution, begin
 
 USUAL = 10
 """Evaluations that a search is expected to take before any is known, models of a generation, and
 random starts that cover the box together."""
-
-_ROUGH = Options(iterations=4)
-"""A few steps, after which the model that is reached is compared with all others."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +30,6 @@ class Offer:
     start : model from which it is solved
     chance : probability that some subproblem gains
     function : what is done with the problem and ``arguments``
-    final : whether what it leads to is a solution of the subproblem
     unseen : part of the box that may lead to something better; the offer is worth making as long as
         this or the chance is above the doubt that is allowed
     """
@@ -43,7 +39,6 @@ class Offer:
     chance: float
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
-    final: bool = True
     unseen: float = 0.0
 
 
@@ -97,14 +92,9 @@ def solve_from(k: int, place: Place, start: Solution, chance: float) -> Offer:
     return Offer(k, start, chance, _solved, (place.subproblem, start, place.incumbent.J))
 
 
-def approach_from(k: int, place: Place, start: Solution, chance: float) -> Offer:
-    """Return the offer to take a few steps towards the solution of a place, the k-th one."""
-    return Offer(k, start, chance, solve, (place.subproblem.programme, start, _ROUGH), final=False)
-
-
 def evaluate_all(thetas: Floats, chance: float) -> Offer:
     """Return the offer to evaluate models (., p) without derivatives."""
-    return Offer(-1, at(thetas[0]), chance, _evaluated, (thetas,), final=False)
+    return Offer(-1, at(thetas[0]), chance, _evaluated, (thetas,))
 
 
 def at(theta: Floats) -> Solution:

@@ -20,9 +20,9 @@ class Polish:
 
     A point of the lattice that no search has reached has the best known model as its incumbent:
     those that lag least behind what they could be come first, next to what is solved. So a front
-    is followed from its edges inwards, each point from its neighbour. Points that end beside their
-    normals, or do not meet their equations, are solved from the nearest ones that lie on theirs, as
-    many as there are objectives: the front may go on from another side.
+    is followed from its edges inwards, each point from its neighbour. A point that ends beside its
+    normal is solved from the nearest one that lies on its own, and one that does not meet its
+    equations from as many as there are objectives: the front may go on from another side.
 
     Attributes
     ----------
@@ -45,8 +45,8 @@ class Polish:
         J = np.array([x.J for x in met]).reshape(-1, len(state.problem.objectives))
         for k, x, of in pairs:
             if isinstance(of, Point) and state.places[k].closed and not of.met(x):
-                chance = 1.0 if of.equations else self.rate.recent
-                for m in of.order.spread(J).argsort(kind="stable")[: J.shape[1]].tolist():
+                chance, count = (1.0, J.shape[1]) if of.equations else (self.rate.recent, 1)
+                for m in of.order.spread(J).argsort(kind="stable")[:count].tolist():
                     if (of.key, met[m].theta.tobytes()) not in self._tried:
                         yield solve_from(k, state.places[k], met[m], chance)
 

@@ -32,7 +32,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.modes import dense
 from modefront.modes.dense import Decomposition, decompose
 from modefront.modes.derivatives import Shifted
-from modefront.work.costs import Costs, spend
+from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 
 

@@ -12,27 +12,16 @@ import numpy as np
 import scipy.sparse.linalg
 
 from modefront._typing import Floats
-from modefront.brief import as_html, brief_model
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
 from modefront.models.base import passed_on
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.basis import (
-    LATER,
-    Basis,
-    Certifier,
-    CorrectionRequest,
-    empty,
-    extended,
-    lacking_lengths,
-    level,
-    with_derivatives,
-    with_modes,
-)
+from modefront.models.reduced import basis as bases
 from modefront.modes import dense
 from modefront.modes.result import FullModes, Modes
 from modefront.modes.sparse import lowest
-from modefront.work.costs import Costs, counted, spend, uncounted
+from modefront.text import brief_model
+from modefront.work.task import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
 
 SPARE = 2
@@ -119,11 +108,10 @@ class ReducedModel:
     spare: int = 0
     snapshots: tuple[SnapshotRequest, ...] = ()
     _taken: tuple[tuple[SnapshotRequest, Costs, float], ...] = ()
-    _basis: Basis | None = None
+    _basis: bases.Basis | None = None
     _small: _Projected | None = None
 
     __repr__ = brief_model
-    _repr_html_ = as_html
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state with the projected matrices, and without basis and factor.
@@ -215,9 +203,9 @@ class ReducedModel:
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return FullModes(pairs.lam[:count], Phi, None)
 
-    def certifier(self) -> Certifier:
+    def certifier(self) -> bases.Certifier:
         """Return what judges modes of the basis."""
-        return Certifier(self.full, self.basis)
+        return bases.Certifier(self.full, self.basis)
 
     def lacking(self, count: int) -> list[Floats]:
         """Return models with two parameters at their lower bounds where modes are missing.
@@ -232,14 +220,14 @@ class ReducedModel:
             theta = self.nominal.copy()
             theta[list(pair)] = self.lower[list(pair)]
             with suppress(ModelError):
-                lam = basis.lowest(theta, count + LATER).lam
+                lam = basis.lowest(theta, count + bases.LATER).lam
                 if lam.size > count:
                     doubtful.append((-lam[count - 1], pair, theta, lam))
         chosen = sorted(doubtful, key=lambda entry: entry[:2])[:24]  # each takes a factorisation
         return [theta for *_, theta, lam in chosen if self._lacks(basis, theta, lam, count)]
 
     @property
-    def basis(self) -> Basis:
+    def basis(self) -> bases.Basis:
         """The basis of the snapshots in use; the nominal one is taken where there is none."""
         if not self.snapshots:
             self.take(self.first)
@@ -278,7 +266,7 @@ class ReducedModel:
                 self._basis = basis
                 self._taken = (*self._taken, (what, costs, error))
 
-    def _added(self, what: SnapshotRequest) -> tuple[Basis, float]:
+    def _added(self, what: SnapshotRequest) -> tuple[bases.Basis, float]:
         """Return the basis with a snapshot, and the error that it found.
 
         Models near enough are corrected with the factor at hand, others solved in full. Those that
@@ -295,8 +283,8 @@ class ReducedModel:
         return self._added_to(self._basis, models, what) if models else (self._basis, error)
 
     def _added_to(
-        self, basis: Basis, models: list[Floats], what: SnapshotRequest
-    ) -> tuple[Basis, float]:
+        self, basis: bases.Basis, models: list[Floats], what: SnapshotRequest
+    ) -> tuple[bases.Basis, float]:
         error, near = 0.0, [theta for theta in models if self._is_near(basis, theta, what)]
         corrected = self._corrected(basis, near, what) if near else None
         if corrected:
@@ -312,7 +300,7 @@ class ReducedModel:
             raise ModelError("none of the models of a snapshot has modes")
         return basis, error
 
-    def _worst(self, basis: Basis, what: SnapshotRequest) -> tuple[list[Floats], float]:
+    def _worst(self, basis: bases.Basis, what: SnapshotRequest) -> tuple[list[Floats], float]:
         """Return the models of a snapshot that the basis knows least, and its error there."""
         models = []
         for theta in what.models:
@@ -321,14 +309,14 @@ class ReducedModel:
                 models += [theta] if enough else []
         if not models:
             return what.models[:WORST], np.inf
-        lengths = lacking_lengths(basis, models, what.modes)
+        lengths = bases.lacking_lengths(basis, models, what.modes)
         ranked = np.argsort(-lengths, kind="stable")[:WORST]
         return [models[k] for k in ranked if lengths[k] >= what.enough], float(lengths.max())
 
-    def _is_near(self, basis: Basis, theta: Floats, what: SnapshotRequest) -> bool:
+    def _is_near(self, basis: bases.Basis, theta: Floats, what: SnapshotRequest) -> bool:
         """Return whether the factor at hand is of use for a model, and no mode is missing."""
         with suppress(ModelError):
-            lam = basis.lowest(theta, what.modes + LATER).lam
+            lam = basis.lowest(theta, what.modes + bases.LATER).lam
             return (
                 lam.size > what.modes
                 and _condition(basis, theta) <= FAR
@@ -336,21 +324,21 @@ class ReducedModel:
             )
         return False
 
-    def _lacks(self, basis: Basis, theta: Floats, lam: Floats, count: int) -> bool:
+    def _lacks(self, basis: bases.Basis, theta: Floats, lam: Floats, count: int) -> bool:
         """Return whether a mode is missing among the lowest ones, of the eigenvalues ``lam``."""
-        return level(self.full.pencil, theta, lam, count, basis.sigma) is None
+        return bases.level(self.full.pencil, theta, lam, count, basis.sigma) is None
 
     def _corrected(
-        self, basis: Basis, near: list[Floats], what: SnapshotRequest
-    ) -> tuple[Basis, float] | None:
+        self, basis: bases.Basis, near: list[Floats], what: SnapshotRequest
+    ) -> tuple[bases.Basis, float] | None:
         """Return the basis with the modes of some models, and its error before.
 
         None where the models need factors of their own.
         """
         started = time.perf_counter()
-        request = CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
+        request = bases.CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
         try:
-            known = with_modes(basis, near, what.modes, request)
+            known = bases.with_modes(basis, near, what.modes, request)
         except ModelError:
             return None  # a larger space sees that a matrix is indefinite
         if known is None:
@@ -361,7 +349,7 @@ class ReducedModel:
         spend(Costs(corrected=count, corrected_time=time.perf_counter() - started))
         return basis, float(errors.max())
 
-    def _solved(self, known: Basis | None, theta: Floats, modes: int) -> Basis:
+    def _solved(self, known: bases.Basis | None, theta: Floats, modes: int) -> bases.Basis:
         started = time.perf_counter()
         pencil = self.full.pencil
         count, spectrum = min(modes + SPARE, self.size), None
@@ -375,8 +363,8 @@ class ReducedModel:
         vectors = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
         del spectrum  # the other factor
         vectors = vectors[:, : self.capacity]  # of directions of equal length, the lowest ones
-        basis = known or empty(pencil, below.factor, theta, below.sigma)
-        basis = extended(basis, vectors, self._shortest, self.capacity)
+        basis = known or bases.empty(pencil, below.factor, theta, below.sigma)
+        basis = bases.extended(basis, vectors, self._shortest, self.capacity)
         solved = time.perf_counter()
         spend(Costs(eigenproblems=1, full_time=solved - started))
         # Of its derivatives the model's own factor knows more.
@@ -387,7 +375,7 @@ class ReducedModel:
         spend(Costs(corrected_time=time.perf_counter() - solved))
         return basis
 
-    def _excluding(self, basis: Basis, models: list[Floats]) -> Basis:
+    def _excluding(self, basis: bases.Basis, models: list[Floats]) -> bases.Basis:
         """Return the basis with directions in which the stiffness of some models is negative.
 
         Raises ModelError where none is found.
@@ -406,15 +394,15 @@ class ReducedModel:
         vectors = np.hstack(found)
         if not vectors.shape[1]:
             raise ModelError("no direction of negative stiffness is found")
-        return extended(basis, vectors, self._shortest, self.capacity)
+        return bases.extended(basis, vectors, self._shortest, self.capacity)
 
-    def _with_derivatives(self, basis: Basis, theta: Floats, modes: int) -> Basis:
+    def _with_derivatives(self, basis: bases.Basis, theta: Floats, modes: int) -> bases.Basis:
         if (count := min(modes, basis.columns - 1)) < 1:
             return basis
-        request = CorrectionRequest(SHARE, self._shortest, self.capacity)
-        return with_derivatives(basis, theta, count, (self.upper - self.lower) / 2, request)
+        request = bases.CorrectionRequest(SHARE, self._shortest, self.capacity)
+        return bases.with_derivatives(basis, theta, count, (self.upper - self.lower) / 2, request)
 
-    def _at_bounds(self, basis: Basis, theta: Floats) -> Basis:
+    def _at_bounds(self, basis: bases.Basis, theta: Floats) -> bases.Basis:
         """Return the basis with the modes where one parameter is at a bound, or nearer to theta.
 
         They are for the global search, and take no more than half of what is left of the memory.
@@ -428,11 +416,11 @@ class ReducedModel:
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
-        request = CorrectionRequest(SHARE, 3e-3, (basis.columns + self.capacity) // 2)
+        request = bases.CorrectionRequest(SHARE, 3e-3, (basis.columns + self.capacity) // 2)
         for some in (bounds, *([theta] for theta in bounds)):
             # A larger space may see that a matrix is indefinite at one of them: then each alone.
             with suppress(ModelError):
-                known = with_modes(basis, some, count, request)
+                known = bases.with_modes(basis, some, count, request)
                 basis = known[0] if known else basis
                 spend(Costs(corrected=len(some)))
                 if some is bounds:
@@ -444,7 +432,7 @@ class ReducedModel:
         return 0.1 * float(np.sqrt(self.tolerance))  # an error is the square of what is lacking
 
 
-def _condition(basis: Basis, theta: Floats) -> float:
+def _condition(basis: bases.Basis, theta: Floats) -> float:
     """Return the condition of K - sigma M over A in the basis; infinite where it is indefinite."""
     values = np.linalg.eigvalsh(basis.K.at(theta) - basis.sigma * basis.M.at(theta))
     return float(values[-1] / values[0]) if values[0] > 0 else np.inf

@@ -14,13 +14,12 @@ from typing import Annotated, Literal
 import numpy as np
 
 from modefront.data.modal import ModalData
-from modefront.json_schema import any_of
 from modefront.linalg.affine import SparseAffine
 from modefront.models.base import Model, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.model import MEMORY, TOLERANCE, ReducedModel
-from modefront.options import Requirement, check_fields, number
+from modefront.options import Requirement, any_of, checked, number
 from modefront.pairing.match import Pairing, modes_needed
 
 SMALLEST = 100
@@ -102,7 +101,7 @@ def _dense(size: float, derivatives: int) -> float:
     return DENSE[0] + DENSE[1] * size**3 + DENSE[2] * size**2 * derivatives
 
 
-@dataclass(frozen=True)
+@checked
 class Reduction:
     """Tolerance and memory of a reduced basis.
 
@@ -117,9 +116,6 @@ class Reduction:
 
     reduction: Annotated[float | Literal["auto", "off"], REDUCTION] = "auto"
     memory: Annotated[float, GIB] = MEMORY
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
     def of(
         self, model: Model, data: ModalData, pairing: Pairing, parameters: Sequence[Parameter]

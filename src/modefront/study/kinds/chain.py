@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Annotated, Any
 
 from modefront.errors import suggestion
-from modefront.json_schema import ABOVE_ZERO, NOT_NEGATIVE, array, table_of
 from modefront.models.base import Model
 from modefront.models.chain import chain
-from modefront.options import Requirement, Table, check_fields, entries, numbers
+from modefront.options import (
+    ABOVE_ZERO,
+    NOT_NEGATIVE,
+    Requirement,
+    Table,
+    array,
+    checked,
+    entries,
+    numbers,
+    table_of,
+)
 from modefront.study.kinds.sensors import WEIGHTED, ModelKind, read_places
 
 MASSES = numbers("a list of masses above 0", array(ABOVE_ZERO, 1))
@@ -30,7 +38,7 @@ OF_MASSES = Requirement(
 PLACES = entries("a table, name = degree of freedom", table_of(WEIGHTED))
 
 
-@dataclass(frozen=True)
+@checked
 class Chain:
     """Lumped masses joined by springs, the first one to the ground; SI or any consistent units.
 
@@ -54,9 +62,6 @@ class Chain:
     mass_parameters: Annotated[Sequence[str], OF_MASSES] | None = None
     sensors: Annotated[Mapping[str, Any], PLACES] | None = None
     outputs: Annotated[Mapping[str, Any], PLACES] | None = None
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:

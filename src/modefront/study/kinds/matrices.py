@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -12,14 +12,25 @@ import scipy.sparse
 
 from modefront.errors import suggestion
 from modefront.fem.structure import DIRECTIONS
-from modefront.json_schema import any_of, array, closed, file_name, table_of
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
 from modefront.models.files import READERS, read_matrix
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import matrices
 from modefront.models.parameters import BASE, exponents_of, form_of
-from modefront.options import TRUE_OR_FALSE, Option, Table, check_fields, entries, text
+from modefront.options import (
+    TRUE_OR_FALSE,
+    Option,
+    Table,
+    any_of,
+    array,
+    checked,
+    closed,
+    entries,
+    file_name,
+    table_of,
+    text,
+)
 from modefront.programs.base import ProgramMesh, read_mesh
 from modefront.study.kinds.sensors import BY_NODE, DOF, WEIGHTED, ModelKind, read_places
 
@@ -43,7 +54,7 @@ MOVING = any_of(
 )
 
 
-@dataclass(frozen=True)
+@checked
 class Matrices:
     """Matrices from files: K = base + sum_j c_j K_j, M likewise; c_j is a parameter or a product.
 
@@ -74,9 +85,6 @@ class Matrices:
     base: (
         Annotated[Mapping[str, Any], entries("a table of directions", table_of(MOVING))] | None
     ) = None
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Any, get_args
 
 from modefront import fem
@@ -17,27 +17,24 @@ from modefront.diagnosis.notes import unused_groups
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Group, Quantity
-from modefront.json_schema import (
-    ABOVE_ZERO,
-    NOT_NEGATIVE,
-    NUMBER,
-    TABLE,
-    Schema,
-    any_of,
-    array,
-    chosen,
-    closed,
-    table_of,
-)
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
 from modefront.options import (
+    ABOVE_ZERO,
+    NOT_NEGATIVE,
+    NUMBER,
     PAIR,
+    TABLE,
     TRUE_OR_FALSE,
     Option,
     Requirement,
+    Schema,
     Table,
-    check_fields,
+    any_of,
+    array,
+    checked,
+    chosen,
+    closed,
     entries,
     is_name,
     keys,
@@ -45,6 +42,7 @@ from modefront.options import (
     numbers,
     of_options,
     one_of,
+    table_of,
     text,
     whole,
 )
@@ -236,7 +234,7 @@ SCALES = entries("a table, parameter = { quantity, of }", table_of(of_options(SC
 
 
 # 13 fields: the tables of a structure.
-@dataclass(frozen=True)
+@checked
 class MeshModel:
     """Finite elements on a mesh from a file that meshio reads.
 
@@ -275,9 +273,6 @@ class MeshModel:
     outputs: (
         Annotated[Mapping[str, Any], entries("a table of outputs", table_of(PLACES))] | None
     ) = None
-
-    def __post_init__(self) -> None:
-        check_fields(self)
 
 
 @contextmanager

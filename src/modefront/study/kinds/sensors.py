@@ -13,11 +13,22 @@ import numpy as np
 from modefront.data.csv import is_reserved
 from modefront.fem.check import ALONG, axes_of, unit_vector
 from modefront.fem.structure import DIRECTIONS
-from modefront.json_schema import NUMBER, WHOLE, any_of, array, closed, fits, pair, whole_number
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
-from modefront.options import Requirement, Table, is_name, shown, whole
+from modefront.options import (
+    NUMBER,
+    WHOLE,
+    Requirement,
+    Table,
+    any_of,
+    array,
+    closed,
+    fits,
+    is_name,
+    shown,
+    whole,
+)
 
 
 @dataclass(frozen=True)
@@ -43,8 +54,8 @@ class ModelKind:
 NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
 """Directions by their names."""
 
-DOF = whole_number(0, WHOLE)
-WEIGHTED = any_of(DOF, array(pair(DOF, NUMBER), 1))
+DOF = whole(0, WHOLE).schema
+WEIGHTED = any_of(DOF, array(array([DOF, NUMBER], 2, 2), 1))
 """A degree of freedom, or weights of several."""
 
 VECTOR = array(NUMBER, 3, 3)

@@ -1,4 +1,20 @@
-r"""A model in its lowest modes, between loads and responses, with damping.
+"""A model in its lowest modes between loads and responses, with classical damping.
+
+The modal equations are in docs/methods/first-passage.md.
+
+==========  =================================================  ===========
+symbol      meaning                                            field
+==========  =================================================  ===========
+ω_r         natural circular frequency, rad/s                  ``omega``
+ζ_r         damping ratio                                      ``zeta``
+Γ           φᵀf for a force pattern f;  -φᵀM r for the         ``input``
+            acceleration of the base, r its rigid-body motion
+Y           mode shapes at the outputs: a sensor, or any       ``output``
+            weighted sum of DOFs, such as a story drift
+Y_s         full static response, output · K⁻¹ · load,         ``static``
+            load = f or -M r
+Y_b         motion of the outputs with the base, output · r    ``rigid``
+==========  =================================================  ===========
 
 Loads and responses are sums of sensors and other outputs of the model, by their names.
 
@@ -18,21 +34,63 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, ModelError, suggestion, wrong
-from modefront.json_schema import (
+from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
+from modefront.options import (
     ABOVE_ZERO,
     BELOW_ZERO,
     NAME,
+    Requirement,
     Schema,
     any_of,
     array,
-    either,
+    is_name,
     table_of,
+    text,
+    whole,
 )
-from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
-from modefront.options import Requirement, is_name, text, whole
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
-from modefront.response.system import ModalSystem
+
+
+@dataclass(frozen=True, eq=False)
+class ModalSystem:
+    """A linear structure by its modes, between m modes, n_inputs loads and n_outputs responses.
+
+    Attributes
+    ----------
+    omega : (m,) natural circular frequencies in rad/s; zero for a rigid-body mode
+    zeta : (m,) damping ratios, none negative
+    input : (m, n_inputs) modal loads: φᵀf for forces, -φᵀM r for base acceleration
+    output : (n_outputs, m) mode shapes at the outputs
+    static : (n_outputs, n_inputs) full static response to the loads, or None where the modes are
+        all there is: its excess over the static response of the modes given is the correction for
+        those cut off. With rigid-body modes there is no static response.
+    rigid : (n_outputs, n_inputs) displacement of the outputs for a unit displacement of the base,
+        or None where the load is a force; needed for absolute acceleration only
+
+    Raises InputError for a static response of a structure with a rigid-body mode.
+    """
+
+    omega: Floats
+    zeta: Floats
+    input: Floats
+    output: Floats
+    static: Floats | None = None
+    rigid: Floats | None = None
+
+    def __post_init__(self) -> None:
+        if self.static is not None and np.any(self.omega == 0):
+            first = int(np.argmax(self.omega == 0))
+            expected = "None, as a structure with a rigid-body mode has no static response"
+            raise wrong("static", expected, f"an array with omega[{first}] = 0")
+
+    def residual_flexibility(self) -> Floats:
+        """Return static - Σ_r Y_r Γ_r / ω_r², (n_outputs, n_inputs); zero without `static`."""
+        if self.static is None:
+            return np.zeros((self.output.shape[0], self.input.shape[1]))
+        retained: Floats = (self.output / self.omega**2) @ self.input
+        return self.static - retained
+
 
 T = TypeVar("T")
 
@@ -49,7 +107,7 @@ NAMED = "the name of a sensor or output, or a table of them with weights that ar
 
 
 WEIGHTS = any_of(NAME, table_of(any_of(ABOVE_ZERO, BELOW_ZERO), 1))
-EITHER = either("force", "base")
+EITHER: Schema = {"oneOf": [{"required": [key]} for key in ("force", "base")]}
 """What the schema of a prediction says of its loads."""
 
 RATIO: Schema = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
@@ -140,6 +198,12 @@ class ModalLoadModel:
     damping: str | float | Sequence[float]
     static: bool
 
+    @classmethod
+    def of(cls, prediction: Any, forces: Sequence[NamedWeights], *, static: bool) -> ModalLoadModel:
+        """Return that of a prediction with forces, by its response, base, modes and damping."""
+        load_case = LoadCase(tuple(prediction.response.values()), tuple(forces), prediction.base)
+        return cls(load_case, prediction.modes, prediction.damping, static)
+
     @property
     def load(self) -> str:
         """Load case in words."""
@@ -188,6 +252,63 @@ class ModalLoadModel:
         zeta[pairs.index[is_known]] = measured[is_known]
         return zeta
 
+    def contradictions(self) -> Iterator[Fault]:
+        """Yield options that contradict one another."""
+        forces = self.load_case.forces
+        if bool(forces) == (self.load_case.base is not None):
+            yield Fault("", "", "either force or base", "both" if forces else "neither")
+        if isinstance(self.damping, tuple) and self.modes not in (None, len(self.damping)):
+            expected = f"a list of {self.modes}, one a mode"
+            yield Fault("", "damping", expected, f"{len(self.damping)} of them")
+
+    def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
+        """Yield the names and damping that the model or the data do not have."""
+        load_case, damping = self.load_case, self.damping
+        for name, sums in (("force", load_case.forces), ("response", load_case.outputs)):
+            for place in (place for weights in sums for place in weights):
+                if place not in model.places:
+                    expected = "the name of a sensor or output of the model"
+                    yield Fault("", name, expected, suggestion(place, model.places))
+        if load_case.base is not None and load_case.base not in model.directions:
+            names = ", ".join(f"'{x}'" for x in model.directions) or "none: the model names no base"
+            yield Fault(
+                "", "base", f"one of the directions of the base, {names}", f"'{load_case.base}'"
+            )
+        if self.modes is not None and self.modes > model.size:
+            yield Fault("", "modes", f"a whole number from 1 to {model.size}", str(self.modes))
+        if isinstance(damping, tuple) and len(damping) > model.size:
+            expected = f"at most {model.size} ratios, as the model has modes"
+            yield Fault("", "damping", expected, f"{len(damping)} of them")
+        if damping == MEASURED:
+            ratios = data.mean_damping
+            if not np.isfinite(ratios).any():
+                yield Fault("", "damping", "a ratio, as the data have none", f"'{MEASURED}'")
+            elif (ratios <= 0).any():
+                yield Fault("", "damping", "a ratio, as measured ones are 0", f"'{MEASURED}'")
+
+    def complete_modes(self, problem: UpdatingProblem, top: float) -> int:
+        """Return the number of modes: that given, or as many as reach beyond ``top`` Hz."""
+        if self.modes is not None:
+            return self.modes
+        if isinstance(self.damping, tuple):
+            return len(self.damping)
+        model = problem.model
+        needed = modes_needed(problem.pairing, problem.data, model.size)
+        return modes_reaching(model, problem.start, BEYOND * top, needed)
+
+    def nominal(self, problem: UpdatingProblem) -> ModalSystem:
+        """Return the nominal model in modal coordinates.
+
+        Raises InputError where it has no such modes or the load moves none of the responses.
+        """
+        try:
+            system = self.system(problem, problem.start)
+        except ModelError as error:
+            raise wrong("modes", "modes that the nominal model has", error) from None
+        if not (np.abs(system.output) @ np.abs(system.input)).any():
+            raise wrong("response", "responses that the load can move", "none")
+        return system
+
 
 def filled(value: T | None, name: str) -> T:
     """Return an option of a prediction.
@@ -197,72 +318,6 @@ def filled(value: T | None, name: str) -> T:
     if value is None:
         raise wrong(name, "a value, which complete(problem) finds", "none")
     return value
-
-
-def load_case_of(response: Any, forces: Any, base: str | None) -> LoadCase:
-    """Return loads and outputs from what `Response`, `Forces` and `Base` keep."""
-    return LoadCase(tuple(response.values()), tuple(forces or ()), base)
-
-
-def contradictions(loads: ModalLoadModel) -> Iterator[Fault]:
-    """Yield options of a load model that contradict one another."""
-    load_case, damping = loads.load_case, loads.damping
-    if bool(load_case.forces) == (load_case.base is not None):
-        yield Fault("", "", "either force or base", "both" if load_case.forces else "neither")
-    if isinstance(damping, tuple) and loads.modes not in (None, len(damping)):
-        expected = f"a list of {loads.modes}, one a mode"
-        yield Fault("", "damping", expected, f"{len(damping)} of them")
-
-
-def load_faults(loads: ModalLoadModel, model: Model, data: ModalData) -> Iterator[Fault]:
-    """Yield the names and damping of a load model that the model or the data do not have."""
-    load_case, damping = loads.load_case, loads.damping
-    for name, sums in (("force", load_case.forces), ("response", load_case.outputs)):
-        for place in (place for weights in sums for place in weights):
-            if place not in model.places:
-                expected = "the name of a sensor or output of the model"
-                yield Fault("", name, expected, suggestion(place, model.places))
-    if load_case.base is not None and load_case.base not in model.directions:
-        names = ", ".join(f"'{x}'" for x in model.directions) or "none: the model names no base"
-        yield Fault(
-            "", "base", f"one of the directions of the base, {names}", f"'{load_case.base}'"
-        )
-    if loads.modes is not None and loads.modes > model.size:
-        yield Fault("", "modes", f"a whole number from 1 to {model.size}", str(loads.modes))
-    if isinstance(damping, tuple) and len(damping) > model.size:
-        expected = f"at most {model.size} ratios, as the model has modes"
-        yield Fault("", "damping", expected, f"{len(damping)} of them")
-    if damping == MEASURED:
-        ratios = data.mean_damping
-        if not np.isfinite(ratios).any():
-            yield Fault("", "damping", "a ratio, as the data have none", f"'{MEASURED}'")
-        elif (ratios <= 0).any():
-            yield Fault("", "damping", "a ratio, as measured ones are 0", f"'{MEASURED}'")
-
-
-def complete_modes(loads: ModalLoadModel, problem: UpdatingProblem, top: float) -> int:
-    """Return the number of modes: that of the load model, or as many as reach beyond ``top`` Hz."""
-    if loads.modes is not None:
-        return loads.modes
-    if isinstance(loads.damping, tuple):
-        return len(loads.damping)
-    model = problem.model
-    needed = modes_needed(problem.pairing, problem.data, model.size)
-    return modes_reaching(model, problem.start, BEYOND * top, needed)
-
-
-def nominal_system(loads: ModalLoadModel, problem: UpdatingProblem) -> ModalSystem:
-    """Return the nominal model in modal coordinates.
-
-    Raises InputError where it has no such modes or the load moves none of the responses.
-    """
-    try:
-        system = loads.system(problem, problem.start)
-    except ModelError as error:
-        raise wrong("modes", "modes that the nominal model has", error) from None
-    if not (np.abs(system.output) @ np.abs(system.input)).any():
-        raise wrong("response", "responses that the load can move", "none")
-    return system
 
 
 def highest_frequency(data: ModalData) -> float | None:

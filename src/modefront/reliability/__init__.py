@@ -1,1 +1,0 @@
-"""First-passage probabilities of linear structures under Gaussian noise."""

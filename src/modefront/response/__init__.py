@@ -1,1 +1,0 @@
-"""Frequency response of linear structures, and its peaks."""
