@@ -2,6 +2,7 @@
 
     python benchmarks/calibration.py --seeds 1000:1100 [--draws 200] [--wrong] [--few] [--quiet]
     python benchmarks/calibration.py --seeds 1000:1100 --prior [--quiet]
+    python benchmarks/calibration.py --seeds 1000:1030 --setups
 
 Seeds 1000 to 1999 are for development. Seeds from 9000 on are for judgement: nobody tunes
 anything on them, and ``--quiet`` prints their rates only.
@@ -14,7 +15,10 @@ a parameter vary by 5 to 10 % about its true value, or springs are missing in th
 ``--few`` there are two or three sensors, which hardly tell modes apart. With ``--prior`` the truth
 and the variances of the errors are drawn from their priors, and the ranks of the truth among the
 draws are counted: they are uniform where draws are from the posterior (simulation-based
-calibration, Talts et al. 2018, arXiv:1804.06788). No test is left out then.
+calibration, Talts et al. 2018, arXiv:1804.06788). No test is left out then. With ``--setups`` the
+modes are those that are identified of simulated ambient tests of chains of 4 to 6 springs, each a
+parameter, in 2 or 3 setups with one or two references; studies take the covariances of shapes, or
+the deviations alone, and the widths of intervals are compared.
 
 ``held`` is the share of parameters of which the interval holds the truth, ``old`` that of Laplace's
 approximation about optimal weights, where these exist. ``far`` are the parameters that are called
@@ -27,22 +31,26 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.signal
 import scipy.stats
 
 import modefront as mf
 from modefront._typing import Floats
+from modefront.data.modal_test import Records
 from modefront.front.weights import accepted, optimal_minimum
+from modefront.identification.methods import ambient
+from modefront.identification.sets import combine
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import begin
 from modefront.results.analysis import DETERMINED
 from modefront.uncertainty.inference import refused
-from modefront.uncertainty.laplace import laplace
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS, draw_models
+from modefront.uncertainty.scatter import laplace
 from modefront.work.task import IMMEDIATE
 
 BOUNDS = (0.3, 3.0)
@@ -60,6 +68,7 @@ class Verdict:
     old: bool | None
     away: float
     determined: bool
+    width: float
 
 
 def spring(N: int, i: int, j: int = -1) -> Floats:
@@ -166,6 +175,45 @@ def case(
     return problem, expected, truth, classes
 
 
+def setups(seed: int) -> tuple[mf.UpdatingProblem, Floats]:
+    """Return a problem with the modes of a simulated ambient test, and the truth."""
+    rng = np.random.default_rng([seed, 2])
+    N, minutes, noise = int(rng.integers(4, 7)), rng.uniform(4, 8), rng.uniform(0.02, 0.2)
+    truth, mass = rng.uniform(0.7, 1.4, N), rng.uniform(0.8, 1.2, N)
+    names = tuple(f"k{j}" for j in range(N))
+    places = {f"s{i}": i for i in range(N)}
+    unit = (2 * np.pi / (2 * np.sin(np.pi / (4 * N + 2)))) ** 2  # the first mode at 1 Hz or so
+    model = mf.chain(names, mass.tolist(), [unit] * N, stiffness_parameters=names, sensors=places)
+    modes = model.modes(truth, N, derivatives=False)
+    rate, zeta = 4 * float(modes.frequency[-1]), rng.uniform(0.008, 0.02, N)
+    systems = [
+        scipy.signal.cont2discrete(([1.0, 0, 0], [1.0, 2 * z * w, w * w]), 1 / rate, "foh")
+        for w, z in zip(2 * np.pi * modes.frequency, zeta, strict=True)
+    ]
+    references, roving = np.split(rng.permutation(N), [int(rng.integers(1, 3))])
+    records = list[Records]()
+    for part in np.array_split(roving, int(rng.integers(2, 4))):
+        sensors = np.append(references, part)
+        force = modes.phi.T @ rng.standard_normal((N, int(60 * minutes * rate)))
+        q = [scipy.signal.lfilter(b[0], a, f) for (b, a, _), f in zip(systems, force, strict=True)]
+        y = modes.phi[sensors] @ np.array(q)
+        y += noise * y.std() * rng.standard_normal(y.shape)
+        records.append(Records(f"{len(records) + 1}", tuple(f"s{i}" for i in sensors), rate, y))
+    top = 0.5 * float(modes.frequency[2] + modes.frequency[3])
+    data = combine(["1"], [ambient.identify(records, (0.4 * float(modes.frequency[0]), top))]).data
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=BOUNDS) for name in names]
+    return mf.updating_problem(model, data, groups, parameters=parameters), truth
+
+
+def beside_deviations(seed: int, draws: int) -> list[tuple[Verdict, Verdict]]:
+    """Return the verdicts on each parameter of a test with setups, without covariances and with."""
+    problem, truth = setups(seed)
+    alone = replace(problem, data=replace(problem.data, shape_covariance=None))
+    both = [judged(seed, draws, (x, NoisePrior(), truth, ("all",))) for x in (alone, problem)]
+    return list(zip(*both, strict=False))
+
+
 def ranks(seed: int, draws: int, few: bool) -> list[int]:
     """Return how many of ``draws`` draws are below the truth, for each parameter."""
     problem, prior, truth, _ = case(seed, few=few, prior=True)
@@ -186,9 +234,18 @@ def histogram(found: Sequence[int], draws: int) -> str:
     )
 
 
+Test = tuple[mf.UpdatingProblem, NoisePrior, Floats, tuple[str, ...]]
+"""A problem, what is expected of its errors, the truth and its classes."""
+
+
 def judge(seed: int, draws: int, wrong: bool, few: bool) -> list[Verdict]:
     """Return the verdicts of a simulated test; none where no model is to be used."""
-    problem, prior, truth, classes = case(seed, wrong, few)
+    return judged(seed, draws, case(seed, wrong, few))
+
+
+def judged(seed: int, draws: int, test: Test) -> list[Verdict]:
+    """Return the verdicts of a test; none where no model is to be used."""
+    problem, prior, truth, classes = test
     source = mf.Uncertainty().of(problem.data)
     noise = prior.of(problem, source)
     assert noise is not None
@@ -215,6 +272,7 @@ def judge(seed: int, draws: int, wrong: bool, few: bool) -> list[Verdict]:
             None if old is None else bool(abs(truth[j] - old[0][j]) <= 1.645 * old[1][j]),
             float(abs(truth[j] - middle[j]) / std[j]),
             bool(determined[j]) and drawn.settled,
+            float(high[j] - low[j]),
         )
         for j in range(truth.size)
     ]
@@ -264,8 +322,24 @@ def main() -> None:
     parser.add_argument("--quiet", action="store_true")
     parser.add_argument("--few", action="store_true")
     parser.add_argument("--prior", action="store_true")
+    parser.add_argument("--setups", action="store_true")
     options = parser.parse_args()
     seeds = range(*map(int, options.seeds.split(":")))
+    if options.setups:
+        pairs = list[tuple[Verdict, Verdict]]()
+        for seed in seeds:
+            pairs += (own := beside_deviations(seed, options.draws))
+            rates = [sum(x[k].held for x in own) for k in (0, 1)]
+            ratio = np.exp(np.mean([np.log(b.width / a.width) for a, b in own] or [np.nan]))
+            if not options.quiet:
+                print(f"{seed}: {rates[0]} and {rates[1]} of {len(own)}, {ratio:.2f}", flush=True)
+        ratio = np.exp(np.mean([np.log(b.width / a.width) for a, b in pairs]))
+        share = [100 * np.mean([x[k].held for x in pairs]) for k in (0, 1)]
+        print(
+            f"{len(pairs)} parameters: intervals hold {share[0]:.0f} % with deviations, "
+            f"{share[1]:.0f} % with covariances, which are {ratio:.2f} times as wide"
+        )
+        return
     if options.prior:
         of = {seed: ranks(seed, options.draws, options.few) for seed in seeds}
         if not options.quiet:

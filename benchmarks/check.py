@@ -37,7 +37,7 @@ from modefront.models.chain import chain
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
-from modefront.pairing.mac import mac
+from modefront.pairing.match import mac
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem
 

@@ -17,7 +17,7 @@ import numpy as np
 from ambient_in_time import BAND
 from scipy.optimize import linear_sum_assignment
 
-from modefront.data.records import Records
+from modefront.data.modal_test import Records
 from modefront.identification.methods.ambient import identify
 
 

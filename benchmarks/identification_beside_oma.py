@@ -25,7 +25,7 @@ from pyoma2.algorithms import SSI
 from pyoma2.setup import SingleSetup
 
 from modefront._typing import Floats
-from modefront.data.records import Records
+from modefront.data.modal_test import Records
 from modefront.identification.methods.ambient import identify
 
 ORDERS = 40, 60, 80

@@ -20,7 +20,7 @@ from smu import Structure, frequencies_and_shapes, read
 import modefront as mf
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
-from modefront.uncertainty.options import Uncertainty
+from modefront.uncertainty.noise import Uncertainty
 
 
 def front(structure: Structure, points: int, doubt: float, *, reduced: bool) -> xr.Dataset:

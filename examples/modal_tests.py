@@ -29,7 +29,7 @@ from modefront._typing import Complexes, Floats
 from modefront.data.csv import write_csv
 from modefront.data.modal_test import read_test
 from modefront.identification.methods.hammer import identify
-from modefront.identification.sets import combine, modal_data_of
+from modefront.identification.sets import combine
 
 EXAMPLES = Path(__file__).parents[1] / "src" / "modefront" / "study" / "examples"
 
@@ -78,7 +78,7 @@ def hammer_tests(folder: Path) -> None:
         test = read_test(folder / f"test-{model}.toml")
         identified = [identify(part.data, test.band, test.modes) for part in test.sets]
         modes = combine([part.name for part in test.sets], identified)
-        write_csv(folder / f"modes-{model}.csv", modal_data_of(modes), modes.damping_std)
+        write_csv(folder / f"modes-{model}.csv", modes.data, modes.damping_std)
 
 
 def _tests(model: str) -> list[tuple[str, int]]:

@@ -94,7 +94,11 @@ def test_modes_of_a_test_are_data_of_a_study(tmp_path: Path) -> None:
     assert_short(found)
     assert found.data.frequency[0, 0] == pytest.approx(4.7357, rel=1e-3)
     written = found.write(tmp_path / "modes.csv")
-    assert [path.name for path in written] == ["modes.csv", "modes-identification.json"]
+    assert [path.name for path in written] == [
+        "modes.csv",
+        "modes-covariance.csv",
+        "modes-identification.json",
+    ]
     np.testing.assert_allclose(mf.read_csv(written[0]).frequency, found.data.frequency, rtol=1e-6)
 
 

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from modefront.models.parameters import Parameter as Parameter
     from modefront.models.parameters import Prior as Prior
     from modefront.models.reduced.options import Reduction as Reduction
-    from modefront.pairing.mac import mac as mac
     from modefront.pairing.match import Pairing as Pairing
+    from modefront.pairing.match import mac as mac
     from modefront.predictions import Passage as Passage
     from modefront.predictions import PeakResponse as PeakResponse
     from modefront.predictions import Prediction as Prediction
@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from modefront.study.measured import DataReader as DataReader
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve
-    from modefront.uncertainty.options import Uncertainty as Uncertainty
+    from modefront.uncertainty.noise import Uncertainty as Uncertainty
     from modefront.uncertainty.prior import NoisePrior as NoisePrior
 
 __getattr__, __dir__, __all__ = lazy(__name__, __file__)

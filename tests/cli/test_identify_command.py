@@ -11,6 +11,7 @@ from written import write
 from modefront.cli.main import cli
 from modefront.data.csv import read_csv
 from modefront.errors import InputError, UnfinishedError
+from modefront.study.file import load
 
 
 def _invoke(*arguments: object) -> str:
@@ -31,6 +32,21 @@ def test_the_example_gives_the_modal_data_it_comes_with(tmp_path: Path) -> None:
     assert "next: modefront identify" in text
     report = json.loads((tmp_path / "again-identification.json").read_text())
     assert [len(identified["modes"]) for identified in report["sets"]] == [3, 3, 3]
+
+    study, file = tmp_path / "study.toml", tmp_path / "again-covariance.csv"
+    text = study.read_text(encoding="utf-8").replace(
+        "[data]", f'[data]\ncovariance = "{file.name}"'
+    )
+    study.write_text(text, encoding="utf-8")
+    loaded = load(study)
+    data, C = loaded.problem.data, loaded.problem.data.shape_covariance
+    assert C is not None
+    np.testing.assert_allclose(np.einsum("krss->krs", C), data.shape_std**2, rtol=1e-6)
+    along = np.einsum("krst,krt->krs", C, data.shape)
+    assert np.abs(along[:, 0]).max() < 1e-6 * C.max()  # of unit norm, where sets agree
+    file.write_text(file.read_text(encoding="utf-8").replace("floor3", "roof"), encoding="utf-8")
+    with pytest.raises(InputError, match=r"again-covariance.csv: line 1, column 'roof': expected"):
+        load(study)
 
 
 @pytest.mark.slow(5)

@@ -9,7 +9,7 @@ import pytest
 import scipy.signal as signal
 
 from modefront._typing import Complexes, Floats
-from modefront.data.records import Records
+from modefront.data.modal_test import Records
 from modefront.identification import spectral_density
 from modefront.identification.harmonics import without_sine
 from modefront.identification.methods.ambient import _harmonic, identify

@@ -14,6 +14,7 @@ from simulation import (
 from modefront._typing import Floats
 from modefront.data.modal_test import ModalTest
 from modefront.data.responses import Channel, assemble, frequency_responses
+from modefront.identification import statistics
 from modefront.identification.methods.hammer import identify
 from modefront.identification.modal_model import evaluate
 from modefront.identification.modal_test import IdentifiedTest
@@ -52,6 +53,22 @@ def test_intervals_hold_the_truth(level: float, known: bool, force: float) -> No
     scores = _scores(level, known, force, 12)
     assert 0.88 < np.mean(np.abs(scores) < 1.96) < 0.99
     assert 0.8 < scores.std() < 1.2
+
+
+def test_variances_of_many_responses_are_the_diagonal_of_covariances(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    H = accelerance(F, THREE_STORY, THREE_STORY_DAMPING, three_story_shapes(), [0, 1, 2])
+    data = frequency_responses(F, blows(H, 0.02, np.random.default_rng(0), force=0.02))
+    whole = identify(data, (1, 30))
+    monkeypatch.setattr(statistics, "MOST_COVARIED", 2)
+    for one, mode in zip(identify(data, (1, 30)).modes, whole.modes, strict=True):
+        assert one.shape_covariance is None
+        assert mode.shape_covariance is not None
+        np.testing.assert_allclose(one.shape_std, mode.shape_std, rtol=1e-9)
+        size = np.linalg.norm(mode.shape_covariance)
+        assert np.linalg.norm(mode.shape_covariance @ mode.shape.shape) < 1e-9 * size
+        assert np.linalg.eigvalsh(mode.shape_covariance)[1] > 1e-4 * size
 
 
 def _eight() -> tuple[Floats, Floats, Floats]:

@@ -4,7 +4,7 @@ import numpy as np
 from simulation import accelerance
 
 from modefront.data.responses import FrequencyResponses, frequency_responses
-from modefront.identification.indicators import complex_indicators, multivariate_indicators
+from modefront.identification.stabilisation import complex_indicators, multivariate_indicators
 
 F = np.arange(1.0, 40.0, 0.05)
 

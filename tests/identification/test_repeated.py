@@ -13,7 +13,7 @@ from modefront.data.uff import read_uff55, write_uff55
 from modefront.errors import InputError
 from modefront.identification.methods.hammer import identify
 from modefront.identification.record import Identification
-from modefront.identification.sets import combine, modal_data_of
+from modefront.identification.sets import combine
 from modefront.study.check import check
 from modefront.study.examples import write_example
 from modefront.study.file import load
@@ -57,14 +57,14 @@ def test_close_modes_are_no_pair() -> None:
 
 
 def test_pairs_of_two_sets_have_the_same_numbers() -> None:
-    both = combine(["a", "b"], [identified(0), identified(1, references=(2, 7))])
+    both = combine(["a", "b"], [identified(0), identified(1, references=(2, 7))]).data
     assert both.frequency.shape == (2, 4)
     assert np.isfinite(both.frequency).all()
-    assert both.pairs == ((1, 2),)
+    assert both.pairs == ((2, 3),)
 
 
 def test_a_pair_reaches_files_and_the_check(tmp_path: Path) -> None:
-    data = modal_data_of(combine(["1"], [identified(0)]))
+    data = combine(["1"], [identified(0)]).data
     write_csv(tmp_path / "modes.csv", data)
     assert read_csv(tmp_path / "modes.csv").pairs == ((2, 3),)
     modes = [(complex(-1, 50), np.array([1.0 + 0j, 2.0])), (complex(-1, 50), np.array([1j, 0.1]))]

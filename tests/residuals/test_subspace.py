@@ -114,5 +114,5 @@ def test_models_of_repeated_modes_are_found() -> None:
 
 def test_as_many_sensors_as_modes_fit_any_model() -> None:
     data = mf.modal_data(np.ones(2), np.ones((2, 2)), ("x", "y"))
-    assert "2 sensors for as many modes" in ShapeResiduals(data, 0, "measured", (0, 1)).remark
-    assert ShapeResiduals(data, 0, "measured").remark == ""
+    assert "2 sensors for as many modes" in ShapeResiduals(data, [0], "measured", (0, 1)).remark
+    assert ShapeResiduals(data, [0], "measured").remark == ""

@@ -13,8 +13,8 @@ from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Options, begin, solve
-from modefront.uncertainty.laplace import Posterior, laplace
 from modefront.uncertainty.prediction import draw
+from modefront.uncertainty.scatter import Posterior, laplace
 
 TIGHT = Options(step=1e-11, reduction=0.0, iterations=200)
 

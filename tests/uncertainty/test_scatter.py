@@ -15,16 +15,19 @@ from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum, Scalarisation, constrained, weighted
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Options, Solution, begin, solve
-from modefront.uncertainty.conditions import (
+from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.points import Role, SolvedPoint
+from modefront.uncertainty.scatter import (
+    Local,
+    Scatter,
     boundary,
+    front_scatter,
     given_weights,
     level,
     optimal_weights,
+    scatter,
     simplex,
 )
-from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.points import Role, SolvedPoint
-from modefront.uncertainty.scatter import Local, Scatter, front_scatter, scatter
 
 TIGHT = Options(step=1e-11, constraint=1e-12, reduction=0.0, iterations=200)
 

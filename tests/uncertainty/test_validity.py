@@ -17,16 +17,18 @@ from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import weighted
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Status, begin, solve
-from modefront.uncertainty.conditions import (
+from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.points import Role, SolvedPoint
+from modefront.uncertainty.scatter import (
     LinearisationWarning,
+    Scatter,
     boundary,
     given_weights,
     optimal_weights,
+    scatter,
     simplex,
+    with_neighbours,
 )
-from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.points import Role, SolvedPoint
-from modefront.uncertainty.scatter import Scatter, scatter, with_neighbours
 
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 

@@ -24,11 +24,16 @@ from modefront.optim.scalarisation import Scalarisation, weighted
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
-from modefront.uncertainty.laplace import Posterior, laplace
-from modefront.uncertainty.noise import Noise, Source, noise
-from modefront.uncertainty.options import Uncertainty
+from modefront.uncertainty.noise import Noise, Source, Uncertainty, noise
 from modefront.uncertainty.points import Role, SolvedPoint, edge_weights, redraw, solve_again
-from modefront.uncertainty.scatter import Local, Scatter, front_scatter, with_neighbours
+from modefront.uncertainty.scatter import (
+    Local,
+    Posterior,
+    Scatter,
+    front_scatter,
+    laplace,
+    with_neighbours,
+)
 from modefront.work.task import Executor, Task, seed_sequence
 
 

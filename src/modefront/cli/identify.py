@@ -73,9 +73,9 @@ def _print_modes(screen: Screen, test: IdentifiedTest, modes: CombinedModes) -> 
             mode = test.identified[k].modes[number]
             of = mode.evidence
             cells = (
-                f"{modes.frequency[k, r]:.6g}",
-                f"{modes.frequency_std[k, r]:.2g}",
-                f"{100 * modes.damping[k, r]:.4g}",
+                f"{modes.data.frequency[k, r]:.6g}",
+                f"{modes.data.frequency_std[k, r]:.2g}",
+                f"{100 * modes.data.damping[k, r]:.4g}",
                 f"{100 * modes.damping_std[k, r]:.2g}",
                 f"{of.gain:.1f}" if of.gain < 10 else f"{of.gain:.0f}",
                 *(f"{of.support:.0%}", f"{of.visibility:.0%}", f"{mode.shape.collinearity:.2f}"),

@@ -14,6 +14,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import TextIO
 
@@ -36,7 +37,7 @@ from modefront.outputs import write_table
 from modefront.rounding import LARGEST
 from modefront.text import NAME, clean
 
-KEYS = ("set", "mode")
+KEYS, SENSOR = ("set", "mode"), "sensor"
 QUANTITIES = ("frequency", "damping")
 PAIR = "pair"
 
@@ -110,7 +111,7 @@ def read_csv(
     path, file = Path(path), str(path)
     values: dict[Key, dict[str, float]] = {}
     lines: dict[Key, int] = {}
-    last: list[str] = []
+    last, faults = list[str](), list[Fault]()
     with table_rows(path, "a file of modal data") as rows:
         first, fields = next(rows, (1, []))
         if not fields:
@@ -130,19 +131,9 @@ def read_csv(
             sensors = [name for name in named if not is_reserved(name, set(header))]
         said = _header_faults(header, sensors)
         refuse(Fault(file, _place(first, name), *each) for name, *each in said)
-        faults = list[Fault]()
-        for line, fields in rows:
-            if len(faults) > MOST_FAULTS:
-                break
-            if not any(map(str.strip, fields[width:])):  # fields without a name may be empty
-                fields = fields[:width]
+        for line, fields in _of_width(rows, width, file, faults):
             last.append(fields[-1])
-            if len(fields) != width:
-                expected = f"{width} fields, as in the header"
-                faults.append(Fault(file, f"line {line}", expected, str(len(fields))))
-                continue
-            texts = dict(zip(header, map(str.strip, fields), strict=True))
-            key, row, found = _row(texts, sensors)
+            key, row, found = _row(dict(zip(header, fields, strict=True)), sensors)
             faults += [Fault(file, _place(line, name), *each) for name, *each in found]
             if key in values:
                 expected, place = "each mode of a data set once", "columns 'set' and 'mode'"
@@ -152,12 +143,96 @@ def read_csv(
                 faults.append(Fault(file, f"line {line}, {place}", expected, f"{key} again"))
             elif key is not None:
                 values[key], lines[key] = row, line
+    refuse(faults)
     if not last:
         raise wrong(path, "a row for each measured mode", "the end", "line 2")
-    refuse(faults)
     ended_column(path, last)
     paired = PAIR in header and PAIR not in sensors
     return _assembled(path, values, tuple(sensors), _pairs(path, values, lines) if paired else ())
+
+
+def _of_width(
+    rows: Iterator[tuple[int, list[str]]], width: int, file: str, faults: list[Fault]
+) -> Iterator[tuple[int, list[str]]]:
+    """Yield rows of as many fields as the header; note others, until there are `MOST_FAULTS`."""
+    for line, fields in rows:
+        if len(faults) > MOST_FAULTS:
+            return
+        fields = list(map(str.strip, fields))
+        if not any(fields[width:]):  # fields without a name may be empty
+            fields = fields[:width]
+        if len(fields) == width:
+            yield line, fields
+        else:
+            expected = f"{width} fields, as in the header"
+            faults.append(Fault(file, f"line {line}", expected, str(len(fields))))
+
+
+def read_covariance(
+    path: Path, data: ModalData, columns: Mapping[str, str] | None = None
+) -> ModalData:
+    """Return modal data with the covariances of shapes of a CSV file.
+
+    A row is a component of a shape: columns ``set, mode, sensor``, then one a sensor with the
+    covariances. ``columns`` maps sensors of the file to those of the data; ``set`` may be left out
+    for one set. Shapes without rows keep their deviations. Raises InputError with what is wrong.
+    """
+    file, columns, faults, last = str(path), columns or {}, list[Fault](), list[str]()
+    known = {"set": data.sets, "mode": tuple(map(str, data.modes)), SENSOR: data.sensors}
+    C = np.full((*data.shape.shape, len(data.sensors)), np.nan)
+    with table_rows(path, "a file of covariances of shapes") as rows:
+        first, fields = next(rows, (1, []))
+        header = list(map(str.strip, fields))
+        keys = header[: header.index(SENSOR) + 1] if SENSOR in header else []
+        names = renamed(header[len(keys) :], columns, ())[0]
+        if sorted(keys) not in (["mode", SENSOR], ["mode", SENSOR, "set"])[len(data.sets) > 1 :]:
+            found = clean(", ".join(header[:6]), NAME) or "nothing"
+            raise wrong(path, "set, mode, sensor, then a column a sensor", found, f"line {first}")
+        refuse(
+            Fault(file, _place(first, x), "a sensor of the data, once", suggestion(x, data.sensors))
+            for k, x in enumerate(names)
+            if x not in data.sensors or x in names[:k]
+        )
+        places = [data.sensors.index(name) for name in names]
+        for line, fields in _of_width(rows, len(header), file, faults):
+            last.append(fields[-1])
+            row = {"set": data.sets[0]} | dict(zip(keys, fields, strict=False))
+            row[SENSOR] = columns.get(row[SENSOR], row[SENSOR])
+            numbers = dict(zip(names, fields[len(keys) :], strict=True))
+            said = [
+                (key, f"one of {', '.join(known[key][:8])}", suggestion(text, known[key]))
+                for key, text in row.items()
+                if text not in known[key]
+            ]
+            said += [
+                (name, "a finite number or an empty field", repr(text))
+                for name, text in numbers.items()
+                if text and not NUMBER.fullmatch(text)
+            ]
+            place = tuple(known[key].index(row[key]) for key in known) if not said else ()
+            if place and np.isfinite(C[place]).any():
+                said.append((SENSOR, "each component of a shape once", "one again"))
+            faults += [Fault(file, _place(line, name), *each) for name, *each in said]
+            if not said:
+                C[place][places] = [float(text or "nan") for text in numbers.values()]
+    refuse(faults)
+    if not last:
+        raise wrong(path, "a row for each component of a shape", "the end", "line 2")
+    ended_column(path, last)
+    try:
+        return data.with_covariance(C)
+    except InputError as error:
+        raise InputError(replace(fault, file=file) for fault in error.faults) from None
+
+
+def write_covariance(path: Path, data: ModalData) -> None:
+    """Write the covariances of the shapes of modal data, which have some; whole or not at all."""
+    rows = [[*KEYS, SENSOR, *data.sensors]]
+    C = np.asarray(data.shape_covariance)
+    for k, r, s in np.argwhere(np.isfinite(C).any(axis=3)).tolist():
+        texts = ["" if math.isnan(x) else f"{x:.9g}" for x in C[k, r, s].tolist()]
+        rows.append([data.sets[k], str(data.modes[r]), data.sensors[s], *texts])
+    write_table(path, rows)
 
 
 def write_csv(
@@ -447,25 +522,20 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
         if values.shape == (len(numbered), len(header)) and (np.abs(values) <= LARGEST).all():
             ended_column(path, (row.rpartition(separator)[2] for row in texts))
             return header, values
-    fields = [(number, [x.strip() for x in row.split(separator)]) for number, row in numbered]
-    whole = [row for _, row in fields if len(row) == len(header)]
-    full = [k for k in range(len(header)) if any(row[k] for row in whole)]
-    values, faults = np.full((len(fields), len(header)), np.nan), list[Fault]()
-    for position, (number, row) in enumerate(fields):
-        place = f"line {number}"
-        if len(row) != len(header):
-            expected = f"{len(header)} fields, as in the header"
-            faults.append(Fault(str(path), place, expected, str(len(row))))
-            continue
+    faults, file = list[Fault](), str(path)
+    split = ((number, row.split(separator)) for number, row in numbered)
+    whole = list(_of_width(split, len(header), file, faults))
+    full = [k for k in range(len(header)) if any(row[k] for _, row in whole)]
+    values = np.full((len(whole), len(header)), np.nan)
+    for position, (number, row) in enumerate(whole):
         for k in full:
             if NUMBER.fullmatch(row[k]) and abs(float(row[k])) <= LARGEST:
                 values[position, k] = float(row[k])
             else:
                 expected = f"a finite number up to {LARGEST:g}"
-                column = f"{place}, column {header[k]!r}"
-                faults.append(Fault(str(path), column, expected, repr(row[k])))
+                faults.append(Fault(file, _place(number, header[k]), expected, repr(row[k])))
         if len(faults) >= LISTED:
             break
     refuse(faults[:LISTED])
-    ended_column(path, (row[full[-1]] for row in whole))
+    ended_column(path, (row[full[-1]] for _, row in whole))
     return header, values

@@ -65,18 +65,6 @@ class Windows:
         """Raise InputError for values that are not possible."""
         check_fields(self)
 
-    def of_force(self, force: Floats, t: Floats) -> Floats:
-        """Return the force window of every blow, (blows, samples)."""
-        if self.force_window is None:
-            return np.ones(force.shape)
-        peaks = t[np.abs(force).argmax(axis=1)][:, None]
-        past = (t - peaks - self.force_window * (1 - TAPER)) / (self.force_window * TAPER)
-        return 0.5 + 0.5 * np.cos(np.pi * np.clip(past, 0, 1))
-
-    def decay(self, t: Floats) -> float:
-        """Return the decay rate of the exponential window for records over times ``t``."""
-        return 1 / (len(t) * t[1] / 4 if self.exponential is None else self.exponential)
-
 
 @dataclass(frozen=True)
 class ImpactResponses:
@@ -132,8 +120,12 @@ def impact_responses(
     used = np.array([not why for why in reasons])
     force, response = force[used], response[used]
     t = np.arange(force.shape[1]) / rate
-    decay = windows.decay(t)
-    window = windows.of_force(force, t) * np.exp(-decay * t)
+    decay = 1 / (len(t) * t[1] / 4 if windows.exponential is None else windows.exponential)
+    window = np.broadcast_to(np.exp(-decay * t), force.shape)
+    if (length := windows.force_window) is not None:
+        peaks = t[np.abs(force).argmax(axis=1)][:, None]
+        past = (t - peaks - length * (1 - TAPER)) / (length * TAPER)
+        window = (0.5 + 0.5 * np.cos(np.pi * np.clip(past, 0, 1))) * window
     y = response * np.exp(-decay * t)
     X, Y = scipy.fft.rfft(force * window), scipy.fft.rfft(y)
     H, coherence = _estimates(X, Y, windows.estimator)

@@ -7,39 +7,19 @@ from functools import cached_property
 
 import numpy as np
 
-from modefront._typing import Floats
-from modefront.errors import suggestion
+from modefront._typing import Floats, Ints
+from modefront.errors import Fault, refuse, suggestion
 from modefront.text import brief
 
-MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std")
+MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std", "shape_covariance")
 """Arrays of modal data, of which data sets are the first axis."""
 
+SAME, ROUNDED, LEAST = 0.05, 1e-5, 1e-8
+"""Relative difference of standard deviations, and difference of covariances over these, up to which
+they are one, rounded; eigenvalue of correlations that is more than the rounding of nine digits."""
 
 Pairs = tuple[tuple[int, int], ...]
 """Numbers of modes of one frequency, two by two."""
-
-
-@dataclass(frozen=True, eq=False)
-class MeasuredShapes:
-    """Shapes with zeros where nothing was measured.
-
-    Attributes
-    ----------
-    measured : (sets, modes, sensors) 1 for components that were measured, or 0
-    shape : (sets, modes, sensors) components, or 0
-    squares : (sets, modes, 1) sum of their squares
-    sets : (modes, 1) number of data sets with the shape of each mode; NaN where there is none
-    """
-
-    measured: Floats
-    shape: Floats
-    squares: Floats
-    sets: Floats
-
-    @cached_property
-    def complete(self) -> bool:
-        """Whether every mode has a shape in some data set."""
-        return bool(np.isfinite(self.sets).all())
 
 
 @dataclass(frozen=True, repr=False)
@@ -56,6 +36,8 @@ class ModalData:
     shape : (sets, modes, sensors) mode shape components, in any scale and with any sign
     frequency_std, shape_std : standard deviations, of the shape of ``frequency`` and ``shape``
     pairs : numbers of modes of one frequency, whose shapes are some basis of a plane
+    shape_covariance : (sets, modes, sensors, sensors) of the components of each shape, in any
+        normalisation; NaN, or None as a whole, where only ``shape_std`` is known
     """
 
     sets: tuple[str, ...]
@@ -67,6 +49,7 @@ class ModalData:
     frequency_std: Floats
     shape_std: Floats
     pairs: Pairs = ()
+    shape_covariance: Floats | None = None
 
     __repr__ = brief
 
@@ -91,23 +74,94 @@ class ModalData:
             if name not in sensors:
                 known = f"expected data at sensors of the model ({', '.join(sensors)})"
                 raise ValueError(f"{known}, found {suggestion(name, sensors)}")
-        places = [sensors.index(name) for name in self.sensors]
-        if len(set(places)) < len(places):
+        if len(set(self.sensors)) < len(self.sensors):
             raise ValueError(f"expected data at each sensor once, found {', '.join(self.sensors)}")
-        phi, phi_std = np.full((2, *self.shape.shape[:2], len(sensors)), np.nan)
-        phi[:, :, places], phi_std[:, :, places] = self.shape, self.shape_std
-        return replace(self, sensors=sensors, shape=phi, shape_std=phi_std)
+        places = [self.sensors.index(name) if name in self.sensors else -1 for name in sensors]
+        more = [(0, 0), (0, 0), (0, 1)]  # a sensor that measured nothing, at the end
+        phi, phi_std = (
+            np.pad(x, more, constant_values=np.nan)[..., places]
+            for x in (self.shape, self.shape_std)
+        )
+        C = self.shape_covariance
+        if C is not None:
+            C = np.pad(C, [*more, (0, 1)], constant_values=np.nan)[..., places, :][..., places]
+        return replace(self, sensors=sensors, shape=phi, shape_std=phi_std, shape_covariance=C)
+
+    def of_sets(self, chosen: Ints, names: tuple[str, ...]) -> ModalData:
+        """Return the data of some sets, by their positions, under new names."""
+        parts = {name: x[chosen] for name in MEASURED if (x := getattr(self, name)) is not None}
+        return replace(self, sets=names, **parts)
+
+    def with_covariance(self, covariance: Floats) -> ModalData:
+        """Return the data with covariances of shapes, NaN where none is known.
+
+        They are (sets, modes, sensors, sensors), and give the standard deviations that the data
+        lack. Raises InputError for what is no covariance of these shapes, ValueError for others.
+        """
+        C = np.asarray(covariance, float).reshape(*self.shape.shape, len(self.sensors))
+        variance = np.einsum("krss->krs", C)
+        known = (self.shape_std > 0) | np.isnan(variance)
+        std = np.where(known, self.shape_std, np.sqrt(np.maximum(variance, 0.0)))
+        out, faults = replace(self, shape_std=std, shape_covariance=C), list[Fault]()
+        for k, r in np.argwhere(np.isfinite(C).any(axis=(2, 3))).tolist():
+            if said := out.covariance_fault(k, r):
+                place = f"covariance of mode {self.modes[r]} in set {self.sets[k]!r}"
+                faults.append(Fault("", place, *said))
+        refuse(faults)
+        return out
+
+    def covariance_fault(self, k: int, r: int) -> tuple[str, str] | None:
+        """Return what is wrong with the covariance of a shape: the expected and the found."""
+        sensors = np.flatnonzero(np.isfinite(self.shape[k, r]))
+        names, std = [self.sensors[i] for i in sensors], self.shape_std[k, r, sensors]
+        C = self.shape_covariance[k, r][np.ix_(sensors, sensors)]  # type: ignore[index]
+        for i, j in np.argwhere(~np.isfinite(C)).tolist():
+            return "the covariances of all measured components", f"none of {names[i]}, {names[j]}"
+        for i, j in np.argwhere(np.abs(C - C.T) > ROUNDED * np.outer(std, std)).tolist():
+            two = f"one covariance of {names[i]} and {names[j]}, a symmetric matrix"
+            return two, f"{C[i, j]:.9g} and {C[j, i]:.9g}"
+        for (i,) in np.argwhere(np.abs(C.diagonal() - std**2) > 2 * SAME * std**2).tolist():
+            known = f"{std[i] ** 2:.6g}, the square of its deviation," if std[i] else "0 or more"
+            return f"{known} as the variance of {names[i]}", f"{C[i, i]:.6g}"
+        A = self.covariance_of(k, r, sensors)
+        if A is None:
+            return None
+        size = np.sqrt(np.maximum(A.diagonal(), np.finfo(float).tiny))
+        least = float(np.linalg.eigvalsh(A / np.outer(size, size))[0])
+        expected = "positive eigenvalues of the correlations, but for that along the shape"
+        return None if least > LEAST else (expected, f"{least:.2g}")
+
+    def covariance_of(self, k: int, r: int, sensors: Ints) -> Floats | None:
+        """Return the covariance of components of a shape, positive definite; None for none.
+
+        Errors along the shape are those of its factor, which is fitted: they change no result, and
+        a norm leaves them out. They get the median variance; so do those along the other of a pair.
+        Where a shape has no other direction, nothing is known.
+        """
+        if self.shape_covariance is None:
+            return None
+        C = self.shape_covariance[k, r][np.ix_(sensors, sensors)]
+        if not (np.isfinite(C).all() and C.any()):
+            return None
+        mode = self.modes[r]
+        same = [r, *(self.modes.index(a + b - mode) for a, b in self.pairs if mode in (a, b))]
+        U = np.nan_to_num(self.shape[k, same][:, sensors])
+        U = U / np.maximum(np.linalg.norm(U, axis=1), np.finfo(float).tiny)[:, None]
+        out: Floats = (C + C.T) / 2 + np.median(C.diagonal()) * U.T @ U
+        return out
 
     @cached_property
-    def measured_shapes(self) -> MeasuredShapes:
-        """The shapes with zeros where nothing was measured."""
+    def measured_shapes(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Arrays for sums over what was measured.
+
+        Shapes with 0 where nothing was measured, and 1 where something was, (sets, modes, sensors);
+        sums of squares (sets, modes, 1); data sets with the shape of each mode (modes, 1), or NaN.
+        """
         measured = np.isfinite(self.shape)
         shape = np.where(measured, self.shape, 0.0)
-        squares = (shape**2).sum(axis=2)[:, :, None]
         sets = measured.any(axis=2).sum(axis=0)[:, None]
-        return MeasuredShapes(
-            measured.astype(float), shape, squares, np.where(sets > 0, sets, np.nan)
-        )
+        squares = (shape**2).sum(axis=2)[:, :, None]
+        return shape, measured.astype(float), squares, np.where(sets > 0, sets, np.nan)
 
 
 def _mean(values: Floats) -> Floats:
@@ -115,7 +169,7 @@ def _mean(values: Floats) -> Floats:
     return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)
 
 
-# 7 arguments: the parts of modal data, the optional ones by keyword.
+# 8 arguments: the parts of modal data, the optional ones by keyword.
 def modal_data(
     frequency: Floats,
     shape: Floats,
@@ -125,6 +179,7 @@ def modal_data(
     damping: Floats | None = None,
     frequency_std: Floats | None = None,
     shape_std: Floats | None = None,
+    shape_covariance: Floats | None = None,
 ) -> ModalData:
     """Return the data of modes 1, 2, ... from arrays, in which NaN is not measured.
 
@@ -143,11 +198,13 @@ def modal_data(
         Damping ratios, like ``frequency``; not measured unless given.
     frequency_std, shape_std
         Standard deviations, like ``frequency`` and ``shape``; not known unless given.
+    shape_covariance
+        Covariances of each shape, (modes, sensors, sensors) or (sets, modes, sensors, sensors).
 
     Raises
     ------
     ValueError
-        If the arrays do not fit together.
+        If the arrays do not fit together; `InputError` for what is no covariance.
     """
     f = np.atleast_2d(np.asarray(frequency, float))
     phi = np.asarray(shape, float).reshape(*f.shape, -1)
@@ -161,4 +218,5 @@ def modal_data(
 
     names = sets if sets is not None else tuple(str(k + 1) for k in range(len(f)))
     modes, stds = tuple(range(1, f.shape[1] + 1)), (like(frequency_std, f), like(shape_std, phi))
-    return ModalData(names, modes, tuple(sensors), f, like(damping, f), phi, *stds)
+    data = ModalData(names, modes, tuple(sensors), f, like(damping, f), phi, *stds)
+    return data if shape_covariance is None else data.with_covariance(shape_covariance)

@@ -45,10 +45,6 @@ class ForceNoise:
     times: tuple[Floats, ...]
     share: tuple[Floats, ...]
 
-    def lines(self, kept: Bools) -> ForceNoise:
-        """Return the lines that are kept, (lines,)."""
-        return replace(self, deviation=self.deviation[:, kept])
-
 
 def joined(parts: Sequence[ForceNoise | None]) -> ForceNoise | None:
     """Return the noise of all references; None where that of one is not known."""
@@ -110,13 +106,11 @@ class FrequencyResponses:
 
     def lines(self, kept: Bools) -> FrequencyResponses:
         """Return the lines that are kept, (lines,)."""
-        return replace(
-            self,
-            frequency=self.frequency[kept],
-            H=self.H[..., kept],
-            variance=None if self.variance is None else self.variance[..., kept],
-            force_noise=None if self.force_noise is None else self.force_noise.lines(kept),
-        )
+        noise, variance = self.force_noise, self.variance
+        noise = noise and replace(noise, deviation=noise.deviation[:, kept])
+        variance = None if variance is None else variance[..., kept]
+        f, H = self.frequency[kept], self.H[..., kept]
+        return replace(self, frequency=f, H=H, variance=variance, force_noise=noise)
 
 
 # 8 arguments: the parts of measured functions, the optional ones by keyword.

@@ -89,14 +89,13 @@ class Block:
         return self.body.decode("utf-8", "replace").rstrip().splitlines()
 
 
-Reader = Callable[[Block], Sequence[Any]]
-"""What decodes a dataset; a ValueError or the like is a fault of it."""
-
-
-def _decoded(path: Path, what: str, needed: int, readers: Mapping[int, Reader]) -> list[list[Any]]:
+def _decoded(
+    path: Path, what: str, needed: int, readers: Mapping[int, Callable[[Block], Sequence[Any]]]
+) -> list[list[Any]]:
     """Return what each reader returns for the datasets of its number.
 
-    Raises InputError where there is none of the number that is needed, and for broken ones.
+    Raises InputError where there is none of the number that is needed, and for broken ones, of
+    which a reader raises a ValueError or the like.
     """
     known = blocks(read_text_bytes(path, what, MOST_DATA), path)
     numbers = list(dict.fromkeys(block.number for block in known))
@@ -474,8 +473,9 @@ def read_uff55(path: Path) -> NodalModes:
 
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
-    readers: dict[int, Reader] = {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode}
-    old, new, systems, modes = _decoded(path, MODES, 55, readers)
+    known: dict[int, Callable[[Block], Sequence[Any]]]
+    known = {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode}
+    old, new, systems, modes = _decoded(path, MODES, 55, known)
     once(path, "nodes", "each node", (node for node, *_ in old + new))
     return _assembled(path, modes, old + new, dict(systems))
 
@@ -535,7 +535,8 @@ def _mode(block: Block) -> list[_Mode]:
     once(file, place, "each node", nodes)
     phi = np.array(values).reshape(-1, size, REAL[data]).astype(complex)
     shape = np.zeros((len(nodes), 6))
-    shape[:, :size] = real_shape(phi @ [1, 1j][: REAL[data]])
+    psi = phi @ [1, 1j][: REAL[data]]
+    shape[:, :size] = (psi * np.exp(-0.5j * np.angle((psi**2).sum()))).real  # the nearest real one
     checks = [
         (not frequency > 0, "a frequency above 0 Hz", f"{frequency:g}"),
         (not 0 <= damping < 1, "a damping ratio from 0 to below 1", f"{damping:g}"),
@@ -548,16 +549,6 @@ def _mode(block: Block) -> list[_Mode]:
     other = re.search(r"pair with mode (\d{1,9})\s*$", text, re.MULTILINE)
     known = name[1] if name else "", number, frequency, damping
     return [_Mode(*known, np.array(nodes), shape, place, int(other[1]) if other else 0)]
-
-
-def real_shape(phi: Complexes) -> Floats:
-    """Return the real shape nearest to a complex one, up to its sign.
-
-    >>> real_shape(np.array([[1j], [-2j]])).round(12).tolist()
-    [[1.0], [-2.0]]
-    """
-    turn = np.exp(-0.5j * np.angle((phi**2).sum()))
-    return np.asarray((phi * turn).real)
 
 
 Point = tuple[int, int, Floats]

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.modal import MEASURED, ModalData
+from modefront.data.modal import ModalData
 from modefront.diagnosis.measured import Measured, measured
 from modefront.errors import ModelError
 from modefront.models.base import full_of, matrices_at
@@ -84,6 +84,5 @@ def of_few_sets(comparison: Comparison) -> Comparison:
     even = np.linspace(0, len(data.sets) - 1, COMPARED).astype(np.intp)
     known = np.isfinite(data.frequency), np.isfinite(data.shape).any(axis=2)
     chosen = np.unique(np.concatenate([even, *(seen.argmax(axis=0) for seen in known)]))
-    few = {name: getattr(data, name)[chosen] for name in MEASURED}
-    sets = tuple(data.sets[k] for k in chosen.tolist())
-    return compare(replace(comparison.problem, data=replace(data, sets=sets, **few)))
+    few = data.of_sets(chosen, tuple(data.sets[k] for k in chosen.tolist()))
+    return compare(replace(comparison.problem, data=few))

@@ -294,6 +294,7 @@ def diagnose(comparison: Comparison) -> list[Finding]:
     if named:
         problem, model = comparison.problem, comparison.matrices
         data = replace(comparison.data, frequency=state.data.frequency, shape=state.data.shape)
+        data = replace(data, shape_covariance=None)  # it is of other shapes
         if model is not None and state.selection is not None:
             problem = replace(problem, model=replace(model, selection=state.selection))
         comparison = compare(replace(problem, data=data, start=state.start))

@@ -14,14 +14,15 @@ from scipy.optimize import linear_sum_assignment
 from threadpoolctl import threadpool_limits
 
 from modefront._typing import Complexes
-from modefront.data.csv import is_reserved, write_csv
+from modefront.data.csv import is_reserved, write_covariance, write_csv
 from modefront.data.modal import ModalData
 from modefront.data.modal_test import ByHand, ModalTest, read_test
 from modefront.data.uff import write_uff55
 from modefront.errors import Fault, InputError, UnfinishedError
 from modefront.identification.methods import ambient, hammer
 from modefront.identification.record import Identification, Rejected
-from modefront.identification.sets import CombinedModes, combine, modal_data_of
+from modefront.identification.sets import CombinedModes, combine
+from modefront.inputs import wrong
 from modefront.outputs import write_text
 
 POOR_FIT = 0.5
@@ -55,14 +56,14 @@ class IdentifiedTest:
     @property
     def names(self) -> list[str]:
         """Names of the data sets; an ambient test is one."""
-        return _names(self.test)
+        return [self.test.name] if self.test.setups else [part.name for part in self.test.sets]
 
     @cached_property
     def data(self) -> ModalData:
         """The modal data that studies read; raises UnfinishedError where no mode was found."""
         if self.modes is None:
             raise UnfinishedError("no mode was found in the band")
-        return modal_data_of(self.modes)
+        return self.modes.data
 
     @property
     def warnings(self) -> list[str]:
@@ -75,16 +76,12 @@ class IdentifiedTest:
             for r, k in enumerate(of_set)
             if k >= 0 and each.modes[k].evidence.flags
         ]
-        spread = (
-            []
-            if self.modes is None
-            else [
-                f"mode {r}: the sets differ by more than their own standard deviations: "
-                f"{f:.2g} Hz, damping {100 * zeta:.2g} % between sets are included"
-                for r, (f, zeta) in enumerate(self.modes.spread, 1)
-                if f or zeta
-            ]
-        )
+        spread = [
+            f"mode {r}: the sets differ by more than their own standard deviations: "
+            f"{f:.2g} Hz, damping {100 * zeta:.2g} % between sets are included"
+            for r, (f, zeta) in enumerate(self.modes.spread if self.modes else (), 1)
+            if f or zeta
+        ]
         read = [text for part in self.test.sets for text in part.warnings]
         read += [
             f"set {setup.name!r}: {name} does not move and is left out"
@@ -106,7 +103,7 @@ class IdentifiedTest:
         sensors would take.
         """
         path = writable(path)
-        report = path.with_name(path.stem + "-identification.json")
+        written = [path]
         if path.suffix.lower() == ".uff":
             modes = modal_modes(self)
             pairs = [each.pairs for each in self.identified]
@@ -118,9 +115,13 @@ class IdentifiedTest:
                 expected = "names of sensors that are no columns of modal data"
                 raise InputError(Fault("sensors", repr(clashing[0]), expected, "a reserved name"))
             write_csv(path, self.data, self.modes.damping_std if self.modes else None)
+            if self.data.shape_covariance is not None:
+                written.append(path.with_name(path.stem + "-covariance.csv"))
+                write_covariance(written[-1], self.data)
         text = json.dumps(self.as_plain(), indent=1, allow_nan=False)
-        write_text(report, text + "\n")
-        return [path, report]
+        written.append(path.with_name(path.stem + "-identification.json"))
+        write_text(written[-1], text + "\n")
+        return written
 
     def as_plain(self) -> dict[str, Any]:
         """Return all that was identified as plain data; complex numbers are [real, imaginary]."""
@@ -134,11 +135,7 @@ class IdentifiedTest:
         """Return the modes, a line each, and the first warnings."""
         out = [f"{self.test.name}: {len(self.names)} data sets"]
         if self.modes is not None:
-            columns = zip(
-                np.nanmean(self.modes.frequency, axis=0),
-                np.nanmean(self.modes.damping, axis=0),
-                strict=True,
-            )
+            columns = zip(self.data.mean_frequency, self.data.mean_damping, strict=True)
             lines = [f"  mode {r}: {f:.5g} Hz, {z:.2%}" for r, (f, z) in enumerate(columns, 1)]
             more = [f"  and {len(lines) - 12} more"] * (len(lines) > 12)
             out += [*lines[:12], *more]
@@ -187,11 +184,11 @@ def identify(
     for f in seeds:
         if not low <= f <= high:
             expected = f"frequencies within the band, {low:g} to {high:g} Hz"
-            raise InputError(Fault(str(path), "--seed", expected, f"{f:g}"))
+            raise wrong(path, expected, f"{f:g}", "--seed")
     with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
         identified = _identified(read, band, seeds)
         table = _identified(read, band) if seeds and (keep or drop) else identified
-    names = _names(read)
+    names = IdentifiedTest(read, (), None).names
     if (keep or drop) and any(each.modes for each in table):
         unwanted = _unwanted(path, combine(names, table).index, keep, drop)
         identified = list(map(_without, identified, table, unwanted))
@@ -207,10 +204,6 @@ def _identified(
     return [hammer.identify(part.data, band, test.modes, seeds) for part in test.sets]
 
 
-def _names(test: ModalTest) -> list[str]:
-    return [test.name] if test.setups else [part.name for part in test.sets]
-
-
 def _unwanted(
     path: Path, index: Sequence[Sequence[int]], keep: Sequence[int], drop: Sequence[int]
 ) -> list[set[int]]:
@@ -219,8 +212,7 @@ def _unwanted(
     for option, numbers in (("--keep", keep), ("--drop", drop)):
         for number in numbers:
             if not 1 <= number <= count:
-                expected = f"numbers of modes, from 1 to {count}"
-                raise InputError(Fault(str(path), option, expected, str(number)))
+                raise wrong(path, f"numbers of modes, from 1 to {count}", str(number), option)
     chosen = set(keep or range(1, count + 1)) - set(drop)
     return [{k for r, k in enumerate(of_set, 1) if r not in chosen} for of_set in index]
 
@@ -248,7 +240,7 @@ def writable(path: Path | str) -> Path:
         expected = "a file that ends in .csv, or in .uff for dataset 55"
         raise InputError(Fault("modefront identify", "-o", expected, str(path)))
     if not path.parent.is_dir():
-        raise InputError(Fault(str(path.parent), "folder", "a folder", "none"))
+        raise wrong(path.parent, "a folder", "none", "folder")
     return path
 
 
@@ -259,19 +251,16 @@ def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -
         if (high - low) * setup.duration < ambient.LEAST_LINES:
             expected = f"a band of {ambient.LEAST_LINES} lines of set {setup.name!r} at least"
             reach = f"{low:g} to {high:g} Hz of {setup.duration:g} s at {setup.rate:g} per s"
-            raise InputError(Fault(str(path), "band", expected, reach))
+            raise wrong(path, expected, reach, "band")
     for data_set in test.sets:
-        f = data_set.data.frequency
-        low, high = band or (0.0, np.inf)
-        count = int(np.count_nonzero((f >= low) & (f <= high) & (f > 0)))
-        if count < hammer.LEAST_LINES:
+        f, inside = data_set.data.frequency, data_set.data.within(*(band or (0.0, np.inf)))
+        if (count := len(inside.frequency)) < hammer.LEAST_LINES:
             expected = f"at least {hammer.LEAST_LINES} lines of set {data_set.name!r} within it"
             reach = f"{count}: the files reach from {f[0]:g} to {f[-1]:g} Hz"
-            raise InputError(Fault(str(path), "band", expected, reach))
-        inside = data_set.data.within(low, high)
-        if not np.any(np.abs(np.nan_to_num(inside.H)) > 0):
-            expected = "functions that are not zero"
-            raise InputError(Fault(str(path), "band", expected, f"zeros in set {data_set.name!r}"))
+            raise wrong(path, expected, reach, "band")
+        if not np.nan_to_num(inside.H).any():
+            zeros = f"zeros in set {data_set.name!r}"
+            raise wrong(path, "functions that are not zero", zeros, "band")
 
 
 def _warnings(identification: Identification) -> list[str]:
@@ -292,15 +281,9 @@ def _warnings(identification: Identification) -> list[str]:
             "padding or drifting modes"
         )
     measured = {data.responses[i] for i in np.flatnonzero(data.measured.any(axis=(0, 2)))}
-    names = [
-        name
-        for name, *stds in zip(
-            identification.responses,
-            *(mode.shape_std for mode in identification.modes),
-            strict=True,
-        )
-        if name in measured and np.isnan(stds).any()
-    ]
+    empty = [np.isnan(mode.shape_std) for mode in identification.modes]
+    silent = np.flatnonzero(np.any(empty, axis=0)).tolist() if empty else []
+    names = [x for k in silent if (x := identification.responses[k]) in measured]
     if names:
         more = f" and {len(names) - NAMED} more" * (len(names) > NAMED)
         out.append(

@@ -12,6 +12,9 @@ from modefront.data.responses import FrequencyResponses
 from modefront.identification.shapes import RealShape
 from modefront.identification.stabilisation import StabilisationDiagram
 
+MOST_COVARIED = 200
+"""Responses of which covariances of shapes are kept: a file of 40 modes then has 25 MB."""
+
 
 @dataclass(frozen=True)
 class Evidence:
@@ -46,6 +49,7 @@ class ModeEstimate:
         response was not measured, or shows nothing but noise of any mode
     participation : (references,) factors that go with the complex shape as given, before rotation
     evidence : what speaks for it
+    shape_covariance : (responses, responses) of the real shape, None for more than `MOST_COVARIED`
     """
 
     pole: complex
@@ -57,6 +61,7 @@ class ModeEstimate:
     shape_std: Floats
     participation: Complexes
     evidence: Evidence = Evidence()
+    shape_covariance: Floats | None = None
 
 
 @dataclass(frozen=True)

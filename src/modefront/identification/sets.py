@@ -9,7 +9,7 @@ that has the mode. Equations: docs/methods/deviations.md.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg as la
@@ -18,7 +18,7 @@ from scipy.stats import chi2
 
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
-from modefront.identification.record import Identification, ModeEstimate
+from modefront.identification.record import MOST_COVARIED, Identification, ModeEstimate
 
 WIDTH = 5.0
 """Distance within which frequencies may belong to the same mode."""
@@ -36,75 +36,64 @@ TOLERANCE = 1e-10
 """Change of a shape of unit norm from which on it is found."""
 
 
-# 11 fields: what a table of modes has, and which modes belong together.
 @dataclass(frozen=True)
 class CombinedModes:
     """Modes of all sets; NaN where a set does not have a mode.
 
     Attributes
     ----------
-    sets, sensors : names
-    frequency, damping : (sets, modes), Hz and ratio
-    shape : (sets, modes, sensors) real, of unit norm
-    frequency_std, damping_std, shape_std : standard deviations, spread of the sets included
+    data : what studies read: real shapes of unit norm; deviations and covariances of shapes have
+        the spread of the sets in them
+    damping_std : (sets, modes) standard deviations, spread included
     spread : (modes, 2) standard deviations between sets of frequency and damping, 0 where the
         sets agree within theirs
     index : (sets, modes) which mode of each set it is; -1 for none
-    pairs : positions of modes that are a pair in one of the sets
     """
 
-    sets: tuple[str, ...]
-    sensors: tuple[str, ...]
-    frequency: Floats
-    damping: Floats
-    shape: Floats
-    frequency_std: Floats
+    data: ModalData
     damping_std: Floats
-    shape_std: Floats
     spread: Floats
     index: tuple[tuple[int, ...], ...]
-    pairs: tuple[tuple[int, int], ...]
 
 
 def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> CombinedModes:
     """Return the modes of several data sets under common numbers, by frequency."""
     sensors = tuple(dict.fromkeys(name for each in identifications for name in each.responses))
     groups = mode_groups([(each.responses, each.modes) for each in identifications], sensors)
-    K, R = len(identifications), len(groups)
+    K, R, S = len(identifications), len(groups), len(sensors)
     index = tuple(tuple(group.get(k, -1) for group in groups) for k in range(K))
     f, z, f_std, z_std = (np.full((K, R), np.nan) for _ in range(4))
-    phi, phi_std = np.full((K, R, len(sensors)), np.nan), np.full((K, R, len(sensors)), np.nan)
+    phi, phi_std = np.full((K, R, S), np.nan), np.full((K, R, S), np.nan)
+    C = np.full((K, R, S, S), np.nan) if S <= MOST_COVARIED else None
     for r, group in enumerate(groups):
         for k, number in group.items():
             mode = identifications[k].modes[number]
             f[k, r], f_std[k, r] = mode.frequency, mode.frequency_std
             z[k, r], z_std[k, r] = mode.damping, mode.damping_std
-            names, known = identifications[k].responses, np.isfinite(mode.shape_std)
-            phi_std[k, r] = _at(mode.shape_std, names, sensors)
-            phi[k, r] = _at(np.where(known, mode.shape.shape, np.nan), names, sensors)
+            places = [sensors.index(name) for name in identifications[k].responses]
+            phi_std[k, r, places] = mode.shape_std
+            phi[k, r, places] = np.where(np.isfinite(mode.shape_std), mode.shape.shape, np.nan)
+            if C is not None and mode.shape_covariance is not None:
+                C[k, r][np.ix_(places, places)] = mode.shape_covariance
     paired = _pairs(identifications, index)
     spread = np.zeros((R, 2))
     for r in range(R):
         spread[r] = between(f[:, r], f_std[:, r]), between(z[:, r], z_std[:, r])
         if r in paired:
             continue
+        before = phi_std[:, r] ** 2
         phi[:, r], phi_std[:, r] = _shapes(phi[:, r], phi_std[:, r])
+        if C is not None:
+            C[:, r] += (phi_std[:, r] ** 2 - before)[:, None] * np.eye(S)
     f_std, z_std = np.hypot(f_std, spread[:, 0]), np.hypot(z_std, spread[:, 1])
-    pairs = tuple((r, s) for r, s in paired.items() if r < s)
-    return CombinedModes(
-        *(tuple(sets), sensors, f, z, phi, f_std, z_std, phi_std, spread, index, pairs)
-    )
-
-
-def modal_data_of(modes: CombinedModes) -> ModalData:
-    """Return the modal data that studies read, with standard deviations and real shapes."""
-    return ModalData(
-        modes.sets,
-        tuple(range(1, modes.frequency.shape[1] + 1)),
-        modes.sensors,
-        *(modes.frequency, modes.damping, modes.shape, modes.frequency_std, modes.shape_std),
-        tuple((r + 1, s + 1) for r, s in modes.pairs),
-    )
+    pairs = tuple((r + 1, s + 1) for r, s in paired.items() if r < s)
+    parts = (f, z, phi, f_std, phi_std, pairs, C)
+    data = ModalData(tuple(sets), tuple(range(1, R + 1)), sensors, *parts)
+    if C is not None:
+        faulty = [[data.covariance_fault(k, r) is not None for r in range(R)] for k in range(K)]
+        C[np.array(faulty)] = np.nan  # of functions without noise, there is only rounding
+        data = data if np.isfinite(C).any() else replace(data, shape_covariance=None)
+    return CombinedModes(data, z_std, spread, index)
 
 
 def _pairs(
@@ -203,19 +192,15 @@ def _agreement(of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, sensors: Sequ
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:
     """Return shapes in the sign of the first set, and deviations with the spread of the sets."""
     having = np.flatnonzero(np.isfinite(phi).any(axis=1))
-    first = phi[having[0]]
-    phi = phi.copy()
-    scaled, scaled_std, scale = phi.copy(), std.copy(), np.ones(len(phi))
+    first, factor = phi[having[0]], np.ones((len(phi), 1))
     for k in having[1:]:
         both = np.isfinite(first) & np.isfinite(phi[k])
         if both.any() and np.any(phi[k][both]):
-            factor = float(phi[k][both] @ first[both]) / float(phi[k][both] @ phi[k][both])
-            if factor < 0:
-                phi[k] = -phi[k]
-            scale[k] = abs(factor) or 1.0
-            scaled[k], scaled_std[k] = phi[k] * scale[k], std[k] * scale[k]
-    tau = np.array([between(scaled[:, i], scaled_std[:, i]) for i in range(phi.shape[1])])
-    return phi, np.hypot(std, tau / scale[:, None])
+            own = phi[k][both]
+            factor[k] = float(own @ first[both]) / float(own @ own) or 1.0
+    scaled, size = phi * factor, np.abs(factor)
+    tau = np.array([between(*x) for x in zip(scaled.T, (std * size).T, strict=True)])
+    return phi * np.sign(factor), np.hypot(std, tau / size)
 
 
 def merged_shape(

@@ -13,7 +13,7 @@ import scipy.fft
 import scipy.signal
 
 from modefront._typing import Complexes, Floats
-from modefront.data.records import ORDERS, Records
+from modefront.data.modal_test import RECORDED, Records
 from modefront.data.responses import FrequencyResponses
 from modefront.identification.noise import square
 from modefront.identification.spectral_density import Band
@@ -88,7 +88,7 @@ def transforms(records: Records, low: float, high: float) -> Transforms:
     f = scipy.fft.rfftfreq(samples, 1 / records.rate)
     kept = (f >= low) & (f <= high) & (f > 0)
     F = scipy.fft.rfft(y, axis=1)[:, kept] / np.sqrt(samples * records.rate)
-    return Transforms(2 * np.pi * f[kept], F, ORDERS[records.quantity], np.ones(F.shape[1]))
+    return Transforms(2 * np.pi * f[kept], F, RECORDED[records.quantity], np.ones(F.shape[1]))
 
 
 def with_lines(records: Records, omega: Floats, change: Complexes) -> Records:

@@ -1,4 +1,7 @@
-"""The stabilisation diagram, and clusters of its stable poles by docs/methods/identification.md."""
+"""The stabilisation diagram, clusters of its stable poles, and mode indicator functions.
+
+They are those of docs/methods/identification.md and docs/methods/deviations.md.
+"""
 
 from __future__ import annotations
 
@@ -29,6 +32,9 @@ SHAPE_LINES = 4096
 
 NEXT = 8
 """Lines on either side of a pole that its shape is taken from."""
+
+LEAST = 1e-12
+"""Share of the mean motion by which none at all is told apart by an indicator."""
 
 MOST_DAMPING = 0.3
 """Damping ratio from which on a pole is no mode."""
@@ -223,3 +229,24 @@ def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) ->
     since = np.maximum.accumulate(present, axis=1).sum(axis=1)
     out: Floats = present.sum(axis=1) / np.maximum(since, 1)
     return out
+
+
+def complex_indicators(data: FrequencyResponses) -> Floats:
+    """Return the complex mode indicator functions, (references, lines), the greatest first."""
+    H = np.where(data.measured, data.H, 0).transpose(2, 0, 1)
+    out: Floats = np.linalg.svd(H, compute_uv=False).T ** 2
+    return out
+
+
+def multivariate_indicators(data: FrequencyResponses) -> Floats:
+    """Return the multivariate mode indicator functions, (references, lines), the least first."""
+    H = np.where(data.measured, data.H, 0).transpose(2, 1, 0)
+    inphase, quadrature = (H.imag, H.real) if data.quantity == "mobility" else (H.real, H.imag)
+    A = inphase.swapaxes(1, 2) @ inphase
+    B = quadrature.swapaxes(1, 2) @ quadrature
+    total = A + B
+    size = np.trace(total, axis1=1, axis2=2)[:, None, None] / total.shape[1]
+    total = total + (LEAST * np.maximum(size, np.finfo(float).tiny)) * np.eye(total.shape[1])
+    root = np.linalg.inv(np.linalg.cholesky(total))
+    out: Floats = np.linalg.eigvalsh(root @ A @ root.swapaxes(1, 2)).T
+    return np.clip(out, 0, 1)

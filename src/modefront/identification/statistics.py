@@ -8,7 +8,7 @@ padding.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +19,7 @@ from modefront._typing import Bools, Complexes, Floats
 from modefront.identification.modal_model import Fit, columns
 from modefront.identification.noise import square
 from modefront.identification.problem import CHUNK, Problem, gram
-from modefront.identification.record import ModeEstimate, Residuals
+from modefront.identification.record import MOST_COVARIED, ModeEstimate, Residuals
 from modefront.identification.shapes import TINY, RealShape, real_plane, real_shape
 
 SIGNIFICANT = 3.0
@@ -126,29 +126,37 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
     inverse, follows = fit.inverted(fit.observed), fit.Z - fit.inverse @ fit.U
     linear, alpha = _roots_of_responses(fit, residuals)
     C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
-    variance = np.zeros(model.phi.shape)
+    whole = model.phi.shape[1] <= MOST_COVARIED
+    products = np.matmul if whole else lambda a, b: np.vecdot(a, b.T)
+    spread = []
     for r, shape in enumerate(shapes):
         rows = slice(2 * r, 2 * r + 2)
         answer = shape.differential(_as_complex(follows[:, rows] @ inverse))
-        variance[r] = _shape_variance(shape, _as_complex(linear[:, rows]), answer, alpha)
+        direct = _as_complex(linear[:, rows])
+        spread.append(_shape_covariance(shape, direct, answer, alpha, products))
     for steps, phi in _force_influence(fit, residuals.force):
         C = C + steps @ steps.T
         for r, shape in enumerate(shapes):
-            variance[r] += (shape.differential(phi[:, r]) ** 2).sum(axis=1)
-    scale = max(residuals.chi2, 1.0)
-    C, variance = C * scale, variance * scale
-    variance[:, ~fit.task.weight.any(axis=(0, 2)) | _silent(model.phi, linear, scale)] = np.nan
+            change = shape.differential(phi[:, r])
+            spread[r] += products(change, change.T)
+    scale, hertz = max(residuals.chi2, 1.0), omega / (2 * np.pi)
+    gone = ~fit.task.weight.any(axis=(0, 2)) | _silent(model.phi, linear, scale)
     out = []
-    for r, (lam, shape, std) in enumerate(zip(model.lam, shapes, np.sqrt(variance), strict=True)):
+    for r, each in enumerate(spread):
+        each *= scale
+        each[gone] = np.nan
+        if whole:
+            each[:, gone] = np.nan
+        lam, own = model.lam[r], C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2] * scale
         size = float(abs(lam))
         df = np.array([lam.real, lam.imag]) / size
         both = np.array([df, np.array([-1 / size, 0.0]) + lam.real / size**2 * df])
-        f_std, zeta_std = np.sqrt(
-            np.einsum("ka,ab,kb->k", both, C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2], both)
-        ).tolist()
-        hertz, zeta = omega / (2 * np.pi), float(-lam.real) / size
-        known = complex(lam) * omega, size * hertz, zeta, f_std * hertz, zeta_std
-        out.append(ModeEstimate(*known, shape, std, model.L[r]))
+        f_std, zeta_std = np.sqrt(np.einsum("ka,ab,kb->k", both, own, both)).tolist()
+        known = complex(lam) * omega, size * hertz, float(-lam.real) / size, f_std * hertz, zeta_std
+        std = np.sqrt(np.maximum(each.diagonal() if whole else each, 0.0))
+        covariance = each if whole else None
+        rest = shapes[r], std, model.L[r]
+        out.append(ModeEstimate(*known, *rest, shape_covariance=covariance))
     return out
 
 
@@ -164,14 +172,20 @@ def _silent(phi: Complexes, linear: Floats, scale: float) -> Bools:
     return out
 
 
-def _shape_variance(shape: RealShape, direct: Complexes, answer: Floats, alpha: Floats) -> Floats:
-    r"""Return the variance of a real shape by independent errors of each response, (responses,).
+def _shape_covariance(
+    shape: RealShape,
+    direct: Complexes,
+    answer: Floats,
+    alpha: Floats,
+    products: Callable[[Floats, Floats], Floats],
+) -> Floats:
+    r"""Return the covariance of a real shape by independent errors of each response.
 
     Errors of response i change its own component by ``direct[i]``, (errors,), and the nonlinear
     parameters by ``alpha[i]``, (alphas, errors), which change the shape by ``-answer``,
     (responses, alphas). By the equations of `modefront.identification.shapes`, what i does to
     component k is :math:`\delta_{ik} a_i - (U U^T)_{ki} a_i + y_k\,\mathrm{d}\theta_i -
-    \mathrm{answer}_k \alpha_i`: its squares are summed over i at once.
+    \mathrm{answer}_k \alpha_i`: its products are summed over i at once, or their diagonal.
     """
     u, y = shape.shape, shape.complex_shape.imag
     a = shape.turn * direct / shape.norm
@@ -180,10 +194,10 @@ def _shape_variance(shape: RealShape, direct: Complexes, answer: Floats, alpha: 
     causes = np.concatenate([inside, theta[:, None], alpha], axis=1)
     effects = np.column_stack([-shape.plane, y, -answer])
     flat = causes.transpose(1, 0, 2).reshape(effects.shape[1], -1)
-    common = np.sum((effects @ (flat @ flat.T)) * effects, axis=1)
-    of_itself = np.einsum("ia,iae->ie", effects, causes)
-    out: Floats = common + np.sum((2 * of_itself + a.real) * a.real, axis=1)
-    return np.maximum(out, 0.0)
+    own = np.vecdot(causes, a.real[:, None])  # (responses, causes), by a response's own error
+    out = products(effects @ (flat @ flat.T) + own, effects.T) + products(effects, own.T)
+    power = np.vecdot(a.real, a.real)
+    return out + (np.diag(power) if out.ndim == 2 else power)
 
 
 def _as_complex(pairs: Floats) -> Complexes:

@@ -13,7 +13,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Complexes, Floats, Ints
 from modefront.data.modal import ModalData
 from modefront.options import checked, number, whole
 from modefront.rounding import TINY
@@ -82,7 +82,7 @@ def match(pairing: Pairing, data: ModalData, frequency: Floats, phi: Floats) -> 
     if q < m:
         raise ValueError(f"{m} measured modes cannot be paired with {q} model modes")
     cost = 1 - values
-    if pairing.window is not None or not data.measured_shapes.complete:
+    if pairing.window is not None or np.isnan(values).any():
         distance = log_ratio(data, frequency)
         cost = np.where(np.isnan(values), distance, cost)
         if pairing.window is not None:
@@ -114,12 +114,12 @@ def mean_mac(data: ModalData, phi: Floats) -> Floats:
     """
     size = np.abs(phi).max(axis=0, initial=0.0)
     phi = np.where(size > UNSEEN * size.max(initial=0.0), phi, 0.0)
-    known = data.measured_shapes
+    shape, measured, squares, sets = data.measured_shapes
     # The MAC of each pair at the sensors that measured its mode in its data set.
-    cross = (known.shape @ phi) ** 2
-    norm = known.squares * (known.measured @ phi**2)
+    cross = (shape @ phi) ** 2
+    norm = squares * (measured @ phi**2)
     values = np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)
-    return np.asarray(values.sum(axis=0) / known.sets)
+    return np.asarray(values.sum(axis=0) / sets)
 
 
 def mac_slopes(data: ModalData, pairs: Pairs, phi: Floats, dphi: Floats) -> Floats:
@@ -128,12 +128,42 @@ def mac_slopes(data: ModalData, pairs: Pairs, phi: Floats, dphi: Floats) -> Floa
     ``phi`` (sensors, modes) are the model's modes and ``dphi`` (sensors, modes, p) their
     derivatives.
     """
-    known = data.measured_shapes
+    shape, measured, squares, sets = data.measured_shapes
     phi, dphi = phi[:, pairs.index], dphi[:, pairs.index]
-    c = np.einsum("krs,sr->kr", known.shape, phi)[:, :, None]
-    b = np.einsum("krs,sr->kr", known.measured, phi**2)[:, :, None]
-    dc = np.einsum("krs,srp->krp", known.shape, dphi)
-    half = np.einsum("krs,sr,srp->krp", known.measured, phi, dphi)  # of the derivative of b
-    norm = known.squares * b**2
+    c = np.einsum("krs,sr->kr", shape, phi)[:, :, None]
+    b = np.einsum("krs,sr->kr", measured, phi**2)[:, :, None]
+    dc = np.einsum("krs,srp->krp", shape, dphi)
+    half = np.einsum("krs,sr,srp->krp", measured, phi, dphi)  # of the derivative of b
+    norm = squares * b**2
     out = np.divide(2 * c * (b * dc - c * half), norm, out=np.zeros(dc.shape), where=norm > 0)
-    return np.asarray(out.sum(axis=0) / known.sets)
+    return np.asarray(out.sum(axis=0) / sets)
+
+
+def mac(phi: Floats | Complexes, psi: Floats | Complexes) -> Floats:
+    r"""Return the MAC of each column of ``phi`` with each column of ``psi``.
+
+    .. math:: \mathrm{MAC} = |\varphi^H \psi|^2 / (\varphi^H \varphi\; \psi^H \psi)
+
+    Source: Allemang, Sound and Vibration 37 (8), 2003, equation 2.
+
+    Parameters
+    ----------
+    phi
+        Mode shapes (sensors, modes), real or complex, in any scale.
+    psi
+        Other mode shapes (sensors, other modes).
+
+    Returns
+    -------
+    Floats
+        MAC values (modes, other modes), from 0 to 1; 0 where a shape vanishes at all sensors.
+
+    Examples
+    --------
+    >>> mac(np.array([[1.0], [1.0j]]), np.array([[1.0, 1.0], [1.0j, -1.0j]])).round(6).tolist()
+    [[1.0, 0.0]]
+    """
+    cross = np.abs(phi.conj().T @ psi) ** 2
+    norm = np.outer((np.abs(phi) ** 2).sum(axis=0), (np.abs(psi) ** 2).sum(axis=0))
+    out: Floats = np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)
+    return out

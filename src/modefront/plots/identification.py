@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from modefront.identification.indicators import complex_indicators, multivariate_indicators
 from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
+from modefront.identification.stabilisation import complex_indicators, multivariate_indicators
 from modefront.plots.canvas import COLOURS, Picture, panels, picture, plain, single
 
 MOST_PANELS, SHORT = 12, 40

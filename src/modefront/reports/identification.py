@@ -12,10 +12,10 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront._version import __version__
-from modefront.identification.indicators import complex_indicators, multivariate_indicators
 from modefront.identification.modal_test import IdentifiedTest
 from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
+from modefront.identification.stabilisation import complex_indicators, multivariate_indicators
 from modefront.reports.page import page_of, write_html
 
 MOST_LINES, MOST_FUNCTIONS = 600, 40

@@ -169,21 +169,3 @@ def value_numbers(data: ModalData, k: int, r: int) -> Ints:
     """
     size = 1 + len(data.sensors)
     return (k * len(data.modes) + r) * size + np.arange(size)
-
-
-def known_std(std: Floats) -> Floats:
-    """Return standard deviations with 0 where none is known."""
-    return np.where(std > 0, std, 0.0)
-
-
-def together(parts: Sequence[Curvature]) -> Curvature:
-    """Return the sum of what several residuals give."""
-    if len(parts) == 1:
-        return parts[0]
-    w, v, own = ([getattr(part, name) for part in parts] for name in ("w", "v", "own"))
-    return Curvature(np.sum(w, axis=0), np.sum(v, axis=0), np.sum(own, axis=0))
-
-
-def joined(parts: Sequence[Floats]) -> Floats:
-    """Return residuals, or their derivatives, one part after the other."""
-    return parts[0] if len(parts) == 1 else np.concatenate(parts)

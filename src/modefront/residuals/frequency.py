@@ -33,7 +33,6 @@ from modefront.residuals.base import (
     ModeErrors,
     Scale,
     Sensitivity,
-    known_std,
     value_numbers,
 )
 
@@ -51,10 +50,16 @@ class FrequencyResiduals:
     remark: str = ""
 
     @cached_property
-    def rows(self) -> tuple[Ints, Ints]:
-        """Data set and mode of each residual, mode after mode, each of shape (rows,)."""
+    def rows(self) -> tuple[Ints, Ints, Floats, Floats, Floats]:
+        """Of each residual data set, mode, measured frequency in Hz, unit u, and weight, (rows,).
+
+        They come mode after mode; the weight is the factor of an error.
+        """
         place, sets = np.nonzero(np.isfinite(self.data.frequency[:, self.modes].T))
-        return sets, np.asarray(self.modes)[place]
+        mode = np.asarray(self.modes)[place]
+        measured = self.data.frequency[sets, mode]
+        unit = measured if self.scale == "measured" else self.data.frequency_std[sets, mode]
+        return sets, mode, measured, unit, 1 / (unit * np.sqrt(np.bincount(mode)[mode]))
 
     @property
     def sets(self) -> Ints:
@@ -66,33 +71,19 @@ class FrequencyResiduals:
         """Number of frequencies."""
         return float(len(self.modes))
 
-    @cached_property
-    def measured(self) -> Floats:
-        """Measured frequencies in Hz, shape (rows,)."""
-        return self.data.frequency[self.rows]
-
-    @cached_property
-    def unit(self) -> Floats:
-        """Units u, shape (rows,)."""
-        return self.measured if self.scale == "measured" else self.data.frequency_std[self.rows]
-
-    @cached_property
-    def weight(self) -> Floats:
-        """Factors of the errors of frequencies, shape (rows,)."""
-        mode = self.rows[1]
-        return 1 / (self.unit * np.sqrt(np.bincount(mode)[mode]))
-
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
-        size = self.weight * self.measured
+        _, _, measured, _, weight = self.rows
+        size = weight * measured
         return float((errors.eigenvalue[self.modes[0]] / 2) ** 2 * (size @ size))
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield the change of J by one standard deviation of each measured frequency."""
-        q = pairs.index[self.modes[0]]
+        q, (sets, mode, measured, unit, _) = pairs.index[self.modes[0]], self.rows
         f, df = modes.frequency[q], modes.dfrequency[q]
-        step = known_std(self.data.frequency_std[self.rows]) / self.sets.size
-        for k, y, u, h in zip(self.sets, self.measured, self.unit, step, strict=True):
+        std = self.data.frequency_std[sets, mode]
+        step = np.where(std > 0, std, 0.0) / sets.size
+        for k, y, u, h in zip(sets, measured, unit, step, strict=True):
             ratio = f / y if self.scale == "measured" else 1.0
             J = -2 * (f - y) / u**2 * ratio
             dJ = -2 * df / u**2 * (2 * ratio - 1)
@@ -101,30 +92,32 @@ class FrequencyResiduals:
 
     def independent(self) -> tuple[float, float, float]:
         """Return counts and scatter: all sets have one frequency, at best their weighted mean."""
-        w, f = self.weight**2, self.measured
+        _, _, f, _, weight = self.rows
+        w = weight**2
         mean = (w @ f) / w.sum()
         return 1.0, float(w @ (f - mean) ** 2), float(f.size - 1)
 
     def squares(self, modes: Modes, count: int) -> Floats:
         """Return the sums of squares with each model mode, (measured modes, modes)."""
-        out = np.zeros((count, modes.frequency.size))
-        r = (modes.frequency - self.measured[:, None]) * self.weight[:, None]
-        np.add.at(out, self.rows[1], r**2)
+        out, (_, mode, measured, _, weight) = np.zeros((count, modes.frequency.size)), self.rows
+        r = (modes.frequency - measured[:, None]) * weight[:, None]
+        np.add.at(out, mode, r**2)
         return out
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""
-        return (modes.frequency[pairs.index[self.rows[1]]] - self.measured) * self.weight
+        _, mode, measured, _, weight = self.rows
+        return (modes.frequency[pairs.index[mode]] - measured) * weight
 
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, shape (rows, p)."""
-        dr = self.weight[:, None] * modes.dfrequency[pairs.index[self.rows[1]]]
-        return self.r(modes, pairs), dr
+        _, mode, _, _, weight = self.rows
+        return self.r(modes, pairs), weight[:, None] * modes.dfrequency[pairs.index[mode]]
 
     def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
         """Return these and what is needed of second derivatives; d2f/dlam2 is -f' f' / f."""
         (r, dr), f, df = self.with_slopes(modes, pairs), modes.frequency, modes.dfrequency
-        slope = np.bincount(pairs.index[self.rows[1]], 2 * self.weight * r, f.size)
+        slope = np.bincount(pairs.index[self.rows[1]], 2 * self.rows[4] * r, f.size)
         own = df.T @ (-np.divide(slope, f, out=np.zeros(f.size), where=f > 0)[:, None] * df)
         return r, dr, Curvature(slope * modes.frequency_by_lam, np.zeros(modes.phi.shape), own)
 

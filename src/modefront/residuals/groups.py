@@ -87,14 +87,10 @@ class Group:
         if scale not in get_args(Scale):
             expected = " or ".join(map(repr, get_args(Scale)))
             raise ValueError(f"group '{name}': scale: expected {expected}, found {scale!r}")
-        chosen = []
-        for kind in sorted(modes, key=known.index):
-            members = modes[kind]
-            if members:
-                chosen.append((kind, members if isinstance(members, str) else tuple(members)))
-        object.__setattr__(self, "name", name)
-        object.__setattr__(self, "scale", scale)
-        object.__setattr__(self, "chosen", tuple(chosen))
+        ordered = [(kind, modes[kind]) for kind in sorted(modes, key=known.index)]
+        chosen = tuple((k, x if isinstance(x, str) else tuple(x)) for k, x in ordered if x)
+        for key, value in (("name", name), ("scale", scale), ("chosen", chosen)):
+            object.__setattr__(self, key, value)
 
     def modes_of(self, kind: str) -> ModeNumbers:
         """Return the chosen modes of a kind; empty where the group has none."""
@@ -141,19 +137,12 @@ def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str
             measured = _measured_modes(name, data)
             for mode in [m for m in modes if m not in measured][:1] if modes != "all" else []:
                 wrong.append((name, f"one of the measured modes {measured}", str(mode)))
-        yield from wrong or _of_members(group, data)
-
-
-def _of_members(group: Group, data: ModalData) -> Iterator[tuple[str, str, str]]:
-    """Yield the faults of members that the data have."""
-    chosen = group.positions(data)
-    if not any(positions for _, positions in chosen):
-        yield "", "at least one measured property", "none in the data"
-    if group.scale != "std":
-        return
-    for kind, positions in chosen:
-        for r in positions:
-            if not kind.has_usable_std(data, r):
+        yield from wrong
+        chosen = [] if wrong else group.positions(data)
+        if not wrong and not any(positions for _, positions in chosen):
+            yield "", "at least one measured property", "none in the data"
+        for kind, r in [(kind, r) for kind, positions in chosen for r in positions]:
+            if group.scale == "std" and not kind.has_usable_std(data, r):
                 found = f"others for the {kind.name} of mode {data.modes[r]}"
                 yield "scale", f"'std' with {kind.usable_std}", found
 

@@ -38,7 +38,7 @@ from modefront.pairing.match import (
     mean_mac,
     modes_needed,
 )
-from modefront.residuals.base import Member, ModeErrors, Stack, joined, together
+from modefront.residuals.base import Member, ModeErrors, Stack
 from modefront.residuals.groups import Group
 from modefront.work.transfer import Shared, is_shared, shared
 
@@ -225,7 +225,8 @@ class UpdatingProblem:
         out = []
         for row in self._stacks:
             parts = [stack.with_slopes(modes, pairs) for stack in row]
-            out.append(Residual(joined([r for r, _ in parts]), joined([dr for _, dr in parts])))
+            r, dr = map(np.concatenate, zip(*parts, strict=True))
+            out.append(Residual(r, dr))
         return tuple(out)
 
     def slopes_at(self, modes: Modes, pairs: Pairs) -> dict[str, Floats]:
@@ -242,9 +243,9 @@ class UpdatingProblem:
         residuals, curvatures = [], []
         for row in self._stacks:
             r, dr, parts = zip(*(x.with_curvature(modes, pairs) for x in row), strict=True)
-            residuals.append(Residual(joined(r), joined(dr)))
-            curvatures.append(together(parts))
-        w, v, own = (np.array([getattr(x, name) for x in curvatures]) for name in ("w", "v", "own"))
+            residuals.append(Residual(np.concatenate(r), np.concatenate(dr)))
+            curvatures.append([sum(getattr(x, name) for x in parts) for name in ("w", "v", "own")])
+        w, v, own = map(np.array, zip(*curvatures, strict=True))
         try:
             of_modes = modes.second_derivatives(w, v)
         except ModelError:  # an iteration fails that first derivatives do not need
@@ -253,7 +254,7 @@ class UpdatingProblem:
 
     def vectors(self, modes: Modes, pairs: Pairs) -> list[Floats]:
         """Return the residual vector of each group without derivatives."""
-        return [joined([stack.r(modes, pairs) for stack in row]) for row in self._stacks]
+        return [np.concatenate([stack.r(modes, pairs) for stack in row]) for row in self._stacks]
 
     def margins(self, eigenvalue: Floats, shape: Floats) -> Floats:
         """Return how far the root of each objective may be off, (groups,).

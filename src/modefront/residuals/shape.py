@@ -12,6 +12,8 @@ errors of model and data, and those of modes that coincide are any basis of thei
 does not depend. The unit u is :math:`\|\hat\varphi\| / \sqrt{N_0}`, as in equation (1), or the
 standard deviation of each component. A standard deviation that is 0 or rounding, such as that of
 the component to which a shape was normalised, is replaced by the median of the others in its shape.
+Where their covariance :math:`C = D R D` is known, D the deviations and :math:`R = L L^T` the
+correlations, :math:`1/u` is the matrix :math:`W = L^{-1} D^{-1}`, and residuals are independent.
 
 From :math:`X^T r = 0` (Golub & Pereyra 1973, doi:10.1137/0710036)
 
@@ -37,10 +39,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import scipy.linalg as la
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.data.modal import ModalData
@@ -53,103 +55,135 @@ from modefront.residuals.base import (
     ModeErrors,
     Scale,
     Sensitivity,
-    joined,
-    known_std,
     value_numbers,
 )
 
 
-class _Components(NamedTuple):
-    """The measured components of a mode, those of a data set together.
+class _Shape(NamedTuple):
+    """A shape of a data set: its sensors, factors 1 / (u sqrt K), L^-1 or None, and psi."""
 
-    Of each data set that has the shape their number and where they are, and of each component data
-    set, sensor, factor 1 / (u sqrt K), and the measured value times that.
+    mode: int
+    set: int
+    sensors: Ints
+    weight: Floats
+    inverse: Floats | None
+    psi: Floats
+
+
+class _Rows(NamedTuple):
+    """All shapes: what `_Shape` has, (shapes, components), 0 beyond the components that there are.
+
+    Also positions of the modes by which each is fitted, (shapes, m), and which components it has;
+    the L^-1 are (shapes, components, components), or None for ones.
     """
 
-    sizes: Ints
-    parts: list[slice]
-    sets: Ints
+    fitted: Ints
+    there: Bools
     sensors: Ints
     weight: Floats
     psi: Floats
+    inverse: Floats | None
 
 
 @dataclass(frozen=True, eq=False)
 class ShapeResiduals:
-    """Residuals of the shape of the measured mode at position ``mode`` of the data.
+    """Residuals of the shapes of the measured modes at some positions of the data.
 
-    With a ``cluster`` of positions, the shape is fitted by all model modes that belong to these.
+    Those of one mode are a member of a group, those of several a stack of them. With a ``cluster``
+    of positions, each shape is fitted by all model modes that belong to these.
     """
 
     data: ModalData
-    mode: int
+    modes: Sequence[int]
     scale: Scale
     cluster: tuple[int, ...] = ()
 
     @cached_property
-    def components(self) -> _Components:
-        """All components, those of one data set after those of the other."""
-        rows, sensors = np.nonzero(np.isfinite(self.data.shape[:, self.mode]))
-        sizes = np.unique(rows, return_counts=True)[1]
-        parts = [slice(*ends) for ends in pairwise([0, *np.cumsum(sizes).tolist()])]
-        values = self.data.shape[rows, self.mode, sensors]
-        if self.scale == "measured":
-            squares = np.array([values[part] @ values[part] for part in parts])
-            weight = np.repeat(np.sqrt(sizes / squares), sizes)
-        else:
-            std = self.data.shape_std[rows, self.mode, sensors]
-            weight = 1 / joined([without_negligible(std[part]) for part in parts] or [std])
-        weight = weight / np.sqrt(sizes.size)
-        return _Components(sizes, parts, rows, sensors, weight, weight * values)
+    def shapes(self) -> list[_Shape]:
+        """The shape of each mode in each data set that has it."""
+        out = list[_Shape]()
+        for mode in self.modes:
+            measured = np.isfinite(self.data.shape[:, mode])
+            sets = np.flatnonzero(measured.any(axis=1)).tolist()
+            for k in sets:
+                sensors, inverse = np.flatnonzero(measured[k]), None
+                values = self.data.shape[k, mode, sensors]
+                if self.scale == "measured":
+                    weight = np.full(values.size, np.sqrt(values.size / (values @ values)))
+                else:
+                    unit, inverse = self._units(k, mode, sensors)
+                    weight = 1 / unit
+                weight = weight / np.sqrt(len(sets))
+                psi = weight * values if inverse is None else inverse @ (weight * values)
+                out.append(_Shape(mode, k, sensors, weight, inverse, psi))
+        return out
+
+    def _units(self, k: int, mode: int, sensors: Ints) -> tuple[Floats, Floats | None]:
+        """Return the deviations D of a data set's components, and L^-1 where they have one."""
+        C = self.data.covariance_of(k, mode, sensors)
+        if C is None:
+            return without_negligible(self.data.shape_std[k, mode, sensors]), None
+        std = np.sqrt(C.diagonal())
+        L = np.linalg.cholesky(C / np.outer(std, std))
+        return std, la.solve_triangular(L, np.eye(std.size), lower=True)
 
     @property
     def count(self) -> float:
         """Mean number of components over the data sets that have the shape."""
-        return float(self.sets.size / max(self.components.sizes.size, 1))
+        return float(self.sets.size / max(len(self.shapes), 1))
 
     @property
     def sets(self) -> Ints:
         """Data set of each component."""
-        return self.components.sets
+        every = [np.full(x.sensors.size, x.set) for x in self.shapes]
+        return np.concatenate([np.zeros(0, dtype=np.intp), *every])
 
     @property
     def remark(self) -> str:
         """Reason why any model fits the shape, empty where models can miss it."""
         m = len(self.cluster) or 1
-        if self.components.sizes.max() > m:
+        if max(x.sensors.size for x in self.shapes) > m:
             return ""
         sensors = "a single sensor" if m == 1 else f"{m} sensors for as many modes"
         return f"a shape that is measured at {sensors} fits any model"
 
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
-        x = self.components
-        square = sum(x.psi[part] @ x.psi[part] for part in x.parts)
-        return float(errors.shape[self.mode] ** 2 * square)
+        squares = []
+        for x in self.shapes:
+            if x.inverse is None:
+                squares.append(x.psi @ x.psi)
+            else:
+                values = self.data.shape[x.set, x.mode, x.sensors]
+                size = np.linalg.norm(x.inverse * x.weight, 2)
+                squares.append(size**2 * (values @ values))
+        return float(errors.shape[self.modes[0]] ** 2 * sum(squares))
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield the change of J by one standard deviation of each measured component."""
-        x, q = self.components, pairs.index[list(self.cluster or (self.mode,))]
+        q, K = pairs.index[list(self.cluster or self.modes)], len(self.shapes)
         relative = self.scale == "measured"
-        for part in x.parts:
-            k, sensors = int(x.sets[part.start]), x.sensors[part]
-            std = self.data.shape_std[k, self.mode, sensors]
-            unit = np.ones(std.size) if relative else without_negligible(std)
-            psi, places = self.data.shape[k, self.mode, sensors] / unit, np.ix_(sensors, q)
+        for r, k, sensors, *_ in self.shapes:
+            std, C = self.data.shape_std[k, r, sensors], self.data.covariance_of(k, r, sensors)
+            unit, inverse = (np.ones(std.size), None) if relative else self._units(k, r, sensors)
+            psi, places = self.data.shape[k, r, sensors] / unit, np.ix_(sensors, q)
             X, dX = modes.phi[places] / unit[:, None], modes.dphi[places] / unit[:, None, None]
+            if inverse is not None:
+                psi, X, dX = inverse @ psi, inverse @ X, np.tensordot(inverse, dX, 1)
             fit = _fitted(X[None], dX[None], psi[None])
             projection, dprojection = fit.r[0] + psi, fit.dr[0]
-            w, s, ds = 1.0, 1.0, np.zeros(dX.shape[2])
+            w, s, ds = 1.0, 1.0, np.zeros(dX.shape[-1])
             if relative:
                 a = psi @ psi
                 w, s = psi.size / a, projection @ projection / a
                 ds = 2 * projection @ dprojection / a
-            step = known_std(std) / x.sizes.size
-            yield Sensitivity(
-                value_numbers(self.data, k, self.mode)[1:][sensors],
-                -2 * w * (projection - s * psi) / unit * step,
-                -2 * w * (dprojection - np.outer(psi, ds)) / unit[:, None] * step[:, None],
-            )
+            J = -2 * w * (projection - s * psi)
+            dJ = -2 * w * (dprojection - np.outer(psi, ds))
+            if inverse is not None:
+                J, dJ = inverse.T @ J, inverse.T @ dJ
+            root = np.diag(np.where(std > 0, std, 0.0)) if C is None else np.linalg.cholesky(C)
+            root, number = root.T / K, value_numbers(self.data, k, r)[1:][sensors]
+            yield Sensitivity(number, root @ (J / unit), root @ (dJ / unit[:, None]))
 
     def independent(self) -> tuple[float, float, float]:
         """Return counts and scatter: each set has a factor of its own, fitted.
@@ -157,83 +191,86 @@ class ShapeResiduals:
         Sets with the same sensors and standard deviations in proportion have one shape, at best the
         first singular vector; all others count as independent of each other.
         """
-        x, m = self.components, len(self.cluster) or 1
-        total, K = float(np.maximum(x.sizes - m, 0).sum()), x.sizes.size
-        if K > 1 and m == 1 and np.ptp(x.sizes) == 0:
-            psi, weight, sensors = (v.reshape(K, -1) for v in (x.psi, x.weight, x.sensors))
-            share = weight / weight[:, :1]
-            if (sensors == sensors[0]).all() and np.ptp(share / share[0]) <= NEGLIGIBLE:
+        shapes, m = self.shapes, len(self.cluster) or 1
+        total = float(sum(max(x.sensors.size - m, 0) for x in shapes))
+        alike = all(
+            x.inverse is None and np.array_equal(x.sensors, shapes[0].sensors) for x in shapes
+        )
+        if len(shapes) > 1 and m == 1 and alike:
+            share = np.array([x.weight / x.weight[0] for x in shapes])
+            if np.ptp(share / share[0]) <= NEGLIGIBLE:
+                psi, own = np.array([x.psi for x in shapes]), shapes[0].sensors.size - 1.0
                 S = float((np.linalg.svd(psi, compute_uv=False)[1:] ** 2).sum())
-                return float(x.sizes[0] - 1), S, total - float(x.sizes[0] - 1)
+                return own, S, total - own
         return total, 0.0, 0.0
 
-
-@dataclass(frozen=True, eq=False)
-class ShapeStack:
-    """Residuals of shapes; see `modefront.residuals.base.Stack`.
-
-    Attributes
-    ----------
-    fitted : (shapes, m) positions in the data of the modes by which each is fitted
-    sensors, weight, psi : (shapes, components) of each: its sensors, the factors 1 / (u sqrt K),
-        and the measured components times these; both are 0 beyond the components that it has
-    rows : (shapes, components) which components it has
-    """
-
-    fitted: Ints
-    sensors: Ints
-    weight: Floats
-    psi: Floats
-    rows: Bools
+    @cached_property
+    def rows(self) -> _Rows:
+        """All shapes, a row each."""
+        sizes = np.array([x.sensors.size for x in self.shapes])
+        there = np.arange(sizes.max()) < sizes[:, None]
+        sensors, (weight, psi) = np.zeros(there.shape, dtype=np.intp), np.zeros((2, *there.shape))
+        for name, out in (("sensors", sensors), ("weight", weight), ("psi", psi)):
+            out[there] = np.concatenate([getattr(x, name) for x in self.shapes])
+        inverse = None
+        if any(x.inverse is not None for x in self.shapes):
+            inverse = np.tile(np.eye(there.shape[1]), (len(there), 1, 1))
+            for whole, x in zip(inverse, self.shapes, strict=True):
+                if x.inverse is not None:
+                    whole[: x.sensors.size, : x.sensors.size] = x.inverse
+        fitted = np.array([self.cluster or (x.mode,) for x in self.shapes])
+        return _Rows(fitted, there, sensors, weight, psi, inverse)
 
     def squares(self, modes: Modes, count: int) -> Floats:
         """Return the sums of squares with each model mode, (measured modes, modes)."""
-        out = np.zeros((count, modes.frequency.size))
-        if self.fitted.shape[1] == 1:  # no pair of modes alone has a residual from a span
-            c = np.einsum("rs,rsq->rq", self.psi * self.weight, modes.phi[self.sensors])
-            b = np.einsum("rs,rsq->rq", self.weight**2, modes.phi[self.sensors] ** 2)
+        out, rows = np.zeros((count, modes.frequency.size)), self.rows
+        if rows.fitted.shape[1] == 1:  # no pair of modes alone has a residual from a span
+            X = self._over(modes.phi[rows.sensors])
+            c, b = np.einsum("rs,rsq->rq", rows.psi, X), np.einsum("rsq,rsq->rq", X, X)
             seen = np.divide(c**2, b, out=np.zeros(b.shape), where=b > 0)
-            np.add.at(out, self.fitted[:, 0], np.vecdot(self.psi, self.psi)[:, None] - seen)
+            np.add.at(out, rows.fitted[:, 0], np.vecdot(rows.psi, rows.psi)[:, None] - seen)
         return out
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""
-        X = self.weight[:, :, None] * modes.phi[self._places(pairs)]
-        return self._in_rows((X @ (_inverse(X) @ self.psi[:, :, None]))[:, :, 0] - self.psi)
+        X = self._over(modes.phi[self._places(pairs)])
+        psi = self.rows.psi
+        return ((X @ (_inverse(X) @ psi[:, :, None]))[:, :, 0] - psi)[self.rows.there]
 
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, (rows, p), which are 0 of a shape that is."""
         fit, _ = self._fit(modes, pairs)
-        return self._in_rows(fit.r), self._in_rows(fit.dr)
+        return fit.r[self.rows.there], fit.dr[self.rows.there]
 
     def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
         """Return these and what is needed of second derivatives."""
         fit, dX = self._fit(modes, pairs)
         of_dX = (fit.r[:, None] @ dX.reshape(*fit.r.shape, -1)).reshape(-1, dX.shape[3])
         v, own = np.zeros(modes.phi.shape), 2 * of_dX.T @ fit.dc.reshape(of_dX.shape)
-        np.add.at(v, self._places(pairs), 2 * (self.weight * fit.r)[:, :, None] * fit.c[:, None])
+        rows, r = self.rows, fit.r
+        if rows.inverse is not None:
+            r = np.einsum("rab,ra->rb", rows.inverse, r)
+        np.add.at(v, self._places(pairs), 2 * (rows.weight * r)[:, :, None] * fit.c[:, None])
         curvature = Curvature(np.zeros(modes.lam.size), v, own + own.T)
-        return self._in_rows(fit.r), self._in_rows(fit.dr), curvature
-
-    def _in_rows(self, values: Floats) -> Floats:
-        """Return values (shapes, components, ...) of the components that there are, (rows, ...)."""
-        if self._is_full:
-            return values.reshape(-1, *values.shape[2:])
-        return values[self.rows]
-
-    @cached_property
-    def _is_full(self) -> bool:
-        return bool(self.rows.all())
+        return fit.r[rows.there], fit.dr[rows.there], curvature
 
     def _places(self, pairs: Pairs) -> tuple[Ints, Ints]:
         """Return sensors and model modes of the entries of X, (shapes, components, m)."""
-        return self.sensors[:, :, None], pairs.index[self.fitted][:, None]
+        return self.rows.sensors[:, :, None], pairs.index[self.rows.fitted][:, None]
+
+    def _over(self, values: Floats) -> Floats:
+        """Return values (shapes, components, ...) over the unit u sqrt K."""
+        weight, inverse = self.rows.weight, self.rows.inverse
+        out = weight.reshape(*weight.shape, *[1] * (values.ndim - 2)) * values
+        if inverse is None:
+            return out
+        return (inverse @ out.reshape(*out.shape[:2], -1)).reshape(out.shape)
 
     def _fit(self, modes: Modes, pairs: Pairs) -> tuple[_Fit, Floats]:
         """Return the fit, and dX (shapes, components, m, p)."""
-        places, weight = self._places(pairs), self.weight[:, :, None]
-        dX = weight[..., None] * modes.dphi[places]
-        return _fitted(weight * modes.phi[places], dX, self.psi), dX
+        places = self._places(pairs)
+        dX = self._over(modes.dphi[places])
+        return _fitted(self._over(modes.phi[places]), dX, self.rows.psi), dX
 
 
 class _Fit(NamedTuple):
@@ -282,33 +319,18 @@ class ShapeKind:
 
     def has_usable_std(self, data: ModalData, r: int) -> bool:
         """Return whether all components of a mode have standard deviations, not all of them 0."""
-        for values, std in zip(data.shape[:, r], data.shape_std[:, r], strict=True):
-            measured = np.isfinite(values)
-            if measured.any() and not (
-                np.isfinite(std[measured]).all() and (std[measured] > 0).any()
-            ):
-                return False
-        return True
+        measured, std = np.isfinite(data.shape[:, r]), data.shape_std[:, r]
+        known = (np.isfinite(std) | ~measured).all(axis=1) & ((std > 0) & measured).any(axis=1)
+        return bool((known | ~measured.any(axis=1)).all())
 
     def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
         """Return the residuals of the shape of each mode."""
-        return [ShapeResiduals(data, r, scale, tuple(modes) if self.joint else ()) for r in modes]
+        cluster = tuple(modes) if self.joint else ()
+        return [ShapeResiduals(data, [r], scale, cluster) for r in modes]
 
-    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> ShapeStack:
+    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> ShapeResiduals:
         """Return the residuals of the shapes of some modes."""
-        parts = [ShapeResiduals(data, r, scale).components for r in modes]
-        sizes = np.concatenate([part.sizes for part in parts])
-        fitted = np.array([modes] * len(modes) if self.joint else np.array(modes)[:, None])
-        rows = np.arange(sizes.max()) < sizes[:, None]
-
-        def in_rows(name: str) -> Any:
-            values = np.concatenate([getattr(part, name) for part in parts])
-            out = np.zeros(rows.shape, values.dtype)
-            out[rows] = values
-            return out
-
-        fitted = np.repeat(fitted, [part.sizes.size for part in parts], axis=0)
-        return ShapeStack(fitted, in_rows("sensors"), in_rows("weight"), in_rows("psi"), rows)
+        return ShapeResiduals(data, modes, scale, tuple(modes) if self.joint else ())
 
 
 def without_negligible(std: Floats) -> Floats:

@@ -27,10 +27,10 @@ from modefront.identifiability.scale import Scale, scale_at
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.schema import described
 from modefront.rounding import TINY
-from modefront.uncertainty.conditions import std
 from modefront.uncertainty.inference import Inference
 from modefront.uncertainty.prediction import summary
 from modefront.uncertainty.prior import NoiseModel, prior_widths
+from modefront.uncertainty.scatter import std
 
 Values = dict[str, object]
 """Values of variables by name; `modefront.results.schema` describes them."""

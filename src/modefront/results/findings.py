@@ -26,7 +26,7 @@ from modefront.identifiability.combinations import WEAK
 from modefront.optim.problem import AT_BOUND
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Determination, Values
-from modefront.uncertainty.conditions import LinearisationWarning
+from modefront.uncertainty.scatter import LinearisationWarning
 
 FEW = 10
 """Points that are named one by one in a sentence."""

@@ -30,7 +30,6 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import ALL, Values, left_open
 from modefront.results.findings import as_values
 from modefront.results.schema import described
-from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.prediction import (
     SUMMARY,
     Stencil,
@@ -40,6 +39,7 @@ from modefront.uncertainty.prediction import (
     stencil,
     summary,
 )
+from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
 from modefront.work.store import hash_text
 from modefront.work.task import Executor, Part, Task, seed_sequence

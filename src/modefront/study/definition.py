@@ -22,7 +22,7 @@ from modefront.predictions import Prediction
 from modefront.predictions.ranges import SLACK
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.schema import variables_of
-from modefront.uncertainty.options import Uncertainty
+from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 
 NAME = text("a text of printable characters")

@@ -60,7 +60,7 @@ from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.study.definition import Origin, Study, label_faults, undrawn
 from modefront.study.kinds import KINDS
 from modefront.study.kinds.sensors import ModelKind
-from modefront.study.measured import FILE, PLACE, READERS, read_data
+from modefront.study.measured import COVARIANCE, FILE, PLACE, READERS, read_data
 from modefront.text import NAME as LENGTH
 from modefront.text import clean
 
@@ -352,6 +352,7 @@ def _data() -> Schema:
     table = closed(
         {
             "file": {**FILE.described, **file_name([".csv", *SUFFIXES, *READERS], any_case=True)},
+            "covariance": COVARIANCE.described,
             "sensors": {"description": places, **table_of(PLACE)},
             "columns": {"description": columns, **table_of(NAME)},
         },

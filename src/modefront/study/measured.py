@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.csv import read_csv
+from modefront.data.csv import read_covariance, read_csv
 from modefront.data.modal import ModalData
 from modefront.data.uff import NodalModes, is_universal, read_uff55
 from modefront.errors import InputError, reason, suggestion
@@ -25,6 +25,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.options import NAME, Requirement, Table, any_of, closed, keys, text, whole
 
 FILE = text("the name of a file of modal data")
+COVARIANCE = text("the name of a file of covariances of shapes, in CSV")
 NODE, DIRECTIONS = whole(0, 10**9), "x, y, z, rx, ry, rz or a vector"
 DIRECTION = Requirement(DIRECTIONS, any_of({"type": "string"}, {"type": "array"}))
 OF_PLACE = keys(["node", "direction"], node=NODE, direction=DIRECTION)
@@ -63,6 +64,7 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
     if table is None:
         return None
     name, places, columns = table.value("file", FILE), None, {}
+    covariance = table.value("covariance", COVARIANCE, None)
     if name is not None and is_universal(name):
         places = table.table("sensors", "a table, sensor = node and direction", None)
     else:
@@ -83,6 +85,9 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
         else:
             endings = ", ".join([*READERS, ".csv", ".uff"])
             table.fault("file", f"a file that ends in {endings} or .unv", f"'{name}'")
+        if covariance is not None:
+            file = table.path(covariance)
+            data = read_covariance(file, data, columns) if data else None
     if data and model and len(data.modes) > model.size:
         found = f"{len(data.modes)} in '{name}'"
         root.fault("[data] file", f"at most {model.size} modes, as the model has", found)

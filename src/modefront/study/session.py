@@ -35,7 +35,7 @@ from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
 from modefront.uncertainty.inference import infer
 from modefront.uncertainty.most_probable import most_probable
-from modefront.uncertainty.options import Uncertainty
+from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress

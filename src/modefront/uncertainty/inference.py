@@ -19,11 +19,11 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.optim.problem import at_bounds
-from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.most_probable import maximum
 from modefront.uncertainty.planning import Candidates, candidates
 from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
+from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task
 

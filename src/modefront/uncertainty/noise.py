@@ -1,21 +1,25 @@
 r"""Effects of errors of measurement on the objectives and their derivatives, to first order.
 
 They are sums over independent sources of standard deviation one. From standard deviations, each
-value is a source, and one without counts as exact. From several data sets, each set is a source, by
-the infinitesimal jackknife (Efron 1982, doi:10.1137/1.9781611970319, chapter 6); nothing is assumed
-of how errors within a set depend on each other.
+value is a source, and one without counts as exact; from a covariance, each column of its root. From
+several data sets, each set is a source, by the infinitesimal jackknife (Efron 1982,
+doi:10.1137/1.9781611970319, chapter 6); nothing is assumed of how errors within a set depend on
+each other.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
+from modefront.errors import Fault, refuse, wrong
 from modefront.modes.result import Modes
+from modefront.options import check_fields, whole
 from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
@@ -40,6 +44,54 @@ def available(data: ModalData) -> tuple[Source, ...]:
     shapes = np.isfinite(data.shape).any(axis=2).sum(axis=0)
     sets = max(frequencies.max(), shapes.max()) > 1
     return (*(("std",) if std else ()), *(("sets",) if sets else ()))
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Source of the errors of the data, and samples of data and models.
+
+    Raises InputError for values that are not possible, alone or together.
+
+    Attributes
+    ----------
+    source : errors of the data: ``"std"``, their standard deviations; ``"sets"``, the scatter of
+        several data sets; ``"none"``; ``"auto"``, the first of these that the data have
+    bootstrap : number of bootstrap samples of the data, with each of which all points are solved;
+        0 for none, and with the source ``"none"``
+    draws : number of models drawn from the posterior for predictions; 0 for none
+    """
+
+    source: Literal["auto", "std", "sets", "none"] = "auto"
+    bootstrap: Annotated[int, whole(0, 10**6)] = 0
+    draws: Annotated[int, whole(0, 10**6)] = 0
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if self.bootstrap and self.source == "none":
+            raise wrong("bootstrap", "0 with source = 'none'", self.bootstrap)
+
+    def faults(self, data: ModalData) -> Iterator[Fault]:
+        """Yield the requirements that the data do not meet."""
+        known = available(data)
+        if self.source == "std" and self.source not in known:
+            yield Fault("", "source", "standard deviations above 0 in the data for 'std'", "none")
+        if self.source == "sets" and self.source not in known:
+            yield Fault("", "source", "a mode measured in two data sets for 'sets'", "none")
+        if self.bootstrap and self.source == "auto" and not known:
+            needed = "0, or data with standard deviations or a mode measured in two data sets"
+            yield Fault("", "bootstrap", needed, str(self.bootstrap))
+
+    def of(self, data: ModalData) -> Source | None:
+        """Return the source that is used with these data, None where there is none.
+
+        Raises InputError where the data do not meet its requirements.
+        """
+        refuse(self.faults(data))
+        if self.source == "none":
+            return None
+        if self.source == "auto":
+            return next(iter(available(data)), None)
+        return self.source
 
 
 def noise(problem: UpdatingProblem, modes: Modes, pairs: Pairs, source: Source) -> Noise:

@@ -136,23 +136,19 @@ def redraw(data: ModalData, source: Source, rng: np.random.Generator) -> ModalDa
     """
     if source == "std":
         f_std, phi_std = (np.nan_to_num(x) for x in (data.frequency_std, data.shape_std))
-        return replace(
-            data,
-            frequency=data.frequency + f_std * rng.standard_normal(f_std.shape),
-            shape=data.shape + phi_std * rng.standard_normal(phi_std.shape),
-        )
+        frequency = data.frequency + f_std * rng.standard_normal(f_std.shape)
+        z = rng.standard_normal(phi_std.shape)
+        errors = phi_std * z
+        for k, r in np.argwhere(np.isfinite(data.shape).any(axis=2)).tolist():
+            sensors = np.flatnonzero(np.isfinite(data.shape[k, r]))
+            if (C := data.covariance_of(k, r, sensors)) is not None:
+                errors[k, r, sensors] = np.linalg.cholesky(C) @ z[k, r, sensors]
+        return replace(data, frequency=frequency, shape=data.shape + errors)
     measured = _measured(data)
     for _ in range(ATTEMPTS):
         drawn = rng.integers(len(data.sets), size=len(data.sets))
-        again = replace(
-            data,
-            sets=tuple(f"{data.sets[k]} ({i + 1})" for i, k in enumerate(drawn.tolist())),
-            frequency=data.frequency[drawn],
-            damping=data.damping[drawn],
-            shape=data.shape[drawn],
-            frequency_std=data.frequency_std[drawn],
-            shape_std=data.shape_std[drawn],
-        )
+        names = tuple(f"{data.sets[k]} ({i + 1})" for i, k in enumerate(drawn.tolist()))
+        again = data.of_sets(drawn, names)
         if (_measured(again) == measured).all():
             return again
     raise UnfinishedError(

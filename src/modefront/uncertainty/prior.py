@@ -286,5 +286,8 @@ def expected(
             rms = np.sqrt((data.shape[k, r, here] ** 2).mean())
             size = np.full(here.sum(), prior.shape * ratio * rms)
         shape[k, r, here] = size / np.sqrt(measured[:, r].sum())
-    changed = replace(data, frequency_std=frequency, shape_std=shape)
+    C = data.shape_covariance if known else None
+    if C is not None:
+        C = C / np.maximum(measured.sum(axis=0), 1)[:, None, None]
+    changed = replace(data, frequency_std=frequency, shape_std=shape, shape_covariance=C)
     return changed, tuple(dict.fromkeys(assumed))

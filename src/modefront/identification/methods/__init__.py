@@ -7,6 +7,6 @@ A method is a function ``identify(data, band, ...)`` that returns an
 method       data                                                   source
 ===========  =====================================================  ============================
 `hammer`     `modefront.data.responses.FrequencyResponses`          `modefront.identification`
-`ambient`    `modefront.data.records.Records` of all setups         Au 2011, Au & Zhang 2012
+`ambient`    `modefront.data.modal_test.Records` of all setups      Au 2011, Au & Zhang 2012
 ===========  =====================================================  ============================
 """

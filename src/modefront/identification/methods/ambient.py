@@ -15,7 +15,7 @@ import numpy as np
 from scipy.stats import chi2, norm
 
 from modefront._typing import Bools, Complexes, Floats
-from modefront.data.records import Records
+from modefront.data.modal_test import Records
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import harmonics, selection, spectra, spectral_density
 from modefront.identification.lscf import Poles
@@ -494,7 +494,7 @@ def _of_structure(
     phi, C = merged_shape(places, [mode.phi for _, mode in having], covariances, len(sensors))
     omega, zeta = np.exp(means)
     mode = _estimate(float(omega), float(zeta), deviations, phi, np.sqrt(np.diag(C)))
-    return replace(mode, evidence=_evidence(having, mode, setups))
+    return replace(mode, evidence=_evidence(having, mode, setups), shape_covariance=C)
 
 
 def _evidence(having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int) -> Evidence:
