@@ -200,7 +200,7 @@ def test_a_data_set_in_another_unit_and_one_with_another_frequency(tmp_path: Pat
     write(SETS, tmp_path / "plain")
     name = load(tmp_path / "plain" / "study.toml").problem.data.sets[2]
     text = only(spoilt(tmp_path / "a", SETS, data=scaled("frequency", 6.2831853, name)))
-    assert "all frequencies of set set2 are 6.28 times" in text
+    assert f"all frequencies of set {name} are 6.28 times" in text
     assert "rad/s for Hz" in text
 
     def first_row(rows: Rows) -> None:
