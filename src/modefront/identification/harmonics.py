@@ -1,6 +1,6 @@
 r"""Harmonics of machines in ambient records: sines beside the random part of the likelihood.
 
-Symbols are those of docs/methods/identification.md. With the amplitudes c integrated out, as in
+Symbols are those of docs/methods/ambient.md. With the amplitudes c integrated out, as in
 restricted likelihood, the rest :math:`F_k - c\,d_k` counts as :math:`1 - d_k^2
 \operatorname{tr}(A^{-1} E_k^{-1}) / n` lines, :math:`A = \sum_k d_k^2 E_k^{-1}`: one less in all.
 

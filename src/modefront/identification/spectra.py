@@ -1,6 +1,6 @@
 """Spectra of ambient records: transforms for the likelihood, half spectra for poles to start from.
 
-docs/methods/identification.md defines both. References of half spectra are the principal components
+docs/methods/ambient.md defines both. References of half spectra are the principal components
 of the records.
 """
 

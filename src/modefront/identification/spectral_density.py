@@ -1,6 +1,6 @@
 r"""The likelihood of the Fourier transforms of ambient records, in a band with a few modes.
 
-Of docs/methods/identification.md, with one more part: a force :math:`f_r` of a mode in the band
+Of docs/methods/ambient.md, with one more part: a force :math:`f_r` of a mode in the band
 moves :math:`(\varphi_r h_r + \rho_r + y \sigma_r) f_r`, where :math:`y = \omega/\omega_m - 1` and
 the real vectors rho and sigma are the flanks of modes outside of it, as residual terms are. So
 :math:`E_k = \Psi N_k \Psi^T + B`, :math:`N = H S H^*`, with
