@@ -204,7 +204,7 @@ def test_a_data_set_in_another_unit_and_one_with_another_frequency(tmp_path: Pat
     assert "rad/s for Hz" in text
 
     def first_row(rows: Rows) -> None:
-        (row,) = (row for row in rows if row["set"] == "set2" and row["mode"] == "2")
+        (row,) = (row for row in rows if row["set"] == name and row["mode"] == "2")
         row["frequency"] = repr(1.1 * float(row["frequency"]))
 
     text = only(spoilt(tmp_path / "b", SETS, data=first_row))
