@@ -2,8 +2,8 @@
 
 An option is a field of a frozen dataclass. Its annotation has its requirement: a ``Literal``, or
 ``Annotated`` with a `Requirement`, or with a function that returns one when it is needed; ``None``
-besides, where the annotation has it. `check_fields`, called from ``__post_init__`` or by a class
-that is `checked`, compares all fields with their requirements and brings their values into plain
+besides, where the annotation has it. `check_fields`, called from ``__post_init__``, as that of
+`Checked` does, compares all fields with their requirements and brings their values into plain
 Python: the same record is made from TOML, from literals and from numpy scalars.
 
 A `Table` of a TOML file reads its keys by the same requirements, and collects the faults. A
@@ -30,7 +30,6 @@ from typing import (
     Any,
     Literal,
     TypeVar,
-    dataclass_transform,
     get_args,
     get_origin,
     get_type_hints,
@@ -371,11 +370,12 @@ def check_fields(record: Any) -> None:
         object.__setattr__(record, each.name, each.requirement.convert(plain(value)))
 
 
-@dataclass_transform(frozen_default=True)
-def checked(record: type[T]) -> type[T]:
-    """Make a class a frozen dataclass of options, which raises InputError for wrong fields."""
-    record.__post_init__ = check_fields  # type: ignore[attr-defined]
-    return dataclass(frozen=True)(record)
+class Checked:
+    """What frozen dataclasses of options are: they raise InputError for wrong fields."""
+
+    def __post_init__(self) -> None:
+        """Bring the fields into plain Python, see `check_fields`."""
+        check_fields(self)
 
 
 def each_once(place: str, names: Iterable[str]) -> list[Fault]:

@@ -31,7 +31,9 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
     data = bare().with_covariance(half @ half.swapaxes(2, 3))
     write_covariance(tmp_path / "c.csv", data)
     again = read_covariance(tmp_path / "c.csv", bare())
-    np.testing.assert_allclose(again.shape_covariance, data.shape_covariance, rtol=1e-8)  # type: ignore[arg-type]
+    assert data.shape_covariance is not None
+    assert again.shape_covariance is not None
+    np.testing.assert_allclose(again.shape_covariance, data.shape_covariance, rtol=1e-8)
     np.testing.assert_allclose(again.shape_std, data.shape_std, rtol=1e-8)
 
 

@@ -114,7 +114,8 @@ class ModalData:
         """Return what is wrong with the covariance of a shape: the expected and the found."""
         sensors = np.flatnonzero(np.isfinite(self.shape[k, r]))
         names, std = [self.sensors[i] for i in sensors], self.shape_std[k, r, sensors]
-        C = self.shape_covariance[k, r][np.ix_(sensors, sensors)]  # type: ignore[index]
+        assert self.shape_covariance is not None, "no covariance is known"
+        C = self.shape_covariance[k, r][np.ix_(sensors, sensors)]
         for i, j in np.argwhere(~np.isfinite(C)).tolist():
             return "the covariances of all measured components", f"none of {names[i]}, {names[j]}"
         for i, j in np.argwhere(np.abs(C - C.T) > ROUNDED * np.outer(std, std)).tolist():

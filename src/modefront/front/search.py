@@ -15,7 +15,7 @@ from typing import Annotated
 
 from modefront.front.proposers.base import USUAL, Offer, Proposer
 from modefront.front.state import State
-from modefront.options import checked, number, whole
+from modefront.options import Checked, number, whole
 from modefront.work.task import Key, Task
 
 BATCH = 6
@@ -32,8 +32,8 @@ SEARCHING = 0.9
 weights and the ends of its branches."""
 
 
-@checked
-class Search:
+@dataclass(frozen=True)
+class Search(Checked):
     """How far the search for global minima goes.
 
     Raises InputError for values that are not possible.

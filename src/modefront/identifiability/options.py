@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
-from modefront.options import checked, number, whole
+from modefront.options import Checked, number, whole
 
 SHARE = number("a share from 0 to 1", least=0, most=1)
 STEP = number("a share of the ranges from 0.001 to 0.5", least=1e-3, most=0.5)
 
 
-@checked
-class Identifiability:
+@dataclass(frozen=True)
+class Identifiability(Checked):
     """Limits of flat parts of the front and of manifolds of equivalent models.
 
     Raises InputError for values that are not possible.

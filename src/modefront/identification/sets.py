@@ -91,8 +91,9 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
     data = ModalData(tuple(sets), tuple(range(1, R + 1)), sensors, *parts)
     if C is not None:
         faulty = [[data.covariance_fault(k, r) is not None for r in range(R)] for k in range(K)]
-        C[np.array(faulty)] = np.nan  # of functions without noise, there is only rounding
-        data = data if np.isfinite(C).any() else replace(data, shape_covariance=None)
+        # Of functions without noise, there is only rounding.
+        C = np.where(np.array(faulty)[..., None, None], np.nan, C)
+        data = replace(data, shape_covariance=C if np.isfinite(C).any() else None)
     return CombinedModes(data, z_std, spread, index)
 
 

@@ -24,8 +24,8 @@ BOUNDS = options.numbers(
 )
 
 
-@options.checked
-class Prior:
+@dataclass(frozen=True)
+class Prior(options.Checked):
     """What is expected of a parameter before the data are seen: it lies about its nominal value.
 
     Attributes

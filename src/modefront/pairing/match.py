@@ -15,7 +15,7 @@ import numpy as np
 
 from modefront._typing import Complexes, Floats, Ints
 from modefront.data.modal import ModalData
-from modefront.options import checked, number, whole
+from modefront.options import Checked, number, whole
 from modefront.rounding import TINY
 
 OUTSIDE = 1e3
@@ -27,8 +27,8 @@ UNSEEN = 1e-6
 WINDOW = number("a ratio of frequencies above 1", above=1)
 
 
-@checked
-class Pairing:
+@dataclass(frozen=True)
+class Pairing(Checked):
     """Rule by which measured modes and model modes are paired.
 
     Raises InputError for values that are not possible.

@@ -21,7 +21,7 @@ from modefront.data.modal import ModalData
 from modefront.errors import Fault, InputError, refuse
 from modefront.families import Family
 from modefront.models.base import Model
-from modefront.options import TRUE_OR_FALSE, Requirement, check_fields, checked, each_once, text
+from modefront.options import TRUE_OR_FALSE, Checked, Requirement, check_fields, each_once, text
 from modefront.residuals.problem import UpdatingProblem
 from modefront.text import NAME, clean
 
@@ -77,8 +77,8 @@ def _all_of(record: type, words: str) -> Requirement:
     )
 
 
-@checked
-class ResultVariable:
+@dataclass(frozen=True)
+class ResultVariable(Checked):
     """A variable of the results that a prediction has one value of for each model and place.
 
     Raises InputError for values that are not possible.
@@ -114,8 +114,8 @@ class ResultVariable:
         return f"{self.key}, {self.unit}" if self.unit else self.key
 
 
-@checked
-class Setting:
+@dataclass(frozen=True)
+class Setting(Checked):
     """An option of predictions, as a variable of the results.
 
     Raises InputError for values that are not possible.
@@ -139,8 +139,8 @@ class Setting:
 VARIABLES = _all_of(ResultVariable, "ResultVariable")
 
 
-@checked
-class NumericalCheck:
+@dataclass(frozen=True)
+class NumericalCheck(Checked):
     """A comparison with finer numerics, made at the reference model.
 
     Raises InputError for values that are not possible.

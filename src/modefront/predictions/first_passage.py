@@ -18,10 +18,10 @@ from modefront.options import (
     ABOVE_ZERO,
     NOT_NEGATIVE,
     NUMBER,
+    Checked,
     Requirement,
     array,
     check_fields,
-    checked,
     nested,
     number,
     numbers,
@@ -82,8 +82,8 @@ MODULATION = Requirement(
 )
 
 
-@checked
-class SoilFilter:
+@dataclass(frozen=True)
+class SoilFilter(Checked):
     """A filter of white noise by a layer of soil, after Kanai and Tajimi.
 
     Raises InputError for values that are not possible.

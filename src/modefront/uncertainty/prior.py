@@ -18,7 +18,7 @@ from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
 from modefront.optim.scalarisation import LogSum
-from modefront.options import checked, number
+from modefront.options import Checked, number
 from modefront.residuals.base import NEGLIGIBLE
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem
@@ -35,8 +35,8 @@ FARTHEST = 7.0
 """Distance from the median of a prior, in standard deviations, beyond which nobody looks."""
 
 
-@checked
-class NoisePrior:
+@dataclass(frozen=True)
+class NoisePrior(Checked):
     """What is expected of the errors of measurement and model together.
 
     Raises InputError for values that are not possible.

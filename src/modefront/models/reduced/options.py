@@ -19,7 +19,7 @@ from modefront.models.base import Model, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.model import MEMORY, TOLERANCE, ReducedModel
-from modefront.options import Requirement, any_of, checked, number
+from modefront.options import Checked, Requirement, any_of, number
 from modefront.pairing.match import Pairing, modes_needed
 
 SMALLEST = 100
@@ -101,8 +101,8 @@ def _dense(size: float, derivatives: int) -> float:
     return DENSE[0] + DENSE[1] * size**3 + DENSE[2] * size**2 * derivatives
 
 
-@checked
-class Reduction:
+@dataclass(frozen=True)
+class Reduction(Checked):
     """Tolerance and memory of a reduced basis.
 
     Raises InputError for values that are not possible.

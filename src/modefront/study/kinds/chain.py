@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 from modefront.errors import suggestion
@@ -11,10 +12,10 @@ from modefront.models.chain import chain
 from modefront.options import (
     ABOVE_ZERO,
     NOT_NEGATIVE,
+    Checked,
     Requirement,
     Table,
     array,
-    checked,
     entries,
     numbers,
     table_of,
@@ -38,8 +39,8 @@ OF_MASSES = Requirement(
 PLACES = entries("a table, name = degree of freedom", table_of(WEIGHTED))
 
 
-@checked
-class Chain:
+@dataclass(frozen=True)
+class Chain(Checked):
     """Lumped masses joined by springs, the first one to the ground; SI or any consistent units.
 
     Attributes

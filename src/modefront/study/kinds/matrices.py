@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -20,11 +20,11 @@ from modefront.models.matrices import matrices
 from modefront.models.parameters import BASE, exponents_of, form_of
 from modefront.options import (
     TRUE_OR_FALSE,
+    Checked,
     Option,
     Table,
     any_of,
     array,
-    checked,
     closed,
     entries,
     file_name,
@@ -54,8 +54,8 @@ MOVING = any_of(
 )
 
 
-@checked
-class Matrices:
+@dataclass(frozen=True)
+class Matrices(Checked):
     """Matrices from files: K = base + sum_j c_j K_j, M likewise; c_j is a parameter or a product.
 
     Attributes

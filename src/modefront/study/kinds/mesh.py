@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, get_args
 
 from modefront import fem
@@ -26,13 +26,13 @@ from modefront.options import (
     PAIR,
     TABLE,
     TRUE_OR_FALSE,
+    Checked,
     Option,
     Requirement,
     Schema,
     Table,
     any_of,
     array,
-    checked,
     chosen,
     closed,
     entries,
@@ -234,8 +234,8 @@ SCALES = entries("a table, parameter = { quantity, of }", table_of(of_options(SC
 
 
 # 13 fields: the tables of a structure.
-@checked
-class MeshModel:
+@dataclass(frozen=True)
+class MeshModel(Checked):
     """Finite elements on a mesh from a file that meshio reads.
 
     Attributes
