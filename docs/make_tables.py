@@ -1,8 +1,9 @@
-"""Writes the tables of two pages from the schemas of the program: python docs/make_tables.py.
+"""Writes tables of two pages from what the program knows: python docs/make_tables.py.
 
-These are results.md, from the variables of results, and study-file.md, from the requirements by
-which study files are read. A page has a pair of comments for each table, ``<!-- table: NAME -->``
-and ``<!-- end -->``. What is between them is made, everything else is written by hand.
+These are the variables of predictions in results.md, and those of study-file.md, from the
+requirements by which study files are read. A page has a pair of comments for each table,
+``<!-- table: NAME -->`` and ``<!-- end -->``. What is between them is made, everything else is
+written by hand.
 """
 
 from __future__ import annotations
@@ -14,8 +15,6 @@ from typing import Any
 
 from modefront.options import WITHOUT, Schema
 from modefront.predictions import Passage, PeakResponse
-from modefront.predictions.base import Variable
-from modefront.results.schema import ATTRIBUTES, DIMENSIONS, FORMAT, variables_of
 from modefront.study.file import study_schema
 
 DOCS = Path(__file__).parent
@@ -24,17 +23,19 @@ TABLE = re.compile(r"(<!-- table: (?P<name>[^>]+?) -->\n).*?(<!-- end -->)", re.
 
 
 def of_results() -> dict[str, str]:
-    """Return the tables by name: one for each section of the schema, dimensions and attributes."""
-    sections: dict[str, list[Variable]] = {}
-    for variable in variables_of((PeakResponse.kind, Passage.kind)).values():
-        sections.setdefault(variable.section, []).append(variable)
-    out = {name: variable_table(variables) for name, variables in sections.items()}
-    dimensions = [[f"`{name}`", meaning] for name, meaning in DIMENSIONS.items()]
-    attributes = [[f"`{x.name}`", x.values, x.meaning] for x in ATTRIBUTES.values()]
-    return out | {
-        "Dimensions": "".join(rows(["dimension", "meaning"], dimensions)),
-        "Attributes": "".join(rows(["attribute", "type", "meaning"], attributes)),
-    }
+    """Return the table of the variables of predictions."""
+    cells = [
+        [
+            f"`{x.name}`",
+            ", ".join(x.dimensions),
+            " ".join(filter(None, [x.values.replace("number", ""), x.unit])) or "–",
+            x.meaning,
+        ]
+        for kind in (PeakResponse.kind, Passage.kind)
+        for x in kind.schema
+    ]
+    header = ["variable", "dimensions", "unit or type", "meaning"]
+    return {"Predictions": "".join(rows(header, cells))}
 
 
 def of_study_file() -> dict[str, str]:
@@ -96,20 +97,6 @@ def value(default: Any) -> str:
     return f'`"{default}"`' if isinstance(default, str) else f"{default:,}"
 
 
-def variable_table(variables: Sequence[Variable]) -> str:
-    """Return the table of the variables of a section."""
-    cells = [
-        [
-            f"`{x.name}`" + (" *" if x.required else ""),
-            ", ".join(x.dimensions) or "–",
-            x.unit or "–",
-            x.meaning,
-        ]
-        for x in variables
-    ]
-    return "".join(rows(["variable", "dimensions", "unit", "meaning"], cells))
-
-
 def rows(header: Sequence[str], cells: Iterable[Sequence[str]]) -> Iterator[str]:
     """Yield the lines of a table of Markdown."""
     yield line(header)
@@ -122,30 +109,28 @@ def line(cells: Sequence[str]) -> str:
     return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |\n"
 
 
-PAGES: Mapping[str, Callable[[], dict[str, str]]] = {
-    "results.md": of_results,
-    "study-file.md": of_study_file,
+PAGES: Mapping[Path, Callable[[], dict[str, str]]] = {
+    DOCS.parent / "src" / "modefront" / "results" / "results.md": of_results,
+    DOCS / "study-file.md": of_study_file,
 }
 
 
-def page(name: str, text: str) -> str:
+def page(path: Path, text: str) -> str:
     """Return the text of a page with its tables made anew.
 
     Raises ValueError where a table is missing on the page, or is none of the schema.
     """
-    made = PAGES[name]()
+    made = PAGES[path]()
     other = [match["name"] for match in TABLE.finditer(text)]
     if sorted(other) != sorted(made):
         raise ValueError(f"expected one table each of {sorted(made)}, found {sorted(other)}")
-    text = TABLE.sub(lambda match: f"{match[1]}{made[match['name']]}{match[3]}", text)
-    return re.sub(r"(<!-- format -->)\d+", rf"\g<1>{FORMAT}", text)
+    return TABLE.sub(lambda match: f"{match[1]}{made[match['name']]}{match[3]}", text)
 
 
 def main() -> None:
     """Write the pages."""
-    for name in PAGES:
-        path = DOCS / name
-        path.write_text(page(name, path.read_text(encoding="utf-8")), encoding="utf-8")
+    for path in PAGES:
+        path.write_text(page(path, path.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 if __name__ == "__main__":

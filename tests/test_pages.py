@@ -14,9 +14,10 @@ import pytest
 import modefront as mf
 from modefront.front.point import Kind
 from modefront.predictions import Passage, PeakResponse
-from modefront.results.schema import ATTRIBUTES, FORMAT, variables_of
+from modefront.results.schema import ATTRIBUTES, DIMENSIONS, VARIABLES, variables_of
 
 DOCS = Path(__file__).parents[1] / "docs"
+RESULTS = DOCS.parent / "src" / "modefront" / "results" / "results.md"
 
 
 def script(name: str) -> ModuleType:
@@ -29,23 +30,32 @@ def script(name: str) -> ModuleType:
     return module
 
 
-def test_the_page_of_results_is_what_the_schema_makes() -> None:
-    text = (DOCS / "results.md").read_text(encoding="utf-8")
-    assert script("make_tables").page("results.md", text) == text, "run: python docs/make_tables.py"
-    assert f"format <!-- format -->{FORMAT};" in text
+def test_the_page_of_results_has_every_variable() -> None:
+    text = RESULTS.read_text(encoding="utf-8")
+    assert script("make_tables").page(RESULTS, text) == text, "run: python docs/make_tables.py"
     for name in (*variables_of((PeakResponse.kind, Passage.kind)), *ATTRIBUTES):
         assert f"| `{name}`" in text
+    of = VARIABLES["candidate_frequency"]
+    assert (of.dimensions, of.values, of.unit, of.required) == (
+        ("candidate",),
+        "number",
+        "Hz",
+        False,
+    )
+    assert VARIABLES["collinearity_index"].dimensions == ()
+    assert (VARIABLES["theta"].unit, VARIABLES["pareto"].values) == ("", "truth")
+    assert {x for each in VARIABLES.values() for x in each.dimensions} <= set(DIMENSIONS)
 
 
 def test_the_page_of_the_study_file_is_what_its_reader_makes() -> None:
     text = (DOCS / "study-file.md").read_text(encoding="utf-8")
-    made = script("make_tables").page("study-file.md", text)
+    made = script("make_tables").page(DOCS / "study-file.md", text)
     assert made == text, "run: python docs/make_tables.py"
 
 
 def test_the_page_of_results_lists_every_kind_of_models() -> None:
-    text = (DOCS / "results.md").read_text(encoding="utf-8")
-    models = text[text.index("## Models") : text.index("<!-- table: Models")]
+    text = RESULTS.read_text(encoding="utf-8")
+    models = text[text.index("## Models") : text.index("| variable |")]
     assert re.findall(r"^\| `([a-z-]+)` \|", models, re.MULTILINE) == [
         kind.value for kind in sorted(Kind, key=lambda kind: kind is Kind.NOMINAL)
     ]
@@ -53,16 +63,16 @@ def test_the_page_of_results_lists_every_kind_of_models() -> None:
 
 def test_a_page_without_a_table_of_the_schema_is_refused() -> None:
     with pytest.raises(ValueError, match="expected one table each"):
-        script("make_tables").page("results.md", "<!-- table: Models -->\n<!-- end -->\n")
+        script("make_tables").page(RESULTS, "<!-- table: Models -->\n<!-- end -->\n")
 
 
 def test_what_is_between_the_comments_is_replaced_and_nothing_else() -> None:
     make = script("make_tables")
-    text = (DOCS / "results.md").read_text(encoding="utf-8")
-    spoiled = text.replace("| `theta` *", "| `theta_0` *")
+    text = RESULTS.read_text(encoding="utf-8")
+    spoiled = text.replace("| `frf_peak` ", "| `frf_0` ")
     assert spoiled != text
-    assert make.page("results.md", spoiled) == text
-    assert make.page("results.md", "by hand\n" + text) == "by hand\n" + text
+    assert make.page(RESULTS, spoiled) == text
+    assert make.page(RESULTS, "by hand\n" + text) == "by hand\n" + text
 
 
 def blocks(page: Path) -> list[tuple[str, str]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import gzip
-import json
 import os
 import subprocess
 import sys
@@ -28,7 +27,6 @@ from modefront.predictions import ResultVariable, Setting
 from modefront.predictions.base import kinds_in
 from modefront.reports.page import payload, topics
 from modefront.results.files import read_dataset
-from modefront.results.soundness import faults
 
 
 @dataclass(frozen=True)
@@ -142,21 +140,6 @@ def test_everything_shows_it(
     compared = mf.compare([folder, folder]).fronts[0].predictions
     assert "period_length slow: mode 1" in [spread.name for spread in compared]
     assert any("period of slow" in x for said in topics(data).values() for x in said)
-
-
-def test_files_that_describe_kinds_wrongly_are_refused(data: xr.Dataset) -> None:
-    (period,) = json.loads(data.attrs["prediction_kinds"])
-    for changed, says in (
-        ("no JSON", "Expecting value"),
-        (json.dumps([period | {"table": "\x1b[31m"}]), "table: expected a name of small letters"),
-        (json.dumps([period | {"variables": []}]), "variables: expected at least one"),
-        (json.dumps([period, period]), "dimension: expected each name once"),
-        (json.dumps([{"table": "period"}]), "missing"),
-        (json.dumps(7), "not iterable"),
-    ):
-        ((place, _, found), *_) = faults(data.assign_attrs(prediction_kinds=changed))
-        assert "'prediction_kinds'" in place
-        assert says in found
 
 
 def test_a_kind_that_results_cannot_hold_is_refused(tmp_path: Path) -> None:

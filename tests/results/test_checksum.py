@@ -1,9 +1,8 @@
-"""The checksum of results: the same after any way through a file, another for any other value."""
+"""The checksums of results: the same after any way through a file, another for any other value."""
 
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,12 +14,9 @@ from faultless import DATA, STUDY
 from refusals import command
 
 import modefront as mf
-from modefront.reports.page import topics
-from modefront.results.files import FILE, checksum, read_dataset, write
+from modefront.results.files import FILE, checksums, read_dataset, write
 
 pytestmark = pytest.mark.slow(2)
-
-SAYS = "results.nc has values that do not fit its checksum"
 
 
 @pytest.fixture(scope="module")
@@ -43,9 +39,8 @@ def results(run: Path, tmp_path: Path) -> Path:
 def test_what_a_run_writes_fits(run: Path) -> None:
     data = read_dataset(run)
     raw = xr.load_dataset(run / FILE, engine="h5netcdf")
-    assert raw.attrs["checksum"] == checksum(raw) == checksum(data)
-    assert "changed" not in data.attrs
-    mf.read_results(run)  # without a warning
+    assert json.loads(raw.attrs["checksum"]) == checksums(raw) == checksums(data)
+    assert "checksum" not in data.attrs
 
 
 def test_every_variable_with_a_doubled_value_has_another_checksum(run: Path) -> None:
@@ -61,7 +56,8 @@ def test_every_variable_with_a_doubled_value_has_another_checksum(run: Path) -> 
         tried += 1
         values.flat[doubled[0]] = 0 if values.dtype.kind == "b" else 2 * values.flat[doubled[0]]
         changed = xr.Dataset({**data.variables, name: variable.copy(data=values)}, attrs=data.attrs)
-        if checksum(changed) == data.attrs["checksum"]:
+        kept = json.loads(data.attrs["checksum"])
+        if [x for x, y in checksums(changed).items() if y != kept[x]] != [f"variable '{name}'"]:
             same.append(name)
     assert tried > 50
     assert same == []
@@ -83,29 +79,57 @@ def other_unit(file: h5py.File) -> None:
     file["frequency"].attrs["units"] = "rad/s"
 
 
-@pytest.mark.parametrize("change", [other_value, other_text, other_attribute, other_unit])
-def test_any_change_is_said(change: Callable[[h5py.File], None], results: Path) -> None:
-    with h5py.File(results / FILE, "r+") as file:
-        change(file)
-    assert SAYS in read_dataset(results).attrs["changed"]
+def lost_value(file: h5py.File) -> None:
+    del file["paired_mode"]
 
 
-def test_a_lost_checksum_is_said_everywhere(
-    results: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("change", "place", "found"),
+    [
+        (other_value, "variable 'theta'", "another"),
+        (other_text, "variable 'group'", "another"),
+        (other_attribute, "attribute 'seed'", "another"),
+        (other_unit, "variable 'frequency'", "another"),
+        (lost_value, "variable 'paired_mode'", "nothing"),
+    ],
+)
+def test_any_change_is_refused_by_its_name(
+    change: Callable[[h5py.File], None],
+    place: str,
+    found: str,
+    results: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     with h5py.File(results / FILE, "r+") as file:
+        change(file)
+    path, expected = results / FILE, "expected it as the run has written it"
+    for name in ("show", "report", "compare"):
+        assert command(name, results) == 2
+        assert capsys.readouterr().err == f"{path}: {place}: {expected}, found {found}\n"
+
+
+@pytest.mark.parametrize("text", [None, "", "0", "[]", "{}", "\x1b[31m"])
+def test_without_checksums_nothing_is_read(text: str | None, results: Path) -> None:
+    with h5py.File(results / FILE, "r+") as file:
         del file.attrs["checksum"]
-    says = "results.nc has no checksum"
-    assert command("show", results) == 0
-    assert says in " ".join(capsys.readouterr().out.split())
-    assert command("show", results, "--format", "json") == 0
-    answer = json.loads(capsys.readouterr().out)
-    assert says in answer["remarks"][0]
-    assert says in answer["attributes"]["changed"]
-    caution = topics(read_dataset(results))["What to beware of"]
-    assert says.lower() in caution[0].lower()
-    with pytest.warns(UserWarning, match=says):
+        if text is not None:
+            file.attrs["checksum"] = text
+    expected = (
+        "attribute 'checksum': expected the checksums|variable 'label': expected it as the run"
+    )
+    with pytest.raises(mf.InputError, match=expected):
         mf.read_results(results)
+
+
+def test_what_others_add_is_no_change(results: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with h5py.File(results / FILE, "r+") as file:
+        file.attrs["of ours"] = "\x1b[31m"
+        file["ours"] = np.ones(3)
+        file["ours"].make_scale("ours")
+    assert read_dataset(results)["ours"].values.tolist() == [1.0, 1.0, 1.0]
+    for option in ((), ("--all",), ("--format", "json")):
+        assert command("show", results, *option) == 0
+        assert "\x1b" not in capsys.readouterr().out
 
 
 def layouts(data: xr.Dataset, path: Path) -> None:
@@ -122,11 +146,10 @@ def layouts(data: xr.Dataset, path: Path) -> None:
 
 def test_the_layout_of_a_file_does_not_count(results: Path) -> None:
     data = xr.load_dataset(results / FILE, engine="h5netcdf")
-    assert checksum(data) == data.attrs["checksum"]
     layouts(data, results / FILE)
-    assert "changed" not in read_dataset(results).attrs
+    read_dataset(results)
     write(data, results / FILE)
-    assert "changed" not in read_dataset(results).attrs
+    read_dataset(results)
 
 
 def test_types_that_a_file_may_change_do_not_count() -> None:
@@ -145,7 +168,7 @@ def test_types_that_a_file_may_change_do_not_count() -> None:
         float=("x", np.array([1.0, -np.nan, -0.0])),
     )
     other.attrs = {"one": np.float64(1.0), "list": np.array([1.0, 2.0]), "n": np.int64(1)}
-    assert checksum(other) == checksum(data)
+    assert checksums(other) == checksums(data)
     changes: list[xr.Dataset] = [
         data.assign(float=("x", np.array([1.0, np.nan, 0.0]))),
         data.assign(text=("x", ["a", "\xe9\n", ""])),
@@ -158,6 +181,6 @@ def test_types_that_a_file_may_change_do_not_count() -> None:
         data.assign_attrs(n=2),
         data.assign_attrs(m=2),
     ]
-    assert len({checksum(each) for each in (data, *changes)}) == len(changes) + 1
-    with warnings.catch_warnings(action="error"):
-        checksum(xr.Dataset())
+    different = {json.dumps(checksums(each), sort_keys=True) for each in (data, *changes)}
+    assert len(different) == len(changes) + 1
+    assert checksums(xr.Dataset()) == {}

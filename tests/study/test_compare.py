@@ -10,7 +10,7 @@ from modefront.errors import InputError
 from modefront.predictions import Passage
 from modefront.predictions.base import as_text
 from modefront.results.compare import compare
-from modefront.results.files import FILE
+from modefront.results.files import FILE, write
 from modefront.results.schema import ATTRIBUTES, FORMAT, variables_of
 
 
@@ -60,10 +60,8 @@ def results(
         variables["piece"] = (("point",), [*piece, piece[-1]])
     sizes = {"point": count + 1, "parameter": len(parameters), "group": len(groups), "failure": 2}
     sizes |= {"range": 3, "set": 1, "end": 0}
-    known = variables_of([Passage.kind])
-    together = {known[name].together for name in variables} - {""}
-    for name, x in known.items():
-        if x.together in together and name not in variables:
+    for name, x in variables_of([Passage.kind]).items():
+        if name.startswith("failure_") and name not in variables:
             of: type = {"text": str, "truth": bool}.get(x.values, float)
             shape = [sizes.get(each, 2) for each in x.dimensions]
             variables[name] = (x.dimensions, np.zeros(shape, of))
@@ -88,7 +86,7 @@ def results(
 
 def save(folder: Path, data: xr.Dataset) -> Path:
     folder.mkdir()
-    data.to_netcdf(folder / FILE, engine="h5netcdf")
+    write(data, folder / FILE)
     return folder
 
 

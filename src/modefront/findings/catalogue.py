@@ -99,7 +99,6 @@ not-smooth | the derivatives differ from finite differences of group '{group}' f
     digits are lost in it; check its units, and whether a stiffness or mass vanishes; derivatives of
     a Python model have to be those of its matrices
 # FAILURE
-changed | {subject}
 not-converged | not converged: {subject}
 inaccurate | modes are less accurate than asked for at {subject}
 no-test | {subject} has no test of convergence: it stopped when its {evaluations} evaluations were

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, is_dataclass, replace
+from dataclasses import asdict, dataclass, is_dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol, Self
 
@@ -18,7 +18,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, InputError, refuse
+from modefront.errors import Fault, refuse
 from modefront.families import Family
 from modefront.models.base import Model
 from modefront.options import TRUE_OR_FALSE, Checked, Requirement, check_fields, each_once, text
@@ -37,8 +37,7 @@ Values = Literal["number", "count", "truth", "text"]
 class Variable:
     """A variable of the results.
 
-    The unit is empty where there is none, or where it is that of the model; ``section`` is a
-    heading of the documentation, ``together`` a name of variables of which a file has all or none.
+    The unit is empty where there is none, or where it is that of the model.
     """
 
     name: str
@@ -46,9 +45,7 @@ class Variable:
     meaning: str
     values: Values = "number"
     unit: str = ""
-    section: str = ""
     required: bool = False
-    together: str = ""
 
     @property
     def attributes(self) -> dict[str, str]:
@@ -205,13 +202,10 @@ class PredictionKind:
     @property
     def schema(self) -> Iterator[Variable]:
         """All variables that results have of predictions of this kind."""
-        for variable in self._of_points():
-            yield replace(variable, together=f"{self.dimension} at points")
+        yield from self._of_points()
         for ranged in self.ranged:
-            for variable in self._linearised(ranged):
-                yield replace(variable, together=f"{self.dimension} to first order")
-            for variable in self._drawn(ranged):
-                yield replace(variable, together=f"{self.dimension} of draws")
+            yield from self._linearised(ranged)
+            yield from self._drawn(ranged)
 
     def _of_points(self) -> Iterator[Variable]:
         dimension = (self.dimension,)
@@ -355,13 +349,8 @@ def as_text(kinds: Iterable[PredictionKind]) -> str:
 
 @cache
 def kinds_from(text: str) -> tuple[PredictionKind, ...]:
-    """Return kinds from JSON; raises ValueError for what `as_text` does not make."""
-    try:
-        kinds = tuple(_kind(**values) for values in json.loads(text)) if text else ()
-        refuse(each_once("dimension", [kind.dimension for kind in kinds]))
-    except (TypeError, KeyError, RecursionError, InputError) as error:
-        raise ValueError(clean(str(error), NAME)) from None
-    return kinds
+    """Return kinds from JSON, as `as_text` makes it."""
+    return tuple(_kind(**values) for values in json.loads(text)) if text else ()
 
 
 def _kind(variables: Any, settings: Any, check: Any, **values: Any) -> PredictionKind:

@@ -1,8 +1,8 @@
-"""Results in a netCDF file: written whole or not at all, and checked when they are read.
+"""Results in a netCDF file: written whole or not at all, and read as they were written.
 
-The checksum is over names, dimensions, types, values and attributes of all variables. It does not
-depend on how a file lays these out: truth values and whole numbers count as integers of 64 bits,
-other numbers as floats of 64 bits, and texts in UTF-8.
+A file has a checksum of dimensions, type, values and attributes of each variable, and of each
+attribute. It does not depend on how a file lays these out: truth values and whole numbers count as
+integers of 64 bits, other numbers as floats of 64 bits, and texts in UTF-8.
 """
 
 from __future__ import annotations
@@ -21,9 +21,7 @@ from modefront.errors import Fault, InputError, reason, refuse
 from modefront.inputs import available_memory, file_size
 from modefront.isolated import isolated
 from modefront.outputs import output
-from modefront.results.remarks import CHANGED
-from modefront.results.schema import FORMAT, variables_in
-from modefront.results.soundness import faults
+from modefront.results.schema import ATTRIBUTES, FORMAT, VARIABLES
 from modefront.text import NAME, clean
 
 FILE = "results.nc"
@@ -32,24 +30,25 @@ READER, SECONDS = "modefront.hdf5:contents", 120.0
 """Function that reads the file, and the time that it may take."""
 
 CHECKSUM = "checksum"
-"""Attribute that holds the checksum, which it leaves out."""
+"""Attribute that holds the checksums, in JSON."""
 
 
 def write(data: xr.Dataset, path: Path) -> None:
-    """Write a dataset with its checksum, whole or not at all."""
+    """Write a dataset with its checksums, whole or not at all."""
     import h5netcdf
     from xarray.backends.h5netcdf_ import H5NetCDFStore
 
     # `to_netcdf` would import Dask, with all that belongs to it, for a lock between processes.
     with output(path, lasting=True) as stream, h5netcdf.File(stream, "w") as file:
-        data.assign_attrs({CHECKSUM: checksum(data)}).dump_to_store(H5NetCDFStore(file))
+        kept = data.assign_attrs({CHECKSUM: json.dumps(checksums(data))})
+        kept.dump_to_store(H5NetCDFStore(file))
 
 
 def read_dataset(folder: Path) -> xr.Dataset:
-    """Return the results in a folder.
+    """Return the results in a folder, as a run has written them; others may have added to them.
 
-    An attribute `CHANGED` says where the checksum does not fit. Raises InputError where there are
-    no results, where they are not those of modefront, and where they are of another format.
+    Raises InputError where there are no results, where they are of another format, and for what
+    has changed since the run.
     """
     path = folder / FILE
     file_size(path, "results of a finished run")
@@ -62,12 +61,20 @@ def read_dataset(folder: Path) -> xr.Dataset:
         expected = f"results of format {FORMAT}"
         text = f"format {clean(version, NAME)}, of another version of modefront: run it again"
         raise InputError(Fault(str(path), "attribute 'format'", expected, text))
-    refuse(Fault(str(path), *parts) for parts in faults(data))
-    kept = data.attrs.pop(CHECKSUM, "")
-    if kept != checksum(data):
-        has = "values that do not fit its" if kept else "no"
-        data.attrs[CHANGED] = f"{FILE} has {has} checksum: it is not as a run has written it"
-    return _plain(data)
+    try:
+        kept = dict(json.loads(data.attrs.pop(CHECKSUM, "")))
+    except (ValueError, TypeError):
+        what = "attribute 'checksum'", "the checksums of a run, in JSON", "none"
+        raise InputError(Fault(str(path), *what)) from None
+    needed = [f"variable '{x.name}'" for x in VARIABLES.values() if x.required]
+    needed += [f"attribute '{x.name}'" for x in ATTRIBUTES.values() if x.required]
+    now, expected = checksums(data), "it as the run has written it"
+    refuse(
+        Fault(str(path), place, expected, "another" if place in now else "nothing")
+        for place in dict.fromkeys([*needed, *kept])
+        if now.get(place, "") != kept.get(place)
+    )
+    return data
 
 
 def written_for(path: Path) -> str | None:
@@ -77,24 +84,24 @@ def written_for(path: Path) -> str | None:
     return None
 
 
-def checksum(data: xr.Dataset) -> str:
-    """Return the checksum of a dataset, BLAKE2b in hexadecimal digits."""
-    digest = hashlib.blake2b(digest_size=16)
-    for name in sorted(data.variables, key=str):
-        variable = data.variables[name]
-        digest.update(_text("variable", name, *variable.dims))
-        digest.update(_values(variable.values))
-        digest.update(_attributes(variable.attrs))
-    digest.update(_attributes(data.attrs))
-    return digest.hexdigest()
+def checksums(data: xr.Dataset) -> dict[str, str]:
+    """Return the checksums of variables and attributes by their places, BLAKE2b in hexadecimal."""
+    of = {
+        f"variable '{name}'": _text(*x.dims) + _values(x.values) + _attributes(x.attrs)
+        for name, x in data.variables.items()
+    }
+    of |= {
+        f"attribute '{name}'": _values(np.atleast_1d(value))
+        for name, value in data.attrs.items()
+        if name != CHECKSUM
+    }
+    return {place: hashlib.blake2b(x, digest_size=8).hexdigest() for place, x in of.items()}
 
 
 def _attributes(attributes: Mapping[Any, Any]) -> bytes:
     """Return attributes in the order of their names; files do not tell one value from a list."""
     return b"".join(
-        _text("attribute", name) + _values(np.atleast_1d(attributes[name]))
-        for name in sorted(attributes, key=str)
-        if name != CHECKSUM
+        _text(name) + _values(np.atleast_1d(attributes[name])) for name in sorted(attributes)
     )
 
 
@@ -119,24 +126,3 @@ def _read(path: Path) -> xr.Dataset:
         for k, (name, dimensions, own) in enumerate(variables)
     }
     return xr.decode_cf(xr.Dataset(values, attrs=attributes), decode_times=False)
-
-
-def _plain(data: xr.Dataset) -> xr.Dataset:
-    """Return results in which truth is true or false, and no text holds orders to a terminal."""
-    changed: dict[str, xr.Variable] = {}
-    known = variables_in(data)
-    for key, variable in data.variables.items():
-        name = str(key)
-        if name in known and known[name].values == "truth":
-            changed[name] = variable.astype(bool)
-        if variable.dtype.kind in "UOT":
-            texts = np.array(list(map(clean, variable.values.ravel().tolist())), dtype=object)
-            if (texts != variable.values.ravel()).any():
-                values = texts.reshape(variable.shape)
-                changed[name] = xr.Variable(variable.dims, values, variable.attrs)
-    out = data.assign(changed)
-    out.attrs = {
-        key: "\n".join(map(clean, value.split("\n"))) if isinstance(value, str) else value
-        for key, value in data.attrs.items()
-    }
-    return out

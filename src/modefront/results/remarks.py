@@ -18,9 +18,6 @@ from modefront.optim.problem import at_bounds
 from modefront.predictions.base import predictions_in
 from modefront.rounding import ACCUMULATED
 
-CHANGED = "changed"
-"""Attribute of results that were read: how they are not as a run has written them."""
-
 MOST, NAMED, FEW, RANGES = 10, 6, 2, 4
 """Findings that are printed, unless all are asked for; points, or runs of them, that a sentence
 names; modes whose pairs change and parameters at bounds on a first screen; ranges in a sentence."""
@@ -97,9 +94,7 @@ def headlines(data: xr.Dataset) -> list[str]:
 
 
 def _failures(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield that results were changed, and which models are not what they should be."""
-    if CHANGED in data.attrs:
-        yield found("changed", str(data.attrs[CHANGED]))
+    """Yield which models are not what they should be."""
     status, pareto = data["status"].values, data["pareto"].values
     if (status == "sampled").any():
         spent = int(data.attrs["front_evaluations"])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import html
 import textwrap
-import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +21,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
-from modefront.results.remarks import CHANGED, headlines, verdict
+from modefront.results.remarks import headlines, verdict
 from modefront.results.shapes import PairedShapes, paired_shapes, write_vtu
 from modefront.text import brief
 
@@ -121,7 +120,7 @@ class Results:
 
     Attributes
     ----------
-    dataset : all variables and attributes; docs/results.md lists them
+    dataset : all variables and attributes; results.md lists them
     problem : the updating problem; None where the results were read without their study
     """
 
@@ -286,12 +285,7 @@ def read_results(folder: Path | str, problem: UpdatingProblem | None = None) -> 
     Raises
     ------
     InputError
-        Where there are no results, where they are not those of modefront or are damaged, and where
-        they are of another format.
-
-    Warns (UserWarning) where the values do not fit their checksum.
+        Where there are no results, where they are of another format, and where they are not as a
+        run has written them.
     """
-    data = read_dataset(Path(folder))
-    if CHANGED in data.attrs:
-        warnings.warn(f"{folder}: {data.attrs[CHANGED]}", stacklevel=2)
-    return Results(data, problem)
+    return Results(read_dataset(Path(folder)), problem)
