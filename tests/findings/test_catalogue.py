@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import re
-from importlib.resources import files
 
 import pytest
 
-from modefront.findings.catalogue import CATALOGUE, Severity
+from modefront.findings.catalogue import CATALOGUE, Severity, page
 from modefront.findings.record import NUMBER, as_text, found, from_text, in_order
 
-TEXT = (files("modefront.findings") / "findings.md").read_text(encoding="utf-8")
-EXAMPLES = dict(re.findall(r"^### (\S+)\n> (.+)$", TEXT, re.MULTILINE))
+TEXT = page("findings.md")
+EXAMPLES = dict(re.findall(r"^### (\S+)\n<!-- .+ -->\n> (.+)$", TEXT, re.MULTILINE))
 
 
 def pattern(sentence: str, many: bool) -> str:
@@ -21,8 +20,9 @@ def pattern(sentence: str, many: bool) -> str:
     return "(?s:.*)".join(map(re.escape, parts))
 
 
-def test_the_page_has_every_kind_in_the_order_of_the_catalogue() -> None:
-    assert list(EXAMPLES) == list(CATALOGUE)
+def test_the_page_has_a_sentence_and_an_example_of_every_kind() -> None:
+    assert list(EXAMPLES) == list(CATALOGUE) == re.findall(r"^### (\S+)$", TEXT, re.MULTILINE)
+    assert {severity for severity, _ in CATALOGUE.values()} == set(Severity)
 
 
 @pytest.mark.parametrize("kind", CATALOGUE)
@@ -30,7 +30,7 @@ def test_the_example_on_the_page_is_what_the_kind_says(kind: str) -> None:
     sentence = CATALOGUE[kind][1]
     assert any(re.fullmatch(pattern(sentence, many), EXAMPLES[kind]) for many in (False, True))
     assert CATALOGUE[kind][0] is Severity.DETAIL or not re.search(
-        rf"^### {kind}\n> .*\n\n#", TEXT, re.MULTILINE
+        rf"^### {kind}\n<!-- .* -->\n> .*\n\n#", TEXT, re.MULTILINE
     ), "what it means, and what to do"
 
 

@@ -8,12 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from modefront.findings.catalogue import VERDICT
+from modefront.findings.catalogue import VERDICT, page
 
 DOCS = Path(__file__).parents[2] / "docs"
-TEXT = (DOCS / "verdicts.md").read_text(encoding="utf-8")
-SECTIONS = dict(re.findall(r"^### ([^\n]+)\n(.+?)(?=^##|\Z)", TEXT, re.MULTILINE | re.DOTALL))
-HOW_TO = ("verdicts", "choose", "read-a-front", "modes-swap", "undetermined", "large-models")
+TEXT = page("verdicts.md")
+FORM = r"^### ([^\n]+)\n(?:<!-- [^\n]+ -->\n)?(.+?)(?=^##|\Z)"
+SECTIONS = dict(re.findall(FORM, TEXT, re.MULTILINE | re.DOTALL))
+HOW_TO = ("choose", "read-a-front", "modes-swap", "undetermined", "large-models")
 
 
 def test_the_page_has_every_sentence_and_no_other() -> None:
@@ -30,7 +31,15 @@ def test_the_example_is_what_the_sentence_says_and_advice_follows(kind: str) -> 
 
 @pytest.mark.parametrize("name", HOW_TO)
 def test_lines_to_paste_are_toml(name: str) -> None:
-    text = (DOCS / f"{name}.md").read_text(encoding="utf-8")
+    lines_of_page(name, (DOCS / f"{name}.md").read_text(encoding="utf-8"))
+
+
+def test_lines_to_paste_of_the_verdict_are_toml() -> None:
+    lines_of_page("verdicts", TEXT)
+
+
+def lines_of_page(name: str, text: str) -> None:
+    """Read the lines to paste of a page."""
     lines = re.findall(r"^ *```toml\n(.*?)```", text, re.MULTILINE | re.DOTALL)
     assert lines or name == "read-a-front"
     for each in lines:

@@ -6,10 +6,9 @@ import json
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from importlib.resources import files
 from typing import Any
 
-from modefront.findings.catalogue import CATALOGUE, Severity
+from modefront.findings.catalogue import CATALOGUE, Severity, page
 
 LINK = re.compile(r"\[([^]]*)\]\([^)]*\)")
 """A link on the page of findings."""
@@ -65,8 +64,7 @@ class Finding:
     @property
     def meaning(self) -> list[str]:
         """What it means and what to do, in paragraphs; none of a kind that says so itself."""
-        page = (files("modefront.findings") / "findings.md").read_text(encoding="utf-8")
-        _, _, part = page.partition(f"\n### {self.kind}\n")
+        _, _, part = page("findings.md").partition(f"\n### {self.kind}\n")
         _, _, text = part.partition("\n## ")[0].partition("\n### ")[0].partition("\n\n")
         return [LINK.sub(r"\1", " ".join(x.split())) for x in text.split("\n\n") if x.strip()]
 

@@ -1,7 +1,6 @@
 """The first answer: which model to use and why, how sure it is, and what the front says.
 
-`modefront.findings.catalogue.VERDICT` has all it can say; docs/verdicts.md says of each what it
-means and what to do.
+The page ``findings/verdicts.md`` has all it can say, and of each what it means and what to do.
 """
 
 from __future__ import annotations
