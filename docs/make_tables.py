@@ -8,6 +8,7 @@ written by hand.
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -92,9 +93,9 @@ def key_table(tables: Mapping[str, Schema]) -> str:
 
 def value(default: Any) -> str:
     """Return a default as a study file has it."""
-    if isinstance(default, bool):
-        return f"`{str(default).lower()}`"
-    return f'`"{default}"`' if isinstance(default, str) else f"{default:,}"
+    if isinstance(default, bool | str | list):
+        return f"`{json.dumps(default)}`"
+    return f"{default:,}"
 
 
 def rows(header: Sequence[str], cells: Iterable[Sequence[str]]) -> Iterator[str]:

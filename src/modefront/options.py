@@ -21,7 +21,7 @@ import typing
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import MISSING, dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from itertools import pairwise
 from pathlib import Path
@@ -257,6 +257,16 @@ def entries(expected: str, schema: Schema) -> Requirement:
     return Requirement(expected, {}, entries=schema)
 
 
+def mapping(expected: str, each: Requirement) -> Requirement:
+    """Return the requirement of a table of any names, of which each value meets another one."""
+
+    def read(outer: Table, key: str) -> dict[str, Any] | None:
+        table = outer.table(key)
+        return {name: table.value(name, each) for name in table.values} if table else None
+
+    return Requirement(expected, TABLE, entries=table_of(each.schema), read=read)
+
+
 PAIR = array(NUMBER, 2, 2)
 """Schema of two numbers."""
 
@@ -305,17 +315,17 @@ def keys(required: Sequence[str], **known: Requirement) -> tuple[Option, ...]:
     return tuple(Option(name, each, required=name in required) for name, each in known.items())
 
 
-def options(record: type) -> tuple[Option, ...]:
-    """Return the fields of a class of records that have requirements."""
+def options(record: Callable[..., Any]) -> tuple[Option, ...]:
+    """Return the fields of a class of records, or arguments of a function, with requirements."""
     hints = get_type_hints(record, include_extras=True)
     _, _, section = (inspect.getdoc(record) or "").partition("Attributes\n----------\n")
     said = re.findall(r"^(\w+) : (.*(?:\n    .*)*)", section, re.MULTILINE)
     meanings = {name: " ".join(text.split()).replace("``", "`") for name, text in said}
     out = []
-    for each in fields(record):
+    for each in inspect.signature(record).parameters.values():
         requirement = _requirement(hints[each.name])
         if requirement is not None:
-            required = each.default is MISSING and each.default_factory is MISSING
+            required = each.default is each.empty
             optional = types.NoneType in get_args(hints[each.name])
             default = None if required else plain(each.default)
             if default in ("", []) or not fits(default, requirement.schema):
@@ -325,7 +335,7 @@ def options(record: type) -> tuple[Option, ...]:
     return tuple(out)
 
 
-def schema_of(record: type) -> Schema:
+def schema_of(record: Callable[..., Any]) -> Schema:
     """Return the schema of a table whose keys are the fields of a record.
 
     A class that needs one of several fields, and no more, names them by its attribute ``either``.

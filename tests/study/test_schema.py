@@ -21,6 +21,7 @@ from refusals import command
 import modefront as mf
 from modefront.errors import Fault
 from modefront.fem.mesh import read_mesh
+from modefront.fem.structure import AXES, DIRECTION, DOF
 from modefront.options import (
     ABOVE_ZERO,
     NAME,
@@ -34,7 +35,7 @@ from modefront.options import (
 from modefront.study.examples import names, write_example
 from modefront.study.file import FILE_NAME, as_text, study_schema
 from modefront.study.kinds import KINDS, mesh
-from modefront.study.kinds.sensors import AXES, DIRECTION, DOF, WEIGHTED
+from modefront.study.kinds.sensors import WEIGHTED
 
 COUNT = 700
 

@@ -22,7 +22,7 @@ from modefront.fem.elements.shell import (
 )
 from modefront.fem.elements.solid import SOLIDS, solid, solid_stresses
 from modefront.fem.section import Checks, FemError, Material, at
-from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring, Structure, Trusses
+from modefront.fem.structure import ALONG, Beams, Mass, Shells, Solids, Spring, Structure, Trusses
 from modefront.rounding import TINY
 
 SYMMETRIC = 1e-9
@@ -96,7 +96,7 @@ def _beams(X: Floats, group: Beams) -> Block:
         with at("orientation"):
             v = check.unit_vector(tuple(group.orientation))[:3]
         orientation = np.broadcast_to(v, axis.shape)
-        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < check.ALONG)
+        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < ALONG)
         if len(parallel):
             what = f"orientation {tuple(group.orientation)} must not be parallel to the axis, but"
             nodes = ", ".join(map(str, cells[parallel[0]].tolist()))
@@ -157,7 +157,7 @@ def _grain(x: Floats, group: Shells) -> Floats:
         v = check.unit_vector(tuple(group.direction))[:3]
     R = centre_axes(x)[:, :2]
     m = (R @ v)[:, None] @ R
-    across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < check.ALONG)
+    across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < ALONG)
     if len(across):
         what = f"direction {tuple(group.direction)} must not be normal to the shell, but it is"
         raise FemError(f"{what} at element {across[0]}")
@@ -217,7 +217,7 @@ def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats) -> Floats:
         return np.pad(gap / length, ((0, 0), (0, 3)))
     axis = np.tile(check.unit_vector(member.direction), (len(nodes), 1))
     slant = np.linalg.norm(np.cross(gap, axis[:, :3]), axis=1)
-    skew = np.flatnonzero(slant > check.ALONG * length[:, 0] + check.COINCIDENT * size)
+    skew = np.flatnonzero(slant > ALONG * length[:, 0] + check.COINCIDENT * size)
     if axis[0, :3].any() and len(skew):
         raise FemError(
             f"between distant nodes it must act along their line, else it resists a"

@@ -19,6 +19,7 @@ from modefront.fem.elements.shell import FOLD, corner_normals
 from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.section import FemError
 from modefront.fem.structure import (
+    ALONG,
     DIRECTIONS,
     Axes,
     Beams,
@@ -39,9 +40,6 @@ files hold seven digits."""
 
 COINCIDENT = 1e-9
 """Distance over the size of a structure below which nodes were given the same coordinates."""
-
-ALONG = 1e-6
-"""Sine of an angle below which two directions are the same: files hold seven digits."""
 
 
 def check_points(nodes: npt.ArrayLike) -> Floats:

@@ -8,11 +8,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import ParamSpec, TypeVar
+from typing import Annotated, ParamSpec, TypeVar
 
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.options import NUMBER, PAIR, array, number, numbers
+
+DENSITY, THREE = number("a density of 0 or more", least=0), array(NUMBER, 3, 3)
+Length = Annotated[float, number("a number above 0", above=0)]
+Factor = Annotated[float, number("a shear factor above 0", above=0)]
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -81,9 +86,9 @@ class Material:
     rho : density, >= 0
     """
 
-    E: float
-    nu: float
-    rho: float
+    E: Annotated[float, number("Young's modulus above 0", above=0)]
+    nu: Annotated[float, number("Poisson's ratio between -1 and 0.5", above=-1, below=0.5)]
+    rho: Annotated[float, DENSITY]
 
     def __post_init__(self) -> None:
         for name, value, expected, ok in (
@@ -119,10 +124,10 @@ class Orthotropic:
     rho : density, >= 0
     """
 
-    E: tuple[float, float, float]
-    nu: tuple[float, float, float]
-    G: tuple[float, float, float]
-    rho: float
+    E: Annotated[tuple[float, float, float], numbers("three values of E", THREE)]
+    nu: Annotated[tuple[float, float, float], numbers("three values of nu", THREE)]
+    G: Annotated[tuple[float, float, float], numbers("three values of G", THREE)]
+    rho: Annotated[float, DENSITY]
 
     def __post_init__(self) -> None:
         for name, value in (("E", self.E), ("G", self.G)):
@@ -161,13 +166,13 @@ class Section:
     shear_centre : its y and z, from the centroid
     """
 
-    A: float
-    I_y: float
-    I_z: float
-    J: float
-    kappa_y: float = 5 / 6
-    kappa_z: float = 5 / 6
-    shear_centre: tuple[float, float] = (0.0, 0.0)
+    A: Length
+    I_y: Length
+    I_z: Length
+    J: Length
+    kappa_y: Factor = 5 / 6
+    kappa_z: Factor = 5 / 6
+    shear_centre: Annotated[tuple[float, float], numbers("its y and z", PAIR)] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -175,7 +180,7 @@ class Section:
                 raise FemError(f"section: {name} must be > 0, found {value!r}")
 
 
-def rectangle(b_y: float, b_z: float) -> Section:
+def rectangle(b_y: Length, b_z: Length) -> Section:
     """Solid rectangle, b_y along local y and b_z along local z.
 
     J is Saint-Venant's series (S. Timoshenko, J. N. Goodier, "Theory of Elasticity", sec. 109).
@@ -187,7 +192,7 @@ def rectangle(b_y: float, b_z: float) -> Section:
     return Section(b_y * b_z, b_y * b_z**3 / 12, b_y**3 * b_z / 12, J)
 
 
-def hollow_rectangle(b_y: float, b_z: float, wall: float) -> Section:
+def hollow_rectangle(b_y: Length, b_z: Length, wall: Length) -> Section:
     """Rectangular tube of outer sides b_y, b_z; J after Bredt, shear on the webs alone.
 
     Raises FemError if the walls meet: 2 wall >= min(b_y, b_z).
@@ -202,13 +207,13 @@ def hollow_rectangle(b_y: float, b_z: float, wall: float) -> Section:
     return Section(A, I_y, I_z, J, 2 * wall * b_y / A, 2 * wall * b_z / A)
 
 
-def circle(diameter: float) -> Section:
+def circle(diameter: Length) -> Section:
     """Solid circle; shear factor 9/10."""
     moment = np.pi * diameter**4 / 64
     return Section(np.pi * diameter**2 / 4, moment, moment, 2 * moment, 0.9, 0.9)
 
 
-def tube(diameter: float, wall: float) -> Section:
+def tube(diameter: Length, wall: Length) -> Section:
     """Circular tube of outer diameter; shear factor 1/2 of a thin wall.
 
     Raises FemError if the wall is not thinner than the radius.

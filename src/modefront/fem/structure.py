@@ -8,12 +8,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Annotated, Literal
 
+import numpy as np
 import numpy.typing as npt
 
 from modefront._typing import Ints
 from modefront.fem.section import Material, Orthotropic, Section
+from modefront.options import (
+    ABOVE_ZERO,
+    NOT_NEGATIVE,
+    NUMBER,
+    WHOLE,
+    Requirement,
+    any_of,
+    array,
+    mapping,
+    number,
+    numbers,
+    text,
+    whole,
+)
 
 Direction = str | Sequence[float]
 Axes = tuple[Sequence[float], Sequence[float]]
@@ -22,6 +37,52 @@ Axes = tuple[Sequence[float], Sequence[float]]
 Quantity = Literal["E", "density", "thickness", "spring", "mass", "prestress"]
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 ALL = DIRECTIONS
+
+ALONG = 1e-6
+"""Sine of an angle below which two directions are the same: files hold seven digits."""
+
+NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
+"""Directions by their names."""
+
+VECTOR = array(NUMBER, 3, 3)
+OF_VECTOR = numbers("a vector of 3 numbers", VECTOR)
+NAMES, OF_NAMES = ", ".join(DIRECTIONS), array({"enum": [*DIRECTIONS]})
+SOME = Requirement(f"a list of {NAMES}", {**OF_NAMES, "minItems": 1})
+DIRECTION = Requirement(
+    "one of " + ", ".join(NAMED) + ", or a vector of 3 numbers",
+    any_of({"enum": NAMED}, VECTOR),
+    further=lambda x: isinstance(x, str) or any(x),
+)
+AXES = Requirement(
+    "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane",
+    array(VECTOR, 2, 2),
+    further=lambda x: bool(
+        np.linalg.norm(np.cross(*x)) > ALONG * np.prod(np.linalg.norm(x, axis=1))
+    ),
+)
+DOF = whole(0, WHOLE).schema
+NODE = any_of(DOF, {"type": "string"})
+NODES = Requirement(
+    "a node counted from 0, the name of a group or node set, or a list of these",
+    any_of(NODE, array(NODE, 1)),
+)
+OFFSETS = Requirement("a vector of 3 numbers for either end", array(VECTOR, 2, 2))
+RELEASES = Requirement(f"a list for either end, of {NAMES}", array(OF_NAMES, 2, 2))
+FORCE = number("an axial force")
+
+
+def _one_or(count: int, expected: str, one: Mapping[str, object]) -> Requirement:
+    """Return the requirement of one number, or of a list of as many, of 0 or more."""
+    return Requirement(expected, any_of(one, array(NOT_NEGATIVE, count, count)))
+
+
+STIFFNESS = _one_or(6, "a stiffness above 0, or 6 of 0 or more", ABOVE_ZERO)
+MASS = _one_or(3, "a mass of 0 or more, or 3 for x, y and z", NOT_NEGATIVE)
+INERTIA = numbers("3 moments of inertia of 0 or more", array(NOT_NEGATIVE, 3, 3))
+WEIGHTS = numbers("numbers above 0", array(ABOVE_ZERO, 1))
+LOADED = numbers("3 components, or 6 with moments", any_of(VECTOR, array(NUMBER, 6, 6)))
+STRAINS = mapping("a table, group = free strain", number("a strain"))
+SCALED = Requirement("a list of groups, springs, masses or loads", array({"type": "string"}, 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,10 +122,10 @@ class Beams:
     cells: npt.ArrayLike
     material: Material
     section: Section
-    orientation: Sequence[float] | None = None
-    offsets: npt.ArrayLike = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    releases: tuple[Sequence[str], Sequence[str]] = ((), ())
-    force: float = 0.0
+    orientation: Annotated[Sequence[float], OF_VECTOR] | None = None
+    offsets: Annotated[npt.ArrayLike, OFFSETS] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    releases: Annotated[tuple[Sequence[str], Sequence[str]], RELEASES] = ((), ())
+    force: Annotated[float, FORCE] = 0.0
 
 
 @dataclass(frozen=True)
@@ -82,8 +143,8 @@ class Trusses:
     name: str
     cells: npt.ArrayLike
     material: Material
-    area: float
-    force: float = 0.0
+    area: Annotated[float, number("an area above 0", above=0)]
+    force: Annotated[float, FORCE] = 0.0
 
 
 @dataclass(frozen=True)
@@ -102,9 +163,9 @@ class Shells:
     name: str
     cells: npt.ArrayLike
     material: Material | Orthotropic
-    thickness: float
-    offset: float = 0.0
-    direction: Sequence[float] | None = None
+    thickness: Annotated[float, number("a thickness above 0", above=0)]
+    offset: Annotated[float, number("a distance")] = 0.0
+    direction: Annotated[Sequence[float], OF_VECTOR] | None = None
 
 
 @dataclass(frozen=True)
@@ -123,7 +184,7 @@ class Solids:
     name: str
     cells: npt.ArrayLike
     material: Material | Orthotropic
-    axes: Axes | None = None
+    axes: Annotated[Axes, AXES] | None = None
 
 
 Group = Beams | Trusses | Shells | Solids
@@ -140,9 +201,9 @@ class Support:
     axes : the directions are along these; None is the global axes
     """
 
-    nodes: npt.ArrayLike
-    directions: Sequence[str] = ALL
-    axes: Axes | None = None
+    nodes: Annotated[npt.ArrayLike, NODES]
+    directions: Annotated[Sequence[str], SOME] = ALL
+    axes: Annotated[Axes, AXES] | None = None
 
 
 @dataclass(frozen=True)
@@ -163,12 +224,12 @@ class Spring:
         middle of two rigid arms.
     """
 
-    name: str
-    nodes: npt.ArrayLike
-    stiffness: float | Sequence[float]
-    direction: Direction | None = None
-    to: npt.ArrayLike | None = None
-    axes: Axes | None = None
+    name: Annotated[str, text("the name of the springs")]
+    nodes: Annotated[npt.ArrayLike, NODES]
+    stiffness: Annotated[float | Sequence[float], STIFFNESS]
+    direction: Annotated[Direction, DIRECTION] | None = None
+    to: Annotated[npt.ArrayLike, NODES] | None = None
+    axes: Annotated[Axes, AXES] | None = None
 
 
 @dataclass(frozen=True)
@@ -184,11 +245,11 @@ class Mass:
     offset : of the centre from the node, (3,)
     """
 
-    name: str
-    nodes: npt.ArrayLike
-    mass: float | Sequence[float]
-    inertia: npt.ArrayLike = (0.0, 0.0, 0.0)
-    offset: npt.ArrayLike = (0.0, 0.0, 0.0)
+    name: Annotated[str, text("the name of the masses")]
+    nodes: Annotated[npt.ArrayLike, NODES]
+    mass: Annotated[float | Sequence[float], MASS]
+    inertia: Annotated[npt.ArrayLike, INERTIA] = (0.0, 0.0, 0.0)
+    offset: Annotated[npt.ArrayLike, OF_VECTOR] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -202,9 +263,9 @@ class Link:
     directions : of x, y, z, rx, ry, rz; all of them unless given
     """
 
-    master: int
-    slaves: npt.ArrayLike
-    directions: Sequence[str] = ALL
+    master: Annotated[int, NODES]
+    slaves: Annotated[npt.ArrayLike, NODES]
+    directions: Annotated[Sequence[str], SOME] = ALL
 
 
 @dataclass(frozen=True)
@@ -222,10 +283,10 @@ class Coupling:
     directions : in which it follows, of x, y, z, rx, ry, rz; all of them unless given
     """
 
-    node: int
-    of: npt.ArrayLike
-    weights: npt.ArrayLike = 1.0
-    directions: Sequence[str] = ALL
+    node: Annotated[int, NODES]
+    of: Annotated[npt.ArrayLike, NODES]
+    weights: Annotated[npt.ArrayLike, WEIGHTS] = 1.0
+    directions: Annotated[Sequence[str], SOME] = ALL
 
 
 @dataclass(frozen=True)
@@ -244,11 +305,11 @@ class Load:
     strains : free strain, such as that of heat, by name of the group
     """
 
-    name: str
-    nodes: npt.ArrayLike = ()
-    force: Sequence[float] = (0.0, 0.0, 0.0)
-    acceleration: Sequence[float] = (0.0, 0.0, 0.0)
-    strains: Mapping[str, float] = field(default_factory=dict)
+    name: Annotated[str, text("the name of the load")]
+    nodes: Annotated[npt.ArrayLike, NODES] = ()
+    force: Annotated[Sequence[float], LOADED] = (0.0, 0.0, 0.0)
+    acceleration: Annotated[Sequence[float], OF_VECTOR] = (0.0, 0.0, 0.0)
+    strains: Annotated[Mapping[str, float], STRAINS] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -285,7 +346,7 @@ class Parameter:
 
     name: str
     quantity: Quantity
-    of: Sequence[str]
+    of: Annotated[Sequence[str], SCALED]
 
 
 @dataclass(frozen=True)

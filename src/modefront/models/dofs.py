@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import scipy.sparse
@@ -15,7 +14,6 @@ from modefront.data.csv import table_rows
 from modefront.fem.check import unit_vector
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import ended_column, wrong
-from modefront.options import array, fits
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
 
@@ -115,15 +113,6 @@ def number_of(direction: str) -> int:
 def name_of(direction: int) -> str:
     """Return the name of a direction; its number where it has none."""
     return DIRECTIONS[direction - 1] if 0 < direction <= len(DIRECTIONS) else str(direction)
-
-
-def is_direction(value: Any) -> bool:
-    """Return whether a value of a study file is a direction."""
-    if isinstance(value, str):
-        return value.removeprefix("-") in DIRECTIONS
-    return (
-        fits(value, array({"type": "number"}, 3, 3)) and 0 < float(np.linalg.norm(value)) < np.inf
-    )
 
 
 def write_dofs(path: Path, dofs: DofTable) -> None:

@@ -5,31 +5,25 @@ Each key of a table of members is the argument of a class of `modefront.fem`.
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any
 
 from modefront import fem
 from modefront.data.csv import is_reserved
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
-from modefront.fem.structure import Group, Quantity
+from modefront.fem.structure import NODES, VECTOR, Group
 from modefront.findings.record import Finding, found
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
 from modefront.options import (
-    ABOVE_ZERO,
-    NOT_NEGATIVE,
-    NUMBER,
-    PAIR,
     TABLE,
     TRUE_OR_FALSE,
     Checked,
     Option,
     Requirement,
-    Schema,
     Table,
     any_of,
     array,
@@ -42,57 +36,27 @@ from modefront.options import (
     numbers,
     of_options,
     one_of,
+    options,
+    schema_of,
     table_of,
     text,
     whole,
 )
 from modefront.study.kinds.sensors import (
-    AXES,
-    DIRECTION,
-    DOF,
     ORIENTED,
-    VECTOR,
     ModelKind,
     from_zero,
     read_directions,
 )
 
-OF_VECTOR = numbers("a vector of 3 numbers", VECTOR)
-NAMES = ", ".join(fem.DIRECTIONS)
-NAMED: Schema = {"enum": [*fem.DIRECTIONS]}
-DIRECTIONS = Requirement(f"a list of {NAMES}", array(NAMED, 1))
-FORCE = number("an axial force")
-AREA, LENGTH = (number(f"{x} above 0", above=0) for x in ("an area", "a number"))
-PLACE = any_of(DOF, {"type": "string"})
-NODES = Requirement(
-    "a node counted from 0, the name of a group or node set, or a list of these",
-    any_of(PLACE, array(PLACE, 1)),
-)
-
-Members = tuple[Callable[..., Any], Sequence[Option]]
-"""A class of `modefront.fem`, and the keys of a table that are its arguments."""
-
-
-def _members(make: Callable[..., Any], **known: Requirement) -> Members:
-    """Return a class with the keys of its tables; required are its fields without default."""
-    fields = inspect.signature(make).parameters.values()
-    needed = {each.name for each in fields if each.default is each.empty}
-    return make, keys([name for name in known if name in needed], **known)
-
-
-SHAPES: Mapping[str, Members] = {
-    "rectangle": _members(fem.rectangle, b_y=LENGTH, b_z=LENGTH),
-    "hollow_rectangle": _members(fem.hollow_rectangle, b_y=LENGTH, b_z=LENGTH, wall=LENGTH),
-    "circle": _members(fem.circle, diameter=LENGTH),
-    "tube": _members(fem.tube, diameter=LENGTH, wall=LENGTH),
-    "constants": _members(
-        fem.Section,
-        **dict.fromkeys(("A", "I_y", "I_z", "J"), LENGTH),
-        **dict.fromkeys(("kappa_y", "kappa_z"), number("a shear factor above 0", above=0)),
-        shear_centre=numbers("its y and z", PAIR),
-    ),
+SHAPES: Mapping[str, Callable[..., fem.Section]] = {
+    "rectangle": fem.rectangle,
+    "hollow_rectangle": fem.hollow_rectangle,
+    "circle": fem.circle,
+    "tube": fem.tube,
+    "constants": fem.Section,
 }
-"""Shapes of sections."""
+"""What makes a section of each shape."""
 
 
 def _section(group: Table, key: str) -> fem.Section | None:
@@ -101,84 +65,30 @@ def _section(group: Table, key: str) -> fem.Section | None:
     return _made(table, SHAPES[shape], "section") if table and shape else None
 
 
-def _strains(load: Table, key: str) -> dict[str, float] | None:
-    table, strain = load.table(key), number("a strain")
-    return {name: table.value(name, strain) for name in table.values} if table else None
-
-
 SECTION = Requirement(
     "a table with shape = " + ", ".join(SHAPES),
     TABLE,
-    entries=chosen("shape", {shape: of_options(known) for shape, (_, known) in SHAPES.items()}),
+    entries=chosen("shape", {shape: schema_of(make) for shape, make in SHAPES.items()}),
     read=_section,
 )
-STRAINS = Requirement(
-    "a table, group = free strain", TABLE, entries=table_of(NUMBER), read=_strains
-)
 
-ELEMENTS: Mapping[Kind, Members] = {
-    "beam": _members(
-        fem.Beams,
-        section=SECTION,
-        orientation=OF_VECTOR,
-        offsets=Requirement("a vector of 3 numbers for either end", array(VECTOR, 2, 2)),
-        releases=Requirement(f"a list for either end, of {NAMES}", array(array(NAMED), 2, 2)),
-        force=FORCE,
-    ),
-    "truss": _members(fem.Trusses, area=AREA, force=FORCE),
-    "shell": _members(
-        fem.Shells,
-        thickness=number("a thickness above 0", above=0),
-        offset=number("a distance"),
-        direction=OF_VECTOR,
-    ),
-    "solid": _members(fem.Solids, axes=AXES),
+ELEMENTS: Mapping[Kind, Callable[..., Group]] = {
+    "beam": fem.Beams,
+    "truss": fem.Trusses,
+    "shell": fem.Shells,
+    "solid": fem.Solids,
 }
-"""Kinds of elements of a group, with their keys beside name, elements and material."""
+"""Classes of groups by their kinds of elements."""
 
-
-def _one_or(count: int, expected: str, one: Schema) -> Requirement:
-    """Return the requirement of one number, or of a list of as many, of 0 or more."""
-    return Requirement(expected, any_of(one, array(NOT_NEGATIVE, count, count)))
-
-
-MEMBERS: Mapping[str, Members] = {
-    "support": _members(fem.Support, nodes=NODES, directions=DIRECTIONS, axes=AXES),
-    "spring": _members(
-        fem.Spring,
-        name=text("the name of the springs"),
-        nodes=NODES,
-        to=NODES,
-        stiffness=_one_or(6, "a stiffness above 0, or 6 of 0 or more", ABOVE_ZERO),
-        direction=DIRECTION,
-        axes=AXES,
-    ),
-    "mass": _members(
-        fem.Mass,
-        name=text("the name of the masses"),
-        nodes=NODES,
-        mass=_one_or(3, "a mass of 0 or more, or 3 for x, y and z", NOT_NEGATIVE),
-        inertia=numbers("3 moments of inertia of 0 or more", array(NOT_NEGATIVE, 3, 3)),
-        offset=OF_VECTOR,
-    ),
-    "link": _members(fem.Link, master=NODES, slaves=NODES, directions=DIRECTIONS),
-    "coupling": _members(
-        fem.Coupling,
-        node=NODES,
-        of=NODES,
-        weights=numbers("numbers above 0", array(ABOVE_ZERO, 1)),
-        directions=DIRECTIONS,
-    ),
-    "load": _members(
-        fem.Load,
-        name=text("the name of the load"),
-        nodes=NODES,
-        force=numbers("3 components, or 6 with moments", any_of(VECTOR, array(NUMBER, 6, 6))),
-        acceleration=OF_VECTOR,
-        strains=STRAINS,
-    ),
+MEMBERS: Mapping[str, Callable[..., Any]] = {
+    "support": fem.Support,
+    "spring": fem.Spring,
+    "mass": fem.Mass,
+    "link": fem.Link,
+    "coupling": fem.Coupling,
+    "load": fem.Load,
 }
-"""Tables of members at nodes, with their keys."""
+"""Classes of members at nodes by their tables."""
 
 SINGLE = ("master", "node")
 """Keys of members that name one node."""
@@ -186,18 +96,6 @@ SINGLE = ("master", "node")
 NAMED_KINDS = ("group", "spring", "mass", "load")
 """Tables whose entries have names that parameters scale."""
 
-DENSITY = number("a density of 0 or more", least=0)
-ISOTROPIC = _members(
-    fem.Material,
-    E=number("Young's modulus above 0", above=0),
-    nu=number("Poisson's ratio between -1 and 0.5", above=-1, below=0.5),
-    rho=DENSITY,
-)
-ORTHOTROPIC = _members(
-    fem.Orthotropic,
-    **{key: numbers(f"three values of {key}", VECTOR) for key in ("E", "nu", "G")},
-    rho=DENSITY,
-)
 TOLERANCE = number("a distance above 0", above=0)
 PLACED = {"node": whole(0, 10**9), "at": numbers("3 coordinates", VECTOR)}
 """Keys of which one says where a sensor is."""
@@ -205,23 +103,24 @@ PLACED = {"node": whole(0, 10**9), "at": numbers("3 coordinates", VECTOR)}
 OF_GROUP = keys(
     ["name", "material"], name=text("the name of a group of cells"), material=text("a material")
 )
-SCALE = keys(
-    ["quantity", "of"],
-    quantity=one_of(*get_args(Quantity)),
-    of=Requirement("a list of groups, springs, masses or loads", array({"type": "string"}, 1)),
-)
+OF_BEAMS = keys(["section"], section=SECTION)
+
+
+def _of_group(kind: Kind) -> list[Option]:
+    """Return the keys of a group of elements."""
+    return [*OF_GROUP, *OF_BEAMS * (kind == "beam"), *options(ELEMENTS[kind])]
 
 
 def _tables(kind: str) -> Requirement:
     """Return the requirement of the tables of a kind of members."""
-    return entries(f"tables [[model.{kind}]]", array(of_options(MEMBERS[kind][1]), 1))
+    return entries(f"tables [[model.{kind}]]", array(schema_of(MEMBERS[kind]), 1))
 
 
 MATERIALS = entries(
     "a table of materials, name = { E, nu, rho }",
-    table_of(any_of(of_options(ISOTROPIC[1]), of_options(ORTHOTROPIC[1])), 1),
+    table_of(any_of(schema_of(fem.Material), schema_of(fem.Orthotropic)), 1),
 )
-GROUPS = {kind: of_options([*OF_GROUP, *known]) for kind, (_, known) in ELEMENTS.items()}
+GROUPS = {kind: of_options(_of_group(kind)) for kind in ELEMENTS}
 PLACES = any_of(
     *(
         closed(
@@ -230,7 +129,7 @@ PLACES = any_of(
         for key, place in PLACED.items()
     )
 )
-SCALES = entries("a table, parameter = { quantity, of }", table_of(of_options(SCALE)))
+SCALES = entries("a table, parameter = { quantity, of }", table_of(schema_of(fem.Parameter)))
 
 
 # 13 fields: the tables of a structure.
@@ -285,11 +184,10 @@ def _noted(table: Table, key: str, expected: str) -> Iterator[None]:
             table.fault(key, expected, message)
 
 
-def _made(table: Table, members: Members, what: str) -> Any:
-    """Return what a class makes of the values of a table, None where something is wrong."""
-    make, known = members
+def _made(table: Table, make: Callable[..., Any], what: str) -> Any:
+    """Return what a class or function makes of a table, None where something is wrong."""
     with _noted(table, "", f"a {what} that is possible"):
-        return None if (values := table.read(known)) is None else make(**values)
+        return None if (values := table.read(options(make))) is None else make(**values)
 
 
 def listed(value: object) -> list[Any]:
@@ -327,8 +225,10 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
 
     on_mesh = replace(NODES, read=nodes)
     members: dict[str, list[Any]] = {}
-    for kind, (make, known) in MEMBERS.items():
-        known = [replace(x, requirement=on_mesh) if x.requirement is NODES else x for x in known]
+    for kind, make in MEMBERS.items():
+        known = [
+            replace(x, requirement=on_mesh) if x.requirement is NODES else x for x in options(make)
+        ]
         found = [member.read(known) for member in table.tables(kind, required=False)]
         members[f"{kind}es" if kind == "mass" else f"{kind}s"] = [make(**x) for x in found if x]
     structure = fem.Structure(
@@ -362,7 +262,9 @@ def _groups(model: Table, mesh: Mesh) -> list[Group]:
     out: list[Group] = []
     materials = {
         name: _made(
-            entry, ORTHOTROPIC if isinstance(entry.values.get("E"), list) else ISOTROPIC, "material"
+            entry,
+            fem.Orthotropic if isinstance(entry.values.get("E"), list) else fem.Material,
+            "material",
         )
         for name, entry in model.entries("material", "a table E, nu, rho", "material")
     }
@@ -372,14 +274,16 @@ def _groups(model: Table, mesh: Mesh) -> list[Group]:
         material_of = replace(material_of, requirement=one_of(*declared))
     for group in model.tables("group", required=True):
         kind: Kind | None = group.choice("elements", tuple(ELEMENTS))
-        make, own = ELEMENTS[kind] if kind else (None, ())
+        own = _of_group(kind)[2:] if kind else ()
         values, name = group.read([name_of, material_of, *own]), group.values.get("name")
-        if kind is None or make is None or not is_name(name):
+        if kind is None or not is_name(name):
             continue
         with _noted(group, "name", "a group of the mesh"):
             blocks = mesh.cells_of(str(name), kind)
             if values and (material := materials.get(values.pop("material"))):
-                out += [make(cells=cells, material=material, **values) for cells in blocks]
+                out += [
+                    ELEMENTS[kind](cells=cells, material=material, **values) for cells in blocks
+                ]
     return out
 
 
@@ -415,7 +319,7 @@ def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:
         if name not in parameters:
             expected, found = "the name of a parameter", suggestion(name, parameters)
             model.fault(f"scale {name}", expected, found)
-        elif values := scale.read(SCALE):
+        elif values := scale.read(options(fem.Parameter)):
             out.append(fem.Parameter(name, **values))
     return out
 

@@ -8,17 +8,14 @@ from itertools import groupby
 from operator import itemgetter
 from typing import Any
 
-import numpy as np
-
 from modefront.data.csv import is_reserved
-from modefront.fem.check import ALONG, axes_of, unit_vector
-from modefront.fem.structure import DIRECTIONS
+from modefront.fem.check import axes_of, unit_vector
+from modefront.fem.structure import AXES, DIRECTION, DIRECTIONS, DOF, NAMED
 from modefront.models.base import Model
-from modefront.models.dofs import DofTable, is_direction
+from modefront.models.dofs import DofTable
 from modefront.models.matrices import SensorSpec
 from modefront.options import (
     NUMBER,
-    WHOLE,
     Requirement,
     Table,
     any_of,
@@ -51,28 +48,9 @@ class ModelKind:
     table: type | None = None
 
 
-NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
-"""Directions by their names."""
-
-DOF = whole(0, WHOLE).schema
 WEIGHTED = any_of(DOF, array(array([DOF, NUMBER], 2, 2), 1))
 """A degree of freedom, or weights of several."""
 
-VECTOR = array(NUMBER, 3, 3)
-
-
-AXES = Requirement(
-    "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane",
-    array(VECTOR, 2, 2),
-    further=lambda x: bool(
-        np.linalg.norm(np.cross(*x)) > ALONG * np.prod(np.linalg.norm(x, axis=1))
-    ),
-)
-DIRECTION = Requirement(
-    "one of " + ", ".join(NAMED) + ", or a vector of 3 numbers",
-    any_of({"enum": NAMED}, VECTOR),
-    further=is_direction,
-)
 SEVERAL = Requirement(
     "a list of different ones of " + ", ".join(NAMED),
     array({"enum": NAMED}, 1, once=True),
