@@ -16,7 +16,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import astuple
 from pathlib import Path
@@ -33,23 +33,21 @@ LEAST_SECONDS, SPEED = 60.0, 10**6
 """Time that reading may take, and bytes that are read a second at least besides: chosen against
 readers that do not end, far above what whole files take."""
 
-TEXTS = "texts and numbers"
-"""Name among the arrays of all that is none, as JSON."""
-
 TOO_MUCH = "a file that takes more than {:.2g} GB to be read: close other programs, or divide it"
 """What is said of a file that does not fit into the memory."""
+
+FAULTS = "faults"
+"""What is said of a file with which its reader finds faults."""
 
 Read = tuple[dict[str, np.ndarray[Any, Any]], Any]
 """Arrays by name, and texts and numbers as JSON has them."""
 
 
-class IsolatedError(RuntimeError):
-    """A reader failed, took too long, or ended its process; the message says which."""
-
-
+# 6 arguments: what is read from which file, and the limits.
 def isolated(
     function: str,
     path: Path,
+    expected: str,
     seconds: float | None = None,
     memory: int | None = None,
     arguments: Sequence[str] = (),
@@ -60,38 +58,31 @@ def isolated(
     with, and further texts, and returns `Read`. Limits in seconds and bytes are chosen by the size
     of the file and what is free unless given; that of memory holds where the system has such.
 
-    Raises IsolatedError where nothing was read, and InputError where the function raises it.
+    Raises InputError where the function raises it, and where it fails, takes too long or ends its
+    process: the file is not the ``expected`` one then.
     """
-    if _INSIDE:
-        return _called(function, path, arguments)
     if seconds is None:
         with suppress(OSError):  # all files that belong to one by their names
             files = [x for x in path.parent.iterdir() if x.name.startswith(path.stem)]
             seconds = LEAST_SECONDS + sum(x.stat().st_size for x in files if x.is_file()) / SPEED
     seconds, memory = seconds or LEAST_SECONDS, memory or available_memory()
-    with tempfile.TemporaryDirectory(prefix="modefront-") as folder:
-        answer = Path(folder) / "answer.npz"
-        called = [str(path), *arguments]
-        request = [function, called, str(answer), seconds, memory, str(Path.cwd())]
-        status = _SERVER.status(request, seconds)
-        if status is None or status == -getattr(signal, "SIGALRM", 0):
-            text = f"nothing within {seconds:.0f} s, after which reading was given up"
-            raise IsolatedError(text)
-        if status == -getattr(signal, "SIGKILL", 0):  # by the system, which has no more
-            raise IsolatedError(TOO_MUCH.format(memory / 1e9))
-        if status < 0 or status > 255:  # ended by the system, on Windows with such a status
-            raise IsolatedError(f"a file that ends its reader (signal {abs(status)})")
-        try:
-            with np.load(answer, allow_pickle=False) as file:
-                arrays = {each: file[each] for each in file.files}
-            error, found = json.loads(arrays.pop(TEXTS).tobytes())
-        except (OSError, ValueError, KeyError, MemoryError) as wrong:
-            raise IsolatedError(f"nothing that can be used: {reason(wrong)}") from None
-    if error == "faults":
+    try:
+        if _INSIDE:
+            return _called(function, path, arguments)
+        with tempfile.TemporaryDirectory(prefix="modefront-") as folder:
+            answer = Path(folder) / "answer.npz"
+            request = [function, [str(path), *arguments], str(answer), seconds, memory]
+            error, found = _SERVER.answer([*request, str(Path.cwd())], seconds, memory)
+            if not error:
+                with np.load(answer, allow_pickle=False) as file:
+                    return {each: file[each] for each in file.files}, found
+    except InputError:
+        raise
+    except (RuntimeError, ValueError, OSError, MemoryError) as failed:
+        error = reason(failed)
+    if error == FAULTS:
         raise InputError(Fault(*parts) for parts in found)
-    if error:
-        raise IsolatedError(error)
-    return arrays, found
+    raise InputError(Fault(str(path), "file", expected, error))
 
 
 _INSIDE = False
@@ -110,7 +101,7 @@ def _called(function: str, path: Path, arguments: Sequence[str]) -> Read:
         while cause := cause and (cause.__cause__ or cause.__context__):
             if isinstance(cause, MemoryError):
                 raise cause from None
-        raise IsolatedError(one_line(reason(error), 400)) from None
+        raise RuntimeError(one_line(reason(error), 400)) from None
     return found
 
 
@@ -122,8 +113,11 @@ class _Server:
         self._owner = 0
         self._lock = threading.Lock()
 
-    def status(self, request: Sequence[object], seconds: float) -> int | None:
-        """Return how the reading of a file has ended; None where it has not."""
+    def answer(self, request: Sequence[object], seconds: float, memory: int) -> tuple[str, Any]:
+        """Return what is wrong with a file, nothing if all is right, and what belongs to that.
+
+        Raises RuntimeError where the process has ended, or has not answered in time.
+        """
         with self._lock:
             process, late = self._started(), time.monotonic() + seconds + 30  # to start and answer
             timer = threading.Timer(late - time.monotonic(), _kill, [process])
@@ -135,13 +129,19 @@ class _Server:
                 with suppress(BrokenPipeError):  # it has ended, and says so below
                     process.stdin.write(json.dumps(request) + "\n")
                     process.stdin.flush()
-                line = process.stdout.readline()
-                code = int(line) if line else process.wait()
-                return code if line or time.monotonic() < late else None
+                if line := process.stdout.readline():
+                    error, found = json.loads(line)
+                    return error, found
+                status = process.wait()
             finally:
                 timer.cancel()
                 if not line:  # it has ended, or there was an interrupt
                     self.end()
+        if time.monotonic() > late or status == -getattr(signal, "SIGALRM", 0):
+            raise RuntimeError(f"nothing within {seconds:.0f} s, after which reading was given up")
+        if status == -getattr(signal, "SIGKILL", 0):  # by the system, which has no more
+            raise RuntimeError(TOO_MUCH.format(memory / 1e9))
+        raise RuntimeError(f"a file that ends its reader (signal {abs(status)})")
 
     def end(self) -> None:
         """End the process, with what it has started, if this process owns it."""
@@ -195,9 +195,9 @@ def serve() -> None:
         with suppress(Exception):  # what fails fails again, and is said, below
             importlib.import_module(function.split(":")[0])
         _alarm(seconds)
-        _read(function, called, answer, memory, work)
+        found = json.dumps(_read(function, called, Path(answer), memory, work))
         _alarm(0)
-        os.write(answers, b"0\n")
+        os.write(answers, f"{found}\n".encode())
 
 
 def _alarm(seconds: float) -> None:
@@ -206,26 +206,24 @@ def _alarm(seconds: float) -> None:
         signal.setitimer(signal.ITIMER_REAL, seconds)
 
 
-def _read(function: str, called: Sequence[str], answer: str, memory: int, work: str) -> None:
-    """Read one file, and write what it holds, or what is wrong with it, into another."""
-
-    def write(error: str, found: object, arrays: Mapping[str, Any] | None = None) -> None:
-        texts = np.frombuffer(json.dumps([error, found]).encode(), np.uint8)
-        with output(Path(answer)) as stream:
-            np.savez(stream, allow_pickle=False, **(arrays or {}), **{TEXTS: texts})
-
+def _read(
+    function: str, called: Sequence[str], answer: Path, memory: int, work: str
+) -> tuple[str, object]:
+    """Read one file, and write its arrays into another; return the rest, or what is wrong."""
     path, *arguments = called
     try:
         os.chdir(work)
         limit(memory)
         arrays, texts = _called(function, Path(path), arguments)
-        write("", texts, arrays)
+        with output(answer) as stream:
+            np.savez(stream, allow_pickle=False, **arrays)
+        return "", texts
     except InputError as error:
-        write("faults", [astuple(fault) for fault in error.faults])
+        return FAULTS, [astuple(fault) for fault in error.faults]
     except MemoryError:
-        write(TOO_MUCH.format(memory / 1e9), None)
+        return TOO_MUCH.format(memory / 1e9), None
     except Exception as error:
-        write(reason(error), None)
+        return reason(error), None
 
 
 def limit(memory: int) -> None:

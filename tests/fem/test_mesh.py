@@ -13,9 +13,10 @@ import pytest
 from structures import STEEL, frequencies
 
 from modefront import fem
+from modefront.errors import InputError
 from modefront.fem.mesh import Mesh, read_mesh
 from modefront.fem.structure import Cells
-from modefront.isolated import IsolatedError, isolated
+from modefront.isolated import isolated
 
 meshio = pytest.importorskip("meshio")
 
@@ -185,8 +186,8 @@ def test_a_reader_that_fails_takes_no_other_process_with_it(tmp_path: Path) -> N
         ("os:nothing", "nothing"),
         ("time:sleep", "float|integer"),
     ):
-        with pytest.raises(IsolatedError, match=says):
-            isolated(function, tmp_path / "a.txt", 60.0, 4 * 10**9)
+        with pytest.raises(InputError, match=f"a.txt: file: expected a text, found .*({says})"):
+            isolated(function, tmp_path / "a.txt", "a text", 60.0, 4 * 10**9)
 
 
 READER = """
@@ -200,7 +201,7 @@ def read(path):
 
 def test_a_reader_without_memory_says_so_whatever_it_makes_of_it(tmp_path: Path) -> None:
     (tmp_path / "reader.py").write_text(READER)
-    call = "isolated('reader:read', Path('a.txt'), 60.0, 10**9)"
+    call = "isolated('reader:read', Path('a.txt'), 'a text', 60.0, 10**9)"
     code = f"from pathlib import Path; from modefront.isolated import isolated; {call}"
     path = os.pathsep.join([str(tmp_path), *sys.path])
     done = subprocess.run(

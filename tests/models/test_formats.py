@@ -18,7 +18,7 @@ import scipy.io
 import scipy.sparse
 
 import modefront as mf
-from modefront.isolated import IsolatedError, isolated
+from modefront.isolated import isolated
 from modefront.models.files import read_matrix
 
 K = np.array([[4.0, -1.0, 0.0], [-1.0, 3.0, 0.5], [0.0, 0.5, 2.0]])
@@ -275,8 +275,8 @@ def test_a_matrix_that_does_not_fit_into_the_memory(
 def test_a_reader_that_crashes_takes_no_process_with_it(tmp_path: Path) -> None:
     head = "%%MatrixMarket matrix array real symmetric\n%\n2 2\n5E3\n-2E3\n"
     (tmp_path / "A.mtx").write_text(head + "2E31e999")  # SciPy's reader reads beyond the end
-    with pytest.raises(IsolatedError):
-        isolated("scipy.io:mmread", tmp_path / "A.mtx", 60, 10**9)
+    with pytest.raises(mf.InputError, match="expected a matrix, found a file that"):
+        isolated("scipy.io:mmread", tmp_path / "A.mtx", "a matrix", 60, 10**9)
     with pytest.raises(mf.InputError, match="expected whole lines to the end"):
         read_matrix(tmp_path / "A.mtx")
 

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from modefront.cli.main import main
-from modefront.isolated import IsolatedError, Read, isolated, limit
+from modefront.errors import InputError
+from modefront.isolated import Read, isolated, limit
 from modefront.results import files
 
 MEMORY = 6 * 10**9
@@ -26,12 +27,13 @@ class Once:
 
     def __init__(self) -> None:
         self.file: tuple[object, ...] = ()
-        self.answer: Read | IsolatedError = IsolatedError("nothing was read")
+        self.answer: Read | InputError = InputError([])
 
     def __call__(
         self,
         function: str,
         path: Path,
+        expected: str,
         seconds: float | None = None,
         memory: int | None = None,
         arguments: Sequence[str] = (),
@@ -41,11 +43,11 @@ class Once:
         file = (str(path), found.st_ino, found.st_size, found.st_mtime_ns)
         if file != self.file:
             try:
-                self.answer = isolated(function, path, seconds, memory, arguments)
-            except IsolatedError as error:
+                self.answer = isolated(function, path, expected, seconds, memory, arguments)
+            except InputError as error:
                 self.answer = error
             self.file = file
-        if isinstance(self.answer, IsolatedError):
+        if isinstance(self.answer, InputError):
             raise self.answer
         arrays, texts = self.answer
         return {name: values.copy() for name, values in arrays.items()}, json.loads(

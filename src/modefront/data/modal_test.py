@@ -26,7 +26,7 @@ from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import is_universal, read_functions, read_uff
 from modefront.errors import Fault, InputError, refuse, suggestion
 from modefront.inputs import MOST_DATA, file_size, wrong
-from modefront.isolated import IsolatedError, Read, isolated
+from modefront.isolated import Read, isolated
 from modefront.options import (
     NOT_NEGATIVE,
     Requirement,
@@ -189,10 +189,7 @@ def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float
     if setup.rate is None or not setup.sensors:
         expected = "'rate' and 'sensors' in its [[set]], which the file does not say"
         raise wrong(path, expected, "nothing", "records")
-    try:
-        read, _ = isolated(f"{__name__}:read_arrays", path)
-    except IsolatedError as error:
-        raise wrong(path, "an array of numbers", str(error)) from None
+    read, _ = isolated(f"{__name__}:read_arrays", path, "an array of numbers")
     arrays, count = list(read.values()), len(setup.sensors)
     tables = [x for x in arrays if x.ndim == 2 and x.dtype.kind in "fiu" and count in x.shape]
     if len(tables) != 1:

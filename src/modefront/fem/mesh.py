@@ -30,7 +30,7 @@ from modefront.fem.section import FemError
 from modefront.fem.structure import Cells
 from modefront.hdf5 import check_tree
 from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, refuse_holes
-from modefront.isolated import IsolatedError, isolated
+from modefront.isolated import isolated
 from modefront.text import one_line
 
 Kind = Literal["beam", "truss", "shell", "solid"]
@@ -134,9 +134,8 @@ def read_mesh(path: str | Path) -> Mesh:
         if reference := refers_to(path):
             raise FemError(f"{path}: expected a mesh that is one file, found {reference}")
         memory = min(available_memory(), MEMORY + PER_BYTE * size)
-        arrays, parts = isolated("modefront.fem.mesh:read_with_meshio", path, memory=memory)
-    except IsolatedError as error:
-        raise FemError(f"{path}: expected a mesh that meshio can read, found {error}") from None
+        reader, expected = f"{__name__}:read_with_meshio", "a mesh that meshio can read"
+        arrays, parts = isolated(reader, path, expected, memory=memory)
     except InputError as error:
         fault = error.faults[0]
         raise FemError(f"{path}: expected {fault.expected}, found {fault.found}") from None

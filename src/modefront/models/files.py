@@ -16,7 +16,7 @@ import scipy.sparse
 
 from modefront import inputs
 from modefront.errors import suggestion
-from modefront.isolated import IsolatedError, Read, isolated
+from modefront.isolated import Read, isolated
 from modefront.models.matrices import symmetrised
 
 
@@ -36,10 +36,7 @@ def read_entries(
         raise inputs.wrong(path, expected, f"'{path.name}'")
     inputs.file_size(path, "a matrix")
     arguments = (form, name or "", "square" if square else "")
-    try:
-        arrays, shape = isolated(f"{__name__}:entries", path, arguments=arguments)
-    except IsolatedError as error:
-        raise inputs.wrong(path, "a readable matrix", str(error)) from None
+    arrays, shape = isolated(f"{__name__}:entries", path, "a readable matrix", arguments=arguments)
     places = arrays["row"], arrays["column"]
     return scipy.sparse.coo_array((arrays["data"], places), shape=tuple(shape))
 

@@ -13,7 +13,7 @@ import scipy.sparse
 from modefront._typing import Floats, Ints
 from modefront.errors import reason
 from modefront.inputs import file_size, wrong
-from modefront.isolated import IsolatedError, isolated
+from modefront.isolated import isolated
 from modefront.models.dofs import DofTable
 from modefront.outputs import output
 
@@ -174,10 +174,8 @@ def read_job(program: str, path: Path, options: JobOptions) -> Job:
     returns `modefront.programs.reading.Listed`.
     """
     given = (program, *(str(text or "") for text in astuple(options)))
-    try:
-        arrays, texts = isolated("modefront.programs.reading:parts_of_job", path, arguments=given)
-    except IsolatedError as error:
-        raise wrong(path, f"a job of {program}", str(error)) from None
+    reader, expected = "modefront.programs.reading:parts_of_job", f"a job of {program}"
+    arrays, texts = isolated(reader, path, expected, arguments=given)
     dofs = DofTable(*(arrays.pop(part) for part in ("node", "direction", "weight")))
     shape, parts = (dofs.size, dofs.size), range(3)
     K, M = (Matrix(tuple(arrays.pop(f"{A}{k}") for k in parts), shape=shape) for A in "KM")

@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 
 from modefront.errors import Fault, InputError, reason, refuse
-from modefront.inputs import available_memory, file_size
+from modefront.inputs import file_size
 from modefront.isolated import isolated
 from modefront.outputs import output
 from modefront.results.schema import ATTRIBUTES, FORMAT, VARIABLES
@@ -26,8 +26,8 @@ from modefront.text import NAME, clean
 
 FILE = "results.nc"
 
-READER, SECONDS = "modefront.hdf5:contents", 120.0
-"""Function that reads the file, and the time that it may take."""
+READER, SECONDS, EXPECTED = "modefront.hdf5:contents", 120.0, "results in netCDF"
+"""Function that reads the file, the time that it may take, and what the file is."""
 
 CHECKSUM = "checksum"
 """Attribute that holds the checksums, in JSON."""
@@ -54,8 +54,10 @@ def read_dataset(folder: Path) -> xr.Dataset:
     file_size(path, "results of a finished run")
     try:
         data = _read(path)
+    except InputError:
+        raise
     except Exception as error:  # what is raised for a damaged file is not documented
-        raise InputError(Fault(str(path), "file", "results in netCDF", reason(error))) from None
+        raise InputError(Fault(str(path), "file", EXPECTED, reason(error))) from None
     version = data.attrs.get("format", 1 if "label" in data else None)
     if version is not None and not np.array_equal(version, FORMAT):
         expected = f"results of format {FORMAT}"
@@ -120,7 +122,7 @@ def _text(*parts: object) -> bytes:
 
 def _read(path: Path) -> xr.Dataset:
     """Return the contents of a netCDF file, which a process that damaged files may end reads."""
-    arrays, (variables, attributes) = isolated(READER, path, SECONDS, available_memory())
+    arrays, (variables, attributes) = isolated(READER, path, EXPECTED, SECONDS)
     values = {
         name: xr.Variable(dimensions, arrays[str(k)], own)
         for k, (name, dimensions, own) in enumerate(variables)
