@@ -59,7 +59,7 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     ),
     (
         lambda: mf.chain(["k1"], [1.0], [5.0], stiffness_parameters=["k"]),
-        "stiffness: expected 'base' or a parameter, found 'k' (did you mean 'k1'?)",
+        "stiffness_parameters: expected names of parameters, found 'k' (did you mean 'k1'?)",
     ),
     (
         lambda: mf.matrices(["k"], {"k": I2}, {"base": np.eye(3)}, {"one": 0}),

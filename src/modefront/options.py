@@ -318,9 +318,13 @@ def keys(required: Sequence[str], **known: Requirement) -> tuple[Option, ...]:
 def options(record: Callable[..., Any]) -> tuple[Option, ...]:
     """Return the fields of a class of records, or arguments of a function, with requirements."""
     hints = get_type_hints(record, include_extras=True)
-    _, _, section = (inspect.getdoc(record) or "").partition("Attributes\n----------\n")
-    said = re.findall(r"^(\w+) : (.*(?:\n    .*)*)", section, re.MULTILINE)
-    meanings = {name: " ".join(text.split()).replace("``", "`") for name, text in said}
+    _, _, section = (inspect.getdoc(record) or "").partition("\n----------\n")
+    form = r"^([\w, ]+)(?: : |\n    )(.*(?:\n    .*)*)"  # of Attributes, or of Parameters
+    meanings = {
+        name: " ".join(text.split()).replace("``", "`").rstrip(".")
+        for names, text in re.findall(form, section, re.MULTILINE)
+        for name in names.split(", ")
+    }
     out = []
     for each in inspect.signature(record).parameters.values():
         requirement = _requirement(hints[each.name])

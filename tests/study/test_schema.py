@@ -21,7 +21,8 @@ from refusals import command
 import modefront as mf
 from modefront.errors import Fault
 from modefront.fem.mesh import read_mesh
-from modefront.fem.structure import AXES, DIRECTION, DOF
+from modefront.fem.structure import AXES, DIRECTION
+from modefront.models.matrices import DOF, WEIGHTED
 from modefront.options import (
     ABOVE_ZERO,
     NAME,
@@ -35,7 +36,6 @@ from modefront.options import (
 from modefront.study.examples import names, write_example
 from modefront.study.file import FILE_NAME, as_text, study_schema
 from modefront.study.kinds import KINDS, mesh
-from modefront.study.kinds.sensors import WEIGHTED
 
 COUNT = 700
 

@@ -60,8 +60,7 @@ AXES = Requirement(
         np.linalg.norm(np.cross(*x)) > ALONG * np.prod(np.linalg.norm(x, axis=1))
     ),
 )
-DOF = whole(0, WHOLE).schema
-NODE = any_of(DOF, {"type": "string"})
+NODE = any_of(whole(0, WHOLE).schema, {"type": "string"})
 NODES = Requirement(
     "a node counted from 0, the name of a group or node set, or a list of these",
     any_of(NODE, array(NODE, 1)),

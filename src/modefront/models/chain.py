@@ -9,51 +9,83 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Annotated
 
 import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.errors import Fault, refuse, wrong
+from modefront.errors import Fault, refuse, suggestion, wrong
 from modefront.models.geometry import chain_geometry
-from modefront.models.matrices import MatrixModel, SensorSpec, matrices
+from modefront.models.matrices import WEIGHTED, MatrixModel, SensorSpec, matrices
 from modefront.models.parameters import BASE
+from modefront.options import (
+    ABOVE_ZERO,
+    NOT_NEGATIVE,
+    Requirement,
+    array,
+    entries,
+    numbers,
+    table_of,
+)
+
+MASSES = numbers("a list of masses above 0", array(ABOVE_ZERO, 1))
+STIFFNESSES = numbers(
+    "a list of spring stiffnesses of 0 or more, as many as masses, or one more for a spring from "
+    "the top to the ground",
+    array(NOT_NEGATIVE, 1),
+)
+ADDED = numbers("a list of masses of 0 or more, as many as masses", array(NOT_NEGATIVE))
+_NAMES = array({"type": "string"})
+OF_SPRINGS = Requirement(
+    "a list of names of parameters, as many as springs, '' where none scales", _NAMES, tuple
+)
+OF_MASSES = Requirement(
+    "a list of names of parameters, as many as masses, '' where none scales", _NAMES, tuple
+)
+PLACES = entries("a table, name = degree of freedom", table_of(WEIGHTED))
+
+Numbers = Sequence[float] | Floats
+Names = Sequence[str | None]
+Places = Mapping[str, SensorSpec]
 
 
 # 8 arguments: the members of a chain and their parameters, by keyword.
 def chain(
     parameters: Sequence[str],
-    masses: Sequence[float] | Floats,
-    stiffnesses: Sequence[float] | Floats,
+    masses: Annotated[Numbers, MASSES],
+    stiffnesses: Annotated[Numbers, STIFFNESSES],
     *,
-    added_masses: Sequence[float] | Floats | None = None,
-    stiffness_parameters: Sequence[str | None] | None = None,
-    mass_parameters: Sequence[str | None] | None = None,
-    sensors: Mapping[str, SensorSpec] | None = None,
-    outputs: Mapping[str, SensorSpec] | None = None,
+    added_masses: Annotated[Numbers, ADDED] | None = None,
+    stiffness_parameters: Annotated[Names, OF_SPRINGS] | None = None,
+    mass_parameters: Annotated[Names, OF_MASSES] | None = None,
+    sensors: Annotated[Places, PLACES] | None = None,
+    outputs: Annotated[Places, PLACES] | None = None,
 ) -> MatrixModel:
     """Return a chain of masses and springs, such as a shear building.
+
+    The ground can move along the chain, ``"x"``.
 
     Parameters
     ----------
     parameters
         Names of the parameters, in the order of theta.
     masses
-        N masses, kg or in another consistent unit.
+        N masses from the ground up, kg or in another consistent unit.
     stiffnesses
         N or N + 1 springs, N/m: from the ground to mass 1, from mass 1 to mass 2 and so on; one
         more joins the last mass to the ground.
     added_masses
         N masses that are attached to the others and that no parameter scales; None for none.
     stiffness_parameters, mass_parameters
-        The parameter that scales each spring and each mass, None for one that is fixed.
+        The parameter that scales each spring, or mass, ``""`` or None for one that is fixed; None
+        for none.
     sensors
         For the name of each sensor, in the order of the measured shapes, a mass counted from 0, or
-        pairs (mass, weight) that are summed; every mass, ``floor1``, ``floor2`` and so on, unless
-        given.
+        pairs (mass, weight) that are summed; None for every mass, ``floor1``, ``floor2`` and so on.
     outputs
-        Places besides the sensors that predictions may name, in the form of ``sensors``. The
-        ground can move along the chain, ``"x"``.
+        Places besides the sensors that predictions may name, in the form of ``sensors``; None for
+        none.
 
     Raises
     ------
@@ -76,6 +108,15 @@ def chain(
             ("added_masses", "one a mass", added, (n,)),
         )
         if len(values) not in lengths
+    )
+    refuse(
+        Fault("", place, "names of parameters", suggestion(name, parameters))
+        for place, names in (
+            ("stiffness_parameters", stiffness_scales),
+            ("mass_parameters", mass_scales),
+        )
+        for name in names
+        if name and name not in parameters
     )
     # A row a spring: how its length depends on the displacements.
     stretch = scipy.sparse.diags_array((1.0, -1.0), offsets=(0, -1), shape=(len(stiffnesses), n))

@@ -29,6 +29,7 @@ from modefront.models.parameters import (
 )
 from modefront.modes import dense, sparse
 from modefront.modes.result import FullModes, Modes
+from modefront.options import NUMBER, WHOLE, any_of, array, whole
 from modefront.rounding import LARGEST, SYMMETRY
 from modefront.text import brief_model
 from modefront.work.task import Costs, spend
@@ -45,6 +46,10 @@ FACTOR = 40
 
 SensorSpec = int | Sequence[tuple[int, float]]
 """A sensor: a degree of freedom, counted from 0, or weighted degrees of freedom."""
+
+DOF = whole(0, WHOLE).schema
+WEIGHTED = any_of(DOF, array(array([DOF, NUMBER], 2, 2), 1))
+"""Schema of a `SensorSpec` in a file."""
 
 Matrix: TypeAlias = Floats | scipy.sparse.sparray
 

@@ -11,12 +11,12 @@ import numpy as np
 import scipy.sparse
 
 from modefront.errors import suggestion
-from modefront.fem.structure import DIRECTIONS, DOF
+from modefront.fem.structure import DIRECTIONS
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
 from modefront.models.files import READERS, read_matrix
 from modefront.models.geometry import Cells, Geometry
-from modefront.models.matrices import matrices
+from modefront.models.matrices import DOF, WEIGHTED, matrices
 from modefront.models.parameters import BASE, exponents_of, form_of
 from modefront.options import (
     TRUE_OR_FALSE,
@@ -32,7 +32,7 @@ from modefront.options import (
     text,
 )
 from modefront.programs.base import ProgramMesh, read_mesh
-from modefront.study.kinds.sensors import BY_NODE, WEIGHTED, ModelKind, read_places
+from modefront.study.kinds.sensors import BY_NODE, ModelKind, read_places
 
 FILE = text("the name of a file")
 

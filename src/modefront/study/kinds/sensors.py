@@ -10,12 +10,11 @@ from typing import Any
 
 from modefront.data.csv import is_reserved
 from modefront.fem.check import axes_of, unit_vector
-from modefront.fem.structure import AXES, DIRECTION, DIRECTIONS, DOF, NAMED
+from modefront.fem.structure import AXES, DIRECTION, DIRECTIONS, NAMED
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable
-from modefront.models.matrices import SensorSpec
+from modefront.models.matrices import DOF, WEIGHTED, SensorSpec
 from modefront.options import (
-    NUMBER,
     Requirement,
     Table,
     any_of,
@@ -38,18 +37,15 @@ class ModelKind:
     read : returns the model of that table, given the names of the parameters, or None where the
         table has faults; files are opened by `modefront.options.Table.path`, so that they are known
     is_reducible : whether a model may be large enough for a reduced basis
-    table : record of options whose fields are the keys of that table (`modefront.options`), for
-        the schema of study files; None where they are not known
+    table : record of options, or function, whose fields or arguments are the keys of that table
+        (`modefront.options`), for the schema of study files; None where they are not known
     """
 
     name: str
     read: Callable[[Table, Sequence[str]], Model | None]
     is_reducible: bool = True
-    table: type | None = None
+    table: Callable[..., Any] | None = None
 
-
-WEIGHTED = any_of(DOF, array(array([DOF, NUMBER], 2, 2), 1))
-"""A degree of freedom, or weights of several."""
 
 SEVERAL = Requirement(
     "a list of different ones of " + ", ".join(NAMED),
