@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from enum import Enum
-from importlib.resources import files
+from pathlib import Path
 
 
 class Severity(Enum):
@@ -28,7 +28,7 @@ class Severity(Enum):
 
 def page(name: str) -> str:
     """Return the text of a page of sentences."""
-    return (files("modefront.findings") / name).read_text(encoding="utf-8")
+    return Path(__file__).with_name(name).read_text(encoding="utf-8")
 
 
 def _kinds(name: str) -> Iterator[tuple[str, str, str]]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Hashable, Iterable, Mapping
-from importlib.resources import files
+from pathlib import Path
 from typing import get_args
 
 import numpy as np
@@ -20,7 +20,7 @@ FORMAT = 4
 """Version of the schema: raised when a variable changes its meaning, or a required one is added."""
 
 
-_PAGE = (files("modefront.results") / "results.md").read_text(encoding="utf-8")
+_PAGE = Path(__file__).with_name("results.md").read_text(encoding="utf-8")
 _TABLES = re.sub("<!-- table: .*?<!-- end -->", "", _PAGE, flags=re.DOTALL)  # of predictions
 
 
