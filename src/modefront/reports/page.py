@@ -15,6 +15,7 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
+from operator import methodcaller
 from pathlib import Path
 from typing import Any
 
@@ -32,8 +33,11 @@ from modefront.predictions.base import Quantity, RecordedPrediction, predictions
 from modefront.results.compare import read_together, short_names
 from modefront.results.remarks import findings_of, verdict
 
-INFINITE = 10**400
-"""An integer that JavaScript reads as Infinity, for which JSON has no word."""
+CONSTANTS = {"NaN": None, "Infinity": 10**400, "-Infinity": -(10**400)}
+"""What JSON has for numbers of which it has no word; JavaScript reads such integers as infinity."""
+
+LISTED = methodcaller("tolist")
+"""What makes lists and numbers of those of NumPy."""
 
 LARGEST = 32767
 """Of a 16-bit integer."""
@@ -68,7 +72,8 @@ def payload(results: Sequence[tuple[str, xr.Dataset]]) -> tuple[str, str]:
         "cite": [text.format(version=__version__) for text in CITE],
         "fronts": fronts,
     }
-    text = json.dumps(report, separators=(",", ":"), allow_nan=False).encode()
+    known = json.loads(json.dumps(report, default=LISTED), parse_constant=CONSTANTS.get)
+    text = json.dumps(known, separators=(",", ":"), allow_nan=False).encode()
     content = len(text).to_bytes(4, "little") + text + arrays.content
     packed = gzip.compress(content, 9, mtime=0)
     return title, base64.b64encode(packed).decode("ascii")
@@ -118,7 +123,7 @@ def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
         return data[of].values.tolist() if of in data.variables else []
 
     def known(of: str) -> Any:
-        return plain(data[of].values) if of in data else None
+        return data[of].values.tolist() if of in data else None
 
     kinds, interval = names("kind"), data.get("interval")
     posterior = {key: known(of) for key, of in POSTERIOR.items()}
@@ -144,11 +149,11 @@ def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
         "order": front_points(data).tolist() or reported or [0],
         **{re.sub("_(.)", lambda x: x[1].upper(), name): known(name) for name in VARIABLES},
         "posterior": None if None in posterior.values() else posterior,
-        "bounds": plain(data["bounds"].values),
-        "interval": None if interval is None else plain(interval.values[:, [0, -1]]),
-        "noise": plain(_noise(data)),
-        "measured": plain(data["measured_frequency"].values),
-        "measuredStd": plain(_measured_std(data)),
+        "bounds": data["bounds"].values,
+        "interval": None if interval is None else interval.values[:, [0, -1]],
+        "noise": _noise(data),
+        "measured": data["measured_frequency"].values,
+        "measuredStd": _measured_std(data),
         "ends": known("end_objective") or [],
         "geometry": _geometry(data, arrays),
         "predictions": [
@@ -193,10 +198,10 @@ def _geometry(data: xr.Dataset, arrays: _Arrays) -> dict[str, Any] | None:
         "lines": arrays.numbers(data["line_nodes"].values),
         "faces": arrays.numbers(data["face_nodes"].values),
         "sensorNode": [int(x) for x in data["sensor_node"].values],
-        "sensorDirection": plain(data["sensor_direction"].values),
+        "sensorDirection": data["sensor_direction"].values,
         "basis": arrays.whole(data["shape_basis"].values),
         "columns": data.sizes["basis"],
-        "coefficient": plain(data["shape_coefficient"].values.astype(np.float32)),
+        "coefficient": data["shape_coefficient"].values.astype("f4").astype(str).astype(float),
     }
 
 
@@ -208,28 +213,12 @@ def _prediction(of: RecordedPrediction, x: Quantity) -> dict[str, Any]:
         "quantity": x.variable.key,
         "unit": x.variable.unit,
         "log": x.variable.logarithmic,
-        "values": plain(x.values),
-        "range": plain(x.extent),
-        "std": None if x.std is None else plain(x.std),
-        "drawn": [plain(x.drawn[end]) for end in ("5 %", "95 %")] if x.drawn else None,
+        "values": x.values,
+        "range": x.extent,
+        "std": x.std,
+        "drawn": [x.drawn[end] for end in ("5 %", "95 %")] if x.drawn else None,
         "note": f"Load: {of.load}." if of.load else "",
     }
-
-
-def plain(values: Any) -> Any:
-    """Return numbers as JSON has them: null for NaN, an integer beyond all numbers for infinity."""
-    array = np.asarray(values)
-    if array.ndim:
-        return [plain(part) for part in array]
-    value = array.item()
-    if isinstance(value, float):
-        if np.isnan(value):
-            return None
-        if np.isinf(value):
-            return INFINITE if value > 0 else -INFINITE
-        if array.dtype == np.float32:
-            return float(f"{value:.7g}")
-    return value
 
 
 def topics(data: xr.Dataset) -> dict[str, tuple[str, ...]]:
