@@ -179,6 +179,20 @@ def test_a_known_front_is_solved_for_again_and_nothing_else_is_sought() -> None:
     assert all(x.converged for x in front_points(again))
 
 
+def test_other_minima_of_a_known_front_are_solved_for_again() -> None:
+    def shifted(theta: Floats) -> Derivatives:
+        return three_wells(theta - [0.01, 0.0])
+
+    lower, upper = [-1.5, -1.5], [2, 1.5]
+    known = pareto_front(box(three_wells, lower, upper), ONES, Pareto(points=3))
+    assert max(len(edge.minima) for edge in known.edges) > 1
+    again = pareto_front(box(shifted, lower, upper), ONES, Pareto(points=3), known=known)
+    for edge, before in zip(again.edges, known.edges, strict=True):
+        thetas = np.array([x.theta - [0.01, 0.0] for x in edge.minima])
+        assert thetas == pytest.approx(np.array([x.theta for x in before.minima]), abs=1e-4)
+        assert (edge.starts, edge.found) == (before.starts, before.found)
+
+
 # ---- what is asked for -----------------------------------------------------------------------
 
 

@@ -72,8 +72,8 @@ def pareto_front(
     """Return the edges, the weighted models, the front by a method, and its gaps.
 
     ``a`` (n,) counts the measured properties of each objective; ``given`` are named weights (n,).
-    With a ``known`` front of nearly the same problem, its models are solved for again, and nothing
-    else is sought. Raises UnfinishedError where no edge can be found.
+    With a ``known`` front of nearly the same problem, its models and the minima of its edges are
+    solved for again, and nothing else is sought. Raises UnfinishedError where no edge can be found.
     """
     run = _Run(problem, a, options or Pareto(), seed, search or Search(), given, work, known)
     return run.front()
@@ -98,11 +98,13 @@ class _Run:
         self.weighted = [*named, (Kind.EQUAL, "", np.ones(self.n))]
         self.state, self.cut = State(self.problem, self.search.tolerance, self.work), False
         rng = np.random.default_rng(seed_sequence(self.seed, "search"))
-        self.starts = Starts(rng)
-        proposers: list[Proposer] = [Polish()]
+        others = np.random.default_rng(seed_sequence(self.seed, "evolution"))
+        names, edges = self.problem.objectives, self.known.edges if self.known else ()
+        again = {("edge", x): edge.minima for x, edge in zip(names, edges, strict=False)}
+        self.starts = Starts(rng, again if self.known else None)
+        proposers: list[Proposer] = [Polish(), self.starts]
         if self.known is None:
-            others = np.random.default_rng(seed_sequence(self.seed, "evolution"))
-            proposers += [self.starts, Evolution(others, self.starts)]
+            proposers.append(Evolution(others, self.starts))
         self.loop = Loop(self.state, proposers, self.search)
 
     def front(self) -> Front:
@@ -335,7 +337,10 @@ class _Run:
             known = self.starts.of(place)
             ends = sorted(known.ends, key=lambda x: float(x.J[k]))
             minima = self.state.distinct([place.incumbent, *ends])
-            rare = self.known is None and known.hits(place, self.state.tolerance) < SURE
+            if self.known:
+                out.append(replace(self.known.edges[k], best=place.incumbent, minima=minima))
+                continue
+            rare = known.hits(place, self.state.tolerance) < SURE
             doubtful = rare and known.unseen >= self.loop.search.doubt
             out.append(Edge(place.incumbent, minima, known.rate.tries, len(known.ends), doubtful))
         return out

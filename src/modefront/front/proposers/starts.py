@@ -12,7 +12,7 @@ of the lattice have none: they start from what others have found.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -91,10 +91,13 @@ class Starts:
     Attributes
     ----------
     rng : random numbers
+    again : minima of a problem that is nearly the same, by the keys of subproblems, from which they
+        are solved for instead of from random models; None without one
     minima : of each subproblem, by its key
     """
 
     rng: np.random.Generator
+    again: Mapping[Key, Sequence[Solution]] | None = None
     name: str = "starts"
     minima: dict[Key, Minima] = field(default_factory=dict)
     _queue: list[Floats] = field(default_factory=list)
@@ -106,6 +109,10 @@ class Starts:
                 continue
             known = self.of(place)
             doubt, tries = known.doubt(place, state.tolerance), known.rate.tries
+            if self.again is not None:
+                left = self.again.get(place.subproblem.key, ())[tries : tries + most]
+                yield from (solve_from(k, place, at(x.theta), 1.0) for x in left)
+                continue
             for number in range(tries, tries + most):
                 theta = state.problem.start if number == 0 else self._next(state)
                 offer = solve_from(k, place, at(theta), known.chance)

@@ -168,7 +168,7 @@ class ReducedModel:
     def take(self, what: SnapshotRequest) -> float:
         """Add a snapshot and return the greatest relative error of an eigenvalue before it.
 
-        The error is an estimate, and infinite where the model had to be solved in full. Raises
+        The error is infinite where there was no basis, or one without so many modes. Raises
         ModelError where the model has no modes there.
         """
         before = self.snapshots
@@ -315,9 +315,12 @@ class ReducedModel:
         failed = 0
         for theta in models:
             try:
-                basis, error = self._solved(basis, theta, what.modes), np.inf
+                larger = self._solved(basis, theta, what.modes)
             except ModelError:
                 failed += 1
+                continue
+            error = max(error, _lacked(basis, larger, theta, what.modes))
+            basis = larger
         if models and failed == len(what.models):
             raise ModelError("none of the models of a snapshot has modes")
         return basis, error
@@ -458,3 +461,13 @@ def _condition(basis: bases.Basis, theta: Floats) -> float:
     """Return the condition of K - sigma M over A in the basis; infinite where it is indefinite."""
     values = np.linalg.eigvalsh(basis.K.at(theta) - basis.sigma * basis.M.at(theta))
     return float(values[-1] / values[0]) if values[0] > 0 else np.inf
+
+
+def _lacked(basis: bases.Basis, larger: bases.Basis, theta: Floats, count: int) -> float:
+    """Return the relative error of ``count`` eigenvalues of a basis, by a larger one."""
+    lam = larger.lowest(theta, count).lam[:count]
+    with suppress(ModelError):
+        before = basis.lowest(theta, count).lam[:count]
+        if before.size == lam.size:
+            return float(((before - lam) / (lam - larger.sigma)).max())
+    return np.inf
