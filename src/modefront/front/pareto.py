@@ -100,7 +100,9 @@ class _Run:
         rng = np.random.default_rng(seed_sequence(self.seed, "search"))
         others = np.random.default_rng(seed_sequence(self.seed, "evolution"))
         names, edges = self.problem.objectives, self.known.edges if self.known else ()
-        again = {("edge", x): edge.minima for x, edge in zip(names, edges, strict=False)}
+        again: dict[Key, Sequence[Solution]] = {
+            ("edge", x): edge.minima for x, edge in zip(names, edges, strict=False)
+        }
         self.starts = Starts(rng, again if self.known else None)
         proposers: list[Proposer] = [Polish(), self.starts]
         if self.known is None:
