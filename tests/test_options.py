@@ -234,7 +234,8 @@ def test_given_weights_have_no_label_that_results_have(study: Path) -> None:
 
     for name in ("nbi", "nbi-", "nbi-x", "edge-others", "near-shapes", "sample", "second-1"):
         assert mf.Study(problem, weighted=named(name)).weighted[0].name == name
-    quick: dict[str, Any] = {"points": 3, "search": mf.Search(doubt=0.5)}
+    without = mf.NoisePrior(weight=0)
+    quick: dict[str, Any] = {"points": 3, "search": mf.Search(doubt=0.5), "noise": without}
     data = mf.solve(problem, weighted=named("sample"), **quick).dataset
     labels = {*data["label"].values.tolist()} - {"sample"}
     assert {"nbi-1", "edge-shapes", "equal-weights"} < labels
@@ -243,11 +244,11 @@ def test_given_weights_have_no_label_that_results_have(study: Path) -> None:
             mf.Study(problem, weighted=named(name))
 
 
-@pytest.mark.slow(7)
+@pytest.mark.slow(3)
 def test_a_study_made_in_python_is_that_of_a_file(study: Path, tmp_path: Path) -> None:
     study.write_text(
         study.read_text()
-        + "[pareto]\npoints = 3\n[search]\ndoubt = 0.5\n"
+        + "[pareto]\npoints = 3\n[search]\ndoubt = 0.5\n[noise]\nweight = 0\n"
         + '[[weighted]]\nname = "sample"\nweights = { shapes = 1, frequencies = 3 }\n'
     )
     read = mf.load(study)
@@ -258,6 +259,7 @@ def test_a_study_made_in_python_is_that_of_a_file(study: Path, tmp_path: Path) -
         pareto=mf.Pareto(points=3),
         weighted=(mf.Weighted("sample", {"frequencies": 3.0, "shapes": 1.0}),),
         search=mf.Search(doubt=0.5),
+        noise=mf.NoisePrior(weight=0),
     )
     assert replace(made, name=read.name, origin=read.origin) == read
     of_file, of_python = mf.run(read, tmp_path / "a"), mf.run(made, tmp_path / "b")
@@ -286,7 +288,8 @@ def test_options_that_take_the_place_of_those_of_a_file_are_other_inputs(study: 
 @pytest.mark.slow(3)
 def test_pareto_and_its_options_may_be_given_together(study: Path) -> None:
     problem = mf.load(study).problem
-    quick: dict[str, Any] = {"search": mf.Search(doubt=0.5), "seed": 2}
+    without = mf.NoisePrior(weight=0)
+    quick: dict[str, Any] = {"search": mf.Search(doubt=0.5), "seed": 2, "noise": without}
     group = mf.solve(problem, pareto=mf.Pareto("weights", 9), points=3, **quick).dataset
     other = mf.solve(problem, method="weights", points=3, **quick).dataset
     np.testing.assert_array_equal(group["theta"], other["theta"])

@@ -241,11 +241,13 @@ def test_what_a_search_leaves_open_at_its_budget_is_a_finding() -> None:
     problem = mf.updating_problem(model, data, groups, parameters=parameters)
     text = "the search ended at its budget"
     for budget, left in ((30, "edge-"), (60, "points between the edges")):
-        short = mf.solve(problem, points=5, search=Search(evaluations=budget))
+        short = mf.solve(
+            problem, points=5, search=Search(evaluations=budget), noise=mf.NoisePrior(weight=0)
+        )
         assert [x for x in short["finding"].values.tolist() if x.startswith(text) and left in x]
     of_front = short["kind"].values == "front"
     assert np.isnan(short["theta_std"].values[of_front]).any(), "of points that were not solved"
-    whole = mf.solve(problem, points=5)
+    whole = mf.solve(problem, points=5, noise=mf.NoisePrior(weight=0))
     assert not [x for x in whole["finding"].values.tolist() if x.startswith(text)]
 
 

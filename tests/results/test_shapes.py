@@ -22,7 +22,7 @@ def chain_results() -> Results:
     groups = [mf.Group("f", frequency="all"), mf.Group("s", shape="all")]
     problem = mf.updating_problem(model, data, groups, {"k": (0.5, 2.0)}, {"k": 1.0})
     search = mf.Search(doubt=0.5)
-    return mf.solve(problem, points=3, search=search)
+    return mf.solve(problem, points=3, search=search, noise=mf.NoisePrior(weight=0))
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +77,7 @@ def test_a_vtu_file_needs_geometry_and_a_folder(results: Results, tmp_path: Path
     problem = mf.updating_problem(
         model, data, [mf.Group("f", frequency="all")], {"k": (0.5, 2.0)}, {"k": 1.0}
     )
-    bare = mf.solve(problem, search=mf.Search(doubt=0.5))
+    bare = mf.solve(problem, search=mf.Search(doubt=0.5), noise=mf.NoisePrior(weight=0))
     assert bare.shapes("nominal").displacement is None
     with pytest.raises(mf.ModelError, match="expected a model with geometry"):
         bare.write_vtu(tmp_path / "shapes.vtu", "nominal")

@@ -24,6 +24,9 @@ METHODS = ("nbi", "weights", "spea2", "nsga2")
 EVALUATIONS = 800
 """Of evolutionary methods, twenty generations of forty models."""
 
+WITHOUT = mf.NoisePrior(weight=0)
+"""Fronts need no posterior to draw from."""
+
 FEW = mf.Search(doubt=0.5)
 """For claims on fronts between edges, whichever minima these are."""
 
@@ -48,6 +51,7 @@ def solved(method: str, seed: int) -> xr.Dataset:
         population=40,
         evaluations=EVALUATIONS,
         seed=seed,
+        noise=WITHOUT,
     )
     return result.dataset
 
@@ -110,7 +114,9 @@ def test_the_weight_sweep_misses_the_branch_next_to_the_frequency_edge() -> None
 @pytest.mark.parametrize("size", [0.06, 0.02])
 def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(size: float) -> None:
     coarse = results("nbi")
-    fine = mf.solve(problem("c0"), programme="equations", refined=size, seed=1).dataset
+    fine = mf.solve(
+        problem("c0"), programme="equations", refined=size, seed=1, noise=WITHOUT
+    ).dataset
     assert fine.attrs["largest_gap"] <= size < coarse.attrs["largest_gap"]
     assert bool(fine["converged"].all())
     J, scale = front(fine), np.ptp(front(coarse), axis=0)
@@ -126,10 +132,12 @@ def test_refining_finds_a_gap_that_few_points_step_over() -> None:
     """Of 8 points, none lies in the gap of M0: only that nothing is found there tells of it."""
     expected, coarse = (
         results("nbi"),
-        mf.solve(problem("c0"), points=8, programme="equations", seed=1).dataset,
+        mf.solve(problem("c0"), points=8, programme="equations", seed=1, noise=WITHOUT).dataset,
     )
     assert coarse.sizes["end"] == 0
-    fine = mf.solve(problem("c0"), points=8, programme="equations", refined=0.1, seed=1).dataset
+    fine = mf.solve(
+        problem("c0"), points=8, programme="equations", refined=0.1, seed=1, noise=WITHOUT
+    ).dataset
     assert fine["end_label"].values.tolist() == ["end-1", "start-2"]
     assert fine["end_objective"].values == pytest.approx(expected["end_objective"].values, rel=1e-4)
     assert fine.attrs["largest_gap"] <= 0.1
@@ -145,7 +153,7 @@ def test_edges_of_three_groups_are_pareto_optimal() -> None:
         mf.Group("shape 1", shape=[1]),
         mf.Group("shapes 2 and 3", shape=[2, 3]),
     )
-    data = mf.solve(grouped("c0", *groups), points=4, seed=1, search=FEW).dataset
+    data = mf.solve(grouped("c0", *groups), points=4, seed=1, search=FEW, noise=WITHOUT).dataset
     assert data["pareto"].values[data["kind"].values == "edge"].all()
 
 
@@ -155,7 +163,7 @@ def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
         mf.Group("shape 1", shape=[1]),
         mf.Group("shapes 2 and 3", shape=[2, 3]),
     )
-    data = mf.solve(grouped("c1", *groups), points=6, seed=1, search=FEW).dataset
+    data = mf.solve(grouped("c1", *groups), points=6, seed=1, search=FEW, noise=WITHOUT).dataset
     J = front(data)
     assert len(J) >= 21
     assert bool(data["converged"].all())
@@ -167,7 +175,7 @@ def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
 def test_each_property_a_group() -> None:
     groups = [mf.Group(f"f{r}", frequency=[r]) for r in (1, 2, 3)]
     groups += [mf.Group(f"s{r}", shape=[r]) for r in (1, 2, 3)]
-    data = mf.solve(grouped("c1", *groups), points=2, seed=1, search=FEW).dataset
+    data = mf.solve(grouped("c1", *groups), points=2, seed=1, search=FEW, noise=WITHOUT).dataset
     J = front(data)
     assert len(J) >= 6
     assert bool(data["converged"].all())
@@ -181,7 +189,7 @@ def test_perfect_data_are_one_model_for_every_method(method: str) -> None:
     modes = base.model.modes(np.array([1.2, 0.9, 1.1]), 3)
     data = mf.modal_data(modes.frequency, modes.phi.T, base.model.sensors)
     perfect = mf.UpdatingProblem(base.model, data, base.groups, base.lower, base.upper, base.start)
-    result = mf.solve(perfect, method=method, seed=1).dataset
+    result = mf.solve(perfect, method=method, seed=1, noise=WITHOUT).dataset
     assert result.attrs["front_is_a_point"]
     assert front_points(result).size == 0
     assert result.attrs["front_evaluations"] == 0
@@ -197,7 +205,9 @@ def test_scatter_next_to_the_end_of_a_piece_is_doubtful() -> None:
         frequency_std=0.005 * base.data.frequency,
         shape_std=0.02 * np.abs(base.data.shape).max(axis=2, keepdims=True) + 0 * base.data.shape,
     )
-    data = mf.solve(replace(base, data=known), points=12, programme="equations", seed=1).dataset
+    data = mf.solve(
+        replace(base, data=known), points=12, programme="equations", seed=1, noise=WITHOUT
+    ).dataset
     J, reach = data["objective"].values, data["objective_std"].values
     ends = data["end_objective"].values
     assert len(ends) == 2

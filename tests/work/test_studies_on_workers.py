@@ -49,7 +49,7 @@ def evolution(folder: Path) -> mf.Study:
 
 
 def reduced(folder: Path) -> mf.Study:
-    """Return a study of a chain of 200 masses in a reduced basis."""
+    """Return a study of a chain of 200 masses in a reduced basis, without a posterior."""
     n, rng = 200, np.random.default_rng(1)
     names = ("k1", "k2")
     for name, chosen in zip(names, np.split(np.arange(n), 2), strict=True):
@@ -89,6 +89,9 @@ points = 4
 
 [search]
 doubt = 0.5
+
+[noise]
+weight = 0
 """
     for name in names:
         text += f'\n[[parameter]]\nname = "{name}"\nnominal = 1.0\nbounds = [0.5, 2.0]\n'
