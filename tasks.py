@@ -34,7 +34,7 @@ NEEDS = {"demo": RUNTIME, "docs": PAGES}
 TASKS = {
     "demo": [["examples/three_story.py", "demo"]],
     "test": [[*PYTEST, "--dist", "worksteal", "-m", "not slow"]],
-    "trials": [[*PYTEST, "--dist", "load", "--maxschedchunk", "1", "-m", "slow"]],
+    "trials": [[*PYTEST, "--dist", "loadfile", "--no-loadscope-reorder", "-m", "slow"]],
     "verify": [["benchmarks/verify.py"]],
     "spoil": [["tests/trials/trials.py"]],
     "docs": [["-m", "sphinx", "-q", "-W", "--keep-going", "docs", "docs/_build/html"]],
@@ -53,7 +53,10 @@ def python() -> Path:
 
 def run(*arguments: str) -> None:
     """Run the environment's Python; leave with its status where that is not 0."""
-    status = subprocess.run([str(python()), *arguments], cwd=ROOT, check=False).returncode
+    # Without bytecode, each of the hundreds of processes of the tests would compile the package.
+    kept = {key: x for key, x in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    command = [str(python()), *arguments]
+    status = subprocess.run(command, cwd=ROOT, env=kept, check=False).returncode
     if status:
         sys.exit(status)
 
