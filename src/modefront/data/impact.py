@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 import numpy as np
-import scipy.fft
+import scipy
 
 from modefront._typing import Complexes, Floats
 from modefront.data.responses import (

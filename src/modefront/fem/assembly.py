@@ -18,8 +18,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from scipy import sparse
-from scipy.spatial import KDTree
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.blocks import Block, blocks_of
@@ -182,7 +182,7 @@ def sensor_places(
 
     What is wrong with them is noted in ``checks``; None where something is.
     """
-    tree = KDTree(X[used]) if used.size else None
+    tree = scipy.spatial.KDTree(X[used]) if used.size else None
     rows, nodes = np.zeros((len(sensors), 6)), np.zeros(len(sensors), dtype=np.int64)
     before = len(checks.messages)
     for n, sensor in enumerate(sensors):
@@ -217,7 +217,7 @@ def selection_matrix(
     return selection
 
 
-def _node(X: Floats, sensor: Sensor, used: Ints, tree: KDTree | None) -> int:
+def _node(X: Floats, sensor: Sensor, used: Ints, tree: scipy.spatial.KDTree | None) -> int:
     if isinstance(sensor.at, int | np.integer):
         return int(node_list(sensor.at, len(X))[0])
     point = np.asarray(sensor.at, dtype=float)

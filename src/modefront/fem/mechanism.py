@@ -16,9 +16,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.blocks import Block
@@ -244,7 +244,7 @@ def _describe(X: Floats, bodies: Bodies, columns: Ints, N: Floats, parts: int) -
     message += f". The structure falls into {parts} parts that nothing connects" * (parts > 1)
     others = np.flatnonzero((bodies.home >= 0) & ~np.isin(bodies.home, moving))
     if len(others):
-        distance, first = KDTree(X[others]).query(X[nodes])
+        distance, first = scipy.spatial.KDTree(X[others]).query(X[nodes])
         near = np.flatnonzero(distance <= SAME_PLACE * np.ptp(X, axis=0).max())
         for k in near[:1]:
             pair = f"Nodes {nodes[k]} and {others[first[k]]}"

@@ -20,7 +20,6 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import Any, Literal
-from unittest import mock
 
 import numpy as np
 
@@ -175,6 +174,8 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
     This is called in a process of its own, see `modefront.isolated`.
     """
+    from unittest import mock
+
     import h5py
     import meshio
 

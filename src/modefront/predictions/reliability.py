@@ -56,8 +56,8 @@ from types import MappingProxyType
 from typing import Final, final
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.fft import next_fast_len
 from scipy.linalg import expm
 from scipy.special import gammaincc, gammainccinv, log_ndtr, ndtr, ndtri_exp
 
@@ -232,7 +232,7 @@ def gaussian_response(problem: FirstPassage) -> GaussianResponse:
 
 
 def _fft_size(n: int) -> int:
-    return int(next_fast_len(2 * n - 1, real=True))
+    return int(scipy.fft.next_fast_len(2 * n - 1, real=True))
 
 
 NEGLIGIBLE = 1e-22
