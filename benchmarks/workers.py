@@ -30,7 +30,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-import xarray as xr
 from study_tables import PUSHED, uncertainty
 from threadpoolctl import threadpool_limits
 
@@ -174,7 +173,6 @@ def main() -> None:
     options.add_argument("--plain", action="store_true")
     given = options.parse_args()
     sys.modules["__main__"] = modefront.__main__  # what processes of the command import
-    xr.Dataset({"first": ("x", np.zeros(1))})  # imports dask, which the first run alone would pay
     print(f"a task: {1e3 * overhead(given.workers):.2f} ms")
     for name in given.studies:
         with tempfile.TemporaryDirectory() as folder:

@@ -15,7 +15,7 @@ LAYERS = (
     ("_lazy", "_typing", "_version", "outputs", "rounding", "text"),
     ("errors",),
     ("complete", "families", "inputs", "hdf5"),
-    ("isolated", "options"),
+    ("datasets", "isolated", "options"),
     ("linalg", "work"),
     ("data", "fem", "modes", "optim"),
     ("front", "identification", "pairing"),

@@ -26,7 +26,6 @@ from modefront.options import check_fields, text, whole
 from modefront.predictions import ResultVariable, Setting
 from modefront.predictions.base import kinds_in
 from modefront.reports.page import payload, topics
-from modefront.results.files import read_dataset
 
 
 @dataclass(frozen=True)
@@ -96,7 +95,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def data(folder: Path) -> xr.Dataset:
-    return read_dataset(folder)
+    return mf.read_results(folder).dataset
 
 
 def test_results_hold_its_values_and_their_meaning(data: xr.Dataset) -> None:

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import modefront as mf
-from modefront.results.files import FILE, read_dataset, write
+from modefront.results.files import FILE, write
 from modefront.results.schema import ATTRIBUTES, FORMAT, VARIABLES
 
 NAMES = ("k1", "k2")
@@ -36,7 +36,7 @@ def test_every_variable_is_in_the_schema(whole: xr.Dataset, tmp_path: Path) -> N
         assert values.dims == VARIABLES[str(name)].dimensions
         assert values.attrs == VARIABLES[str(name)].attributes
     write(whole, tmp_path / FILE)
-    xr.testing.assert_identical(read_dataset(tmp_path), whole)
+    xr.testing.assert_identical(mf.read_results(tmp_path).dataset, whole)
 
 
 @pytest.mark.parametrize(

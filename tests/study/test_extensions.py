@@ -23,7 +23,6 @@ from modefront.modes.result import Modes
 from modefront.options import Table
 from modefront.pairing.match import Pairs
 from modefront.residuals.base import Curvature, Member, ModeErrors, Scale, Sensitivity
-from modefront.results.files import read_dataset
 from modefront.study.file import FAMILIES
 
 CHAIN = STUDY[STUDY.index("[model]") : STUDY.index("[[parameter]]")]
@@ -43,7 +42,7 @@ def run(path: Path, capsys: pytest.CaptureFixture[str]) -> tuple[xr.Dataset, str
     for arguments in (["check", path], ["run", path, "-o", output], ["show", output, "--all"]):
         assert command(*arguments) == 0, capsys.readouterr().err
     assert command("report", output) == 0
-    return read_dataset(output), capsys.readouterr().out
+    return mf.read_results(output).dataset, capsys.readouterr().out
 
 
 # A kind of model

@@ -187,7 +187,7 @@ def run(
             say_estimate(expected, err=True)
         with progress_bar(loaded.name, expected.plan if expected else None) as progress:
             done = run_study(loaded, directory, fresh=fresh, progress=progress, workers=carrier)
-        data = done.dataset
+        data = done.data
     try:
         print_summary(data, directory, progress.spent)
         if sys.stdout is not None:

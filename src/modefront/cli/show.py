@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from rich.console import Console
 
 from modefront._typing import Floats
 from modefront.cli.layout import BLANK, Line, Screen, number, plural
 from modefront.cli.terminal import command, say_next
+from modefront.datasets import Array, ArrayDataset, Dataset
 from modefront.findings.catalogue import Severity
 from modefront.front.point import INTERNAL, Kind, position, preferred
 from modefront.predictions import ResultVariable
@@ -31,12 +31,12 @@ FEWEST = 3
 BOUND = {-1: " min", 1: " max"}
 
 
-def print_models(screen: Screen, data: xr.Dataset) -> None:
+def print_models(screen: Screen, data: Dataset) -> None:
     """Print all parameters, modes and errors of the first models."""
     screen.show([BLANK, *_table(screen, data.isel(point=_first_models(data)))])
 
 
-def models_in(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Line]:
+def models_in(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]:
     """Return the lines of the first models, ``most`` or fewer where that is possible.
 
     ``full`` is the command that prints what is left out.
@@ -72,24 +72,24 @@ def models_in(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Li
             m = max(m - fewer, FEWEST)
 
 
-def _first_models(data: xr.Dataset) -> list[int]:
+def _first_models(data: Dataset) -> list[int]:
     """Return the positions of the nominal model, the reference and the edges."""
     kinds = data["kind"].values
     nominal, edges = (np.flatnonzero(kinds == x.value) for x in (Kind.NOMINAL, Kind.EDGE))
     return list(dict.fromkeys([*nominal.tolist(), position(data), *edges.tolist()]))
 
 
-def _table(screen: Screen, data: xr.Dataset) -> list[Line]:
+def _table(screen: Screen, data: Dataset) -> list[Line]:
     """Return the table of models, and what explains it."""
     std, explained = _deviations(data)
-    bound = data["at_bound"].values if "at_bound" in data else np.zeros(data["theta"].shape)
+    bound = data["at_bound"].values if "at_bound" in data else np.zeros(data["theta"].values.shape)
     out = screen.grid("", ["", *map(str, data["label"].values)], list(_rows(data, std, bound)))
     notes = [f"±: {explained}"] * bool(np.isfinite(std).any())
     notes += ["min, max: at its lower or upper bound"] * bool(bound.any())
     return [*out, *screen.sentence("; ".join(notes))] if notes else out
 
 
-def _rows(data: xr.Dataset, std: Floats, bound: Floats) -> Iterator[list[str]]:
+def _rows(data: Dataset, std: Floats, bound: Floats) -> Iterator[list[str]]:
     """Yield the cells, with headings."""
     best, measured = position(data), data["measured_frequency"].values
     yield ["parameters"]
@@ -113,7 +113,7 @@ def _rows(data: xr.Dataset, std: Floats, bound: Floats) -> Iterator[list[str]]:
         yield [f"  {group}", *(number(x, ".3g") for x in errors)]
 
 
-def _deviations(data: xr.Dataset) -> tuple[Floats, str]:
+def _deviations(data: Dataset) -> tuple[Floats, str]:
     """Return standard deviations (p,) of the parameters of the reference, and what they are."""
     if "sample_theta" in data:
         std = data["sample_theta"].values.std(axis=0, ddof=1)
@@ -125,7 +125,7 @@ def _deviations(data: xr.Dataset) -> tuple[Floats, str]:
     return np.full(data.sizes["parameter"], np.nan), ""
 
 
-def _rough(data: xr.Dataset) -> str:
+def _rough(data: Dataset) -> str:
     """Return why the posterior is not to be relied on; nothing where it is."""
     rough = ", rough: draws are too few, or the model is not to be used"
     return "" if data.attrs.get("settled", 1) else rough
@@ -135,7 +135,7 @@ DRAWN = ("mean", "5 %", "95 %")
 """Statistics of models drawn from the posterior that are shown."""
 
 
-def print_predictions(screen: Screen, data: xr.Dataset) -> None:
+def print_predictions(screen: Screen, data: Dataset) -> None:
     """Print all predictions of all models that are no points of the front, and their ranges."""
     if "range" not in data.sizes:
         screen.say("The study asks for no predictions.")
@@ -184,7 +184,7 @@ def print_predictions(screen: Screen, data: xr.Dataset) -> None:
                 screen.say(f"at {label}: {variable.meaning}: {', '.join(values)}")
 
 
-def predictions_in_short(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Line]:
+def predictions_in_short(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]:
     """Return the lines of the main quantities of the first predictions, ``most`` of them.
 
     ``full`` is the command that prints all.
@@ -218,7 +218,7 @@ Columns = Sequence[tuple[str, str, str]]
 """Titles with a place for a name, the variable (rows, names), and the format of its values."""
 
 
-def print_points(screen: Screen, data: xr.Dataset) -> None:
+def print_points(screen: Screen, data: Dataset) -> None:
     """Print objectives, errors, parameters, modes and weights of all models."""
     marks = [
         "*" * int(pareto) + "!" * int(not converged)
@@ -227,8 +227,11 @@ def print_points(screen: Screen, data: xr.Dataset) -> None:
     columns = [("J {}", "objective", ".5g"), ("error {}", "error", ".4g"), ("{}", "theta", ".5g")]
     _print(screen, data, "models: * Pareto optimal among these, ! not converged", columns, marks)
     measured = data["measured_frequency"].values
-    error = 100 * (data["frequency"] / measured - 1)
-    known = data.assign({"": np.round(error, 2) + 0.0})
+    error = 100 * (data["frequency"].values / measured - 1)
+    shown = {x: Array(data[x].dims, data[x].values) for x in ("label", "mode", "frequency", "mac")}
+    known = ArrayDataset(
+        {**shown, "": replace(shown["frequency"], values=np.round(error, 2) + 0.0)}
+    )
     title = f"frequencies in Hz and MAC; measured: {', '.join(f'{x:.4g}' for x in measured)}"
     columns = [("f{}", "frequency", ".4g"), ("error f{} %", "", "+.2f"), ("MAC {}", "mac", ".4f")]
     _print(screen, known, title, columns)
@@ -240,14 +243,14 @@ def print_points(screen: Screen, data: xr.Dataset) -> None:
     _print(screen, weighted, "weights", (("{}", "weight", ".5g"),))
 
 
-def print_minima(screen: Screen, data: xr.Dataset) -> None:
+def print_minima(screen: Screen, data: Dataset) -> None:
     """Print the minima of each group and of the optimally weighted residuals."""
     columns = (("J {}", "minimum_objective", ".5g"), ("{}", "minimum_theta", ".5g"))
     title = "minima of the groups and of the weighted residuals"
     _print(screen, data, title, columns, of="minimum_of")
 
 
-def print_uncertainty(screen: Screen, data: xr.Dataset) -> None:
+def print_uncertainty(screen: Screen, data: Dataset) -> None:
     """Print how far models and objectives scatter, and the posterior, where they are known."""
     for kind, title in (
         ("", "scatter by errors of the data: standard deviations, linearised"),
@@ -272,7 +275,7 @@ def print_uncertainty(screen: Screen, data: xr.Dataset) -> None:
         screen.say("The results hold no uncertainty: the data have no errors that are known.")
 
 
-def print_findings_of(screen: Screen, data: xr.Dataset) -> None:
+def print_findings_of(screen: Screen, data: Dataset) -> None:
     """Print all findings, each with what it means and what to do."""
     screen.say("")
     for _, of_kind in groupby(findings_of(data, full=True), lambda finding: finding.kind):
@@ -282,7 +285,7 @@ def print_findings_of(screen: Screen, data: xr.Dataset) -> None:
             screen.say(text, start="    ")
 
 
-LISTS: Mapping[str, Callable[[Screen, xr.Dataset], None]] = {
+LISTS: Mapping[str, Callable[[Screen, Dataset], None]] = {
     "models": print_models,
     "points": print_points,
     "minima": print_minima,
@@ -296,7 +299,7 @@ LISTS: Mapping[str, Callable[[Screen, xr.Dataset], None]] = {
 # 6 arguments: the table, its rows and its columns.
 def _print(
     screen: Screen,
-    data: xr.Dataset,
+    data: Dataset,
     title: str,
     columns: Columns,
     marks: Sequence[str] = (),
@@ -330,7 +333,7 @@ def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
         screen.say(f"shorter with: {'; '.join(expected.advice)}")
 
 
-def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
+def print_summary(data: Dataset, folder: Path, costs: Costs) -> None:
     """Print what a run has found and what this run of it has cost, in a few lines."""
     screen = Screen.of_output()
     screen.say(f"{data.attrs.get('study', '')}: results in {folder}", style="bold")
@@ -350,7 +353,7 @@ def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
 
 
 def print_results(
-    data: xr.Dataset, lists: Sequence[str] = (), folder: Path | str = "DIRECTORY"
+    data: Dataset, lists: Sequence[str] = (), folder: Path | str = "DIRECTORY"
 ) -> None:
     """Print the first screen of the results in a folder, or the full lists of these names."""
     screen, attrs, show = Screen.of_output(), data.attrs, command("show", folder)
@@ -376,7 +379,7 @@ def print_results(
     screen.say(f"next: {command('report', folder)}")
 
 
-def _findings(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Line]:
+def _findings(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]:
     """Return the first findings, in ``most`` lines or in those of the first one where more."""
     sentences = headlines(data)
     blocks = [screen.sentence(text, start="- ") for text in sentences]
@@ -388,15 +391,15 @@ def _findings(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Li
     return [line for block in blocks for line in block]
 
 
-def as_json(data: xr.Dataset) -> str:
+def as_json(data: Dataset) -> str:
     """Return the dataset as JSON: attributes, and each variable with dimensions and values."""
     found = findings_of(data, full=True)
     sections = {
         "verdict": verdict(data),
         "attributes": {str(k): np.asarray(value).tolist() for k, value in data.attrs.items()},
         "variables": {
-            str(name): {"dimensions": list(map(str, x.dims)), "values": x.values.tolist()}
-            for name, x in {**data.coords, **data.data_vars}.items()
+            str(x): {"dimensions": list(map(str, data[x].dims)), "values": data[x].values.tolist()}
+            for x in [*data.coords, *data.variables]
         },
         "remarks": [str(finding) for finding in found],
         "findings": [finding.as_plain() for finding in found],

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from modefront._typing import Ints
+from modefront.datasets import Dataset
 from modefront.optim.sqp import Solution
 from modefront.work.codec import record
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @record
@@ -96,12 +94,12 @@ def preferred(attributes: Mapping[Any, Any]) -> str:
     return str(attributes["reference"]) or label(Kind.MOST_PROBABLE)
 
 
-def front_points(data: xr.Dataset) -> Ints:
+def front_points(data: Dataset) -> Ints:
     """Return the positions in results of the points of the front, in their order along it."""
     return np.flatnonzero(data["kind"].values == Kind.FRONT.value)
 
 
-def position(data: xr.Dataset, point: str | int | None = None) -> int:
+def position(data: Dataset, point: str | int | None = None) -> int:
     """Return the position in results of a point, given by its label or position, or the reference.
 
     Raises KeyError for an unknown label.

@@ -9,8 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import xarray as xr
-
+from modefront.datasets import Dataset
 from modefront.errors import Fault, InputError, writing
 from modefront.outputs import output
 from modefront.text import file_name
@@ -56,7 +55,7 @@ class Plots:
     data : the results
     """
 
-    data: xr.Dataset
+    data: Dataset
 
     def front(self, *, log: bool = False) -> Picture:
         """Return the front in the space of errors; axes are logarithmic if ``log``."""
@@ -103,13 +102,13 @@ class Plots:
             return getattr(import_module(f"modefront.plots.{module}"), name)(self.data, **options)
 
 
-def _is_held(data: xr.Dataset, name: str) -> bool:
+def _is_held(data: Dataset, name: str) -> bool:
     """Return whether results hold what a picture shows."""
     needed, _ = PLOTS[name]
     return not needed or any(each in data.variables or each in data.sizes for each in needed)
 
 
-def pictures(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
+def pictures(data: Dataset) -> Iterator[tuple[str, Picture]]:
     """Yield name and figure of everything that the results hold, each prediction by itself."""
     for name in PLOTS:
         if _is_held(data, name):

@@ -11,13 +11,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
-import xarray as xr
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.datasets import Dataset
 from modefront.front.point import (
     INTERNAL,
     REFERENCES,
@@ -109,7 +109,7 @@ def plain(text: object) -> str:
     return short(text, NAME)
 
 
-def names_of(data: xr.Dataset, dimension: str, most: int = NAME) -> list[str]:
+def names_of(data: Dataset, dimension: str, most: int = NAME) -> list[str]:
     """Return the names along a dimension or variable, as they are shown."""
     return [short(name, most) for name in data[dimension].values]
 
@@ -119,7 +119,7 @@ def short(text: object, most: int = 18) -> str:
     return clean(text, most).replace("$", r"\$")
 
 
-def draw_models(axes: Axes, data: xr.Dataset, values: Floats, *without: str) -> None:
+def draw_models(axes: Axes, data: Dataset, values: Floats, *without: str) -> None:
     """Draw values (points, 2) of all models but those of some kinds, with the marks of their kinds.
 
     What matters most is drawn last.
@@ -146,18 +146,18 @@ def draw_models(axes: Axes, data: xr.Dataset, values: Floats, *without: str) -> 
             axes.plot(*values[chosen].T, marker, ls="", ms=size, label=name, **marks)
 
 
-def shown(data: xr.Dataset) -> Bools:
+def shown(data: Dataset) -> Bools:
     """Return which points are Pareto optimal; all that are reported where none is."""
     pareto = np.asarray(data["pareto"].values, dtype=np.bool_)
     return pareto if pareto.any() else np.ones(len(pareto), dtype=np.bool_)
 
 
-def is_path(data: xr.Dataset) -> bool:
+def is_path(data: Dataset) -> bool:
     """Return whether neighbours on the front follow each other: it has two objectives."""
     return data.sizes["group"] == 2 and front_points(data).size > 1
 
 
-def branches(data: xr.Dataset) -> Iterator[Ints]:
+def branches(data: Dataset) -> Iterator[Ints]:
     """Yield the Pareto-optimal points of each branch of a front of two objectives, in order."""
     front = front_points(data)
     front = front[data["pareto"].values[front].astype(bool)]
@@ -170,7 +170,7 @@ def branches(data: xr.Dataset) -> Iterator[Ints]:
 class Along:
     """The abscissa: front points by number, then the other models."""
 
-    def __init__(self, data: xr.Dataset) -> None:
+    def __init__(self, data: Dataset) -> None:
         self.data = data
         kinds = data["kind"].values
         self.front = front_points(data)
@@ -246,7 +246,7 @@ Bars = tuple[Floats, Floats] | None
 
 # 6 arguments: the values with their names, and what is drawn besides.
 def panels_along(
-    data: xr.Dataset,
+    data: Dataset,
     values: Floats,
     names: Sequence[str],
     label: str = "",
@@ -271,7 +271,7 @@ def panels_along(
     return figure
 
 
-def at_reference(data: xr.Dataset, values: Floats, std: Any) -> Bars:
+def at_reference(data: Dataset, values: Floats, std: Any) -> Bars:
     """Return one standard deviation (quantities,) to either side of the reference alone, if any."""
     if not len(std):
         return None

@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from typing import Any, TypeAlias
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from modefront._typing import Floats, Ints
+from modefront.datasets import Dataset
 from modefront.front.point import position
 from modefront.plots.canvas import COLOURS, COLUMNS, Picture, panels, picture, plain, short
 
@@ -24,7 +24,7 @@ _Shape: TypeAlias = tuple[str, Floats, Floats, Floats | None]
 displacements (nodes, 3), None without geometry."""
 
 
-def modes(data: xr.Dataset, *, point: str | int | None = None) -> Picture:
+def modes(data: Dataset, *, point: str | int | None = None) -> Picture:
     """Return a panel a mode of one model, the reference unless a point is given."""
     i = position(data, point)
     shapes = [_shape(data, i, r) for r in range(data.sizes["mode"])]
@@ -45,7 +45,7 @@ def modes(data: xr.Dataset, *, point: str | int | None = None) -> Picture:
     return figure
 
 
-def _shape(data: xr.Dataset, i: int, r: int) -> _Shape:
+def _shape(data: Dataset, i: int, r: int) -> _Shape:
     computed = data["shape"].values[i, r]
     measured = data["measured_shape"].values[:, r]
     product, square = np.nansum(measured * computed, axis=1), np.nansum(measured**2, axis=1)
@@ -59,7 +59,7 @@ def _shape(data: xr.Dataset, i: int, r: int) -> _Shape:
     return title, computed, measured * factor[:, None], moved
 
 
-def _from_the_side(axes: Axes, data: xr.Dataset, measured: Floats, moved: Floats | None) -> None:
+def _from_the_side(axes: Axes, data: Dataset, measured: Floats, moved: Floats | None) -> None:
     """Draw displacements of a chain over its heights."""
     nodes, sensor_nodes = data["node"].values, data["sensor_node"].values
     x, height = np.zeros(len(nodes)) if moved is None else moved[:, 0], nodes[:, 2]
@@ -73,7 +73,7 @@ def _from_the_side(axes: Axes, data: xr.Dataset, measured: Floats, moved: Floats
     axes.set_yticks(height[sensor_nodes], [short(name) for name in data["sensor"].values])
 
 
-def _at_sensors(axes: Axes, data: xr.Dataset, computed: Floats, measured: Floats) -> None:
+def _at_sensors(axes: Axes, data: Dataset, computed: Floats, measured: Floats) -> None:
     x = np.arange(data.sizes["sensor"])
     axes.axhline(0, color="0.6", lw=0.8)
     axes.plot(x, computed, "s-", color=COLOURS[0], ms=4, lw=1.2, label="model")
@@ -90,7 +90,7 @@ def _rings(axes: Axes, sets: Iterable[tuple[Any, Any]], **size: Any) -> None:
         axes.plot(x, y, "o", mfc="none", mec=COLOURS[1], label=label, **size)
 
 
-def _in_space(data: xr.Dataset, shapes: list[_Shape]) -> Picture:
+def _in_space(data: Dataset, shapes: list[_Shape]) -> Picture:
     nodes, directions = data["node"].values, data["sensor_direction"].values
     places = nodes[data["sensor_node"].values]
     cells = data["line_nodes"].values, data["face_nodes"].values

@@ -7,10 +7,10 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 
 from modefront._typing import Floats
+from modefront.datasets import Dataset
 from modefront.errors import Fault, refuse
 from modefront.front.point import front_points
 from modefront.plots.canvas import (
@@ -27,7 +27,7 @@ from modefront.plots.canvas import (
 )
 from modefront.predictions.base import predictions_in
 
-Studies = Sequence[tuple[str, xr.Dataset]]
+Studies = Sequence[tuple[str, Dataset]]
 """Results with a name each."""
 
 Curves = list[tuple[int, Floats]]
@@ -97,7 +97,7 @@ def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
             yield f"figure-{number}", figure
 
 
-def _errors(data: xr.Dataset) -> Floats:
+def _errors(data: Dataset) -> Floats:
     error: Floats = 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
     return error
 
@@ -160,7 +160,7 @@ def _colour(k: int) -> str:
     return COLOURS[k % len(COLOURS)]
 
 
-def _points(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> None:
+def _points(axes: Axes, data: Dataset, values: Floats, k: int, name: str) -> None:
     """Draw pairs of values (points, 2) of the front, and larger those of weighted models."""
     _front(axes, data, values, k, name, 4)
     for kind, sign, size in (("equal-weights", EQUAL, 8), ("optimal-weights", OPTIMAL, 12)):
@@ -169,7 +169,7 @@ def _points(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> 
 
 
 # 6 arguments: the values, and how they are marked.
-def _front(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str, size: float) -> None:
+def _front(axes: Axes, data: Dataset, values: Floats, k: int, name: str, size: float) -> None:
     """Draw pairs of values (points, 2) of the front, hollow where dominated."""
     front, pareto = front_points(data), data["pareto"].values.astype(bool)
     marker, colour = MARKERS[k % len(MARKERS)], _colour(k)

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.patches import Ellipse
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from modefront._typing import Floats
+from modefront.datasets import Dataset
 from modefront.front.methods import METHODS
 from modefront.front.point import front_points, position, preferred
 from modefront.plots.canvas import (
@@ -37,7 +37,7 @@ FAR = 2.5
 """Error over the greatest of the Pareto-optimal models from which a model is beyond the axes."""
 
 
-def front(data: xr.Dataset, *, log: bool = False) -> Picture:
+def front(data: Dataset, *, log: bool = False) -> Picture:
     """Return the front in the space of errors, with logarithmic axes if ``log``."""
     error = data["error"].values
     if log:
@@ -50,7 +50,7 @@ def front(data: xr.Dataset, *, log: bool = False) -> Picture:
     return _many(data, error, groups, log=log)
 
 
-def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
+def _one(data: Dataset, error: Floats, group: str) -> Picture:
     labels = names_of(data, "label", 24)
     figure, axes = single(4.6, 0.9 + 0.25 * len(labels))
     draw_models(axes, data, np.column_stack([error[:, 0], np.arange(len(labels))]))
@@ -61,7 +61,7 @@ def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
     return figure
 
 
-def _two(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
+def _two(data: Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
     figure, axes = single(5.2, 4.0)
     method = METHODS.get(data.attrs["method"])
     if is_path(data) and method is not None and method.programme is not None:
@@ -77,7 +77,7 @@ def _two(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Pi
     return figure
 
 
-def _limits(axes: Axes, data: xr.Dataset, error: Floats) -> None:
+def _limits(axes: Axes, data: Dataset, error: Floats) -> None:
     """Leave far models out that are not Pareto optimal, and note their number."""
     chosen = shown(data)
     most = np.nanmax(error[chosen], axis=0)
@@ -96,7 +96,7 @@ def _limits(axes: Axes, data: xr.Dataset, error: Floats) -> None:
     axes.set_title(f"beyond the axes: {text}", loc="right", color="0.35")
 
 
-def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
+def _many(data: Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
     """Draw all pairs of errors."""
     n = len(groups)
     size = 2.1 if n < 6 else 1.5
@@ -121,7 +121,7 @@ def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> P
     return figure
 
 
-def parameters(data: xr.Dataset) -> Picture:
+def parameters(data: Dataset) -> Picture:
     """Return a panel a parameter, with one standard deviation."""
     theta, bounds, std = data["theta"].values, data["bounds"].values, parameter_std(data)
 
@@ -135,7 +135,7 @@ def parameters(data: xr.Dataset) -> Picture:
     return panels_along(data, theta, names, bars=(theta - std, theta + std), mark=mark)
 
 
-def frequencies(data: xr.Dataset) -> Picture:
+def frequencies(data: Dataset) -> Picture:
     """Return a panel a mode with the measured frequency."""
     f, measured = data["frequency"].values, data["measured_frequency"].values
 
@@ -143,25 +143,27 @@ def frequencies(data: xr.Dataset) -> Picture:
         if np.isfinite(measured[r]):
             axes.axhline(measured[r], color="k", ls="--", lw=1, label="measured")
 
-    bars = at_reference(data, f, data.get("posterior_frequency_std", ()))
+    std = data["posterior_frequency_std"].values if "posterior_frequency_std" in data else ()
+    bars = at_reference(data, f, std)
     return panels_along(data, f, _modes(data), "frequency, Hz", bars, mark)
 
 
-def mac(data: xr.Dataset) -> Picture:
+def mac(data: Dataset) -> Picture:
     """Return a panel a mode with MAC values."""
     values = data["mac"].values
-    bars = at_reference(data, values, data.get("posterior_mac_std", ()))
+    std = data["posterior_mac_std"].values if "posterior_mac_std" in data else ()
+    bars = at_reference(data, values, std)
     bars = bars and (bars[0], np.minimum(bars[1], 1.0))
     return panels_along(data, values, _modes(data), "MAC", bars)
 
 
-def _modes(data: xr.Dataset) -> list[str]:
+def _modes(data: Dataset) -> list[str]:
     return [f"mode {r}" for r in data["mode"].values]
 
 
-def parameter_std(data: xr.Dataset) -> Floats:
+def parameter_std(data: Dataset) -> Floats:
     """Return standard deviations (points, p) by errors of the data, or of the posterior; or NaN."""
-    out = np.full(data["theta"].shape, np.nan)
+    out = np.full(data["theta"].values.shape, np.nan)
     if "theta_std" in data:
         out = data["theta_std"].values
     elif "posterior_std" in data:
@@ -169,7 +171,7 @@ def parameter_std(data: xr.Dataset) -> Floats:
     return np.where(np.isfinite(out), out, np.nan)
 
 
-def unit_of(data: xr.Dataset) -> tuple[Floats, str]:
+def unit_of(data: Dataset) -> tuple[Floats, str]:
     """Return units (p,) in which parameters are drawn beside each other, and their name."""
     nominal = data["theta"].values[data["kind"].values == "nominal"]
     if len(nominal) and (nominal[0] > 0).all():
@@ -177,7 +179,7 @@ def unit_of(data: xr.Dataset) -> tuple[Floats, str]:
     return np.ones(data.sizes["parameter"]), "parameter"
 
 
-def minima(data: xr.Dataset) -> Picture:
+def minima(data: Dataset) -> Picture:
     """Return a line a minimum across the parameters; thin lines are equivalent models."""
     names, (unit, title) = names_of(data, "parameter", 18), unit_of(data)
     figure, axes = single(max(5.6, 0.45 * len(names)), 3.6)
@@ -207,7 +209,7 @@ HOW_MANY = 10
 """Parameters up to which the correlations are written as numbers."""
 
 
-def uncertainty(data: xr.Dataset) -> Picture:
+def uncertainty(data: Dataset) -> Picture:
     """Return parameters with deviations, their correlation, and the front with its scatter."""
     covariance = None  # of the parameters at the reference
     if "posterior_covariance" in data:
@@ -228,7 +230,7 @@ def uncertainty(data: xr.Dataset) -> Picture:
     return figure
 
 
-def _parameters(axes: Axes, data: xr.Dataset) -> None:
+def _parameters(axes: Axes, data: Dataset) -> None:
     unit, title = unit_of(data)
     std, theta = parameter_std(data) / unit, data["theta"].values / unit
     kinds, best = data["kind"].values, position(data)
@@ -250,7 +252,7 @@ def _parameters(axes: Axes, data: xr.Dataset) -> None:
     axes.set_title("with 1 and 2 standard deviations", loc="left")
 
 
-def _correlation(axes: Axes, data: xr.Dataset, covariance: Floats) -> None:
+def _correlation(axes: Axes, data: Dataset, covariance: Floats) -> None:
     size = np.sqrt(np.maximum(np.diag(covariance), 0))
     scale = np.outer(size, size)
     r = np.divide(covariance, scale, out=np.zeros(covariance.shape), where=scale > 0)
@@ -265,7 +267,7 @@ def _correlation(axes: Axes, data: xr.Dataset, covariance: Floats) -> None:
     axes.set_title(f"correlation at {plain(preferred(data.attrs))}", loc="left")
 
 
-def _ellipses(axes: Axes, data: xr.Dataset) -> None:
+def _ellipses(axes: Axes, data: Dataset) -> None:
     """Draw the front with ellipses of one standard deviation of the errors e = sqrt(J / a)."""
     error, C = data["error"].values, data["objective_covariance"].values
     J = data["objective"].values
@@ -286,7 +288,7 @@ def _ellipses(axes: Axes, data: xr.Dataset) -> None:
     axes.set_title("front with its scatter", loc="left")
 
 
-def predictions(data: xr.Dataset) -> Picture:
+def predictions(data: Dataset) -> Picture:
     """Return the range of each prediction over the Pareto-optimal models, over the reference.
 
     Ticks are the posterior's standard deviation to either side; the cross is the nominal model.
@@ -331,13 +333,13 @@ def predictions(data: xr.Dataset) -> Picture:
     return figure
 
 
-def figures(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
+def figures(data: Dataset) -> Iterator[tuple[str, Picture]]:
     """Yield a name and a picture of each prediction at all models."""
     for each in predictions_in(data):
         yield f"{each.kind.dimension} {each.name}", _page(data, each)
 
 
-def _page(data: xr.Dataset, of: RecordedPrediction) -> Picture:
+def _page(data: Dataset, of: RecordedPrediction) -> Picture:
     """Return one prediction at all models: of its variables the first one with a range, if any.
 
     Probabilities are lines of one panel, one a level.

@@ -12,22 +12,19 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, is_dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol, Self
+from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
+from modefront.datasets import Dataset
 from modefront.errors import Fault, refuse
 from modefront.families import Family
 from modefront.models.base import Model
 from modefront.options import TRUE_OR_FALSE, Checked, Requirement, check_fields, each_once, text
 from modefront.residuals.problem import UpdatingProblem
 from modefront.text import NAME, clean
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 Values = Literal["number", "count", "truth", "text"]
 """Types of values of a variable."""
@@ -365,7 +362,7 @@ def _kind(variables: Any, settings: Any, check: Any, **values: Any) -> Predictio
     )
 
 
-def kinds_in(data: xr.Dataset) -> tuple[PredictionKind, ...]:
+def kinds_in(data: Dataset) -> tuple[PredictionKind, ...]:
     """Return the kinds of which sound results have predictions."""
     return kinds_from(str(data.attrs.get(ATTRIBUTE, "")))
 
@@ -396,7 +393,7 @@ class Quantity:
 
 
 def quantity(
-    data: xr.Dataset, variable: ResultVariable, i: int, of: str = "", log_std: str = ""
+    data: Dataset, variable: ResultVariable, i: int, of: str = "", log_std: str = ""
 ) -> Quantity:
     """Return the quantity that is the i-th column of a variable of results.
 
@@ -404,14 +401,14 @@ def quantity(
     of its logarithm.
     """
     name, values = variable.name, data[variable.name]
-    label = str(values[values.dims[1]].values[i])
+    label = str(data[values.dims[1]].values[i])
     extent, std, drawn = np.full(3, np.nan), None, {}
     if variable.ranged:
         extent = data[f"{name}_range"].values[:, i]
-        if (deviations := data.get(log_std or f"posterior_{name}_std")) is not None:
+        if (deviations := data.variables.get(log_std or f"posterior_{name}_std")) is not None:
             std = float(deviations.values[i])
-        if (statistics := data.get(f"posterior_{name}")) is not None:
-            of_draws = zip(statistics["statistic"].values, statistics.values[:, i], strict=True)
+        if (statistics := data.variables.get(f"posterior_{name}")) is not None:
+            of_draws = zip(data["statistic"].values, statistics.values[:, i], strict=True)
             drawn = {str(statistic): float(value) for statistic, value in of_draws}
     place = label.removeprefix(f"{of}: ")
     return Quantity(variable, place, label, values.values[:, i], extent, std, drawn)
@@ -439,11 +436,11 @@ class RecordedPrediction:
     quantities: tuple[Quantity, ...]
 
 
-def predictions_in(data: xr.Dataset) -> Iterator[RecordedPrediction]:
+def predictions_in(data: Dataset) -> Iterator[RecordedPrediction]:
     """Yield the predictions of sound results."""
     for kind in kinds_in(data):
         start = kind.dimension
-        names, load = data[f"{start}_name"].values.tolist(), data.get(f"{start}_load")
+        names, load = data[f"{start}_name"].values.tolist(), data.variables.get(f"{start}_load")
         for name in dict.fromkeys(names):
             positions = tuple(i for i, each in enumerate(names) if each == name)
             quantities = tuple(

@@ -20,10 +20,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from modefront._typing import Floats
 from modefront._version import __version__
+from modefront.datasets import Dataset
 from modefront.errors import Fault, InputError, writing
 from modefront.findings.catalogue import Severity
 from modefront.front.methods import METHODS
@@ -52,7 +52,7 @@ CITE = (
 """What to cite, the program and the paper whose methods it implements."""
 
 
-def payload(results: Sequence[tuple[str, xr.Dataset]]) -> tuple[str, str]:
+def payload(results: Sequence[tuple[str, Dataset]]) -> tuple[str, str]:
     """Return the title of a report, and its data in base64.
 
     ``results`` are sound datasets, as `modefront.results.files.read_dataset` returns them, with the
@@ -116,7 +116,7 @@ POSTERIOR: Mapping[str, str] = {
 """Variables of the posterior, by their names on the page: all or none."""
 
 
-def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
+def _front(name: str, data: Dataset, arrays: _Arrays) -> dict[str, Any]:
     """Return all that the page shows of one study."""
 
     def names(of: str) -> list[str]:
@@ -125,7 +125,7 @@ def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
     def known(of: str) -> Any:
         return data[of].values.tolist() if of in data else None
 
-    kinds, interval = names("kind"), data.get("interval")
+    kinds, interval = names("kind"), data.variables.get("interval")
     posterior = {key: known(of) for key, of in POSTERIOR.items()}
     reported = [i for i, kind in enumerate(kinds) if kind != "nominal"]
     return {
@@ -166,7 +166,7 @@ def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
     }
 
 
-def _noise(data: xr.Dataset) -> Floats:
+def _noise(data: Dataset) -> Floats:
     """Return the error that is expected of each group at the reference; NaN where unknown."""
     if "misfit" not in data:
         return np.full(data.sizes["group"], np.nan)
@@ -174,7 +174,7 @@ def _noise(data: xr.Dataset) -> Floats:
     return np.divide(error, misfit, out=np.full(error.shape, np.nan), where=misfit > 0)
 
 
-def _measured_std(data: xr.Dataset) -> Floats:
+def _measured_std(data: Dataset) -> Floats:
     """Return the standard deviation of the mean of each measured frequency; NaN where unknown."""
     if "set_frequency" not in data:
         return np.full(data.sizes["mode"], np.nan)
@@ -188,7 +188,7 @@ def _measured_std(data: xr.Dataset) -> Floats:
     return out
 
 
-def _geometry(data: xr.Dataset, arrays: _Arrays) -> dict[str, Any] | None:
+def _geometry(data: Dataset, arrays: _Arrays) -> dict[str, Any] | None:
     if "node" not in data:
         return None
     nodes = data["node"].values
@@ -221,7 +221,7 @@ def _prediction(of: RecordedPrediction, x: Quantity) -> dict[str, Any]:
     }
 
 
-def topics(data: xr.Dataset) -> dict[str, tuple[str, ...]]:
+def topics(data: Dataset) -> dict[str, tuple[str, ...]]:
     """Return the sentences on each question by its heading, which the first answer has none of."""
     found = findings_of(data)
 
@@ -242,7 +242,7 @@ def topics(data: xr.Dataset) -> dict[str, tuple[str, ...]]:
     return {heading: sentences for heading, sentences in every.items() if sentences}
 
 
-def _study(data: xr.Dataset) -> str:
+def _study(data: Dataset) -> str:
     groups, method = data["group"].values.tolist(), str(data.attrs["method"])
     title = METHODS[method].title if method in METHODS else method
     nouns = ("parameter", "measured mode", "group", "eigenproblem")
@@ -279,7 +279,7 @@ PAGE = """\
 """
 
 
-def page(results: Sequence[tuple[str, xr.Dataset]]) -> str:
+def page(results: Sequence[tuple[str, Dataset]]) -> str:
     """Return the page of sound results, given with the names of their folders."""
     return page_of(*payload(results), "report.js")
 

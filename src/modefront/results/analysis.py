@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from modefront._typing import Bools, Floats
 from modefront.analysis.front import FrontAnalysis
+from modefront.datasets import ArrayDataset
 from modefront.front.front import Front
 from modefront.front.methods import METHODS
 from modefront.front.point import Kind, Point, of_kind
@@ -218,7 +218,7 @@ def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis)
     }
 
 
-def with_intervals(data: xr.Dataset, noise: NoiseModel, inference: Inference) -> xr.Dataset:
+def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) -> ArrayDataset:
     """Return results with what the posterior says.
 
     A quantile is such that the next draw is below it with its probability. Of draws that do not
@@ -253,5 +253,5 @@ def with_intervals(data: xr.Dataset, noise: NoiseModel, inference: Inference) ->
     if unfixed is not None:
         attributes |= {"fixed_parameter": unfixed.name, "fixed_value": unfixed.value}
         values["unfixed_misfit"] = unfixed.misfit
-    out = data.assign(described(values)).assign_coords(quantile=list(QUANTILES))
+    out = data.assign(described(values)).assign_coords({"quantile": QUANTILES})
     return out.assign_attrs(attributes)

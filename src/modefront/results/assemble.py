@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from modefront._typing import Bools, Floats
 from modefront.analysis.certified import certificate_values
 from modefront.analysis.front import FrontAnalysis
+from modefront.datasets import ArrayDataset
 from modefront.front.dominance import nondominated, undominated
 from modefront.front.front import Front
 from modefront.front.gaps import branch_numbers
@@ -27,7 +26,7 @@ ITERATED = "iterated-weights"
 """Name of the fixed point of the iteration of the weights, among the minima."""
 
 
-def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> xr.Dataset:
+def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> ArrayDataset:
     """Return a front and its analysis as a dataset with names, units and meanings."""
     front = replace(front, points=[*front.points, *analysis.points])
     determined = determinations(problem, front)
@@ -39,7 +38,7 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     values["properties"], values["exact"] = problem.properties, list(front.exact)
     values["bounds"] = np.column_stack([problem.lower, problem.upper])
     groups, parameters = list(problem.objectives), list(problem.model.parameters)
-    coordinates: dict[Hashable, Any] = {
+    coordinates: dict[str, Any] = {
         "parameter": parameters,
         "group": groups,
         "mode": list(problem.data.modes),
@@ -49,7 +48,7 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     }
     sizes = {name: len(of) for name, of in coordinates.items()}
     attributes = {"format": FORMAT, "reference": front.reference.label}
-    return xr.Dataset(described(values, sizes=sizes), coordinates, attributes)
+    return ArrayDataset(described(values, sizes=sizes), attributes).assign_coords(coordinates)
 
 
 def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:

@@ -15,11 +15,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
-from scipy.sparse.csgraph import minimum_spanning_tree
-from scipy.spatial.distance import cdist, pdist, squareform
+import scipy
 
 from modefront._typing import Floats
+from modefront.datasets import Dataset
 from modefront.errors import Fault, InputError, refuse
 from modefront.front.point import Kind, front_points, position, preferred
 from modefront.predictions.base import kinds_in
@@ -173,7 +172,7 @@ def short_names(folders: Sequence[str]) -> list[str]:
 
 def read_together(
     folders: Path | str | Sequence[Path | str],
-) -> list[tuple[str, xr.Dataset]]:
+) -> list[tuple[str, Dataset]]:
     """Return the results in a folder or several, each with the name of its folder.
 
     Raises InputError where there are none, or where their groups are not the same.
@@ -182,7 +181,7 @@ def read_together(
     if not listed:
         raise InputError(Fault("", "folders", "one folder of results or more", "none"))
     faults: list[Fault] = []
-    results: list[tuple[str, xr.Dataset]] = []
+    results: list[tuple[str, Dataset]] = []
     for folder in listed:
         try:
             results.append((str(folder), read_dataset(folder)))
@@ -196,7 +195,7 @@ def read_together(
     return results
 
 
-def _of_front(data: xr.Dataset) -> xr.Dataset:
+def _of_front(data: Dataset) -> Dataset:
     """Return the Pareto-optimal points of the front; its one point where it is no more."""
     front = front_points(data)
     if front.size == 0:
@@ -204,22 +203,22 @@ def _of_front(data: xr.Dataset) -> xr.Dataset:
     return data.isel(point=front[data["pareto"].values[front]] if front.size > 1 else front)
 
 
-def _length(data: xr.Dataset) -> float:
+def _length(data: Dataset) -> float:
     front = _of_front(data)
-    lengths = squareform(pdist(front["error"].values))
+    lengths = scipy.spatial.distance.cdist(front["error"].values, front["error"].values)
     if "piece" in front:
         piece = front["piece"].values
         lengths[piece[:, None] != piece] = 0.0
-    return float(minimum_spanning_tree(lengths).sum()) if len(lengths) else 0.0
+    return float(scipy.sparse.csgraph.minimum_spanning_tree(lengths).sum()) if len(lengths) else 0.0
 
 
-def _models(data: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
+def _models(data: Dataset) -> tuple[Dataset, Dataset, Dataset]:
     """Return all Pareto-optimal models, the reference, and the optimally weighted ones."""
     best, optimal = data["pareto"].values, data["kind"].values == Kind.OPTIMAL.value
     return data.isel(point=best), data.isel(point=position(data)), data.isel(point=optimal)
 
 
-def _summary(name: str, data: xr.Dataset, first: float) -> Summary:
+def _summary(name: str, data: Dataset, first: float) -> Summary:
     length, (models, chosen, optimal) = _length(data), _models(data)
     e = models["error"].values
     quantities = [("frequency ", "mode", "frequency"), ("mac ", "mode", "mac")]
@@ -248,7 +247,7 @@ def _first(values: Floats) -> float:
 
 
 def _spreads(
-    prefix: str, dimension: str, variable: str, models: xr.Dataset, chosen: xr.Dataset
+    prefix: str, dimension: str, variable: str, models: Dataset, chosen: Dataset
 ) -> Iterator[Spread]:
     names, values = models[dimension].values, models[variable].values
     for name, column, value in zip(names, values.T, chosen[variable].values, strict=True):
@@ -257,19 +256,26 @@ def _spreads(
         yield Spread(f"{prefix}{name}", float(least), float(greatest), float(value))
 
 
-def _apart(first_results: tuple[str, xr.Dataset], second_results: tuple[str, xr.Dataset]) -> Apart:
+def _places(data: Dataset, names: Sequence[str]) -> list[int]:
+    """Return the places of parameters in results."""
+    return [data["parameter"].values.tolist().index(name) for name in names]
+
+
+def _apart(first_results: tuple[str, Dataset], second_results: tuple[str, Dataset]) -> Apart:
     (first, a), (second, b) = first_results, second_results
     known = b["parameter"].values.tolist()
     common = [name for name in a["parameter"].values.tolist() if name in known]
     if not common:
         return Apart(first, second, (), *[np.nan] * 4)
-    span = np.diff(a["bounds"].sel(parameter=common).values, axis=1)[:, 0]
+    span = np.diff(a.isel(parameter=_places(a, common))["bounds"].values, axis=1)[:, 0]
     # (models, p) of each kind in turn, of both results.
     best, chosen, optimal = (
-        [np.atleast_2d(x["theta"].sel(parameter=common).values / span) for x in each]
+        [np.atleast_2d(x.isel(parameter=_places(x, common))["theta"].values / span) for x in each]
         for each in zip(_models(a), _models(b), strict=True)
     )
-    away = cdist(*best)
+    away = scipy.spatial.distance.cdist(*best)
     greatest = max(away.min(axis=0).max(), away.min(axis=1).max())
-    apart = [_first(cdist(*each)[:, :1].ravel()) for each in (optimal, chosen)]
+    apart = [
+        _first(scipy.spatial.distance.cdist(*each)[:, :1].ravel()) for each in (optimal, chosen)
+    ]
     return Apart(first, second, tuple(common), float(away.min()), float(greatest), *apart)

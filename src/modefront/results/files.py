@@ -11,12 +11,13 @@ import hashlib
 import json
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
+from modefront.datasets import Array, ArrayDataset, Dataset, write_netcdf
 from modefront.errors import Fault, InputError, reason, refuse
 from modefront.inputs import file_size
 from modefront.isolated import isolated
@@ -26,25 +27,20 @@ from modefront.text import NAME, clean
 
 FILE = "results.nc"
 
-READER, SECONDS, EXPECTED = "modefront.hdf5:contents", 120.0, "results in netCDF"
+READER, SECONDS, EXPECTED = "modefront.datasets:contents", 120.0, "results in netCDF"
 """Function that reads the file, the time that it may take, and what the file is."""
 
 CHECKSUM = "checksum"
 """Attribute that holds the checksums, in JSON."""
 
 
-def write(data: xr.Dataset, path: Path) -> None:
+def write(data: Dataset, path: Path) -> None:
     """Write a dataset with its checksums, whole or not at all."""
-    import h5netcdf
-    from xarray.backends.h5netcdf_ import H5NetCDFStore
-
-    # `to_netcdf` would import Dask, with all that belongs to it, for a lock between processes.
-    with output(path, lasting=True) as stream, h5netcdf.File(stream, "w") as file:
-        kept = data.assign_attrs({CHECKSUM: json.dumps(checksums(data))})
-        kept.dump_to_store(H5NetCDFStore(file))
+    with output(path, lasting=True) as stream:
+        write_netcdf(data.assign_attrs({CHECKSUM: json.dumps(checksums(data))}), stream)
 
 
-def read_dataset(folder: Path) -> xr.Dataset:
+def read_dataset(folder: Path) -> ArrayDataset:
     """Return the results in a folder, as a run has written them; others may have added to them.
 
     Raises InputError where there are no results, where they are of another format, and for what
@@ -64,7 +60,7 @@ def read_dataset(folder: Path) -> xr.Dataset:
         text = f"format {clean(version, NAME)}, of another version of modefront: run it again"
         raise InputError(Fault(str(path), "attribute 'format'", expected, text))
     try:
-        kept = dict(json.loads(data.attrs.pop(CHECKSUM, "")))
+        kept = dict(json.loads(data.attrs.get(CHECKSUM, "")))
     except (ValueError, TypeError):
         what = "attribute 'checksum'", "the checksums of a run, in JSON", "none"
         raise InputError(Fault(str(path), *what)) from None
@@ -76,7 +72,7 @@ def read_dataset(folder: Path) -> xr.Dataset:
         for place in dict.fromkeys([*needed, *kept])
         if now.get(place, "") != kept.get(place)
     )
-    return data
+    return replace(data, attrs={name: x for name, x in data.attrs.items() if name != CHECKSUM})
 
 
 def written_for(path: Path) -> str | None:
@@ -86,7 +82,7 @@ def written_for(path: Path) -> str | None:
     return None
 
 
-def checksums(data: xr.Dataset) -> dict[str, str]:
+def checksums(data: Dataset) -> dict[str, str]:
     """Return the checksums of variables and attributes by their places, BLAKE2b in hexadecimal."""
     of = {
         f"variable '{name}'": _text(*x.dims) + _values(x.values) + _attributes(x.attrs)
@@ -120,11 +116,11 @@ def _text(*parts: object) -> bytes:
     return json.dumps(list(map(str, parts))).encode()
 
 
-def _read(path: Path) -> xr.Dataset:
+def _read(path: Path) -> ArrayDataset:
     """Return the contents of a netCDF file, which a process that damaged files may end reads."""
     arrays, (variables, attributes) = isolated(READER, path, EXPECTED, SECONDS)
     values = {
-        name: xr.Variable(dimensions, arrays[str(k)], own)
+        name: Array(tuple(dimensions), arrays[str(k)], own)
         for k, (name, dimensions, own) in enumerate(variables)
     }
-    return xr.decode_cf(xr.Dataset(values, attrs=attributes), decode_times=False)
+    return ArrayDataset(values, attributes)

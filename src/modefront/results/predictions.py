@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numpy as np
-import xarray as xr
 
 from modefront._typing import Bools, Floats
+from modefront.datasets import ArrayDataset, Dataset
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found, from_text
@@ -242,13 +242,13 @@ def _by_kind(
 
 # 6 arguments: the results and their predictions, and models drawn from the posterior.
 def with_predictions(
-    data: xr.Dataset,
+    data: ArrayDataset,
     runner: PredictionRunner,
     slack: float,
     posterior: Posterior | None,
     draws: int,
     drawn: Floats | None = None,
-) -> xr.Dataset:
+) -> ArrayDataset:
     """Return results with the predictions of every point, and their scatter by the posterior.
 
     ``slack`` is the share by which objectives of models may be greater that count in ranges.
@@ -276,11 +276,10 @@ def with_predictions(
         coordinates["statistic"] = np.array(SUMMARY)
     kept = zip(data["finding"].values.tolist(), data["finding_record"].values, strict=True)
     values |= as_values([*(from_text(str(text), each) for each, text in kept), *limits])
-    data = data.drop_vars(["finding", "finding_record"])
     return data.assign(described(values, kinds_in(data))).assign_coords(coordinates)
 
 
-def _at_points(data: xr.Dataset, runner: PredictionRunner, slack: float) -> xr.Dataset:
+def _at_points(data: ArrayDataset, runner: PredictionRunner, slack: float) -> ArrayDataset:
     """Return results with the predictions of every point, and their ranges."""
     optimal = data["pareto"].values
     values: Values = {"frequency_range": _range(data["frequency"].values, optimal)}
@@ -329,7 +328,7 @@ def _at_points(data: xr.Dataset, runner: PredictionRunner, slack: float) -> xr.D
     return out.assign_attrs({ATTRIBUTE: as_text(kinds)})
 
 
-def _leaves_open(data: xr.Dataset) -> bool:
+def _leaves_open(data: Dataset) -> bool:
     together = ALL if data.sizes["group"] > 1 else data["group"].values[0]
     of = data["combination_of"].values == together
     here = of & (data["combination_at"].values == preferred(data.attrs))
@@ -349,7 +348,7 @@ def _range(values: Floats, optimal: Bools) -> Floats:
 
 
 def _around(
-    data: xr.Dataset,
+    data: Dataset,
     runner: PredictionRunner,
     posterior: Posterior | None,
     draws: int,
@@ -391,7 +390,7 @@ def _stacked(
 
 
 def _to_first_order(
-    data: xr.Dataset,
+    data: Dataset,
     runner: PredictionRunner,
     differences: Stencil,
     predictions: Sequence[Prediction],
@@ -433,7 +432,7 @@ def _to_first_order(
 
 
 def _of_samples(
-    data: xr.Dataset,
+    data: Dataset,
     runner: PredictionRunner,
     samples: Floats,
     predictions: Sequence[Prediction],

@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 import numpy as np
-import xarray as xr
 
 from modefront._typing import Bools
+from modefront.datasets import Dataset
 from modefront.findings.catalogue import Severity
 from modefront.findings.record import Finding, found, from_text, in_order
 from modefront.front.point import Kind, front_points, preferred
@@ -37,19 +37,19 @@ WIDE = 1.02
 """Ratio of greatest to least prediction from which a spread is worth a sentence."""
 
 
-def verdict(data: xr.Dataset) -> list[str]:
+def verdict(data: Dataset) -> list[str]:
     """Return the sentences of the first answer."""
     return str(data.attrs.get("verdict", "")).splitlines()
 
 
-def not_converged(data: xr.Dataset) -> Bools:
+def not_converged(data: Dataset) -> Bools:
     """Return which points should have converged and did not."""
     solved = ~np.isin(data["status"].values, ["sampled", "jump"])
     out: Bools = ~data["converged"].values & solved
     return out
 
 
-def uncertified(data: xr.Dataset) -> Bools:
+def uncertified(data: Dataset) -> Bools:
     """Return which models have eigenvalues that do not meet the tolerance."""
     return ~data["certified"].values if "certified" in data else np.zeros(data.sizes["point"], bool)
 
@@ -66,7 +66,7 @@ def digest(sentences: Sequence[str], where: str, most: int | None = MOST) -> lis
     return [*sentences[:most], f"and {rest} more finding{'s' * (rest > 1)}: {where}"]
 
 
-def findings_of(data: xr.Dataset, *, full: bool = False) -> list[Finding]:
+def findings_of(data: Dataset, *, full: bool = False) -> list[Finding]:
     """Return the findings of results, the most important first.
 
     ``full`` has details of branches, numerics and coverage too, and names all models and modes.
@@ -88,12 +88,12 @@ def findings_of(data: xr.Dataset, *, full: bool = False) -> list[Finding]:
     return in_order(x for x in out if full or x.severity is not Severity.DETAIL)
 
 
-def headlines(data: xr.Dataset) -> list[str]:
+def headlines(data: Dataset) -> list[str]:
     """Return the sentences of the first findings: without details, and with few names."""
     return [str(finding) for finding in findings_of(data)]
 
 
-def _failures(data: xr.Dataset) -> Iterator[Finding]:
+def _failures(data: Dataset) -> Iterator[Finding]:
     """Yield which models are not what they should be."""
     status, pareto = data["status"].values, data["pareto"].values
     if (status == "sampled").any():
@@ -111,7 +111,7 @@ def _failures(data: xr.Dataset) -> Iterator[Finding]:
     yield from (found(kind, places(data, x)) for kind, x in marked.items() if x.any())
 
 
-def _front(data: xr.Dataset) -> Iterator[Finding]:
+def _front(data: Dataset) -> Iterator[Finding]:
     """Yield how many points and branches the front has, and where these end."""
     front, pareto = front_points(data), data["pareto"].values
     optimal = int(pareto[front].sum())
@@ -132,7 +132,7 @@ def _front(data: xr.Dataset) -> Iterator[Finding]:
         yield found("spacing", gap=float(gap), requested=float(requested))
 
 
-def places(data: xr.Dataset, chosen: Bools) -> str:
+def places(data: Dataset, chosen: Bools) -> str:
     """Return the labels of chosen points (points,); how many there are where these are many.
 
     Neighbours on a front of two objectives are named by the first and the last one.
@@ -153,7 +153,7 @@ def places(data: xr.Dataset, chosen: Bools) -> str:
     return ", ".join(parts)
 
 
-def _misfit(data: xr.Dataset) -> Iterator[Finding]:
+def _misfit(data: Dataset) -> Iterator[Finding]:
     """Yield how far models are from the data: all Pareto-optimal ones, the reference, the nominal.
 
     Pareto-optimal are edges and weighted models too: the best models are never left out.
@@ -173,7 +173,7 @@ def _misfit(data: xr.Dataset) -> Iterator[Finding]:
         )
 
 
-def fit_of(data: xr.Dataset, chosen: Bools, *, whole: bool = False) -> str:
+def fit_of(data: Dataset, chosen: Bools, *, whole: bool = False) -> str:
     """Return the worst error of a frequency and the least MAC of models, in a whole sentence."""
     with np.errstate(divide="ignore", invalid="ignore"):
         f = data["frequency"].values[chosen] / data["measured_frequency"].values
@@ -210,7 +210,7 @@ def _mac(value: float) -> str:
     return f"{np.floor(1e3 * value + 1e-9) / 1e3:.3f}"
 
 
-def _weights(data: xr.Dataset) -> Iterator[Finding]:
+def _weights(data: Dataset) -> Iterator[Finding]:
     optimal = data["theta"].values[data["kind"].values == Kind.OPTIMAL.value]
     if not optimal.size:
         return
@@ -226,7 +226,7 @@ def _weights(data: xr.Dataset) -> Iterator[Finding]:
     yield found("iteration-agrees" if agree else "iteration-differs")
 
 
-def _pairs(data: xr.Dataset, most: int) -> Iterator[Finding]:
+def _pairs(data: Dataset, most: int) -> Iterator[Finding]:
     """Yield which measured modes resemble model modes poorly, or change their model mode.
 
     Of more than ``most``, it is said in one record without the places. Where modes change places is
@@ -261,7 +261,7 @@ def _pairs(data: xr.Dataset, most: int) -> Iterator[Finding]:
     yield from out
 
 
-def _at_bounds(data: xr.Dataset, most: int) -> Iterator[Finding]:
+def _at_bounds(data: Dataset, most: int) -> Iterator[Finding]:
     """Yield which parameters are at a bound and where, of more than ``most`` only how many."""
     at_bound = at_bounds(data["theta"].values, *data["bounds"].values.T) != 0
     held = np.flatnonzero(at_bound.any(axis=0))
@@ -274,7 +274,7 @@ def _at_bounds(data: xr.Dataset, most: int) -> Iterator[Finding]:
         yield found("at-bounds", "; ".join(named))
 
 
-def _ranges(data: xr.Dataset) -> Iterator[Finding]:
+def _ranges(data: Dataset) -> Iterator[Finding]:
     """Yield how far parameters and predictions go over the Pareto-optimal models."""
     best = np.flatnonzero(data["pareto"].values)
     if best.size > 1:
@@ -315,7 +315,7 @@ def _times(ratio: float) -> str:
     return f"by more than {int(np.log10(ratio))} powers of ten"
 
 
-def _numerics(data: xr.Dataset) -> Iterator[Finding]:
+def _numerics(data: Dataset) -> Iterator[Finding]:
     """Yield how exact the modes of a reduced basis are, how well the front is covered, the cost."""
     attrs = data.attrs
     if attrs.get("remark"):
@@ -326,9 +326,9 @@ def _numerics(data: xr.Dataset) -> Iterator[Finding]:
             "reduced",
             full=int(attrs["full_eigensolutions"]) - predicted,
             corrected=int(attrs.get("corrected_eigensolutions", 0)),
-            eigenvalue=float(data["eigenvalue_error"].max()),
+            eigenvalue=float(data["eigenvalue_error"].values.max()),
             tolerance=float(attrs["eigenvalue_tolerance"]),
-            shape=float(data["shape_error"].max()),
+            shape=float(data["shape_error"].values.max()),
         )
         if predicted:
             yield found("not-reduced", full=predicted)

@@ -6,14 +6,15 @@ import html
 import textwrap
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Never
 
 import numpy as np
 import scipy.sparse
-import xarray as xr
 
 from modefront._typing import Floats
+from modefront.datasets import Dataset
 from modefront.errors import ModelError
 from modefront.front.point import Kind, front_points, position, preferred
 from modefront.models.base import matrices_at
@@ -27,6 +28,7 @@ from modefront.text import brief
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 SHOWN = (Kind.NOMINAL, Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL, Kind.EDGE)
 """Kinds of models in the short representation, in its order."""
@@ -120,12 +122,20 @@ class Results:
 
     Attributes
     ----------
-    dataset : all variables and attributes; results.md lists them
+    data : all variables and attributes; results.md lists them
     problem : the updating problem; None where the results were read without their study
     """
 
-    dataset: xr.Dataset
+    data: Dataset
     problem: UpdatingProblem | None = None
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """All variables and attributes as a dataset of `xarray`."""
+        import xarray as xr
+
+        values = {name: (x.dims, x.values, x.attrs) for name, x in self.data.variables.items()}
+        return xr.Dataset(values, attrs=self.data.attrs)
 
     def __getitem__(self, name: str) -> xr.DataArray:
         """Return a variable; raises KeyError where there is none of this name."""
@@ -136,10 +146,10 @@ class Results:
         raise TypeError("results are not changed: dataset.assign(...) returns a changed dataset")
 
     def __contains__(self, name: object) -> bool:
-        return name in self.dataset
+        return name in self.data
 
     def __len__(self) -> int:
-        return self.dataset.sizes["point"]
+        return self.data.sizes["point"]
 
     def __iter__(self) -> Iterator[ReportedModel]:
         return map(self.model, range(len(self)))
@@ -153,12 +163,12 @@ class Results:
     @property
     def plot(self) -> Plots:
         """Pictures: ``plot.front()``, ``plot.parameters()`` and so on, see `Plots`."""
-        return Plots(self.dataset)
+        return Plots(self.data)
 
     @property
     def front(self) -> xr.Dataset:
         """The points along the front, in their order."""
-        return self.dataset.isel(point=front_points(self.dataset))
+        return self.dataset.isel(point=front_points(self.data))
 
     @property
     def edges(self) -> xr.Dataset:
@@ -173,12 +183,12 @@ class Results:
     @property
     def reference(self) -> ReportedModel:
         """The model that the data prefer: most probable, else of optimal, else equal weights."""
-        return self.model(preferred(self.dataset.attrs))
+        return self.model(preferred(self.data.attrs))
 
     @property
     def verdict(self) -> list[str]:
         """The first answer: which model to use, how sure it is, and what the front says."""
-        return verdict(self.dataset)
+        return verdict(self.data)
 
     @property
     def optimal(self) -> ReportedModel | None:
@@ -191,7 +201,7 @@ class Results:
 
         Raises KeyError for an unknown label, IndexError for a position that there is not.
         """
-        row = self.dataset.isel(point=position(self.dataset, point))
+        row = self.data.isel(point=position(self.data, point))
         label, kind = (str(row[name].values) for name in ("label", "kind"))
         theta, J = (
             dict(zip(map(str, row[names].values), row[values].values.tolist(), strict=True))
@@ -208,7 +218,7 @@ class Results:
         """
         if self.problem is None:
             raise ModelError(f"mode shapes of a model: {ALONE}")
-        return paired_shapes(self.dataset.isel(point=position(self.dataset, point)), self.problem)
+        return paired_shapes(self.data.isel(point=position(self.data, point)), self.problem)
 
     def write_vtu(self, path: Path | str, point: str | int) -> None:
         """Write the mode shapes of a model for ParaView, at all nodes, and the measured ones.
@@ -226,7 +236,7 @@ class Results:
         """
         import pandas as pd
 
-        data, modes = self.dataset, self["mode"].values
+        data, modes = self.data, self.data["mode"].values
         error = 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
         columns: dict[str, Any] = {"kind": data["kind"].values, "pareto": data["pareto"].values}
         for names, values in (
@@ -240,7 +250,7 @@ class Results:
         return frame.loc[list(points)] if points else frame
 
     def _of(self, kind: Kind) -> xr.Dataset:
-        return self.dataset.isel(point=self["kind"].values == kind.value)
+        return self.dataset.isel(point=self.data["kind"].values == kind.value)
 
     def _shown(self) -> tuple[list[str], pd.DataFrame]:
         """Return the verdict, or the first findings without one, and errors of the first models."""
@@ -248,7 +258,7 @@ class Results:
 
         front, name = self.front["pareto"].values, str(self.attrs.get("study", "")) or "results"
         optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
-        said = [f"{name}: {optimal}", *(self.verdict or headlines(self.dataset))[:SENTENCES]]
+        said = [f"{name}: {optimal}", *(self.verdict or headlines(self.data))[:SENTENCES]]
         kinds = self["kind"].values
         order = [i for kind in SHOWN for i in np.flatnonzero(kinds == kind.value)][:ROWS]
         index = pd.Index(self["label"].values[order], name="model")

@@ -7,12 +7,13 @@ dimensions; what it holds, where that is not numbers, and its unit; and its mean
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import get_args
 
 import numpy as np
 
+from modefront.datasets import Array
 from modefront.errors import wrong
 from modefront.predictions.base import PredictionKind, Values, Variable
 
@@ -70,8 +71,8 @@ EMPTY = {"text": str, "truth": bool, "count": int, "number": float}
 def described(
     values: Mapping[str, object],
     kinds: Iterable[PredictionKind] = (),
-    sizes: Mapping[Hashable, int] | None = None,
-) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
+    sizes: Mapping[str, int] | None = None,
+) -> dict[str, Array]:
     """Return values as variables of a dataset, with the attributes of the schema.
 
     Variables of predictions are those of their ``kinds``; of an empty list ``sizes`` gives the
@@ -85,5 +86,5 @@ def described(
         if isinstance(value, list) and not value:
             shape = [(sizes or {}).get(x, 0) for x in variable.dimensions]
             array = np.zeros(shape, EMPTY[variable.values])
-        out[name] = (variable.dimensions, array, variable.attributes)
+        out[name] = Array(variable.dimensions, array, variable.attributes)
     return out

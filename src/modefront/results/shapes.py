@@ -19,9 +19,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import xarray as xr
 
 from modefront._typing import Floats, Ints
+from modefront.datasets import ArrayDataset, Dataset
 from modefront.errors import Fault, InputError, ModelError, writing
 from modefront.models.base import full_of, geometry_of, shapes_at
 from modefront.models.geometry import Cells, Geometry
@@ -83,7 +83,7 @@ class PairedShapes:
     __repr__ = brief
 
 
-def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:
+def paired_shapes(row: Dataset, problem: UpdatingProblem) -> PairedShapes:
     """Return the mode shapes of the model of one point of the results.
 
     Raises ModelError for a point whose model has no such modes.
@@ -296,7 +296,9 @@ def _extended(Q: Floats, U: Floats) -> Floats:
     return Q
 
 
-def with_mode_shapes(data: xr.Dataset, problem: UpdatingProblem, shapes: ModeShapes) -> xr.Dataset:
+def with_mode_shapes(
+    data: ArrayDataset, problem: UpdatingProblem, shapes: ModeShapes
+) -> ArrayDataset:
     """Return results with the measured modes, and the modes of all points."""
     measured = problem.data
     values: Values = {
@@ -322,7 +324,7 @@ def with_mode_shapes(data: xr.Dataset, problem: UpdatingProblem, shapes: ModeSha
         }
         coordinates["axis"] = list(AXES)
     out = data.assign(described(values)).assign_coords(coordinates)
-    if geometry is not None and "node" in values:
-        groups = [cells.group for cells in geometry.cells]
-        out.attrs["geometry"] = "chain" if groups == ["chain"] else "mesh"
-    return out
+    if geometry is None or "node" not in values:
+        return out
+    groups = [cells.group for cells in geometry.cells]
+    return out.assign_attrs({"geometry": "chain" if groups == ["chain"] else "mesh"})

@@ -11,9 +11,9 @@ from textwrap import wrap
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from modefront._typing import Floats
+from modefront.datasets import Dataset
 from modefront.findings.catalogue import VERDICT
 from modefront.findings.knowledge import SHOWN, bound, enumeration, held
 from modefront.front.point import Kind, front_points, preferred
@@ -32,7 +32,7 @@ TWINS = 0.9
 """Correlation of draws, without its sign, from which two parameters are known only together."""
 
 
-def with_verdict(data: xr.Dataset) -> xr.Dataset:
+def with_verdict(data: Dataset) -> Dataset:
     """Return results with the first answer, and without a reference where no model is to be used.
 
     It has `LINES` lines at most. What has no room is left to the tables below it. Where no model is
@@ -40,7 +40,7 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     of the errors, only how well the reference fits.
     """
     if "misfit" not in data:
-        return data.assign_attrs(verdict="\n".join(_unjudged(data)))
+        return data.assign_attrs({"verdict": "\n".join(_unjudged(data))})
     groups, misfit = data["group"].values, data["misfit"].values
     far, worse = map(np.flatnonzero, refused(misfit, data["nominal_misfit"].values))
     why = [_say("far", group=groups[i], misfit=misfit[i]) for i in far.tolist()]
@@ -51,7 +51,7 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
     said += _pairs(data)
     if why:
         said.insert(0, _say("do-not-use", why=enumeration(why, SHOWN)))
-        data = data.assign_attrs(reference="")
+        data = data.assign_attrs({"reference": ""})
     else:
         if not data.attrs.get("settled", 1):
             said.insert(0, _say("unsettled"))
@@ -59,10 +59,10 @@ def with_verdict(data: xr.Dataset) -> xr.Dataset:
         said = [_use(data), *said, *chain.from_iterable(further)]
     ends = np.cumsum([len(wrap(sentence, COLUMNS)) for sentence in said])
     said = said[: max(1, int(np.searchsorted(ends, LINES, side="right")))]
-    return data.assign_attrs(verdict="\n".join(said))
+    return data.assign_attrs({"verdict": "\n".join(said)})
 
 
-def _unjudged(data: xr.Dataset) -> Iterator[str]:
+def _unjudged(data: Dataset) -> Iterator[str]:
     """Yield how well the reference fits, where nothing is expected of the errors."""
     reference = preferred(data.attrs)
     chosen, nominal = data["label"].values == reference, data["kind"].values == Kind.NOMINAL.value
@@ -79,7 +79,7 @@ def _say(kind: str, **values: Any) -> str:
     return VERDICT[kind].format(**values)
 
 
-def _use(data: xr.Dataset) -> str:
+def _use(data: Dataset) -> str:
     """Return that the reference can be used, and how well it fits."""
     misfit, groups = data["misfit"].values, data["group"].values
     worst = np.argsort(-misfit) if misfit.size > SHOWN else np.arange(misfit.size)
@@ -88,7 +88,7 @@ def _use(data: xr.Dataset) -> str:
     return f"{use} {_say('lacks')}" if (misfit > LARGE).any() else use
 
 
-def _at_bounds(data: xr.Dataset) -> Iterator[str]:
+def _at_bounds(data: Dataset) -> Iterator[str]:
     best = _row(data, Kind.MOST_PROBABLE)
     names, groups = (list(map(str, data[name].values)) for name in ("parameter", "group"))
     sides, theta = best["at_bound"].values, best["theta"].values
@@ -106,7 +106,7 @@ def _at_bounds(data: xr.Dataset) -> Iterator[str]:
         yield f"{wrong}."
 
 
-def _fixed(data: xr.Dataset) -> Iterator[str]:
+def _fixed(data: Dataset) -> Iterator[str]:
     """Yield which fixed parameter the data contradict."""
     if "fixed_parameter" not in data.attrs:
         return
@@ -122,14 +122,14 @@ def _fixed(data: xr.Dataset) -> Iterator[str]:
     )
 
 
-def _pairs(data: xr.Dataset) -> Iterator[str]:
+def _pairs(data: Dataset) -> Iterator[str]:
     unlike = data["likely_mode"].values != _row(data, Kind.MOST_PROBABLE)["paired_mode"].values
     if unlike.any():
         modes = enumeration([str(r) for r in data["mode"].values[unlike]])
         yield _say("unlike", modes=modes)
 
 
-def _parameters(data: xr.Dataset) -> Iterator[str]:
+def _parameters(data: Dataset) -> Iterator[str]:
     """Yield values and 90 % intervals of the parameters, of which the data determine most first."""
     theta = _row(data, Kind.MOST_PROBABLE)["theta"].values
     low, _, high = data["interval"].values.T
@@ -153,7 +153,7 @@ def _interval(value: float, low: float, high: float) -> str:
     return f"{value:.{digits + 1}g} ({low:.{digits}g} to {high:.{digits}g})"
 
 
-def _front(data: xr.Dataset) -> Iterator[str]:
+def _front(data: Dataset) -> Iterator[str]:
     """Yield whether the front is a compromise, or its errors change less than noise."""
     along = front_points(data)
     if along.size < 2 or any(True for _ in _pairs(data)):
@@ -169,7 +169,7 @@ def _front(data: xr.Dataset) -> Iterator[str]:
     yield _say(kind, group=data["group"].values[i], change=change[i])
 
 
-def _predictions(data: xr.Dataset) -> Iterator[str]:
+def _predictions(data: Dataset) -> Iterator[str]:
     """Yield the posterior and the range of the first quantity of the first predictions."""
     for each in list(predictions_in(data))[:2]:
         for x in [x for x in each.quantities if x.variable.ranged and x.drawn][:1]:
@@ -181,7 +181,7 @@ def _predictions(data: xr.Dataset) -> Iterator[str]:
                 yield _say("prediction", **names, **ends)
 
 
-def _next(data: xr.Dataset) -> Iterator[str]:
+def _next(data: Dataset) -> Iterator[str]:
     """Yield what to measure for the least determined parameter, and what the study could fix."""
     low, _, high = data["interval"].values.T
     share, trust = (high - low) / data["prior_width"].values, data["trust"].values
@@ -226,5 +226,5 @@ def _closed(names: Sequence[str], samples: Floats, trust: Sequence[str]) -> list
     return lines
 
 
-def _row(data: xr.Dataset, kind: Kind) -> xr.Dataset:
+def _row(data: Dataset, kind: Kind) -> Dataset:
     return data.isel(point=data["kind"].values.tolist().index(kind.value))

@@ -9,13 +9,14 @@ from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import Any, Unpack
 
 from threadpoolctl import threadpool_limits
 
 from modefront._version import __version__
 from modefront.analysis.certified import certificate_attributes, certified_front, certified_points
 from modefront.analysis.front import analyse_front
+from modefront.datasets import Dataset
 from modefront.errors import Fault, InputError, writing
 from modefront.front.front import Front
 from modefront.front.given import Weighted
@@ -30,9 +31,16 @@ from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text
 from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.predictions import PredictionRunner
+from modefront.results.analysis import with_intervals
+from modefront.results.assemble import dataset
+from modefront.results.files import FILE, write, written_for
+from modefront.results.predictions import PredictionRunner, with_predictions
+from modefront.results.results import Results
+from modefront.results.shapes import mode_shapes, with_mode_shapes
+from modefront.results.verdict import with_verdict
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
+from modefront.study.file import load
 from modefront.uncertainty.inference import infer
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.noise import Uncertainty
@@ -42,11 +50,6 @@ from modefront.work.progress import Progress
 from modefront.work.store import FOLDER, NOTE, Run, Store, locked
 from modefront.work.task import Task, Within
 from modefront.work.workers import Workers, backend
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from modefront.results.results import Results
 
 
 class StudyOptions(ParetoOptions, total=False):
@@ -133,10 +136,6 @@ def run(
     UnfinishedError
         If the work cannot be done; what is done is kept.
     """
-    from modefront.results.files import FILE, write, written_for
-    from modefront.results.results import Results
-    from modefront.study.file import load
-
     if isinstance(workers, AbstractContextManager):
         carrier = workers
     else:
@@ -147,7 +146,7 @@ def run(
         study = replace(study, pareto=replace(study.pareto, refined=refined))
     study, progress = study.completed(), progress or Progress()
 
-    def done(store: Store | None = None) -> xr.Dataset:
+    def done(store: Store | None = None) -> Dataset:
         # Dense problems of a hundred unknowns are slower on several threads than on one.
         with carrier as opened, threadpool_limits(1, user_api="blas"):
             progress.workers = opened.workers
@@ -183,17 +182,11 @@ def run(
     return Results(data, study.problem)
 
 
-def worked(study: Study, work: Run) -> xr.Dataset:
+def worked(study: Study, work: Run) -> Dataset:
     """Do the work of a study, and return its results.
 
     Raises InputError where no parameter changes a group.
     """
-    from modefront.results.analysis import with_intervals
-    from modefront.results.assemble import dataset
-    from modefront.results.predictions import with_predictions
-    from modefront.results.shapes import mode_shapes, with_mode_shapes
-    from modefront.results.verdict import with_verdict
-
     problem, seed, file = study.problem, study.seed, str(study.file)
     refuse_too_many(problem, file)
     (unchanged,) = work.run([Task(("check-groups",), unchanged_groups, (problem,))])
@@ -231,9 +224,7 @@ def worked(study: Study, work: Run) -> xr.Dataset:
     runner = PredictionRunner(problem, study.predictions, seed, work, study.file)
     draws = study.uncertainty.draws
     data = with_predictions(data, runner, study.slack, gaussian, draws, drawn)
-    data = with_verdict(data)
-    data.attrs |= _attributes(study, work, front)
-    return data
+    return with_verdict(data).assign_attrs(_attributes(study, work, front))
 
 
 def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | float]:
