@@ -56,6 +56,9 @@ points = 3
 
 [search]
 doubt = 0.5
+
+[noise]
+weight = 0
 """
 )
 
@@ -188,7 +191,7 @@ def test_results_lie_where_they_are_wanted(modefront_: Run, study: Path, done: P
     assert data.attrs["seed"] == 3
     labels = [f"nbi-{i + 1}" for i in range(3)]
     labels += ["edge-frequencies", "edge-shapes", "mine", "equal-weights", "optimal-weights"]
-    labels += ["most-probable", "nominal"]
+    labels += ["nominal"]
     assert data["label"].values.tolist() == labels
     mine = data.isel(point=labels.index("mine"))
     assert mine["weight"].values.tolist() == [2.0, 1.0]

@@ -47,12 +47,12 @@ def two() -> Results:
 
 @pytest.fixture(scope="module")
 def three() -> Results:
-    return solved([FREQUENCIES, LOW, HIGH], points=3)
+    return solved([FREQUENCIES, LOW, HIGH], points=3, noise=mf.NoisePrior(weight=0))
 
 
 @pytest.fixture(scope="module")
 def single_group() -> Results:
-    return solved([FREQUENCIES])
+    return solved([FREQUENCIES], noise=mf.NoisePrior(weight=0))
 
 
 def lines(figure: Figure) -> list[Any]:
