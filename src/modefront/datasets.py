@@ -64,11 +64,6 @@ class ArrayDataset:
         every = self.variables.values()
         return {k: n for x in every for k, n in zip(x.dims, x.values.shape, strict=False)}
 
-    @property
-    def coords(self) -> dict[Any, Array]:
-        """The coordinates."""
-        return {name: x for name, x in self.variables.items() if x.dims == (name,)}
-
     def __getitem__(self, name: Any) -> Array:
         return self.variables[name]
 
@@ -107,19 +102,18 @@ Dataset: TypeAlias = "ArrayDataset | xr.Dataset"
 
 def write_netcdf(data: Dataset, stream: IO[bytes]) -> None:
     """Write a dataset to a file that is open for reading and writing."""
+    text = h5py.string_dtype()
     with h5py.File(stream, "w", track_order=True) as file:
         for name, variable in data.variables.items():
-            values, kind = variable.values, variable.values.dtype.kind
-            marks = {"dtype": "bool"} if kind == "b" else {}
-            if kind == "b":
-                values = values.astype(np.int8)
-            elif kind in "UOT":
-                values = values.astype(h5py.string_dtype())
-            file.create_dataset(name, data=values).attrs.update({**variable.attrs, **marks})
+            x = variable.values
+            held = {"b": np.int8, "U": text, "O": text, "T": text}.get(x.dtype.kind, x.dtype)
+            item = file.create_dataset(name, data=x.astype(held))
+            item.attrs.update(variable.attrs)
+            if x.dtype.kind == "b":
+                item.attrs["dtype"] = "bool"  # as `xarray` has it
         for k, (name, size) in enumerate(data.sizes.items()):
-            if name in data.variables:
-                label = str(name).encode()
-            else:
+            label = str(name).encode()
+            if name not in data.variables:
                 file.create_dataset(name, (size,), ">f4")
                 label = WITHOUT_VALUES + b"%10d" % size
             file[name].make_scale(label)
@@ -135,45 +129,33 @@ def contents(path: Path) -> tuple[dict[str, Any], list[Any]]:
     """Return the values of all variables of a netCDF file in their order, and what belongs to them.
 
     That is the name, dimensions and attributes of each variable, and the attributes of the file.
-    Raises ForeignError where the file refers to others, ValueError for values that are neither
-    numbers nor texts.
+    Raises ForeignError where the file refers to others.
     """
+    arrays: dict[str, Any] = {}
+    named: list[Any] = []
     with h5py.File(path, "r") as file:
         check_tree(file)
-        variables = {
-            name: item
-            for name, item in file.items()
-            if isinstance(item, h5py.Dataset)
-            and not np.bytes_(item.attrs.get("NAME", b"")).startswith(WITHOUT_VALUES)
-        }
-        arrays = {str(k): _values(item) for k, item in enumerate(variables.values())}
-        named = [[name, _dimensions(name, x), _attributes(x)] for name, x in variables.items()]
+        for name, item in file.items():
+            scale = np.bytes_(item.attrs.get("NAME", b""))
+            if isinstance(item, h5py.Dataset) and not scale.startswith(WITHOUT_VALUES):
+                dims = [name] if item.is_scale else [each[0].name[1:] for each in item.dims]
+                arrays[str(len(named))] = _values(item)
+                named.append([name, dims, _attributes(item)])
         return arrays, [named, _attributes(file)]
-
-
-def _dimensions(name: str, item: h5py.Dataset) -> list[str]:
-    return [name] if item.is_scale else [each[0].name[1:] for each in item.dims]
 
 
 def _values(item: h5py.Dataset) -> np.ndarray[Any, Any]:
     if h5py.check_string_dtype(item.dtype):
         return np.asarray(item.asstr()[...], dtype=str)
-    values = _sound(np.asarray(item[...]))
-    return values.astype(bool) if item.attrs.get("dtype") == "bool" else values
+    return np.asarray(item[...], bool if item.attrs.get("dtype") == "bool" else None)
 
 
 def _attributes(item: h5py.Dataset | h5py.File) -> dict[str, Any]:
     """Return the attributes of a variable or of all; a list of one value is that value."""
     out: dict[str, Any] = {}
     for name, kept in item.attrs.items():
+        x = np.asarray("" if isinstance(kept, h5py.Empty) else kept)
+        x = np.char.decode(x, "utf-8") if x.dtype.kind == "S" else x
         if name not in HIDDEN:
-            x = _sound(np.asarray("" if isinstance(kept, h5py.Empty) else kept))
-            x = np.char.decode(x, "utf-8") if x.dtype.kind == "S" else x
             out[name] = x.item() if x.size == 1 else x.tolist()
     return out
-
-
-def _sound(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    if values.dtype.kind not in "OUSTbiuf":
-        raise ValueError(f"values of the type {values.dtype.kind}, neither numbers nor texts")
-    return values

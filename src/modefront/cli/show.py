@@ -399,7 +399,7 @@ def as_json(data: Dataset) -> str:
         "attributes": {str(k): np.asarray(value).tolist() for k, value in data.attrs.items()},
         "variables": {
             str(x): {"dimensions": list(map(str, data[x].dims)), "values": data[x].values.tolist()}
-            for x in [*data.coords, *data.variables]
+            for x in data.variables
         },
         "remarks": [str(finding) for finding in found],
         "findings": [finding.as_plain() for finding in found],

@@ -256,21 +256,17 @@ def _spreads(
         yield Spread(f"{prefix}{name}", float(least), float(greatest), float(value))
 
 
-def _places(data: Dataset, names: Sequence[str]) -> list[int]:
-    """Return the places of parameters in results."""
-    return [data["parameter"].values.tolist().index(name) for name in names]
-
-
 def _apart(first_results: tuple[str, Dataset], second_results: tuple[str, Dataset]) -> Apart:
     (first, a), (second, b) = first_results, second_results
-    known = b["parameter"].values.tolist()
-    common = [name for name in a["parameter"].values.tolist() if name in known]
+    names = [x["parameter"].values.tolist() for x in (a, b)]
+    common = [name for name in names[0] if name in names[1]]
     if not common:
         return Apart(first, second, (), *[np.nan] * 4)
-    span = np.diff(a.isel(parameter=_places(a, common))["bounds"].values, axis=1)[:, 0]
+    places = [[each.index(name) for name in common] for each in names]
+    span = np.diff(a["bounds"].values[places[0]], axis=1)[:, 0]
     # (models, p) of each kind in turn, of both results.
     best, chosen, optimal = (
-        [np.atleast_2d(x.isel(parameter=_places(x, common))["theta"].values / span) for x in each]
+        [np.atleast_2d(x["theta"].values[..., j] / span) for x, j in zip(each, places, strict=True)]
         for each in zip(_models(a), _models(b), strict=True)
     )
     away = scipy.spatial.distance.cdist(*best)
