@@ -43,6 +43,9 @@ SHORT = 30.0
 STEP = 2.0, 6.0
 """Evaluations of a step from one draw of the posterior to the next, from and to."""
 
+ENDS = 20
+"""Steps to the end of a range at a model, with a slack: each takes derivatives by differences."""
+
 TIMED, WITHIN = 8, 0.4
 """Searches that are timed, where an evaluation tells that there is time for them; seconds within
 which another one is begun."""
@@ -108,17 +111,20 @@ def estimate(study: Study, started: float = 0.0) -> Estimate | None:
             full_of(problem.model).modes(problem.start, len(problem.data.modes))
             alone, p = time.process_time() - began, len(problem.start)
             other["snapshot"] = alone * p, 2 * alone * (3 * p + 5)
-        models = _points(study) + len(problem.groups) + len(study.weighted) + 3
-        models += study.uncertainty.draws or 1 + 2 * len(problem.start)
+        along = _points(study) + len(problem.groups) + len(study.weighted)
+        models = along + 3 + (study.uncertainty.draws or 1 + 2 * len(problem.start))
         for prediction in study.predictions:
             try:
-                spent = models * max(_seconds_of(prediction, problem) - each, each)
+                spent = max(_seconds_of(prediction, problem) - each, each)
             except (ModelError, InputError):
                 continue
+            ends = 2 * len(prediction.kind.ranged) * len(prediction.places) * along
+            steps = ENDS * ends if study.slack else 0
+            spent *= models + steps * (1 + 2 * len(problem.start))
             least, most = other.get("predict", (0.0, 0.0))
             other["predict"] = least + spent / 2, most + 2 * spent
             text = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
-            advice.append((2 * spent, text))
+            advice.append((2 * spent, text + ", or no slack" * (study.slack > 0)))
     plan = Plan(search, {stage: span for stage, (span, _) in parts.items()}, other)
     start, most = (started, 2 * started), plan.seconds[1]
     if most <= SHORT:
