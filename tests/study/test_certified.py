@@ -159,7 +159,8 @@ def test_a_few_full_solutions_are_enough_and_all_models_hold(whole: xr.Dataset) 
         J = whole["minimum_objective"].sel(group=of).values
         least = J[whole["minimum_of"].values == of].min()
         assert J[i] > 1.5 * least, "only what is clearly no best model may not hold"
-        assert whole["minimum_eigenvalue_error"].values[i].max() < 1e-3
+        if whole["minimum_converged"].values[i]:  # at a jump, pairs may differ in the full model
+            assert whole["minimum_eigenvalue_error"].values[i].max() < 1e-3
     assert float(whole["eigenvalue_error"].max()) <= whole.attrs["eigenvalue_tolerance"] == 1e-8
     assert whole.attrs["full_eigensolutions"] == 1
     # Both of the snapshot, one that probes the bounds, and one of each model that is reported.

@@ -301,7 +301,11 @@ def _of_the_front(front: Front) -> Iterator[Solution]:
 
 
 def _rivals(problem: UpdatingProblem, front: Front) -> Iterator[Solution]:
-    """Return the minima that might be the best ones, for all that is known of their errors."""
+    """Return the minima that might be the best ones, for all that is known of their errors.
+
+    Where a search has ended at a jump is no minimum: the basis and the full model may pair modes
+    differently there, however small errors are.
+    """
 
     def roots(solution: Solution) -> tuple[Floats, Floats]:
         margin = problem.margins(*(solution.evaluation.quantities[name] for name in ERRORS))
@@ -309,7 +313,7 @@ def _rivals(problem: UpdatingProblem, front: Front) -> Iterator[Solution]:
 
     for i, edge in enumerate(front.edges):
         most = roots(edge.best)[1][i]
-        yield from (solution for solution in edge.minima if roots(solution)[0][i] <= most)
+        yield from (x for x in edge.minima if x.converged and roots(x)[0][i] <= most)
     value = LogSum(problem.properties).value
     for solution in front.optimal[1:]:
         least, most = roots(solution)[0], roots(front.optimal[0])[1]
