@@ -197,7 +197,7 @@ def test_frequencies_and_all_data_determine_all_in_every_form(form: str) -> None
     problem = problem_of(form)
     text = [str(each) for each in determined(problem, problem.evaluate(problem.start))[0]]
     assert text[0] == "frequencies determine 4 of 4 combinations of parameters"
-    assert text[2] == "all data together determine 4 of 4 combinations of parameters"
+    assert text[2] == "all data determine 4 of 4 combinations of parameters"
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -266,7 +266,7 @@ def test_a_parameter_without_effect_is_said_once_and_is_like_no_other() -> None:
         "frequencies determine 3 of 3 combinations of parameters that have an effect",
         "shapes determine 2 of 3 combinations of parameters that have an effect; "
         "k1, k2 and k3 can be scaled together: no shape changes",
-        "all data together determine 3 of 3 combinations of parameters that have an effect",
+        "all data determine 3 of 3 combinations of parameters that have an effect",
     )
     H = evaluation.H.sum(axis=0) / 2
     noise = 1e-30 * np.ones((4, 4))

@@ -72,7 +72,7 @@ def test_the_check_says_so_in_words(frame: mf.UpdatingProblem) -> None:
     assert shapes.startswith("shapes determine 10 of 18 combinations of parameters")
     assert "; all 18 parameters can be scaled together; " in shapes
     assert shapes.endswith("; and 5 more: no shape changes")
-    assert together.startswith("all data together determine 12 of 18 combinations of parameters")
+    assert together.startswith("all data determine 12 of 18 combinations of parameters")
     assert "; and 3 more: no residual changes" in together
     assert compared(frame).error < 1e-5
 

@@ -46,7 +46,7 @@ def test_what_the_data_determine_is_said(study: Study) -> None:
         "frequencies determine 3 of 3 combinations of parameters",
         f"shapes determine 2 of 3 combinations of parameters; {names} can be scaled together: "
         "no shape changes",
-        "all data together determine 3 of 3 combinations of parameters",
+        "all data determine 3 of 3 combinations of parameters",
     )
 
 

@@ -129,7 +129,7 @@ def test_what_a_unit_mistake_brings_about_is_not_said(tmp_path: Path) -> None:
     assert "put this right first: it changes what the data determine" in text
     assert text.count("warning:") == 1
     assert "determine this combination" not in text
-    assert "all data together" not in text
+    assert "all data determine" not in text
 
 
 @pytest.mark.parametrize(

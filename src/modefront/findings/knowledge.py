@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.findings.record import Finding, found
-from modefront.identifiability.combinations import NONE, WEAK, Combination, pairs
+from modefront.identifiability.combinations import NONE, WEAK, Combination, Determination, pairs
 from modefront.identifiability.scale import Scale
 from modefront.identifiability.sparse import SAME, sparse_basis
 from modefront.residuals.groups import Group
+from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.inference import Freed, excluding
 
 PARTS, NAMED, TOGETHER, SHOWN = 5, 20, 3, 3
@@ -76,6 +77,17 @@ def summary(
         text += f"; {free}: no {noun} changes"
     count = f"{p} combination{'s' * (p > 1)}"
     return found(kind, subject, where=where, rank=rank, combinations=count, free=text)
+
+
+def summaries(problem: UpdatingProblem, of: Determination, where: str = "") -> Iterator[Finding]:
+    """Yield what each group, then all data determine at a model."""
+    names, groups = problem.model.parameters, problem.groups
+    for i, (name, combinations) in enumerate(of.combinations):
+        whole = i == len(groups)
+        noun = measured_noun(groups if whole else [groups[i]])
+        full = sum(x.share >= WEAK for x in combinations) == len(names) - len(of.idle)
+        kind = "determined" if full else "all-data" if whole else "group-data"
+        yield summary(name, noun, combinations, names, of.scale, of.idle, kind, where)
 
 
 def free_in_words(

@@ -9,6 +9,7 @@ G)}` (Brun, Reichert & Künsch 2001, doi:10.1029/2000WR900350, eq. 2; they call 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -224,3 +225,38 @@ def optimal_weights(a: Floats, J: Floats) -> Floats:
     determine would drown in it.
     """
     return np.asarray(a / np.maximum(J, a * LEAST**2))
+
+
+ALL = "all data"
+"""Name of all groups together."""
+
+
+@dataclass(frozen=True)
+class Determination:
+    """Combinations of parameters that each group, then all data determine at a model.
+
+    Attributes
+    ----------
+    scale : units of the parameters there
+    idle : positions of parameters without effect
+    combinations : of each group, and of `ALL` where there are several, by these names
+    effects : (p, p) products of the effects of parameters on all weighted residuals
+    """
+
+    scale: Scale
+    idle: list[int]
+    combinations: Sequence[tuple[str, Sequence[Combination]]]
+    effects: Floats
+
+
+def determination(problem: UpdatingProblem, evaluation: Evaluation) -> Determination:
+    """Return what the data determine at a model, with weights that are optimal for it."""
+    weights = optimal_weights(problem.properties, evaluation.J)
+    scale = scale_at(problem, evaluation.theta)
+    idle = without_effect(problem, evaluation, scale)
+    groups: list[tuple[str, int | None]] = [(x.name, i) for i, x in enumerate(problem.groups)]
+    groups += [(ALL, None)] * (len(groups) > 1)
+    of = [(name, combinations(problem, evaluation, i, weights, scale)) for name, i in groups]
+    effects = gram(evaluation, weights, scale)
+    effects[idle] = effects[:, idle] = 0.0
+    return Determination(scale, idle, of, effects)

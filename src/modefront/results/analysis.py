@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,17 +12,8 @@ from modefront.analysis.front import FrontAnalysis
 from modefront.datasets import ArrayDataset
 from modefront.front.front import Front
 from modefront.front.methods import METHODS
-from modefront.front.point import Kind, Point, of_kind
-from modefront.identifiability.combinations import (
-    Combination,
-    combinations,
-    cosines,
-    gram,
-    index,
-    optimal_weights,
-    without_effect,
-)
-from modefront.identifiability.scale import Scale, scale_at
+from modefront.front.point import Kind, of_kind
+from modefront.identifiability.combinations import Determination, cosines, determination, index
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.schema import described
 from modefront.rounding import TINY
@@ -38,10 +28,6 @@ Values = dict[str, object]
 PART = 1e-9
 """Component of a direction over the greatest that is rounding of its basis."""
 
-ALL = "all data"
-"""Name of all groups together."""
-
-
 QUANTILES = (0.05, 0.5, 0.95)
 """Quantiles of the parameters: a 90 % interval and the median."""
 
@@ -53,45 +39,21 @@ TRUST = ("determined", "partly", "not determined")
 """What the data say of a parameter."""
 
 
-@dataclass(frozen=True)
-class Determination:
-    """Combinations of parameters that each group, then all data determine at a point.
-
-    ``idle`` are positions of parameters without effect, ``effects`` (p, p) products of the effects
-    of parameters on all weighted residuals.
-    """
-
-    point: Point
-    scale: Scale
-    idle: list[int]
-    combinations: Sequence[tuple[str, Sequence[Combination]]]
-    effects: Floats
+Determinations = Sequence[tuple[str, Determination]]
+"""What is determined at the reference, then at each edge, with the labels of these."""
 
 
-def determinations(problem: UpdatingProblem, front: Front) -> list[Determination]:
-    """Return the determined combinations of parameters at the reference, then at each edge."""
-    out = []
-    data = [(group.name, i) for i, group in enumerate(problem.groups)]
-    every = [*data, (ALL, None)] if len(data) > 1 else data
-    for point in [front.reference, *of_kind(front.points, Kind.EDGE)]:
-        evaluation = point.solution.evaluation
-        weights = optimal_weights(problem.properties, evaluation.J)
-        scale = scale_at(problem, evaluation.theta)
-        idle = without_effect(problem, evaluation, scale)
-        of_data = [
-            (name, combinations(problem, evaluation, i, weights, scale)) for name, i in every
-        ]
-        effects = gram(evaluation, weights, scale)
-        effects[idle] = effects[:, idle] = 0.0
-        out.append(Determination(point, scale, idle, of_data, effects))
-    return out
+def determinations(problem: UpdatingProblem, front: Front) -> Determinations:
+    """Return the determined combinations of parameters."""
+    points = [front.reference, *of_kind(front.points, Kind.EDGE)]
+    return [(x.label, determination(problem, x.solution.evaluation)) for x in points]
 
 
 def analysis_values(
     problem: UpdatingProblem,
     front: Front,
     analysis: FrontAnalysis,
-    determined: Sequence[Determination],
+    determined: Determinations,
 ) -> Values:
     """Return the values; ``front`` holds all points, those of ``analysis`` too."""
     boundary = METHODS[front.method].programme == "boundary"
@@ -109,15 +71,15 @@ def analysis_values(
     }
 
 
-def _identifiability(determined: Sequence[Determination]) -> Values:
+def _identifiability(determined: Determinations) -> Values:
     rows = [
-        (each.point.label, name, combination, each.scale.unit)
-        for each in determined
+        (label, name, combination, each.scale.unit)
+        for label, each in determined
         for name, of_data in each.combinations
         for combination in of_data
     ]
     at, of, chosen, unit = zip(*rows, strict=True)
-    effects = determined[0].effects
+    effects = determined[0][1].effects
     active = np.flatnonzero(np.diag(effects) > 0).tolist()
     return {
         "combination_at": at,

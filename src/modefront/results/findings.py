@@ -15,17 +15,15 @@ from modefront.findings.knowledge import (
     PARTS,
     alike,
     enumeration,
-    measured_noun,
     no_effect,
-    summary,
+    summaries,
 )
 from modefront.findings.record import Finding, as_text, found, in_order
 from modefront.front.front import Front
 from modefront.front.point import Kind, label, of_kind
-from modefront.identifiability.combinations import WEAK
 from modefront.optim.problem import AT_BOUND
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.analysis import Determination, Values
+from modefront.results.analysis import Determinations, Values
 from modefront.uncertainty.scatter import LinearisationWarning
 
 FEW = 10
@@ -39,13 +37,17 @@ def findings(
     problem: UpdatingProblem,
     front: Front,
     analysis: FrontAnalysis,
-    determinations: Sequence[Determination],
+    determined: Determinations,
 ) -> list[Finding]:
     """Return the findings; ``front`` holds all points, those of ``analysis`` too."""
+    (label_of_reference, reference), names = determined[0], problem.model.parameters
+    where = f"at {label_of_reference}: "
     return in_order(
         [
             *_search(problem, front),
-            *_identifiability(problem, determinations[0]),
+            *no_effect(reference.idle, names, where),
+            *summaries(problem, reference, where),
+            *alike(reference.effects, names, reference.idle, where),
             *_flat(problem, front, analysis),
             *_manifolds(problem, analysis),
             *_scatter(problem, front, analysis),
@@ -86,21 +88,6 @@ def _search(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
         for at, branch, end in ((gap.end, k, "ends"), (gap.start, k + 1, "starts")):
             if at is None:
                 yield found("unknown-end", str(branch), end=end)
-
-
-def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iterator[Finding]:
-    names, groups = problem.model.parameters, problem.groups
-    where = f"at {reference.point.label}: "
-    yield from no_effect(reference.idle, names, where)
-    for i, (name, combinations) in enumerate(reference.combinations):
-        whole = i == len(groups)
-        noun = measured_noun(groups if whole else [groups[i]])
-        known = sum(each.share >= WEAK for each in combinations)
-        full = known == len(names) - len(reference.idle)
-        kind = "determined" if full else "all-data" if whole else "group-data"
-        of = (reference.scale, reference.idle)
-        yield summary(name, noun, combinations, names, *of, kind=kind, where=where)
-    yield from alike(reference.effects, names, reference.idle, where)
 
 
 def _flat(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Iterator[Finding]:

@@ -21,13 +21,14 @@ from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found, from_text
 from modefront.front.point import position, preferred
+from modefront.identifiability.combinations import ALL
 from modefront.models.base import full_of, is_reduced
 from modefront.optim.lexicographic import RANK
 from modefront.predictions import Prediction, PredictionKind, ResultVariable
 from modefront.predictions.base import ATTRIBUTE, as_text, kinds_in
 from modefront.predictions.ranges import Sampled, extreme
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.analysis import ALL, Values, left_open
+from modefront.results.analysis import Values, left_open
 from modefront.results.findings import as_values
 from modefront.results.schema import described
 from modefront.uncertainty.prediction import (

@@ -32,21 +32,16 @@ from modefront.findings.knowledge import (
     bound,
     enumeration,
     in_words,
-    measured_noun,
     no_effect,
-    summary,
+    summaries,
 )
 from modefront.findings.record import Finding, found
 from modefront.identifiability.combinations import (
     NONE,
     WEAK,
-    combinations,
-    gram,
-    optimal_weights,
+    determination,
     unchanged_groups,
-    without_effect,
 )
-from modefront.identifiability.scale import scale_at
 from modefront.inputs import available_memory
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel
@@ -260,32 +255,22 @@ def determined(
 
     Beside these are the parameters without effect, what all data leave open, and those alike.
     """
-    names, groups = problem.model.parameters, problem.groups
-    scale = scale_at(problem, problem.start)
-    idle = without_effect(problem, nominal, scale)
-    weights = optimal_weights(problem.properties, nominal.J)
-    known = []
-    for i, group in enumerate(groups):
-        of_group = combinations(problem, nominal, i, scale=scale)
-        known.append(summary(group.name, measured_noun([group]), of_group, names, scale, idle))
-    of_all = combinations(problem, nominal, weights=weights, scale=scale)
-    if len(groups) > 1:
-        noun = measured_noun(groups)
-        known.append(summary("all data together", noun, of_all, names, scale, idle))
-    left_open = no_effect(idle, names)
+    names, of = problem.model.parameters, determination(problem, nominal)
+    left_open = no_effect(of.idle, names)
     degrees: dict[str, list[str]] = {"do not determine": [], "hardly determine": []}
-    for each in of_all:
-        if each.share < WEAK and np.linalg.norm(each.direction[idle]) <= np.sqrt(0.5):
+    for each in of.combinations[-1][1]:
+        if each.share < WEAK and np.linalg.norm(each.direction[of.idle]) <= np.sqrt(0.5):
             degree = "do not determine" if each.share <= NONE else "hardly determine"
             degrees[degree].append(in_words(each, names))
     for degree, texts in degrees.items():
         if len(texts) > SHOWN:
-            several, every = len(texts), len(names) - len(idle)
+            several, every = len(texts), len(names) - len(of.idle)
             many = found("undetermined-many", degree=degree, several=several, every=every)
             left_open.append(many)
         else:
             left_open += [found("undetermined", text, degree=degree) for text in texts]
-    return known, [*left_open, *alike(gram(nominal, weights, scale), names, idle)]
+    known = list(summaries(problem, of))
+    return known, [*left_open, *alike(of.effects, names, of.idle)]
 
 
 @dataclass(frozen=True)
