@@ -24,7 +24,7 @@ from modefront.data.responses import (
     frequency_responses,
 )
 from modefront.errors import Fault, InputError, refuse
-from modefront.options import Requirement, any_of, check_fields, number
+from modefront.options import Checked, Requirement, any_of, number
 from modefront.rounding import ACCUMULATED, LARGEST
 
 Estimator = Literal["H1", "H2", "Hv"]
@@ -46,7 +46,7 @@ TAPER = 0.1
 
 
 @dataclass(frozen=True)
-class Windows:
+class Windows(Checked):
     """Estimator and windows that make functions of records.
 
     Attributes
@@ -60,10 +60,6 @@ class Windows:
     estimator: Estimator = "H1"
     force_window: Annotated[float, number("a time in s above zero", above=0)] | None = None
     exponential: Annotated[float, EXPONENTIAL] | None = None
-
-    def __post_init__(self) -> None:
-        """Raise InputError for values that are not possible."""
-        check_fields(self)
 
 
 @dataclass(frozen=True)
