@@ -40,6 +40,7 @@ from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
 from modefront.pairing.match import assigned
+from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import ACCUMULATED, TINY
 
 RIGID = 1e-6
@@ -230,11 +231,12 @@ def roughly(states: Sequence[State], old: State, at: Points, solved: Solved) -> 
     ``at`` is the ``old`` state beside the model; what does not change the shapes is left out.
     """
     data = old.data
+    new = replace(data, shape=np.stack([each.data.shape for each in states]))
     of_model = at.beta[:, None] * (old.rows @ solved.phi[:, at.pairs]).T
-    shapes = np.stack([each.data.shape for each in states]) / data.size[..., None]
-    r = (shapes - data.factors(data.mean) * of_model) / (at.sigma * data.motion)
-    costs = np.nansum(loss(r, OF_MODEL) + np.log(at.sigma), axis=(1, 2, 3))
-    return costs + [each.data.left_out for each in states]
+    expected = data.factors(data.mean) * of_model * (data.size / new.size)[..., None]
+    r = np.nan_to_num((new.psi - expected) / (at.sigma * data.motion))
+    costs = (new.seen * (loss(r, OF_MODEL) + np.log(at.sigma))).sum(axis=(1, 2, 3))
+    return np.asarray(costs + [each.data.left_out for each in states])
 
 
 def places(model: MatrixModel) -> Geometry:
@@ -262,7 +264,7 @@ class Fits:
         geometry, rows = None, np.eye(len(problem.data.sensors))
         basis = rows
         if matrices is not None:
-            model, basis = in_space_of_modes(matrices, self.count, comparison)
+            model, basis = in_space_of_modes(matrices, self.count, problem)
             geometry, rows = places(matrices), matrices.selection @ basis
         foreign, low = np.zeros(len(problem.data.modes), bool), np.array(comparison.candidates)
         bounds = problem.start, problem.lower, problem.upper
@@ -332,26 +334,26 @@ class Fits:
 
 
 def in_space_of_modes(
-    matrices: MatrixModel, count: int, comparison: Comparison
+    matrices: MatrixModel, count: int, problem: UpdatingProblem
 ) -> tuple[MatrixModel, Floats]:
     """Return a model with all of its coordinates as sensors, and its basis V (N, n).
 
     A large one is reduced to modes at the nominal parameters and at others by chance.
     """
-    V, problem = np.eye(matrices.size), comparison.problem
-    K, M = matrices.stiffness, matrices.mass
+    V, K, M = np.eye(matrices.size), matrices.stiffness, matrices.mass
     if matrices.size > max(LARGE, 4 * count):
-        rng, p = np.random.default_rng(0), problem.start.size
-        factors = np.exp(rng.uniform(-OFF, OFF, (SAMPLES, p)) * 2)
-        shapes = [matrices.full_modes(problem.start, count).Phi]
-        for factor in factors:
+        logs, shapes = (
+            np.random.default_rng(0).uniform(-OFF, OFF, (SAMPLES, len(problem.start))),
+            [],
+        )
+        for factor in (1.0, *np.exp(2 * logs)):
             with suppress(ModelError):
                 theta = np.clip(problem.start * factor, problem.lower, problem.upper)
                 shapes.append(matrices.full_modes(theta, count).Phi)
         V, size, _ = np.linalg.svd(np.hstack(shapes), full_matrices=False)
         V = V[:, size > 1e-7 * size[0]]
-        K, M = (_projected(A, V) for A in (matrices.stiffness, matrices.mass))
-    every = scipy.sparse.csr_array(np.eye(V.shape[1]))
+        K, M = _projected(K, V), _projected(M, V)
+    every = scipy.sparse.eye_array(V.shape[1], format="csr")
     parts: dict[str, Any] = {"sensors": (), "outputs": {}, "base": {}, "geometry": None}
     return replace(matrices, selection=every, stiffness=K, mass=M, **parts), V
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -31,8 +32,8 @@ CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
 PROMISING, TRIED, FITTED, VARIANTS = 200, 40, 10, 2
-"""Changes of shapes that are compared with other mistakes, claims that are tried in pairs, those by
-which an explanation is extended, and mistakes of a claim that are fitted."""
+"""Changes of shapes of each kind that are compared with others, claims that are tried in pairs,
+those by which an explanation is extended, and mistakes of a claim that are fitted."""
 
 BEAM = 6
 """Single mistakes to which others are added beside the best explanation."""
@@ -113,7 +114,7 @@ def undone(state: State, mistakes: Iterable[Mistake]) -> State:
 
 
 def promising(found: Sequence[Mistake], setting: Setting) -> list[Mistake]:
-    """Return those mistakes by which shapes come nearest to the model, and all of other kinds."""
+    """Return those of each kind by which shapes come nearest to the model, and all others."""
     old, costs = setting.state, np.full(len(found), -np.inf)
     for k in range(0, len(found), TOGETHER):
         states = [one.change(old) for one in found[k : k + TOGETHER]]
@@ -121,8 +122,12 @@ def promising(found: Sequence[Mistake], setting: Setting) -> list[Mistake]:
         for i, (state, cost) in enumerate(zip(states, np.min(rough, axis=0), strict=True), k):
             if state.data.shape is not old.data.shape:
                 costs[i] = cost + found[i].price
-    chosen = np.argsort(costs, kind="stable")[: PROMISING + int(np.isinf(costs).sum())]
-    return [found[k] for k in np.sort(chosen).tolist()]
+    chosen, counts = [], Counter[str]()
+    for k in np.argsort(costs, kind="stable").tolist():
+        counts[found[k].kind] += 1
+        if counts[found[k].kind] <= PROMISING or np.isinf(costs[k]):
+            chosen.append(k)
+    return [found[k] for k in sorted(chosen)]
 
 
 class Search:

@@ -166,26 +166,27 @@ def wrong_nominal_value(setting: Setting) -> Iterator[Mistake]:
     for j, power in product(np.flatnonzero(state.is_positive).tolist(), POWERS):
         given, factor = float(state.start[j]), 10.0**power
         numbers = {"name": names[j], "given": given, "better": given * factor}
-        change = partial(_multiplied, parts=("start", "lower", "upper"), j=j, factor=factor)
+        parts = {x: getattr(state, x)[j] * factor for x in ("start", "lower", "upper")}
+        change = partial(_with, j=j, **parts)
         yield Mistake("nominal-value", (names[j],), change, price, numbers)
 
 
-def _multiplied(state: State, parts: Sequence[str], j: int, factor: float) -> State:
-    """Return the state with nominal value or bounds of parameter j times a factor."""
-    values: Any = {name: getattr(state, name).copy() for name in parts}
-    for each in values.values():
-        each[j] *= factor
-    return replace(state, **values)
+def _with(state: State, j: int, **values: float) -> State:
+    """Return the state with another nominal value or other bounds of parameter j."""
+    parts: Any = {name: getattr(state, name).copy() for name in values}
+    for name, value in values.items():
+        parts[name][j] = value
+    return replace(state, **parts)
 
 
 def excluding_bound(setting: Setting) -> Iterator[Mistake]:
-    """Yield bounds of positive parameters at which the fit ends, moved away."""
+    """Yield bounds at which the fit ends, moved away."""
     state, theta = setting.state, setting.points[-1].theta
-    near, price = 1e-6 * (state.upper - state.lower), one_of(RARE, 2 * theta.size)
-    for side, factor in (("lower", 1 / WIDER), ("upper", WIDER)):
-        is_at = state.is_positive & (np.abs(theta - getattr(state, side)) <= near)
-        for j in np.flatnonzero(is_at).tolist():
-            change = partial(_multiplied, parts=(side,), j=j, factor=factor)
+    room, price = state.upper - state.lower, one_of(RARE, 2 * theta.size)
+    for side, bounds, away in (("lower", state.lower, -1.0), ("upper", state.upper, 1.0)):
+        wider = np.where(state.is_positive, bounds * WIDER**away, bounds + away * WIDER * room)
+        for j in np.flatnonzero(np.abs(theta - bounds) <= 1e-6 * room).tolist():
+            change = partial(_with, j=j, **{side: wider[j]})
             yield Mistake("bound", (setting.parameters[j], side), change, price)
 
 
