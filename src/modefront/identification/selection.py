@@ -8,7 +8,6 @@ noise does in every other test, one is added, until nothing stands out. Backward
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +16,7 @@ from scipy.special import gammaln
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
+from modefront.identification.lscf import Poles
 from modefront.identification.modal_model import (
     COARSE,
     Fit,
@@ -30,19 +30,12 @@ from modefront.identification.noise import square
 from modefront.identification.problem import RESIDUALS, Problem
 from modefront.identification.scan import alike
 from modefront.identification.shapes import auto_mac, plane_basis
-from modefront.identification.stabilisation import Cluster
 
 FALSE = 1e-3
 """Expected number of modes in a band that noise alone makes."""
 
 EVEN = 0.5
 """The same number from which on a pole is tried in the model."""
-
-LIKELY = 0.5
-"""Least support of a cluster from which the model starts."""
-
-LEAST_ORDERS = 3
-"""Orders on which a cluster has to be before the model starts from it."""
 
 MOST_ROUNDS = 20
 """Rounds in which poles are added, at most."""
@@ -133,12 +126,9 @@ def gains(fit: Fit) -> Floats:
     return 2 * out / fit.found.noise_of(fit.model.lam)
 
 
-def start(task: Problem, clusters: Sequence[Cluster], omega: float) -> Fit:
-    """Return the fit from the likely clusters."""
-    likely = [each for each in clusters if each.support >= LIKELY and each.size >= LEAST_ORDERS]
-    lam = np.array([cluster.pole / omega for cluster in likely], complex)
-    L: Complexes = np.array([cluster.participation for cluster in likely], complex)
-    L = L.reshape(len(lam), len(task.H))
+def start(task: Problem, poles: Poles, omega: float) -> Fit:
+    """Return the fit from poles in rad/s, ``omega`` of which are the unit of the task."""
+    lam, L = poles.value / omega, poles.participation
     return refit(evaluate(task, lam, L, np.abs(L).argmax(axis=1)), lam, L)
 
 

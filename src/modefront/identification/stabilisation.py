@@ -27,6 +27,9 @@ MOST_ORDERS = 25
 CUT = 0.02, 0.08
 """Limits of the distance within which poles belong to one cluster."""
 
+LEAST_ORDERS = 3
+"""Orders on which a cluster has to be before a fit starts from it."""
+
 SHAPE_LINES = 4096
 """Lines from which shapes of the diagram are taken where there are more, those at poles apart."""
 
@@ -73,30 +76,10 @@ class StabilisationDiagram:
         return out
 
 
-@dataclass(frozen=True)
-class Cluster:
-    """Poles that are taken for one mode.
+def diagram_of(data: FrequencyResponses, variance: Floats) -> tuple[StabilisationDiagram, Poles]:
+    """Return the diagram of functions by least squares (`lscf`), and the poles of its clusters.
 
-    Attributes
-    ----------
-    pole : rad/s, that of the member nearest to the median
-    participation : (references,) that of the same member
-    support : share of the orders, from the first one with a member, that have a member
-    size : number of orders with a member
-    """
-
-    pole: complex
-    participation: Complexes
-    support: float
-    size: int
-
-
-def diagram_of(
-    data: FrequencyResponses, variance: Floats
-) -> tuple[StabilisationDiagram, list[Cluster]]:
-    """Return the diagram of functions by least squares (`lscf`), and its clusters by pole.
-
-    ``variance`` weights the lines; any of its axes may be 1.
+    ``variance`` weights the lines; any of its axes may be 1. A cluster is on `LEAST_ORDERS` orders.
     """
     weight = np.mean(1 / variance, axis=(0, 1))
     omega = 2 * np.pi * data.frequency
@@ -186,29 +169,22 @@ def _split(distance: Floats) -> tuple[Bools, float]:
     return stable, float(np.clip(inside.mean() + 2 * inside.std(), *CUT))
 
 
-def _clusters(diagram: StabilisationDiagram, psi: Complexes, cut: float) -> list[Cluster]:
+def _clusters(diagram: StabilisationDiagram, psi: Complexes, cut: float) -> Poles:
+    """Return the pole of each cluster that is nearest to the median of its members."""
     stable, number = np.flatnonzero(diagram.stable), np.ones(diagram.stable.sum(), int)
     if len(stable) > 1:
         pole, psi = diagram.pole[stable], psi[stable]
         d = _distances(pole, psi, pole, psi)
         tree = linkage(squareform((d + d.T) / 2, checks=False), "average")
         number = fcluster(tree, cut, "distance")
-    out = []
+    chosen = []
     for members in (stable[number == k] for k in np.unique(number)):
         poles = diagram.pole[members]
         middle = np.median(poles.real) + 1j * np.median(poles.imag)
-        best = members[np.abs(poles - middle).argmin()]
-        orders = np.unique(diagram.order[members])
-        possible = sum(order >= orders[0] for order in diagram.orders)
-        out.append(
-            Cluster(
-                complex(diagram.pole[best]),
-                diagram.participation[best],
-                len(orders) / possible,
-                len(orders),
-            )
-        )
-    return sorted(out, key=lambda cluster: cluster.pole.imag)
+        if len(np.unique(diagram.order[members])) >= LEAST_ORDERS:
+            chosen.append(int(members[np.abs(poles - middle).argmin()]))
+    chosen.sort(key=lambda k: diagram.pole[k].imag)
+    return Poles(0, diagram.pole[chosen], diagram.participation[chosen])
 
 
 def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) -> Floats:

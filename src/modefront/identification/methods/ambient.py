@@ -27,7 +27,7 @@ from modefront.identification.record import (
     Rejected,
     Residuals,
 )
-from modefront.identification.selection import FALSE, LEAST_ORDERS
+from modefront.identification.selection import FALSE
 from modefront.identification.sets import between, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
 from modefront.identification.spectra import Transforms
@@ -196,16 +196,10 @@ def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float])
 def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDiagram, list[Local]]:
     """Return the diagram of half spectra and its clusters within the band as modes."""
     data, variance = spectra.half_spectra(records, low, high)
-    diagram, clusters = diagram_of(data, variance)
-    clusters = [
-        each
-        for each in clusters
-        if low <= abs(each.pole) / (2 * np.pi) <= high and each.size >= LEAST_ORDERS
-    ]
-    if not clusters:
-        return diagram, []
-    lam = np.array([each.pole for each in clusters])
-    poles = Poles(0, lam, np.array([each.participation for each in clusters]))
+    diagram, all_poles = diagram_of(data, variance)
+    f = np.abs(all_poles.value) / (2 * np.pi)
+    inside = (f >= low) & (f <= high)
+    poles = Poles(0, lam := all_poles.value[inside], all_poles.participation[inside])
     s: Complexes = np.asarray(2j * np.pi * data.frequency + data.decay)
     psi = shapes_of(poles, data.H, s, 0) * records.values.std(axis=1)
     zeta = np.clip(-lam.real / np.abs(lam), *DAMPING)
