@@ -215,16 +215,14 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
         L = np.vstack([model.L, fit.found.L[new]])
         trial = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
         gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise[new])
-        stays = [_near(pole, trial.model.lam) > _near(pole, model.lam) for pole in lam[new]]
+        before, after = model.lam, trial.model.lam
+        stays = [
+            (alike(x, after) > ALONE).sum() > (alike(x, before) > ALONE).sum() for x in lam[new]
+        ]
         if len(trial.model) > len(model) or gained > needed(task):
             fit = trial
         blocked = np.append(blocked, lam[new][~np.array(stays)])
     return fit
-
-
-def _near(pole: complex, others: Complexes) -> int:
-    """Return how many poles are hardly told apart from one."""
-    return int(np.count_nonzero(alike(pole, others) > ALONE))
 
 
 def paired(fit: Fit, among: Bools) -> Fit:

@@ -24,8 +24,8 @@ MOST_POLES = 160
 MOST_ORDERS = 25
 """Orders of a diagram; more add no information to clusters of poles."""
 
-CUT = 0.02, 0.08
-"""Limits of the distance within which poles belong to one cluster."""
+CUT = 0.05
+"""Distance within which poles of neighbouring orders are stable, and belong to one cluster."""
 
 LEAST_ORDERS = 3
 """Orders on which a cluster has to be before a fit starts from it."""
@@ -52,8 +52,7 @@ class StabilisationDiagram:
     order : (poles,) order at which each was found
     pole : (poles,) rad/s
     participation : (poles, references)
-    stable : (poles,) whether the distance to the nearest pole of the order below belongs to the
-        stable group
+    stable : (poles,) whether the nearest pole of the order below is within `CUT`
     orders : all orders
     """
 
@@ -105,7 +104,7 @@ def diagram_of(data: FrequencyResponses, variance: Floats) -> tuple[Stabilisatio
     for (below, psi_below), (now, psi) in pairwise(zip(kept, shapes, strict=True)):
         d = _distances(now.value, psi, below.value, psi_below)
         distance.append(d.min(axis=1, initial=np.inf))
-    stable, cut = _split(np.concatenate(distance))
+    stable = np.concatenate(distance) < CUT
     diagram = StabilisationDiagram(
         np.repeat(orders, [len(poles.value) for poles in kept]),
         np.concatenate([poles.value for poles in kept]),
@@ -113,7 +112,7 @@ def diagram_of(data: FrequencyResponses, variance: Floats) -> tuple[Stabilisatio
         stable,
         tuple(orders),
     )
-    return diagram, _clusters(diagram, np.concatenate(shapes), cut)
+    return diagram, _clusters(diagram, np.concatenate(shapes))
 
 
 def shapes_of(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:
@@ -147,36 +146,14 @@ def _distances(a: Complexes, psi_a: Complexes, b: Complexes, psi_b: Complexes) -
     return out
 
 
-def _split(distance: Floats) -> tuple[Bools, float]:
-    """Return which distances are in the stable group of 2-means, and the cut for clusters."""
-    finite = np.isfinite(distance)
-    if finite.sum() < 2:
-        return finite, CUT[1]
-    x = np.log(np.maximum(distance, 1e-8))
-    low, high = np.quantile(x[finite], [0.1, 0.9])
-    for _ in range(100):
-        near = np.abs(x - low) <= np.abs(x - high)
-        if not (near & finite).any() or not (~near & finite).any():
-            break
-        before = low, high
-        low, high = x[near & finite].mean(), x[~near & finite].mean()
-        if (low, high) == before:
-            break
-    stable = finite & (np.abs(x - low) <= np.abs(x - high)) | (distance < CUT[0])
-    inside = distance[stable & finite]
-    if not len(inside):
-        return stable, CUT[1]
-    return stable, float(np.clip(inside.mean() + 2 * inside.std(), *CUT))
-
-
-def _clusters(diagram: StabilisationDiagram, psi: Complexes, cut: float) -> Poles:
+def _clusters(diagram: StabilisationDiagram, psi: Complexes) -> Poles:
     """Return the pole of each cluster that is nearest to the median of its members."""
     stable, number = np.flatnonzero(diagram.stable), np.ones(diagram.stable.sum(), int)
     if len(stable) > 1:
         pole, psi = diagram.pole[stable], psi[stable]
         d = _distances(pole, psi, pole, psi)
         tree = linkage(squareform((d + d.T) / 2, checks=False), "average")
-        number = fcluster(tree, cut, "distance")
+        number = fcluster(tree, CUT, "distance")
     chosen = []
     for members in (stable[number == k] for k in np.unique(number)):
         poles = diagram.pole[members]

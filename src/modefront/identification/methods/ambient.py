@@ -27,6 +27,7 @@ from modefront.identification.record import (
     Rejected,
     Residuals,
 )
+from modefront.identification.scan import alike
 from modefront.identification.selection import FALSE
 from modefront.identification.sets import between, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
@@ -108,6 +109,11 @@ class Local:
     def half(self) -> float:
         """Half bandwidth in rad/s."""
         return self.zeta * self.omega
+
+    @property
+    def pole(self) -> complex:
+        """Pole in rad/s."""
+        return self.omega * complex(-self.zeta, 1)
 
     @property
     def stds(self) -> Floats:
@@ -399,7 +405,7 @@ def _completed(
     """Return the setups with a mode, or None, for every mode of the structure.
 
     Where a setup does not have a mode that others have, it is tried there: with the pole known, it
-    needs less.
+    needs less. Neighbours that were fitted without it are fitted again.
     """
     out = []
     for k, setup in enumerate(setups):
@@ -409,15 +415,16 @@ def _completed(
         lacking = [r for r, row in enumerate(rows) if row is None]
         if lacking:
             tried = [_tried(setup, setups, groups[r]) for r in lacking]
-            known = [row for row in rows if row is not None]
+            known = [r for r, row in enumerate(rows) if row is not None]
+            starts = [*(setup.modes[groups[r][k]] for r in known), *tried]
             least = float(chi2.isf(FALSE, len(setup.records.sensors)))
-            setup = _fitted(setup, [*known, *tried], least, last=True, first=len(known))
-            omega = np.array([mode.omega for mode in (*tried, *known)])
+            setup = _fitted(setup, starts, least, last=True, first=len(known))
+            poles, phi = np.array([x.pole for x in starts]), np.array([x.phi for x in starts])
             for mode in setup.modes:
-                nearest = int(np.abs(omega - mode.omega).argmin())
-                reach = 2 * max(mode.half, tried[nearest].half) if nearest < len(tried) else 0.0
-                if abs(omega[nearest] - mode.omega) < reach:
-                    rows[lacking[nearest]] = mode
+                near = alike(mode.pole, poles)
+                nearest = int((near * (phi @ mode.phi) ** 2).argmax())
+                if near[nearest] > selection.ALONE:
+                    rows[(*known, *lacking)[nearest]] = mode
         out.append((setup, rows))
     return out
 
