@@ -232,7 +232,7 @@ def paired(fit: Fit, among: Bools) -> Fit:
     not clearly apart by their deviations. Real parts of the shapes of a pair are orthonormal.
     """
     task, lam, pairs = fit.task, fit.model.lam, fit.model.pairs
-    apart = np.abs(lam[:, None] - lam) / np.maximum.outer(-lam.real, -lam.real)
+    apart = np.abs(lam[:, None] - lam) / np.minimum.outer(-lam.real, -lam.real)
     close = np.argwhere(np.triu(apart < 1, 1)) if len(task.H) > 1 else np.zeros((0, 2), int)
     C, noise = fit.inverted(fit.information) / 2, fit.found.noise_of(lam)
     for r, s in close[apart[tuple(close.T)].argsort()].tolist():
@@ -265,7 +265,7 @@ def seeded(fit: Fit, omega: Floats) -> tuple[Complexes, Complexes]:
     """Return the poles of a fit and one at each frequency that lies in no bandwidth of theirs.
 
     Also returns their participation factors; the damping is that which explains most of the
-    residuals.
+    residuals, as far as it is not that of another pole.
     """
     found = fit.found
     out, L = fit.model.lam, fit.model.L
@@ -273,7 +273,9 @@ def seeded(fit: Fit, omega: Floats) -> tuple[Complexes, Complexes]:
         if (np.abs(np.abs(out) - each) < -out.real).any():
             continue
         within = np.abs(found.lam.imag - each) <= -found.lam.real
-        near = np.where(within, found.gain * found.noise, -1.0).argmax()
+        like = np.array([alike(pole, found.lam) for pole in out]).reshape(-1, len(within))
+        own = found.gain * found.noise * (like.max(axis=0, initial=0.0) < ALONE)
+        near = np.where(within, own, -1.0).argmax()
         out = np.append(out, complex(found.lam[near].real, each))
         L = np.vstack([L, found.L[near]])
     return out, L

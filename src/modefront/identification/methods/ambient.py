@@ -449,10 +449,10 @@ def _combined(
 ) -> Identification:
     """Return the modes of the structure, and what is none."""
     modes = []
-    rejected = [
-        Rejected(f, 0.0, "a harmonic: its lines are those of a sine")
-        for f in _sines([x for x, _ in setups])
-    ]
+    sines = np.sort([omega for x, _ in setups for omega in x.lines.sines]) / (2 * np.pi)
+    apart = np.diff(sines, prepend=-np.inf) > max(1 / x.records.duration for x, _ in setups)
+    text = "a harmonic: its lines are those of a sine"
+    rejected = [Rejected(f, 0.0, text) for f in sines[apart].tolist()]
     for r in range(len(setups[0][1])):
         having = [(setup, row) for setup, rows in setups if (row := rows[r]) is not None]
         mode, why = _of_structure(having, sensors, len(setups)), _harmonic(having)
@@ -533,13 +533,6 @@ def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
             f"a harmonic: its amplitude is steady (kurtosis {mean:.2f}; 2 for a mode, 1 for a sine)"
         )
     return ""
-
-
-def _sines(setups: Sequence[_Setup]) -> list[float]:
-    """Return the frequencies in Hz of sines in any setup, once where within a line."""
-    found = np.sort([omega for setup in setups for omega in setup.lines.sines]) / (2 * np.pi)
-    apart = np.diff(found, prepend=-np.inf) > max(1 / setup.records.duration for setup in setups)
-    return list(found[apart].tolist())
 
 
 def _functions(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FittedFunctions:
