@@ -41,10 +41,10 @@ from modefront.identification.stabilisation import (
 )
 
 REACH = 4.0
-"""Half bandwidths on either side of a mode that its band has. With six, deviations are a tenth less
+"""Half bandwidths on either side of a mode that its band has. With six, deviations are a fifth less
 (Au, Mech. Syst. Signal Process. 48 (2014) 15-33, doi:10.1016/j.ymssp.2013.07.004), but what modes
-far away contribute and colours of forces bend more over the band than the model follows: by them,
-damping ratios of heavily damped modes in long records were off by 1.6 deviations, now by 0.5."""
+far away contribute and colours of forces bend more over the band than the model follows: damping
+ratios of heavily damped modes in long records are off by up to two deviations."""
 
 OVERLAP = 4.0
 """Distance over the sum of half bandwidths within which modes are fitted at once."""
