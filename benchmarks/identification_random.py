@@ -4,8 +4,8 @@
 LAST the modes found, missed and false, pairs, the share of errors within 90 % intervals, and the
 processor time. ``modal`` makes functions from random modes; ``time`` is `identification_in_time`;
 ``dense`` has 25 modes, 50 sensors and 2 references, ``wide`` 20 and 200 sensors, and ``repeated``
-five modes, two of them of one pole. Modes that the data cannot show are counted apart: their
-residues at the noise of the mean are below what noise alone gives in the band.
+five modes, two of them of one pole. Modes that the data cannot show are counted apart: what
+all others leave of them at the noise of the mean is below what noise alone gives in the band.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ from scipy.optimize import linear_sum_assignment
 from modefront._typing import Floats
 from modefront.data.responses import frequency_responses
 from modefront.identification.methods.hammer import identify
+from modefront.identification.modal_model import maximise
+from modefront.identification.problem import problem
 
 
 def modal(seed: int, size: tuple[int, int, int] | None = None) -> dict[str, Any]:
@@ -91,25 +93,22 @@ GENERATORS: dict[str, Callable[[int], dict[str, Any]]] = {
 }
 
 
-def energy(test: dict[str, Any]) -> Any:
-    """Return what each mode alone explains over the variance of the mean, (modes,).
+def energy(test: dict[str, Any], mode: int) -> float:
+    """Return what is left of exact functions, over the variance of the mean, without a mode.
 
-    The part that other modes could explain if their poles and residues were others is left out.
+    All others are fitted again, and residual terms with them.
     """
     order = {"receptance": 0, "accelerance": 2}[test["quantity"]]
-    s = 2j * np.pi * test["frequency"]
-    omega = 2 * np.pi * test["f0"][:, None]
-    G = s**order / (s**2 + 2 * test["zeta"][:, None] * omega * s + omega**2)
-    pole = omega * (-test["zeta"][:, None] + 1j * np.sqrt(1 - test["zeta"][:, None] ** 2))
-    single = s**order / (s - pole)
-    for r in range(len(G)):
-        others = np.delete(np.arange(len(G)), r)
-        A = np.concatenate([single[others], (single / (s - pole))[others]]).T
-        A = A / np.linalg.norm(A, axis=0)
-        G[r] = G[r] - A @ np.linalg.lstsq(A, G[r], rcond=None)[0]
-    v = test["H"].var(axis=0, ddof=1).mean(axis=-1) / len(test["H"])
-    a = np.abs(np.einsum("rj,ri->rji", test["factors"], test["phi"])) ** 2 / v
-    return a.sum(axis=(1, 2)) * np.sum(np.abs(G) ** 2, axis=1)
+    s, omega = 2j * np.pi * test["frequency"], 2 * np.pi * test["f0"][:, None]
+    zeta = test["zeta"][:, None]
+    G = s**order / (s**2 + 2 * zeta * omega * s + omega**2)
+    H = np.einsum("rj,ri,rk->jik", test["factors"], test["phi"], G, optimize=True)
+    v = test["H"].var(axis=0, ddof=1).mean(axis=-1, keepdims=True) / len(test["H"])
+    data = frequency_responses(test["frequency"], H, test["quantity"])
+    task, unit, _ = problem(data, np.broadcast_to(v, H.shape), 2)
+    pole = (omega * (-zeta + 1j * np.sqrt(1 - zeta**2)))[:, 0] / unit
+    others = np.delete(np.arange(len(pole)), mode)
+    return maximise(task, pole[others], test["factors"][others].astype(complex)).cost
 
 
 def scored(test: dict[str, Any], modes: Any) -> tuple[list[int], list[int], list[list[float]]]:
@@ -148,13 +147,14 @@ def main(first: int, last: int, generator: str) -> None:
         n_in, n_out = test["H"].shape[1:3]
         # noise alone: the greatest singular value of a residue, over the band
         least = (np.sqrt(n_in) + np.sqrt(n_out)) ** 2 + 2 * np.log(len(test["frequency"]))
-        hidden = [r for r in missed if energy(test)[r] < 2 * least]
+        gains = {r: energy(test, r) for r in missed}
+        hidden = [r for r in missed if gains[r] < 2 * least]
         missed = [r for r in missed if r not in hidden]
         n = len(test["f0"])
         counts = (n - len(hidden), n - len(missed) - len(hidden), len(missed), len(hidden))
         total += (*counts, len(false), spent)
         errors = [np.append(a, b) for a, b in zip(errors, parts, strict=True)]
-        what = [f"missed {test['f0'][r]:.2f} ({energy(test)[r]:.0f}/{least:.0f})" for r in missed]
+        what = [f"missed {test['f0'][r]:.2f} ({gains[r]:.0f}/{least:.0f})" for r in missed]
         what += [f"false {modes[c].frequency:.2f}" for c in false]
         what += [f"pair at {modes[k].frequency:.2f}" for k, _ in result.pairs]
         print(

@@ -11,12 +11,12 @@ from simulation import (
     three_story_shapes,
 )
 
-from modefront._typing import Floats
+from modefront._typing import Complexes, Floats
 from modefront.data.modal_test import ModalTest
 from modefront.data.responses import Channel, assemble, frequency_responses
 from modefront.identification import statistics
 from modefront.identification.methods.hammer import identify
-from modefront.identification.modal_model import evaluate
+from modefront.identification.modal_model import evaluate, maximise
 from modefront.identification.modal_test import IdentifiedTest
 from modefront.identification.problem import problem
 from modefront.identification.sets import combine
@@ -166,7 +166,7 @@ def test_what_poles_explain_of_residuals_is_that_of_sums_over_lines() -> None:
     H = accelerance(f, THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2])
     data = frequency_responses(f, blows(H, 0.05, np.random.default_rng(0)))
     assert data.variance is not None
-    task, _, _ = problem(data, data.variance, 1)
+    task, _, _ = problem(data, data.variance, 0)
     fit = evaluate(task, np.zeros(0, complex), np.zeros((0, 2), complex), np.zeros(0, int))
     found, r = fit.found, fit.residual
     for k in range(0, len(found.lam), 37):
@@ -175,6 +175,23 @@ def test_what_poles_explain_of_residuals_is_that_of_sums_over_lines() -> None:
         z = products / np.sqrt(np.sum(task.weight * np.abs(e) ** 2, axis=2))
         explained = 2 * np.linalg.norm(z, 2) ** 2
         assert found.gain[k] * found.noise[k] == pytest.approx(explained, rel=1e-6)
+
+
+def test_what_a_pole_explains_beside_a_close_one_is_what_a_fit_gains_by_it() -> None:
+    phi = np.random.default_rng(1).standard_normal((3, 8))
+    f0, zeta = np.array([10.0, 10.02, 16.0]), np.array([0.02, 0.022, 0.02])
+    lam: Complexes = 2 * np.pi * f0 * (1j * np.sqrt(1 - zeta**2) - zeta)
+    f = np.arange(0.05, 30.05, 0.05)
+    H = accelerance(f, f0, zeta, phi, [0])
+    data = frequency_responses(f, blows(H, 0.05, np.random.default_rng(0)))
+    assert data.variance is not None
+    task, omega, _ = problem(data, data.variance, 1)
+    one = maximise(task, lam[[0, 2]] / omega, np.ones((2, 1), complex))
+    gain = one.found.gain * one.found.noise
+    start: Complexes = np.append(one.model.lam, one.found.lam[gain.argmax()])
+    gained = 2 * (one.cost - maximise(task, start, np.ones((3, 1), complex)).cost)
+    assert gained > 100
+    assert 0.8 * gained < gain.max() < 1.05 * gained
 
 
 def test_too_few_lines_are_an_error() -> None:

@@ -10,13 +10,22 @@ from modefront.identification.shapes import real_shape
 SENSORS = tuple("abcd")
 
 
-def _set(frequencies: list[float], shapes: Floats) -> tuple[tuple[str, ...], list[ModeEstimate]]:
-    """Return sensors and modes of a set; their damping is 1 %."""
+def _set(
+    frequencies: list[float], shapes: Floats, damping: tuple[float, float] = (0.01, 0.01)
+) -> tuple[tuple[str, ...], list[ModeEstimate]]:
+    """Return sensors and modes of a set."""
     return SENSORS, [
         ModeEstimate(
-            2j * np.pi * f, f, 0.01, 0.001, 0.001, real_shape(phi + 0j), phi, np.zeros(0, complex)
+            2 * np.pi * f * (1j * np.sqrt(1 - zeta**2) - zeta),
+            f,
+            zeta,
+            0.001,
+            0.001,
+            real_shape(phi + 0j),
+            phi,
+            np.zeros(0, complex),
         )
-        for f, phi in zip(frequencies, shapes, strict=True)
+        for f, phi, zeta in zip(frequencies, shapes, damping, strict=False)
     ]
 
 
@@ -43,6 +52,12 @@ def test_close_modes_that_a_set_turns_in_their_plane_keep_one_number_each() -> N
 def test_shapes_choose_among_close_modes() -> None:
     plane = np.linalg.qr(np.random.default_rng(1).standard_normal((4, 2)))[0].T
     sets = [_set([5.0, 5.05], plane), _set([5.02, 5.03], plane[::-1])]
+    assert mode_groups(sets, SENSORS) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
+
+
+def test_damping_chooses_among_close_modes_of_turned_shapes() -> None:
+    plane = np.linalg.qr(np.random.default_rng(1).standard_normal((4, 2)))[0].T
+    sets = [_set([5, 5], plane, (0.025, 0.006)), _set([5, 5], _turned(plane, 40), (0.006, 0.025))]
     assert mode_groups(sets, SENSORS) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
 
 

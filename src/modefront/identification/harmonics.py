@@ -48,25 +48,24 @@ def without_sine(
         middle = int(np.searchsorted(lines.omega, model.omega[r]))
         near = slice(max(middle - 2 * NEAR, 0), middle + 2 * NEAR)
         root = model.root * (np.arange(len(model.root)) != r)[:, None]
-        cost, inverse, _ = _likelihood(lines, near, replace(model, root=root))
-        taken, gain = _taken(lines, near, inverse, middle - near.start)
+        cost, white, _ = _likelihood(lines, near, replace(model, root=root))
+        taken, gain = _taken(lines, near, white @ _adjoint(white), middle - near.start)
         narrow = wide.zeta[r] > model.zeta[r]
         likely = _likelihood(lines, near, wide)[0] - cost + gain > n - 1
         if 2 * gain > least and (narrow or likely):
             return taken, r
     near = slice(*np.searchsorted(lines.omega, band.omega[[0, -1]]))
-    F, inverse = lines.F[:, near].T, _likelihood(lines, near, model)[1]
-    root = np.linalg.cholesky(inverse)
+    F, root = lines.F[:, near].T, _likelihood(lines, near, model)[1]
     white = np.einsum("kji,kj->ki", root.conj(), F)
     M, blocks = [], max(len(F) // BLOCK, 1)
     for part in np.array_split(white, blocks):  # the model counts as n lines beside each block
         known = (part.T @ part.conj() + n * np.eye(n)) / (len(part) + n)
         M += [np.linalg.inv(known)] * len(part)
-    gains = _gains(F, root @ np.array(M) @ root.conj().swapaxes(1, 2))
+    gains = _gains(F, root @ np.array(M) @ _adjoint(root))
     count = len(F) // blocks
     if gains.max() < 2 * (count + n) * beta.isf(chance, n + 0.5, count):
         return None
-    return _taken(lines, near, inverse, int(gains.argmax()) / 2)[0], None
+    return _taken(lines, near, root @ _adjoint(root), int(gains.argmax()) / 2)[0], None
 
 
 def kurtosis(lines: Transforms, model: Density, mode: int, reach: float) -> tuple[float, float]:
@@ -76,10 +75,10 @@ def kurtosis(lines: Transforms, model: Density, mode: int, reach: float) -> tupl
         distance <= max(reach * model.zeta[mode] * model.omega[mode], 4 * spacing)
     )
     near = slice(inside[0], inside[-1] + 1)
-    _, inverse, half = _likelihood(lines, near, model)
+    _, root, half = _likelihood(lines, near, model)
     N = (half @ half[:, mode].conj()[..., None])[..., 0]
     seen = N.conj() @ model.columns.T
-    weighted = np.einsum("ki,kij->kj", seen, inverse)
+    weighted = np.einsum("ki,kij->kj", seen, root @ _adjoint(root))
     size = 4 * len(inside)
     a = np.abs(np.fft.ifft(np.sum(weighted * lines.F[:, near].T, axis=1), size)) ** 2
     rho = np.abs(np.fft.ifft(np.sum(weighted * seen.conj(), axis=1).real, size))
@@ -90,13 +89,18 @@ def kurtosis(lines: Transforms, model: Density, mode: int, reach: float) -> tupl
 def _likelihood(
     lines: Transforms, near: slice, model: Density
 ) -> tuple[float, Complexes, Complexes]:
-    """Return the cost of lines, and the inverse of E and H L at each of them."""
+    """Return the cost of lines, and R with E^-1 = R R^* and H L at each of them."""
     half, F = model.lifted(lines.omega[near], lines.order) @ model.root, lines.F[:, near].T
     moved = model.columns @ half
-    E = moved @ moved.conj().swapaxes(1, 2) + model.background
-    inverse: Complexes = np.asarray(np.linalg.inv(E), complex)
-    misfit = np.einsum("ki,kij,kj->", F.conj(), inverse, F, optimize=True).real
-    return float(lines.share[near] @ np.linalg.slogdet(E)[1] + misfit), inverse, half
+    C = np.linalg.cholesky(moved @ _adjoint(moved) + model.background)
+    root: Complexes = np.asarray(np.linalg.inv(C), complex).conj().swapaxes(1, 2)
+    misfit = np.sum(np.abs(np.einsum("kji,kj->ki", root.conj(), F)) ** 2)
+    determinant = 2 * np.log(np.einsum("kii->ki", C).real).sum(axis=1)
+    return float(lines.share[near] @ determinant + misfit), root, half
+
+
+def _adjoint(values: Complexes) -> Complexes:
+    return values.conj().swapaxes(1, 2)
 
 
 def _gains(F: Complexes, inverse: Complexes) -> Floats:

@@ -176,7 +176,9 @@ class Fit:
     @cached_property
     def found(self) -> Scan:
         """What poles all over the band explain of the residuals."""
-        return scan(self.task, self.residual, self.misfit)
+        E = primitives(self.task, self.model.lam, squares=False)
+        T = design(self.model.L, len(self.task.powers))
+        return scan(self.task, self.residual, self.misfit, E, T)
 
 
 def evaluate(

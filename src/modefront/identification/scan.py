@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -12,7 +12,7 @@ from scipy.ndimage import percentile_filter
 
 from modefront._typing import Complexes, Floats
 from modefront.identification.noise import square
-from modefront.identification.problem import Problem
+from modefront.identification.problem import Problem, gram
 
 HEAVIEST = 0.1
 """Greatest damping ratio of the poles that are looked for in residuals."""
@@ -32,8 +32,14 @@ MOST_PLACES = 1 << 18
 PORTION = 32
 """Responses whose products with poles are computed at once."""
 
+TINY = float(np.finfo(float).tiny)
+
 ROUNDING = 1e-12
 """Share of the greatest energy of a pole's function in the lines below which there is none."""
+
+LEAST_OWN = 0.01
+"""Share of a pole's function that modes of the fit do not make up, at least: of less, rounding and
+differences between the weights of responses are as large."""
 
 
 def alike(pole: complex, others: Complexes) -> Floats:
@@ -74,11 +80,13 @@ def _expected(rows: int, columns: int) -> float:
     return float(np.quantile(greatest, UPPER))
 
 
-def scan(task: Problem, r: Complexes, misfit: float) -> Scan:
-    """Return what poles explain of residuals, (references, responses, lines).
+def scan(task: Problem, r: Complexes, misfit: float, E: Complexes, T: Floats) -> Scan:
+    """Return what poles explain of residuals, (references, responses, lines), beside a fit.
 
     On an even grid of lines, the products of the residuals with a pole are a convolution. The
-    ``misfit`` is the variance of the residuals in units of that of the data.
+    ``misfit`` is the variance of the residuals in units of that of the data. Shapes and residual
+    terms of the fit, primitives E combined by T, follow: what they make up of a pole's function
+    explains nothing (Rao's score test). Their share is that of the mean weights of all responses.
     """
     front, f = task.s**task.order, task.s.imag
     step = max(float(np.diff(f).min()), float(np.ptp(f)) / MOST_PLACES)
@@ -94,14 +102,23 @@ def scan(task: Problem, r: Complexes, misfit: float) -> Scan:
 
     def every(stride: int, values: Any) -> Any:
         # that of a transform is the transform of as many parts on top of each other
-        folded = values.reshape(*values.shape[:-1], stride, -1).mean(axis=-2)
+        folded = values.reshape(*values.shape[:-1], stride, size // stride).mean(axis=-2)
         return scipy.fft.ifft(folded)[..., : -(-count // stride)]
+
+    def over_root(products: Any, energy: Any) -> Any:
+        G = np.maximum(energy.real, 0.0)
+        return products / np.sqrt(np.where(ROUNDING * G.max(initial=0.0) < G, G, np.inf))
 
     weight, n_in = task.weights, len(r)
     parts = [slice(first, first + PORTION) for first in range(0, r.shape[1], PORTION)]
     products = [on_grid(weight[:, part] * r[:, part] * front.conj()) for part in parts]
+    level = np.maximum(task.weight.mean(axis=2, keepdims=True), TINY)
+    mean = np.mean(task.weight / level, axis=1, keepdims=True)
     own = parts if task.weight.shape == r.shape else [slice(None)] * len(parts)
     energies = [on_grid(task.weight[:, part] * square(front)) for part in own]
+    mean_energy = on_grid(mean[:, 0] * square(front))
+    of_fit = on_grid(mean * E * front.conj())
+    columns = T @ _root(np.sum(T.swapaxes(1, 2) @ gram(replace(task, weight=mean), E)[:, 0] @ T, 0))
     out: list[list[Any]] = []
     widest = int(np.log2(max(HEAVIEST * f[-1] / step, 1)))
     for m in range(min(widest, count.bit_length()) + 1):
@@ -111,17 +128,40 @@ def scan(task: Problem, r: Complexes, misfit: float) -> Scan:
         lam = -half + 1j * (f[0] + step * np.arange(0, count, 2**m))
         S, total = np.zeros((len(lam), n_in, n_in), complex), np.zeros((n_in, len(lam)))
         for product, energy in zip(products, energies, strict=True):
-            G = np.maximum(every(2**m, energy * of_energy).real, 0.0)
-            root = np.sqrt(np.where(ROUNDING * G.max(initial=0.0) < G, G, np.inf))
-            z = (every(2**m, product * of_pole) / root).transpose(2, 0, 1)
+            G = every(2**m, energy * of_energy)
+            z = over_root(every(2**m, product * of_pole), G).transpose(2, 0, 1)
             S += z @ z.conj().swapaxes(1, 2)
-            total += G.mean(axis=1)
-        value, vector = np.linalg.eigh(S)
-        factors = vector[:, :, -1] / np.sqrt(np.maximum(total.T, np.finfo(float).tiny))
-        noise = percentile_filter(value[:, -1], 100 * UPPER, 2 * NEIGHBOURHOOD + 1, mode="nearest")
+            total += np.maximum(G.real, 0.0).mean(axis=1)
+        G = every(2**m, mean_energy * of_energy)
+        X = over_root(every(2**m, of_fit * of_pole), G[:, None]).transpose(2, 0, 1)
+        X = (X[:, :, None] @ columns)[:, :, 0]
+        most, factors = _most(S, X)
+        factors /= np.sqrt(np.maximum(total.T, TINY))
+        noise = percentile_filter(most, 100 * UPPER, 2 * NEIGHBOURHOOD + 1, mode="nearest")
         kept = half < HEAVIEST * lam.imag
-        out.append([x[kept] for x in (lam, 2 * value[:, -1], factors, noise)])
+        out.append([x[kept] for x in (lam, 2 * most, factors, noise)])
     lam, gain, L, noise = (np.concatenate(each) for each in zip(*out, strict=True))
     least = max(misfit, 1.0) * task.correlation
     noise = np.maximum(noise / _expected(*task.live), least)
     return Scan(lam, gain / noise, L, noise)
+
+
+def _most(S: Complexes, X: Complexes) -> tuple[Floats, Complexes]:
+    """Return the greatest of c^* S c / c^* (I - X X^* / 2) c at every pole, and its factors c.
+
+    The rows of X are the functions of a pole at the references in the orthonormal basis of the fit;
+    half of them is the mean over all phases of a residue.
+    """
+    left, basis = np.linalg.eigh(np.eye(S.shape[1]) - X @ X.conj().swapaxes(1, 2) / 2)
+    basis /= np.sqrt(np.maximum(left, LEAST_OWN))[:, None]
+    value, vector = np.linalg.eigh(basis.conj().swapaxes(1, 2) @ S @ basis)
+    return value[:, -1], (basis @ vector[:, :, -1:])[..., 0]
+
+
+def _root(G: Floats) -> Floats:
+    """Return R with R R^T the inverse of G, in the directions in which G is not rounding."""
+    scale = 1 / np.sqrt(np.maximum(G.diagonal(), TINY))
+    value, vector = np.linalg.eigh(G * np.outer(scale, scale))
+    kept = value > ROUNDING * value.max(initial=0.0)
+    out: Floats = scale[:, None] * vector[:, kept] / np.sqrt(value[kept])
+    return out

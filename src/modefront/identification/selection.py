@@ -8,7 +8,6 @@ noise does in every other test, one is added, until nothing stands out. Backward
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +16,7 @@ from scipy.special import gammaln
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
+from modefront.identification.lscf import Poles
 from modefront.identification.modal_model import (
     COARSE,
     Fit,
@@ -30,19 +30,12 @@ from modefront.identification.noise import square
 from modefront.identification.problem import RESIDUALS, Problem
 from modefront.identification.scan import alike
 from modefront.identification.shapes import auto_mac, plane_basis
-from modefront.identification.stabilisation import Cluster
 
 FALSE = 1e-3
 """Expected number of modes in a band that noise alone makes."""
 
 EVEN = 0.5
 """The same number from which on a pole is tried in the model."""
-
-LIKELY = 0.5
-"""Least support of a cluster from which the model starts."""
-
-LEAST_ORDERS = 3
-"""Orders on which a cluster has to be before the model starts from it."""
 
 MOST_ROUNDS = 20
 """Rounds in which poles are added, at most."""
@@ -133,12 +126,9 @@ def gains(fit: Fit) -> Floats:
     return 2 * out / fit.found.noise_of(fit.model.lam)
 
 
-def start(task: Problem, clusters: Sequence[Cluster], omega: float) -> Fit:
-    """Return the fit from the likely clusters."""
-    likely = [each for each in clusters if each.support >= LIKELY and each.size >= LEAST_ORDERS]
-    lam = np.array([cluster.pole / omega for cluster in likely], complex)
-    L: Complexes = np.array([cluster.participation for cluster in likely], complex)
-    L = L.reshape(len(lam), len(task.H))
+def start(task: Problem, poles: Poles, omega: float) -> Fit:
+    """Return the fit from poles in rad/s, ``omega`` of which are the unit of the task."""
+    lam, L = poles.value / omega, poles.participation
     return refit(evaluate(task, lam, L, np.abs(L).argmax(axis=1)), lam, L)
 
 
@@ -225,16 +215,14 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
         L = np.vstack([model.L, fit.found.L[new]])
         trial = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
         gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise[new])
-        stays = [_near(pole, trial.model.lam) > _near(pole, model.lam) for pole in lam[new]]
+        before, after = model.lam, trial.model.lam
+        stays = [
+            (alike(x, after) > ALONE).sum() > (alike(x, before) > ALONE).sum() for x in lam[new]
+        ]
         if len(trial.model) > len(model) or gained > needed(task):
             fit = trial
         blocked = np.append(blocked, lam[new][~np.array(stays)])
     return fit
-
-
-def _near(pole: complex, others: Complexes) -> int:
-    """Return how many poles are hardly told apart from one."""
-    return int(np.count_nonzero(alike(pole, others) > ALONE))
 
 
 def paired(fit: Fit, among: Bools) -> Fit:
@@ -244,7 +232,7 @@ def paired(fit: Fit, among: Bools) -> Fit:
     not clearly apart by their deviations. Real parts of the shapes of a pair are orthonormal.
     """
     task, lam, pairs = fit.task, fit.model.lam, fit.model.pairs
-    apart = np.abs(lam[:, None] - lam) / np.maximum.outer(-lam.real, -lam.real)
+    apart = np.abs(lam[:, None] - lam) / np.minimum.outer(-lam.real, -lam.real)
     close = np.argwhere(np.triu(apart < 1, 1)) if len(task.H) > 1 else np.zeros((0, 2), int)
     C, noise = fit.inverted(fit.information) / 2, fit.found.noise_of(lam)
     for r, s in close[apart[tuple(close.T)].argsort()].tolist():
@@ -277,7 +265,7 @@ def seeded(fit: Fit, omega: Floats) -> tuple[Complexes, Complexes]:
     """Return the poles of a fit and one at each frequency that lies in no bandwidth of theirs.
 
     Also returns their participation factors; the damping is that which explains most of the
-    residuals.
+    residuals, as far as it is not that of another pole.
     """
     found = fit.found
     out, L = fit.model.lam, fit.model.L
@@ -285,7 +273,9 @@ def seeded(fit: Fit, omega: Floats) -> tuple[Complexes, Complexes]:
         if (np.abs(np.abs(out) - each) < -out.real).any():
             continue
         within = np.abs(found.lam.imag - each) <= -found.lam.real
-        near = np.where(within, found.gain * found.noise, -1.0).argmax()
+        like = np.array([alike(pole, found.lam) for pole in out]).reshape(-1, len(within))
+        own = found.gain * found.noise * (like.max(axis=0, initial=0.0) < ALONE)
+        near = np.where(within, own, -1.0).argmax()
         out = np.append(out, complex(found.lam[near].real, each))
         L = np.vstack([L, found.L[near]])
     return out, L

@@ -19,6 +19,7 @@ from scipy.stats import chi2
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
 from modefront.identification.record import MOST_COVARIED, Identification, ModeEstimate
+from modefront.identification.scan import alike
 
 WIDTH = 5.0
 """Distance within which frequencies may belong to the same mode."""
@@ -143,7 +144,7 @@ def mode_groups(sets: Sequence[ModesOfSet], sensors: Sequence[str]) -> list[dict
     """Return, for every mode of the structure, which mode of each set it is.
 
     All modes of a set are assigned at once, to as many modes of the sets before as agree, and by
-    the greatest sum of their MAC.
+    the greatest sum of their squared correlations.
     """
     groups: list[dict[int, int]] = []
     for k, own in enumerate(sets):
@@ -160,11 +161,13 @@ def mode_groups(sets: Sequence[ModesOfSet], sensors: Sequence[str]) -> list[dict
 
 
 def _agreement(of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, sensors: Sequence[str]) -> float:
-    """Return one more than the MAC at common sensors, 0 where modes cannot be the same.
+    """Return one more than the squared correlation of modes, 0 where they cannot be the same.
 
-    MAC of planes is the squared cosine of the least angle between them. Data of a set may turn the
-    shapes of modes that are close within their plane: one of a mode has to lie in that of the other
-    one and those whose half bandwidths meet its own.
+    It is that of shapes at common sensors, the MAC, times that of poles: close modes differ in
+    damping where data of a set turn their shapes. MAC of planes is the squared cosine of the least
+    angle between them. Data of a set may turn the shapes of modes that are close within their
+    plane: one of a mode has to lie in that of the other one and those whose half bandwidths meet
+    its own.
     """
     x, y = of_a[1][a], of_b[1][b]
     half = [mode.damping * mode.frequency for mode in (x, y)]
@@ -187,7 +190,9 @@ def _agreement(of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, sensors: Sequ
         return float(np.linalg.norm(first.T @ second, 2) ** 2) if first.size * second.size else 0.0
 
     near = max(mac(own_a, plane_b), mac(plane_a, own_b))
-    return 1 + mac(own_a, own_b) if near > LEAST_MAC else 0.0
+    if near <= LEAST_MAC:
+        return 0.0
+    return 1 + mac(own_a, own_b) * float(alike(x.pole, np.array(y.pole)))
 
 
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:

@@ -24,8 +24,11 @@ MOST_POLES = 160
 MOST_ORDERS = 25
 """Orders of a diagram; more add no information to clusters of poles."""
 
-CUT = 0.02, 0.08
-"""Limits of the distance within which poles belong to one cluster."""
+CUT = 0.05
+"""Distance within which poles of neighbouring orders are stable, and belong to one cluster."""
+
+LEAST_ORDERS = 3
+"""Orders on which a cluster has to be before a fit starts from it."""
 
 SHAPE_LINES = 4096
 """Lines from which shapes of the diagram are taken where there are more, those at poles apart."""
@@ -49,8 +52,7 @@ class StabilisationDiagram:
     order : (poles,) order at which each was found
     pole : (poles,) rad/s
     participation : (poles, references)
-    stable : (poles,) whether the distance to the nearest pole of the order below belongs to the
-        stable group
+    stable : (poles,) whether the nearest pole of the order below is within `CUT`
     orders : all orders
     """
 
@@ -73,30 +75,10 @@ class StabilisationDiagram:
         return out
 
 
-@dataclass(frozen=True)
-class Cluster:
-    """Poles that are taken for one mode.
+def diagram_of(data: FrequencyResponses, variance: Floats) -> tuple[StabilisationDiagram, Poles]:
+    """Return the diagram of functions by least squares (`lscf`), and the poles of its clusters.
 
-    Attributes
-    ----------
-    pole : rad/s, that of the member nearest to the median
-    participation : (references,) that of the same member
-    support : share of the orders, from the first one with a member, that have a member
-    size : number of orders with a member
-    """
-
-    pole: complex
-    participation: Complexes
-    support: float
-    size: int
-
-
-def diagram_of(
-    data: FrequencyResponses, variance: Floats
-) -> tuple[StabilisationDiagram, list[Cluster]]:
-    """Return the diagram of functions by least squares (`lscf`), and its clusters by pole.
-
-    ``variance`` weights the lines; any of its axes may be 1.
+    ``variance`` weights the lines; any of its axes may be 1. A cluster is on `LEAST_ORDERS` orders.
     """
     weight = np.mean(1 / variance, axis=(0, 1))
     omega = 2 * np.pi * data.frequency
@@ -122,7 +104,7 @@ def diagram_of(
     for (below, psi_below), (now, psi) in pairwise(zip(kept, shapes, strict=True)):
         d = _distances(now.value, psi, below.value, psi_below)
         distance.append(d.min(axis=1, initial=np.inf))
-    stable, cut = _split(np.concatenate(distance))
+    stable = np.concatenate(distance) < CUT
     diagram = StabilisationDiagram(
         np.repeat(orders, [len(poles.value) for poles in kept]),
         np.concatenate([poles.value for poles in kept]),
@@ -130,7 +112,7 @@ def diagram_of(
         stable,
         tuple(orders),
     )
-    return diagram, _clusters(diagram, np.concatenate(shapes), cut)
+    return diagram, _clusters(diagram, np.concatenate(shapes))
 
 
 def shapes_of(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:
@@ -164,51 +146,22 @@ def _distances(a: Complexes, psi_a: Complexes, b: Complexes, psi_b: Complexes) -
     return out
 
 
-def _split(distance: Floats) -> tuple[Bools, float]:
-    """Return which distances are in the stable group of 2-means, and the cut for clusters."""
-    finite = np.isfinite(distance)
-    if finite.sum() < 2:
-        return finite, CUT[1]
-    x = np.log(np.maximum(distance, 1e-8))
-    low, high = np.quantile(x[finite], [0.1, 0.9])
-    for _ in range(100):
-        near = np.abs(x - low) <= np.abs(x - high)
-        if not (near & finite).any() or not (~near & finite).any():
-            break
-        before = low, high
-        low, high = x[near & finite].mean(), x[~near & finite].mean()
-        if (low, high) == before:
-            break
-    stable = finite & (np.abs(x - low) <= np.abs(x - high)) | (distance < CUT[0])
-    inside = distance[stable & finite]
-    if not len(inside):
-        return stable, CUT[1]
-    return stable, float(np.clip(inside.mean() + 2 * inside.std(), *CUT))
-
-
-def _clusters(diagram: StabilisationDiagram, psi: Complexes, cut: float) -> list[Cluster]:
+def _clusters(diagram: StabilisationDiagram, psi: Complexes) -> Poles:
+    """Return the pole of each cluster that is nearest to the median of its members."""
     stable, number = np.flatnonzero(diagram.stable), np.ones(diagram.stable.sum(), int)
     if len(stable) > 1:
         pole, psi = diagram.pole[stable], psi[stable]
         d = _distances(pole, psi, pole, psi)
         tree = linkage(squareform((d + d.T) / 2, checks=False), "average")
-        number = fcluster(tree, cut, "distance")
-    out = []
+        number = fcluster(tree, CUT, "distance")
+    chosen = []
     for members in (stable[number == k] for k in np.unique(number)):
         poles = diagram.pole[members]
         middle = np.median(poles.real) + 1j * np.median(poles.imag)
-        best = members[np.abs(poles - middle).argmin()]
-        orders = np.unique(diagram.order[members])
-        possible = sum(order >= orders[0] for order in diagram.orders)
-        out.append(
-            Cluster(
-                complex(diagram.pole[best]),
-                diagram.participation[best],
-                len(orders) / possible,
-                len(orders),
-            )
-        )
-    return sorted(out, key=lambda cluster: cluster.pole.imag)
+        if len(np.unique(diagram.order[members])) >= LEAST_ORDERS:
+            chosen.append(int(members[np.abs(poles - middle).argmin()]))
+    chosen.sort(key=lambda k: diagram.pole[k].imag)
+    return Poles(0, diagram.pole[chosen], diagram.participation[chosen])
 
 
 def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) -> Floats:

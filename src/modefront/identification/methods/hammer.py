@@ -82,11 +82,11 @@ def identify(
     else:
         first = fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
     small, shared = _principal(data, first)
-    diagram, clusters = diagram_of(small, shared)
+    diagram, poles = diagram_of(small, shared)
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
         small, shared = data, first
     task, omega, _ = problem(small, shared, 1)
-    fit = selection.start(task, clusters, omega)
+    fit = selection.start(task, poles, omega)
     for _ in range(2):
         fit = selection.refit(selection.choose_level(fit), fit.model.lam, fit.model.L)
         fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
