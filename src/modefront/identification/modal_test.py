@@ -31,11 +31,12 @@ POOR_FIT = 0.5
 NAMED = 3
 """Functions that are fitted poorly, modes and warnings that are named."""
 
-NARROW = (
-    "standard deviations of ambient tests of more than 35 min are up to a quarter too small where "
-    "many modes share coloured forces"
+LONG, NARROW = (
+    35.0,
+    "standard deviations of records of more than 35 min are up to a quarter too small where many "
+    "modes share coloured forces",
 )
-"""Warning on the modes of ambient tests."""
+"""Minutes of records of ambient tests, and the warning on modes of longer ones."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -93,7 +94,8 @@ class IdentifiedTest:
             for name, identification in zip(self.names, self.identified, strict=True)
             for text in _warnings(identification)
         ]
-        ambient = [NARROW] if self.test.setups and self.modes is not None else []
+        long = any(x.values.shape[1] > 60 * LONG * x.rate for x in self.test.setups)
+        ambient = [NARROW] if long and self.modes is not None else []
         return modes + spread + read + ambient + fitted
 
     def write(self, path: Path | str) -> list[Path]:
