@@ -126,7 +126,10 @@ def test_expected_errors_are_those_of_the_study(tmp_path: Path) -> None:
     data = mf.run(
         mf.load(study(tmp_path, noise="[noise]\nfrequency = 0.02\nshape = 0.1\n")), tmp_path / "r"
     ).dataset
-    assert "frequencies known to 2 %, shapes to 10 %" in data.attrs["assumed"]
+    assert data.attrs["assumed"] == ""
+    assert "say yours" not in data.attrs["verdict"], "of errors that the user has said"
+    best = data["label"].values.tolist().index("most-probable")
+    assert data["error"].values[best, 0] == pytest.approx(0.02 * data["misfit"].values[0], rel=1e-6)
 
 
 def test_no_model_is_advised_where_errors_are_far_above_those_expected(
