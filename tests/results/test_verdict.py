@@ -6,9 +6,11 @@ import re
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from modefront.findings.catalogue import VERDICT, page
+from modefront.results.analysis import intervals
 
 DOCS = Path(__file__).parents[2] / "docs"
 TEXT = page("verdicts.md")
@@ -44,3 +46,12 @@ def lines_of_page(name: str, text: str) -> None:
     assert lines or name == "read-a-front"
     for each in lines:
         assert tomllib.loads(each)
+
+
+def test_an_interval_has_nine_of_ten_draws_and_the_bound_that_is_most_probable() -> None:
+    draws = np.random.default_rng(0).exponential(size=(4000, 3)) * [1, -1, 1]
+    found = intervals(draws, np.array([-1, 1, 0]), np.array([[0.0, 9], [-9, 0], [0, 9]]))
+    inside = (draws >= found[:, 0]) & (draws <= found[:, 2])
+    assert inside.mean(axis=0) == pytest.approx([0.9] * 3, abs=1e-3)
+    assert found[0, 0] == 0 == found[1, 2]
+    assert found[2, 0] == pytest.approx(-np.log(0.95), rel=0.2), "equal tails"
