@@ -11,6 +11,7 @@ import pytest
 
 from modefront.findings.catalogue import VERDICT, page
 from modefront.results.analysis import intervals
+from modefront.results.verdict import closed
 
 DOCS = Path(__file__).parents[2] / "docs"
 TEXT = page("verdicts.md")
@@ -55,3 +56,12 @@ def test_an_interval_has_nine_of_ten_draws_and_the_bound_that_is_most_probable()
     assert inside.mean(axis=0) == pytest.approx([0.9] * 3, abs=1e-3)
     assert found[0, 0] == 0 == found[1, 2]
     assert found[2, 0] == pytest.approx(-np.log(0.95), rel=0.2), "equal tails"
+
+
+def test_what_to_fix_is_what_check_names_and_never_all() -> None:
+    names, draws = ["k1", "k2", "k3"], np.random.default_rng(0).normal(size=(200, 3))
+    nothing, fixed = ["not determined"] * 3, ": fixed = true"
+    assert closed(names, draws, nothing, ()) == [f"k1{fixed}", f"k2{fixed}"]
+    assert closed(names, draws, nothing, ["k3"]) == [f"k3{fixed}"]
+    draws[:, 0] = -draws[:, 2]
+    assert closed(names, draws, nothing, ["k3"]) == ['k3: tie = "k1"']
