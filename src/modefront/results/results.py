@@ -24,7 +24,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.remarks import headlines, verdict
 from modefront.results.shapes import PairedShapes, paired_shapes, write_vtu
-from modefront.text import brief
+from modefront.text import Shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,7 +40,7 @@ SENTENCES, LINES, WIDTH, ROWS, COLUMNS = 8, 11, 96, 6, 6
 
 
 @dataclass(frozen=True, repr=False)
-class FullShapes:
+class FullShapes(Shown):
     """Modes of a model at all degrees of freedom.
 
     Attributes
@@ -52,11 +52,9 @@ class FullShapes:
     frequency: Floats
     shape: Floats
 
-    __repr__ = brief
-
 
 @dataclass(frozen=True, repr=False)
-class ReportedModel:
+class ReportedModel(Shown):
     """A model of the results.
 
     Attributes
@@ -77,8 +75,6 @@ class ReportedModel:
     frequency: Floats
     mac: Floats
     problem: UpdatingProblem | None = None
-
-    __repr__ = brief
 
     @property
     def stiffness(self) -> scipy.sparse.csc_array:
