@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 import modefront as mf
+from modefront.cli.show import as_json
 from modefront.study.examples import write_example
 
 QUICK = mf.Search(doubt=0.5)
@@ -55,6 +57,8 @@ def test_results_are_shown_in_a_few_lines(folder: Path) -> None:
         *(results.reference.modes(2), results.shapes(0), compared, compared.fronts[0]),
     ):
         assert_short(shown)
+    said = json.loads(as_json(results.dataset))["remarks"]
+    assert said == list(map(str, results.findings))
 
 
 def test_fronts_are_compared_by_the_texts_of_their_paths(folder: Path) -> None:

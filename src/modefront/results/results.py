@@ -16,13 +16,14 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.datasets import Dataset
 from modefront.errors import ModelError
+from modefront.findings.record import Finding
 from modefront.front.point import Kind, front_points, position, preferred
 from modefront.models.base import matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
-from modefront.results.remarks import headlines, verdict
+from modefront.results.remarks import findings_of, headlines, verdict
 from modefront.results.shapes import PairedShapes, paired_shapes, write_vtu
 from modefront.text import Shown
 
@@ -185,6 +186,11 @@ class Results:
     def verdict(self) -> list[str]:
         """The first answer: which model to use, how sure it is, and what the front says."""
         return verdict(self.data)
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What was noticed besides, the most important first: kind, subject, numbers, sentence."""
+        return findings_of(self.dataset, full=True)
 
     @property
     def optimal(self) -> ReportedModel | None:
