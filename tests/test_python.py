@@ -57,7 +57,7 @@ def test_results_are_shown_in_a_few_lines(folder: Path) -> None:
         *(results.reference.modes(2), results.shapes(0), compared, compared.fronts[0]),
     ):
         assert_short(shown)
-    said = json.loads(as_json(results.dataset))["remarks"]
+    said = json.loads(as_json(results.data))["remarks"]
     assert said == list(map(str, results.findings))
 
 

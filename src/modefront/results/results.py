@@ -190,7 +190,7 @@ class Results:
     @property
     def findings(self) -> list[Finding]:
         """What was noticed besides, the most important first: kind, subject, numbers, sentence."""
-        return findings_of(self.dataset, full=True)
+        return findings_of(self.data, full=True)
 
     @property
     def optimal(self) -> ReportedModel | None:
