@@ -5,15 +5,21 @@ from __future__ import annotations
 import re
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from modefront.findings.catalogue import VERDICT, page
+from modefront.front.point import Kind
 from modefront.results.analysis import intervals
+from modefront.results.findings import _scatter
 from modefront.results.verdict import closed
+from modefront.uncertainty.scatter import LinearisationWarning
 
 DOCS = Path(__file__).parents[2] / "docs"
+DATA = ("frequency", "shape", "frequency_std", "shape_std")
 TEXT = page("verdicts.md")
 FORM = r"^### ([^\n]+)\n(?:<!-- [^\n]+ -->\n)?(.+?)(?=^##|\Z)"
 SECTIONS = dict(re.findall(FORM, TEXT, re.MULTILINE | re.DOTALL))
@@ -65,3 +71,18 @@ def test_what_to_fix_is_what_check_names_and_never_all() -> None:
     assert closed(names, draws, nothing, ["k3"]) == [f"k3{fixed}"]
     draws[:, 0] = -draws[:, 2]
     assert closed(names, draws, nothing, ["k3"]) == ['k3: tie = "k1"']
+
+
+def test_points_that_tables_leave_out_are_not_named_as_approximate() -> None:
+    kinds = {"nbi-1": Kind.FRONT, "identifiable-2": Kind.IDENTIFIABLE, "nominal": Kind.NOMINAL}
+    curved = SimpleNamespace(warnings=[LinearisationWarning.SADDLE])
+    analysis: Any = SimpleNamespace(
+        source="sets", scatter=dict.fromkeys(kinds, curved), posterior=None, replicates=[]
+    )
+    front: Any = SimpleNamespace(
+        points=[SimpleNamespace(label=x, kind=k) for x, k in kinds.items()]
+    )
+    data = SimpleNamespace(**dict.fromkeys(DATA, np.ones((1, 1))))
+    problem: Any = SimpleNamespace(data=data)
+    said = [x for x in _scatter(problem, front, analysis) if x.kind == "approximate"]
+    assert [x.subject for x in said] == ["nbi-1"]
