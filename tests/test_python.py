@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 import modefront as mf
+from modefront.cli.show import as_json
 from modefront.study.examples import write_example
 
 QUICK = mf.Search(doubt=0.5)
@@ -41,18 +43,22 @@ def test_a_study_is_run_by_its_path_as_a_text_or_a_path(tmp_path: Path) -> None:
 
 def assert_short(shown: Any) -> None:
     assert 1 <= len(repr(shown).splitlines()) <= 20
-    if hasattr(shown, "_repr_html_"):  # others are shown by their text
+    assert max(map(len, repr(shown).splitlines())) <= 200
+    if not isinstance(shown, mf.Study | mf.UpdatingProblem):  # these are shown by their line
         assert "<" in shown._repr_html_()
 
 
 def test_results_are_shown_in_a_few_lines(folder: Path) -> None:
     study = mf.load(folder / "study.toml")
     results = mf.read_results(folder / "results", study.problem)
+    compared = mf.compare([folder / "results"])
     for shown in (
         *(study, study.problem, study.problem.data, mf.check(study), results, results.reference),
-        *(results.reference.modes(2), results.shapes(0), mf.compare([folder / "results"])),
+        *(results.reference.modes(2), results.shapes(0), compared, compared.fronts[0]),
     ):
         assert_short(shown)
+    said = json.loads(as_json(results.data))["remarks"]
+    assert said == list(map(str, results.findings))
 
 
 def test_fronts_are_compared_by_the_texts_of_their_paths(folder: Path) -> None:

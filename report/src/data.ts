@@ -138,6 +138,20 @@ export function displacement(front: Front, point: number, mode: number): Float32
   return out;
 }
 
+/** Standard deviation of a parameter: of the posterior at the reference, else by errors of the data, linearised. */
+export function deviation(front: Front, point: number, parameter: number): number | null {
+  const posterior = point === front.reference ? front.posterior?.theta[parameter] : null;
+  return posterior ?? front.thetaStd?.[point]?.[parameter] ?? null;
+}
+
+/** What `deviation` returns, in words; empty where it has nothing. */
+export function deviationWords(front: Front): string {
+  const linear = front.thetaStd ? "standard deviation by errors of the data, linearised" : "";
+  if (!front.posterior) return linear;
+  const posterior = `standard deviation of the posterior at ${front.label[front.reference]}`;
+  return linear ? `${posterior}; at other models ${linear}` : posterior;
+}
+
 /** Error of a predicted frequency in %; null where it is not measured. */
 export function frequencyError(front: Front, point: number, mode: number): number | null {
   const f = front.frequency[point][mode];

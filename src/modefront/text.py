@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import codecs
+import html
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 NAME, FILE_NAME = 80, 60
@@ -107,13 +109,20 @@ LINE, MOST = 96, 18
 """Characters of a line, and lines of fields."""
 
 
-def brief(record: Any) -> str:
-    """Return the class of a record and a line for each field, as its ``__repr__``."""
-    shown = [field.name for field in fields(record) if field.repr]
-    width = max(map(len, shown), default=0)
-    lines = [f"  {name:{width}}  {_short(getattr(record, name))}"[:LINE] for name in shown]
-    more = [f"  and {len(lines) - MOST} more"] * (len(lines) > MOST)
-    return "\n".join([type(record).__name__, *lines[:MOST], *more])
+class Shown:
+    """A record that is shown in a few lines, in a terminal and in a notebook."""
+
+    def __repr__(self) -> str:
+        """Return the class and a line for each field."""
+        record: Any = self
+        shown = [field.name for field in fields(record) if field.repr]
+        width = max(map(len, shown), default=0)
+        lines = [f"  {name:{width}}  {_short(getattr(self, name))}"[:LINE] for name in shown]
+        more = [f"  and {len(lines) - MOST} more"] * (len(lines) > MOST)
+        return "\n".join([type(self).__name__, *lines[:MOST], *more])
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(repr(self))}</pre>"
 
 
 def brief_model(model: Any) -> str:
@@ -139,7 +148,7 @@ def _short(value: Any) -> str:
     if isinstance(value, Mapping):
         return ", ".join(f"{key} {_short(item)}" for key, item in value.items())
     if isinstance(value, Sequence):
-        if all(isinstance(item, str | int | float) for item in value):
+        if all(isinstance(item, str | int | float | Path) for item in value):
             return ", ".join(map(str, value))
         return f"{len(value)} of {type(value[0]).__name__}"
-    return repr(value).splitlines()[0]
+    return str(value) if isinstance(value, Path) else repr(value).splitlines()[0]

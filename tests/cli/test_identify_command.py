@@ -102,7 +102,9 @@ def test_wrong_input_is_named(tmp_path: Path, arguments: list[str], message: str
 def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
     write("hammer-test", tmp_path)
     test, output = tmp_path / "test-m0.toml", tmp_path / "o.csv"
-    _invoke(test, "-o", output, "--keep", "1,2", "--drop", "1", "--seed", "18.5")
+    chosen = ("--keep", "1,2", "--drop", "1", "--seed", "18.5")
+    text = _invoke(test, "-o", output, *chosen)
+    assert f"{' '.join(chosen)} -o {output} --report test.html" in text, "pasted, it loses nothing"
     found = read_csv(output)
     assert found.frequency.shape[0] == 3
     first, *at_the_seed = found.mean_frequency

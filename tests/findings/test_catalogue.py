@@ -49,4 +49,7 @@ def test_a_record_is_kept_whole_and_one_that_is_not_known_as_its_sentence() -> N
     for record in ("", "[]", '["alike", "a", {}, true]', '["else", "a", {}, true]'):
         assert str(from_text(record, "as it was")) == "as it was"
     assert alike.as_plain()["severity"] == "open"
+    spent = found("effort", spent=30, front=9, why="; by chance").as_plain()
+    assert spent["numbers"] == {"spent": 30, "front": 9}
+    assert spent["words"] == {"why": "; by chance"}
     assert in_order([alike, found("one-model")])[0].kind == "one-model"

@@ -108,6 +108,10 @@ def test_every_view_has_its_name(report: Path, opened: Open) -> None:
     assert page.page.title() == "three storeys"
     assert page.view("mode shape").get_attribute("data-renderer") == "webgl"
     assert "0123abcd" in page.view("how to cite").inner_text()
+    data, beside = chain(), page.view("tables").inner_text()
+    best = data["theta"].values[data["label"].values.tolist().index(data.attrs["reference"]), 0]
+    assert f"{best:#.4g} ± {data['posterior_std'].values[0]:#.2g}" in beside, "as in `show`"
+    assert f"standard deviation of the posterior at {data.attrs['reference']}" in beside
 
 
 def test_the_slider_and_arrow_keys_walk_along_the_front(

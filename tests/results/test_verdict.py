@@ -5,12 +5,21 @@ from __future__ import annotations
 import re
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
 
 from modefront.findings.catalogue import VERDICT, page
+from modefront.front.point import Kind
+from modefront.results.analysis import intervals
+from modefront.results.findings import _scatter
+from modefront.results.verdict import closed
+from modefront.uncertainty.scatter import LinearisationWarning
 
 DOCS = Path(__file__).parents[2] / "docs"
+DATA = ("frequency", "shape", "frequency_std", "shape_std")
 TEXT = page("verdicts.md")
 FORM = r"^### ([^\n]+)\n(?:<!-- [^\n]+ -->\n)?(.+?)(?=^##|\Z)"
 SECTIONS = dict(re.findall(FORM, TEXT, re.MULTILINE | re.DOTALL))
@@ -44,3 +53,36 @@ def lines_of_page(name: str, text: str) -> None:
     assert lines or name == "read-a-front"
     for each in lines:
         assert tomllib.loads(each)
+
+
+def test_an_interval_has_nine_of_ten_draws_and_the_bound_that_is_most_probable() -> None:
+    draws = np.random.default_rng(0).exponential(size=(4000, 3)) * [1, -1, 1]
+    found = intervals(draws, np.array([-1, 1, 0]), np.array([[0.0, 9], [-9, 0], [0, 9]]))
+    inside = (draws >= found[:, 0]) & (draws <= found[:, 2])
+    assert inside.mean(axis=0) == pytest.approx([0.9] * 3, abs=1e-3)
+    assert found[0, 0] == 0 == found[1, 2]
+    assert found[2, 0] == pytest.approx(-np.log(0.95), rel=0.2), "equal tails"
+
+
+def test_what_to_fix_is_what_check_names_and_never_all() -> None:
+    names, draws = ["k1", "k2", "k3"], np.random.default_rng(0).normal(size=(200, 3))
+    nothing, fixed = ["not determined"] * 3, ": fixed = true"
+    assert closed(names, draws, nothing, ()) == [f"k1{fixed}", f"k2{fixed}"]
+    assert closed(names, draws, nothing, ["k3"]) == [f"k3{fixed}"]
+    draws[:, 0] = -draws[:, 2]
+    assert closed(names, draws, nothing, ["k3"]) == ['k3: tie = "k1"']
+
+
+def test_points_that_tables_leave_out_are_not_named_as_approximate() -> None:
+    kinds = {"nbi-1": Kind.FRONT, "identifiable-2": Kind.IDENTIFIABLE, "nominal": Kind.NOMINAL}
+    curved = SimpleNamespace(warnings=[LinearisationWarning.SADDLE])
+    analysis: Any = SimpleNamespace(
+        source="sets", scatter=dict.fromkeys(kinds, curved), posterior=None, replicates=[]
+    )
+    front: Any = SimpleNamespace(
+        points=[SimpleNamespace(label=x, kind=k) for x, k in kinds.items()]
+    )
+    data = SimpleNamespace(**dict.fromkeys(DATA, np.ones((1, 1))))
+    problem: Any = SimpleNamespace(data=data)
+    said = [x for x in _scatter(problem, front, analysis) if x.kind == "approximate"]
+    assert [x.subject for x in said] == ["nbi-1"]

@@ -126,7 +126,10 @@ def test_expected_errors_are_those_of_the_study(tmp_path: Path) -> None:
     data = mf.run(
         mf.load(study(tmp_path, noise="[noise]\nfrequency = 0.02\nshape = 0.1\n")), tmp_path / "r"
     ).dataset
-    assert "frequencies known to 2 %, shapes to 10 %" in data.attrs["assumed"]
+    assert data.attrs["assumed"] == ""
+    assert "say yours" not in data.attrs["verdict"], "of errors that the user has said"
+    best = data["label"].values.tolist().index("most-probable")
+    assert data["error"].values[best, 0] == pytest.approx(0.02 * data["misfit"].values[0], rel=1e-6)
 
 
 def test_no_model_is_advised_where_errors_are_far_above_those_expected(
@@ -197,7 +200,7 @@ def test_what_to_measure_fix_or_tie_is_said() -> None:
     results = mf.solve(problem, points=3, search=mf.Search(doubt=0.5))
     assert results["candidate_gain"].values.max(initial=0.0) < 0.1
     (said,) = [text for text in results.verdict if text.startswith("Or leave open less")]
-    assert 'k1: tie = "twin"' in said
+    assert 'twin: tie = "k1"' in said, "as check: the one of which the other leaves least"
     assert "k2" not in said
 
 

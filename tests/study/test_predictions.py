@@ -350,8 +350,9 @@ def test_show_prints_and_draws_predictions(
 ) -> None:
     folder, data = quick
     shutil.copytree(folder / "results", tmp_path / "results")
-    assert command("show", tmp_path / "results", "--predictions") == 0
-    out = " ".join(capsys.readouterr().out.split())
+    assert command("show", tmp_path / "results", "--predictions", "--figures") == 0
+    out = capsys.readouterr().out
+    words = " ".join(out.split())
     for text in (
         "pushed: force at 2 high; mobility, greatest peak from 0 to 20 Hz, 2 modes, damping 0.02",
         "two-sided barrier) within 6 s, at rest at first; one-sided spectral density 0.05, time",
@@ -359,16 +360,13 @@ def test_show_prints_and_draws_predictions(
         f"{data['frf_peak_range'].values[1, 0]:.5g}",
         "spread",
     ):
-        assert text in out
-    assert command("show", tmp_path / "results", "--figures") == 0
-    out = capsys.readouterr().out
+        assert text in words
     names = ["front", "parameters", "frequencies", "mac", "modes", "predictions"]
     names += ["frf-pushed", "frf-shaken", "frf-as-if-shaken", "frf-ridden", "frf-between"]
     names += ["failure-drifts", "uncertainty", "minima"]
     paths = [tmp_path / "results" / "figures" / f"{name}.svg" for name in names]
-    *written, following = out.splitlines()
-    assert written == [f"wrote {path}" for path in paths]
-    assert following == f"next: modefront report {tmp_path / 'results'}"
+    assert out.splitlines()[: len(names)] == [f"wrote {path}" for path in paths]
+    assert "next: modefront report" in words
     drawn = [path.read_bytes() for path in paths]
     assert all(b"</svg>" in content for content in drawn)
     assert [

@@ -37,7 +37,7 @@ def test_assumed_errors_are_relative_and_every_shape_loses_its_factor() -> None:
     assert noise is not None
     assert noise.a == pytest.approx([3, 6])
     assert noise.S == pytest.approx([0, 0], abs=1e-20)
-    assert noise.assumed == "frequencies known to 1 %, shapes to 5 %"
+    assert noise.assumed == "", "the user has said both"
     theta = np.array([0.9, 1.2, 1.1])
     J, scaled = problem.evaluate(theta).J, noise.problem.evaluate(theta).J
     assert scaled[0] == pytest.approx(J[0] / 0.01**2)
@@ -51,6 +51,9 @@ def test_standard_deviations_of_the_data_come_first_and_gaps_are_assumed() -> No
     assert noise is not None
     assert noise.problem.data.frequency_std[0] == pytest.approx([0.02, 0.005 * 14.1, 0.005 * 19.9])
     assert noise.assumed == "frequencies known to 0.5 %, shapes to 3 %"
+    half = NoisePrior(frequency=0.01).of(problem_of(frequency_std=std), "std")
+    assert half is not None
+    assert half.assumed == "shapes known to 3 %"
     without = NoisePrior().of(problem_of(frequency_std=std), None)
     assert without is not None
     assert without.problem.data.frequency_std[0] == pytest.approx(0.005 * FREQUENCY)

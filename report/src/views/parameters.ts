@@ -1,5 +1,6 @@
 // Parameters of all models, a row each.
 
+import { deviation, deviationWords } from "../data";
 import { h, section, sized } from "../dom";
 import { between, number, scattered } from "../format";
 import type { State } from "../state";
@@ -12,25 +13,22 @@ export function parametersView(state: State, tip: Tip): HTMLElement {
   const plot = h("div", { class: "plot" });
   let update = (): void => {};
   const rows = front.parameters.map((name, j): Strip => {
-    const std = (i: number): number | null =>
-      (i === front.reference ? front.posterior?.theta[j] : null) ?? front.thetaStd?.[i]?.[j] ?? null;
     const [low, high] = front.interval?.[j] ?? [null, null];
     const interval: [number, number] | null = low === null || high === null ? null : [low, high];
     const [from, to] = front.bounds[j];
     return {
       name,
       value: (i) => front.theta[i][j],
-      std: (i) => (interval && i === front.reference ? null : std(i)),
+      std: (i) => (interval && i === front.reference ? null : deviation(front, i, j)),
       domain: from === null || to === null ? undefined : [from, to],
       interval,
       text: (i) => {
         const value = front.theta[i][j];
         if (interval && i === front.reference) return `${number(value)} (${between(interval)})`;
-        return scattered(value, std(i), front.bounds[j]);
+        return scattered(value, deviation(front, i, j), front.bounds[j]);
       },
     };
   });
-  const hasStd = front.thetaStd !== null || front.posterior !== null;
   sized(plot, (width) => {
     state.forget("parameter");
     const chart = strips(state, rows, {
@@ -54,8 +52,8 @@ export function parametersView(state: State, tip: Tip): HTMLElement {
         ? `The broad one is the 90 % interval of the data around ${front.label[front.reference]}; s`
         : "S",
       "hort ones are points of the front, the dot is the chosen model",
-      hasStd
-        ? ", ± its standard deviation by errors of the data; “open” is what no data determine."
+      deviationWords(front)
+        ? `. ±: ${deviationWords(front)}; “open” is what no data determine.`
         : ". Nothing is known of the errors of the data, so there are no standard deviations.",
     ),
     plot,

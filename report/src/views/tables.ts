@@ -1,7 +1,7 @@
 // Tables to copy and a file to keep.
 
 import { csv, download, everything, fileName, type Cell } from "../csv";
-import { frequencyError, type Front } from "../data";
+import { deviation, deviationWords, frequencyError, type Front } from "../data";
 import { h, section } from "../dom";
 import { fixed, number, scattered } from "../format";
 import type { State } from "../state";
@@ -36,6 +36,7 @@ export function tablesView(state: State): HTMLElement {
     "Side by side",
     h("div", { class: "controls" }, copy, keep, copied),
     holder,
+    deviationWords(front) ? h("p", { class: "note" }, `±: ${deviationWords(front)}.`) : null,
     details,
   );
 }
@@ -49,7 +50,7 @@ function sideBySide(front: Front, chosen: number): HTMLElement {
   const rows: [string, (i: number) => string][] = [
     ...front.parameters.map((name, j): [string, (i: number) => string] => [
       name,
-      (i) => scattered(front.theta[i][j], front.thetaStd?.[i]?.[j] ?? null, front.bounds[j]),
+      (i) => scattered(front.theta[i][j], deviation(front, i, j), front.bounds[j]),
     ]),
     ...front.modes.map((r, k): [string, (i: number) => string] => [
       `error of frequency ${r}, %`,

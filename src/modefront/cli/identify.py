@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 
 from modefront.cli.layout import Screen
@@ -58,7 +59,10 @@ def run_identify(
     if test.modes is None:
         raise UnfinishedError("no mode was found in the band: is it right? --seed places modes")
     if report is None and figures is None:
-        say_next("identify", path, "-o", output, "--report", "test.html")
+        by_hand = [["--band", *(f"{x:.15g}" for x in band)]] if band else []
+        for option, numbers in (("--keep", keep), ("--drop", drop), ("--seed", seeds)):
+            by_hand += [[option, ",".join(f"{x:.15g}" for x in numbers)]] if numbers else []
+        say_next("identify", path, *chain(*by_hand), "-o", output, "--report", "test.html")
     else:
         say(f'next: [data] file = "{output}" in study.toml, then modefront check study.toml')
 

@@ -234,11 +234,11 @@ def show(
         from modefront.plots import pictures, write_figures
 
         for path in write_figures(pictures(data), directory / "figures", picture):
-            say(f"wrote {path}")
-        say_next("report", directory)
-        return
+            say(f"wrote {path}", err=form == "json")
     if form == "json":
         print(as_json(data))
+    elif figures and not (lists or every):
+        say_next("report", directory)
     else:
         print_results(data, tuple(LISTS) if every else lists, directory)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import Fault, refuse, suggestion
-from modefront.text import brief
+from modefront.text import Shown
 
 MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std", "shape_covariance")
 """Arrays of modal data, of which data sets are the first axis."""
@@ -23,7 +23,7 @@ Pairs = tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True, repr=False)
-class ModalData:
+class ModalData(Shown):
     """Frequencies, damping ratios and mode shapes; NaN is what was not measured.
 
     Attributes
@@ -50,8 +50,6 @@ class ModalData:
     shape_std: Floats
     pairs: Pairs = ()
     shape_covariance: Floats | None = None
-
-    __repr__ = brief
 
     @cached_property
     def mean_frequency(self) -> Floats:

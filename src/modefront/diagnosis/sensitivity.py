@@ -17,6 +17,7 @@ import scipy.linalg
 from modefront._typing import Floats
 from modefront.identifiability.combinations import WEAK, decompose, optimal_weights, without_effect
 from modefront.identifiability.scale import scale_at
+from modefront.optim.problem import Evaluation
 from modefront.residuals.problem import UpdatingProblem
 
 
@@ -55,24 +56,24 @@ def sensitivities(problem: UpdatingProblem) -> Sensitivities:
         dphi = dphi / np.linalg.norm(modes.phi[:, pairs.index], axis=0)[:, None]
     frequency, phi, dphi = (np.where(np.isfinite(x), x, 0.0) for x in (frequency, phi, dphi))
     across = dphi - phi[:, :, None] * np.einsum("sr,srj->rj", phi, dphi)
-    names, data = problem.model.parameters, problem.data
-    fixed = tuple(names[j] for j in superfluous(problem))
-    return Sensitivities(names, data.modes, frequency, np.linalg.norm(across, axis=(0, 1)), fixed)
+    names, fixed = problem.model.parameters, superfluous(problem, problem.evaluate(problem.start))
+    shape = np.linalg.norm(across, axis=(0, 1))
+    return Sensitivities(names, problem.data.modes, frequency, shape, fixed)
 
 
-def superfluous(problem: UpdatingProblem) -> list[int]:
-    """Return the parameters with an effect of which the others leave least.
+def superfluous(problem: UpdatingProblem, nominal: Evaluation) -> tuple[str, ...]:
+    """Return the parameters with an effect of which the others leave least at the nominal model.
 
     Without them no combination is hardly determined (singular value below 1 % of the greatest).
     """
-    nominal, scale = problem.evaluate(problem.start), scale_at(problem, problem.start)
+    scale, names = scale_at(problem, problem.start), problem.model.parameters
     idle = without_effect(problem, nominal, scale)
     roots = np.sqrt(optimal_weights(problem.properties, nominal.J))
-    residuals = zip(roots, problem.residuals(problem.start), strict=True)
+    residuals = zip(roots, nominal.residuals, strict=True)
     G = np.concatenate([w * residual.dr for w, residual in residuals]) * scale.unit
     kept = np.setdiff1d(np.flatnonzero(G.any(axis=0)), idle)
     chosen = kept[scipy.linalg.qr(G[:, kept], mode="r", pivoting=True)[1]].tolist()
-    out: list[int] = []
+    out: list[str] = []
     while len(chosen) > 1 and decompose(G[:, chosen])[-1].share < WEAK:
-        out.append(chosen.pop())
-    return out
+        out.append(names[chosen.pop()])
+    return tuple(out)

@@ -71,7 +71,10 @@ class Finding:
     def as_plain(self) -> dict[str, Any]:
         """Return the finding as JSON has it."""
         named = {"kind": self.kind, "severity": self.severity.name.lower(), "subject": self.subject}
-        return named | {"numbers": dict(self.numbers), "text": str(self)}
+        parts: dict[str, dict[str, Any]] = {"numbers": {}, "words": {}}
+        for name, value in self.numbers.items():
+            parts["words" if isinstance(value, str) else "numbers"][name] = value
+        return named | parts | {"text": str(self)}
 
 
 def found(kind: str, subject: str = "", *, many: bool = False, **numbers: Any) -> Finding:

@@ -24,6 +24,7 @@ from modefront.identification.record import Identification, Rejected
 from modefront.identification.sets import CombinedModes, combine
 from modefront.inputs import wrong
 from modefront.outputs import write_text
+from modefront.text import Shown
 
 POOR_FIT = 0.5
 """Residual of a function over its norm from which on it is pointed out."""
@@ -40,7 +41,7 @@ LONG, NARROW = (
 
 
 @dataclass(frozen=True, repr=False)
-class IdentifiedTest:
+class IdentifiedTest(Shown):
     """Modes of a modal test.
 
     Attributes
@@ -135,7 +136,7 @@ class IdentifiedTest:
 
     def __repr__(self) -> str:
         """Return the modes, a line each, and the first warnings."""
-        out = [f"{self.test.name}: {len(self.names)} data sets"]
+        out = [f"{self.test.name}: {len(self.names)} data set{'s' * (len(self.names) != 1)}"]
         if self.modes is not None:
             columns = zip(self.data.mean_frequency, self.data.mean_damping, strict=True)
             lines = [f"  mode {r}: {f:.5g} Hz, {z:.2%}" for r, (f, z) in enumerate(columns, 1)]

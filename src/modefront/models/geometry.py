@@ -13,7 +13,7 @@ import scipy.sparse
 from modefront._typing import Floats, Ints
 from modefront.fem.structure import Cells as Cells
 from modefront.linalg.affine import sparse_rows
-from modefront.text import brief
+from modefront.text import Shown
 
 ALONG = 0.99
 """Component of a direction from which on it is one along an axis."""
@@ -22,7 +22,7 @@ SIX = ("x", "y", "z", "rx", "ry", "rz")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Geometry:
+class Geometry(Shown):
     """Nodes, cells and sensors of a model, and how its degrees of freedom move the nodes.
 
     Attributes
@@ -39,8 +39,6 @@ class Geometry:
     motion: scipy.sparse.csr_array
     sensor_nodes: Ints
     sensor_directions: Floats
-
-    __repr__ = brief
 
     def weights(self, nodes: Ints, directions: Floats) -> scipy.sparse.csr_array:
         """Return weights (sensors, N) of sensors at nodes along ``directions`` (sensors, 3)."""

@@ -16,6 +16,7 @@ from modefront.inputs import file_size, wrong
 from modefront.isolated import isolated
 from modefront.models.dofs import DofTable
 from modefront.outputs import output
+from modefront.text import Shown
 
 CORNERS: Mapping[str, int] = {
     "vertex": 1,
@@ -30,8 +31,8 @@ CORNERS: Mapping[str, int] = {
 """Types of cells, as meshio and VTK call them, and their nodes; further nodes are left out."""
 
 
-@dataclass(frozen=True, eq=False)
-class ProgramMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class ProgramMesh(Shown):
     """Nodes by their numbers, and cells between them.
 
     Attributes
@@ -112,8 +113,8 @@ Matrix: TypeAlias = scipy.sparse.csr_array
 Quantity = Literal["stiffness", "mass"]
 
 
-@dataclass(frozen=True, eq=False)
-class Job:
+@dataclass(frozen=True, eq=False, repr=False)
+class Job(Shown):
     """Matrices of one job of a program.
 
     Attributes

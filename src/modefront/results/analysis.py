@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools, Floats, Ints
 from modefront.analysis.front import FrontAnalysis
 from modefront.datasets import ArrayDataset
 from modefront.front.front import Front
@@ -180,6 +180,19 @@ def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis)
     }
 
 
+def intervals(theta: Floats, side: Ints, bounds: Floats) -> Floats:
+    """Return 90 % intervals, with the medians between their ends, (p, 3), of draws (draws, p).
+
+    They have equal tails. Where the most probable model is at a bound, at -1 or 1 as ``side`` (p,)
+    says, they begin there, ``bounds`` (p, 2), and have one tail: they contain what they are of.
+    """
+    tails = (QUANTILES[0], 2 * QUANTILES[0], QUANTILES[1], 1 - 2 * QUANTILES[0], QUANTILES[2])
+    low, below, median, above, high = np.quantile(theta, tails, axis=0, method="weibull")
+    low, high = np.where(side > 0, below, low), np.where(side < 0, above, high)
+    low, high = np.where(side < 0, bounds[:, 0], low), np.where(side > 0, bounds[:, 1], high)
+    return np.column_stack([low, median, high])
+
+
 def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) -> ArrayDataset:
     """Return results with what the posterior says.
 
@@ -189,7 +202,8 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     draws, fit, widths = inference.draws, inference.fit, prior_widths(noise.problem)
     freed, unfixed = inference.freed, inference.unfixed
     settled = draws.settled and not fit.is_refused
-    interval = np.quantile(draws.theta, QUANTILES, axis=0, method="weibull").T
+    (side,) = data["at_bound"].values[data["kind"].values == Kind.MOST_PROBABLE.value]
+    interval = intervals(draws.theta, side, data["bounds"].values)
     share = (interval[:, 2] - interval[:, 0]) / widths
     place = np.where((share < DETERMINED) & settled, 0, np.where(share > OPEN, 2, 1))
     values = {

@@ -23,13 +23,14 @@ from modefront.errors import Fault, InputError, refuse
 from modefront.front.point import Kind, front_points, position, preferred
 from modefront.predictions.base import kinds_in
 from modefront.results.files import read_dataset
+from modefront.text import Shown
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-@dataclass(frozen=True)
-class Spread:
+@dataclass(frozen=True, repr=False)
+class Spread(Shown):
     """Least and greatest value over the Pareto-optimal models, and the reference's; or NaN."""
 
     name: str
@@ -39,8 +40,8 @@ class Spread:
 
 
 # 14 fields: the columns of a table.
-@dataclass(frozen=True)
-class Summary:
+@dataclass(frozen=True, repr=False)
+class Summary(Shown):
     """One front, in the space of errors; a row of the comparison, whose columns these are.
 
     ``points`` is the number of Pareto-optimal points, ``length_ratio`` that to the first front,
@@ -65,8 +66,8 @@ class Summary:
     predictions: tuple[Spread, ...]
 
 
-@dataclass(frozen=True)
-class Apart:
+@dataclass(frozen=True, repr=False)
+class Apart(Shown):
     """Distance of two fronts in their common parameters, over the bounds of the first one.
 
     ``least`` and ``greatest`` (Hausdorff) are distances of a Pareto-optimal model of one from the

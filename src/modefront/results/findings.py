@@ -20,7 +20,7 @@ from modefront.findings.knowledge import (
 )
 from modefront.findings.record import Finding, as_text, found, in_order
 from modefront.front.front import Front
-from modefront.front.point import Kind, label, of_kind
+from modefront.front.point import INTERNAL, Kind, label, of_kind
 from modefront.optim.problem import AT_BOUND
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Determinations, Values
@@ -182,7 +182,8 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
         exact = int((np.isfinite(values) & ~(known > 0)).sum())
         if analysis.source == "std" and exact:
             yield found("exact-data", values=exact)
-        labels = [point.label for point in front.points if point.kind is not Kind.NOMINAL]
+        kinds = {Kind.NOMINAL.value, *INTERNAL}
+        labels = [point.label for point in front.points if point.kind.value not in kinds]
         missing = [name for name in labels if name not in analysis.scatter]
         if missing:
             yield found("no-scatter", _places(missing, len(labels)))

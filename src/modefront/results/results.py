@@ -16,15 +16,16 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.datasets import Dataset
 from modefront.errors import ModelError
+from modefront.findings.record import Finding
 from modefront.front.point import Kind, front_points, position, preferred
 from modefront.models.base import matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
-from modefront.results.remarks import headlines, verdict
+from modefront.results.remarks import findings_of, headlines, verdict
 from modefront.results.shapes import PairedShapes, paired_shapes, write_vtu
-from modefront.text import brief
+from modefront.text import Shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,7 +41,7 @@ SENTENCES, LINES, WIDTH, ROWS, COLUMNS = 8, 11, 96, 6, 6
 
 
 @dataclass(frozen=True, repr=False)
-class FullShapes:
+class FullShapes(Shown):
     """Modes of a model at all degrees of freedom.
 
     Attributes
@@ -52,11 +53,9 @@ class FullShapes:
     frequency: Floats
     shape: Floats
 
-    __repr__ = brief
-
 
 @dataclass(frozen=True, repr=False)
-class ReportedModel:
+class ReportedModel(Shown):
     """A model of the results.
 
     Attributes
@@ -77,8 +76,6 @@ class ReportedModel:
     frequency: Floats
     mac: Floats
     problem: UpdatingProblem | None = None
-
-    __repr__ = brief
 
     @property
     def stiffness(self) -> scipy.sparse.csc_array:
@@ -189,6 +186,11 @@ class Results:
     def verdict(self) -> list[str]:
         """The first answer: which model to use, how sure it is, and what the front says."""
         return verdict(self.data)
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What was noticed besides, the most important first: kind, subject, numbers, sentence."""
+        return findings_of(self.data, full=True)
 
     @property
     def optimal(self) -> ReportedModel | None:

@@ -31,7 +31,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values
 from modefront.results.schema import described
 from modefront.rounding import TINY
-from modefront.text import brief
+from modefront.text import Shown
 from modefront.work.codec import record
 
 TOLERANCE = 1e-3
@@ -54,7 +54,7 @@ FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
 
 
 @dataclass(frozen=True, repr=False)
-class PairedShapes:
+class PairedShapes(Shown):
     """Model modes that are paired with the measured ones, each pair in one scale.
 
     Attributes
@@ -79,8 +79,6 @@ class PairedShapes:
     measured: Floats
     sensors: tuple[str, ...]
     geometry: Geometry | None
-
-    __repr__ = brief
 
 
 def paired_shapes(row: Dataset, problem: UpdatingProblem) -> PairedShapes:

@@ -32,8 +32,10 @@ TWINS = 0.9
 """Correlation of draws, without its sign, from which two parameters are known only together."""
 
 
-def with_verdict(data: Dataset) -> Dataset:
+def with_verdict(data: Dataset, spare: Sequence[str] = ()) -> Dataset:
     """Return results with the first answer, and without a reference where no model is to be used.
+
+    ``spare`` are the parameters to fix for the data to determine the others, as `check` names them.
 
     It has `LINES` lines at most. What has no room is left to the tables below it. Where no model is
     to be used, nothing is said of parameters, the front and predictions; where nothing is expected
@@ -55,7 +57,7 @@ def with_verdict(data: Dataset) -> Dataset:
     else:
         if not data.attrs.get("settled", 1):
             said.insert(0, _say("unsettled"))
-        further = (_parameters(data), _front(data), _next(data), _predictions(data))
+        further = (_parameters(data), _front(data), _next(data, spare), _predictions(data))
         said = [_use(data), *said, *chain.from_iterable(further)]
     ends = np.cumsum([len(wrap(sentence, COLUMNS)) for sentence in said])
     said = said[: max(1, int(np.searchsorted(ends, LINES, side="right")))]
@@ -181,7 +183,7 @@ def _predictions(data: Dataset) -> Iterator[str]:
                 yield _say("prediction", **names, **ends)
 
 
-def _next(data: Dataset) -> Iterator[str]:
+def _next(data: Dataset, spare: Sequence[str]) -> Iterator[str]:
     """Yield what to measure for the least determined parameter, and what the study could fix."""
     low, _, high = data["interval"].values.T
     share, trust = (high - low) / data["prior_width"].values, data["trust"].values
@@ -197,21 +199,25 @@ def _next(data: Dataset) -> Iterator[str]:
         )
         what = f"at sensor {sensor}" if sensor else f"the mode near {frequency:.3g} Hz"
         yield _say("measure", what=what, name=name, gain=100 * gain[c])
-    lines = _closed(data["parameter"].values.tolist(), data["sample_theta"].values, trust.tolist())
+    names = data["parameter"].values.tolist()
+    lines = closed(names, data["sample_theta"].values, trust.tolist(), spare)
     if lines:
         yield _say("leave-open-less", lines=enumeration(lines, SHOWN))
 
 
-def _closed(names: Sequence[str], samples: Floats, trust: Sequence[str]) -> list[str]:
+def closed(
+    names: Sequence[str], samples: Floats, trust: Sequence[str], spare: Sequence[str]
+) -> list[str]:
     """Return the parameters that could be tied or fixed, with the line of a study that does it.
 
+    These are the ``spare`` ones; without any, those that are not determined, of which one is left.
     Of those that are known together only, one is enough: draws of two whose sum is known are
     correlated negatively, and of those whose ratio is known positively.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         joint = np.nan_to_num(np.corrcoef(samples, rowvar=False)).reshape(len(names), -1)
     lines, done = [], np.array([x == TRUST[0] for x in trust])
-    for j in range(len(names)):
+    for j in map(names.index, spare or names):
         if done[j]:
             continue
         done[j] = True
@@ -219,11 +225,11 @@ def _closed(names: Sequence[str], samples: Floats, trust: Sequence[str]) -> list
         twin = int(np.argmax(np.abs(along)))
         if along[twin] < -TWINS:
             lines.append(f'{names[j]}: tie = "{names[twin]}"')
-        elif along[twin] > TWINS or trust[j] == TRUST[2]:
+        elif along[twin] > TWINS or trust[j] == TRUST[2] or spare:
             lines.append(f"{names[j]}: fixed = true")
         if abs(along[twin]) > TWINS:
             done |= np.abs(along) > TWINS
-    return lines
+    return lines[: len(names) - 1]
 
 
 def _row(data: Dataset, kind: Kind) -> Dataset:

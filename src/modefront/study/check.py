@@ -50,6 +50,7 @@ from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import TINY
 from modefront.study.definition import Study
+from modefront.text import Shown
 from modefront.uncertainty.inference import freed
 from modefront.uncertainty.most_probable import maximum
 
@@ -83,7 +84,7 @@ HARMLESS = {
 
 
 @dataclass(frozen=True)
-class Findings:
+class Findings(Shown):
     """The outcome of a check, as records that have a sentence as their text.
 
     Attributes

@@ -33,7 +33,7 @@ from modefront.results.results import ReportedModel, Results
 from modefront.results.shapes import write_grid
 from modefront.study.definition import Study
 from modefront.study.file import load
-from modefront.text import brief, file_name
+from modefront.text import Shown, file_name
 from modefront.work.store import FOLDER, NOTE
 
 ELEMENTS = {"line": 11, "triangle": 91, "quad": 94, "tetra": 111, "wedge": 112, "hexahedron": 115}
@@ -41,7 +41,7 @@ ELEMENTS = {"line": 11, "triangle": 91, "quad": 94, "tetra": 111, "wedge": 112, 
 
 
 @dataclass(frozen=True, repr=False)
-class Exported:
+class Exported(Shown):
     """What was written of a model.
 
     Attributes
@@ -54,8 +54,6 @@ class Exported:
     label: str
     files: tuple[Path, ...]
     missing: tuple[str, ...]
-
-    __repr__ = brief
 
 
 def export(

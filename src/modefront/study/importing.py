@@ -59,7 +59,7 @@ from modefront.programs.changes import (
 from modefront.programs.differences import Differences, Term, Terms, condensed
 from modefront.programs.inp import DEEPEST, keyword_of
 from modefront.study.file import add_schema
-from modefront.text import brief, file_name, one_line
+from modefront.text import Shown, file_name, one_line
 
 QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
 
@@ -72,7 +72,7 @@ JobFiles = Path | str | Sequence[Path | str]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Imported:
+class Imported(Shown):
     """Terms, frequencies and remarks of an import.
 
     Attributes
@@ -123,8 +123,6 @@ class Imported:
                 add_schema([inner / "study.toml"])
                 files = sorted(inner.iterdir(), key=lambda file: file.name == "study.toml")
                 return [Path(shutil.move(file, directory / file.name)) for file in files]
-
-    __repr__ = brief
 
 
 # 9 arguments and many lines: the jobs, and each option of the command by keyword, in turn.

@@ -17,6 +17,7 @@ from modefront._version import __version__
 from modefront.analysis.certified import certificate_attributes, certified_front, certified_points
 from modefront.analysis.front import analyse_front
 from modefront.datasets import Dataset
+from modefront.diagnosis.sensitivity import superfluous
 from modefront.errors import Fault, InputError, writing
 from modefront.front.front import Front
 from modefront.front.given import Weighted
@@ -224,7 +225,8 @@ def worked(study: Study, work: Run) -> Dataset:
     runner = PredictionRunner(problem, study.predictions, seed, work, study.file)
     draws = study.uncertainty.draws
     data = with_predictions(data, runner, study.slack, gaussian, draws, drawn)
-    return with_verdict(data).assign_attrs(_attributes(study, work, front))
+    spare = superfluous(problem, nominal) if nominal.feasible else ()
+    return with_verdict(data, spare).assign_attrs(_attributes(study, work, front))
 
 
 def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | float]:

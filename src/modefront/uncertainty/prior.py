@@ -69,9 +69,10 @@ class NoisePrior(Checked):
         level = np.ones(a.size)
         if source == "sets":
             level = (self.weight + S) / (self.weight + d)
-        sizes = {"frequency": f"frequencies known to {100 * self.frequency:g} %"}
-        sizes["shape"] = f"shapes to {100 * self.shape:g} %"
-        words = ", ".join(sizes[kind] for kind in assumed)
+        plural = {"frequency": "frequencies", "shape": "shapes"}
+        usual = [kind for kind in assumed if getattr(self, kind) == getattr(NoisePrior, kind)]
+        sizes = [f"{plural[kind]} to {100 * getattr(self, kind):g} %" for kind in usual]
+        words = ", ".join(sizes).replace(" to", " known to", 1)
         logs = LogSum(a + self.weight, self.weight * level - S)
         return NoiseModel(replace(scaled, likelihood=logs), a, S, level, self.weight, words)
 
@@ -87,7 +88,7 @@ class NoiseModel:
     S : (n,) the part of J' that no model explains
     level : (n,) expected variance m
     weight : degrees of freedom nu of the prior
-    assumed : in words, which errors are assumed; empty for none
+    assumed : in words, which errors neither the data nor the user say; empty for none
     """
 
     problem: UpdatingProblem
