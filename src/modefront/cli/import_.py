@@ -9,13 +9,7 @@ from typing import Any
 from modefront.cli.terminal import say
 from modefront.errors import Fault, InputError
 from modefront.programs.base import JobOptions
-from modefront.study.importing import (
-    Imported,
-    describe,
-    import_deck,
-    import_model,
-    refuse_study,
-)
+from modefront.study.importing import Imported, describe, import_deck, import_model, refuse_study
 
 
 def run_import(program: str, base: Path, options: JobOptions, output: Path, **given: Any) -> None:

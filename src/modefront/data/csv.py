@@ -316,7 +316,7 @@ def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[Said]:
     required = ("mode", "frequency", *(name for name in sensors if name + STD in counts))
     missing = [name for name in required if name not in counts]
     faults += [(name, "this column", "no such column") for name in missing]
-    if sensors and not any(name in counts for name in sensors):
+    if sensors and counts.keys().isdisjoint(sensors):
         expected = "the column of at least one sensor of the model"
         faults.append((sensors[0], expected, "no such column"))
     several = [(name, count) for name, count in counts.items() if count > 1]

@@ -194,10 +194,8 @@ def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float
     tables = [x for x in arrays if x.ndim == 2 and x.dtype.kind in "fiu" and count in x.shape]
     if len(tables) != 1:
         expected = f"one array of samples by {count} sensors, which are real numbers"
-        shapes = (
-            ", ".join(f"{' x '.join(map(str, x.shape))} of {x.dtype}" for x in arrays) or "none"
-        )
-        raise wrong(path, expected, shapes)
+        found = [f"{' x '.join(map(str, x.shape))} of {x.dtype}" for x in arrays]
+        raise wrong(path, expected, ", ".join(found) or "none")
     table = np.asarray(tables[0], float)
     return setup.sensors, table if len(table) == count else table.T, setup.rate
 

@@ -196,8 +196,7 @@ def identify(
     if (keep or drop) and any(each.modes for each in table):
         unwanted = _unwanted(path, combine(names, table).index, keep, drop)
         identified = [
-            _without(each, of_table, gone, seeds)
-            for each, of_table, gone in zip(identified, table, unwanted, strict=True)
+            _without(*each, seeds) for each in zip(identified, table, unwanted, strict=True)
         ]
     found = any(each.modes for each in identified)
     return IdentifiedTest(read, tuple(identified), combine(names, identified) if found else None)

@@ -209,13 +209,8 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[
             cells = [Cells(x, x, np.searchsorted(number, at)) for x, at in mesh.cells.items()]
             data = {**vectors, "node": number}
             write_grid(folder / "modes.vtu", mesh.coordinates, cells, data)
-    if "dofs" in of_program:
-        _write_changes(model, study, folder / "deck.txt")
-    return missing
-
-
-def _write_changes(model: ReportedModel, study: Path, file: Path) -> None:
-    """Write the lines of the deck that were changed for the parameters, with updated values."""
+    if "dofs" not in of_program:
+        return missing
     known = study.parent / CHANGES
     changes = read_changes(known) if known.is_file() else []
     lines = [f"updated values, model '{model.label}'"]
@@ -226,7 +221,8 @@ def _write_changes(model: ReportedModel, study: Path, file: Path) -> None:
             lines += [f"  {change.file}, line {change.line}:", f"  {change.updated(value).strip()}"]
         if not of_parameter:
             lines.append("  a factor of what was changed for this parameter")
-    write_text(file, "\n".join(lines) + "\n")
+    write_text(folder / "deck.txt", "\n".join(lines) + "\n")
+    return missing
 
 
 def node_motion(dofs: DofTable, mesh: ProgramMesh | None, shapes: Floats) -> tuple[Ints, Floats]:

@@ -421,7 +421,7 @@ class Target(NamedTuple):
         return (0,) if self.kind != "spring" or line.row > 1 else ()
 
 
-# 6 arguments: the deck with its parameters, and options by keyword.
+# 6 arguments and many lines: the deck with its parameters, options by keyword, and jobs in turn.
 def import_deck(
     deck: Path | str,
     parameters: Mapping[str, str],
