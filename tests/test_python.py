@@ -89,7 +89,9 @@ def test_a_model_is_exported_with_the_study_that_its_results_name(
         mf.export(tmp_path / "results", point="nbi-0")
     with pytest.raises(mf.InputError, match="with other inputs"):
         mf.export(tmp_path / "results")  # options that were changed in Python are in no file
-    made = read_dataset(tmp_path / "results").assign_attrs(inputs="")  # as of a study without file
+    made = read_dataset(tmp_path / "results").assign_attrs(
+        {"inputs": ""}
+    )  # as of a study without file
     monkeypatch.setattr("modefront.study.export.read_dataset", lambda _: made)
     with pytest.raises(mf.InputError, match=r"a study in a file .* made in Python"):
         mf.export(tmp_path / "results")
