@@ -12,6 +12,7 @@ import pytest
 
 import modefront as mf
 from modefront.cli.show import as_json
+from modefront.results.files import read_dataset
 from modefront.study.examples import write_example
 
 QUICK = mf.Search(doubt=0.5)
@@ -83,7 +84,9 @@ def test_a_report_is_written_beside_the_results_or_where_it_is_wanted(folder: Pa
         mf.report(folder / "results", folder / "page.txt")
 
 
-def test_a_model_is_exported_with_the_study_that_its_results_name(tmp_path: Path) -> None:
+def test_a_model_is_exported_with_the_study_that_its_results_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     write_example("three-story-c0", tmp_path)
     study = mf.load(tmp_path / "study.toml")
     quick = replace(study, pareto=mf.Pareto(points=2), search=QUICK)
@@ -92,6 +95,12 @@ def test_a_model_is_exported_with_the_study_that_its_results_name(tmp_path: Path
         mf.export(tmp_path / "results", point="nbi-0")
     with pytest.raises(mf.InputError, match="with other inputs"):
         mf.export(tmp_path / "results")  # options that were changed in Python are in no file
+    made = read_dataset(tmp_path / "results").assign_attrs(
+        {"inputs": ""}
+    )  # as of a study without file
+    monkeypatch.setattr("modefront.study.export.read_dataset", lambda _: made)
+    with pytest.raises(mf.InputError, match=r"a study in a file .* made in Python"):
+        mf.export(tmp_path / "results")
 
 
 def test_modes_of_a_test_are_data_of_a_study(tmp_path: Path) -> None:

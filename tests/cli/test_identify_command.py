@@ -102,12 +102,13 @@ def test_wrong_input_is_named(tmp_path: Path, arguments: list[str], message: str
 def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
     write("hammer-test", tmp_path)
     test, output = tmp_path / "test-m0.toml", tmp_path / "o.csv"
-    chosen = ("--keep", "1,2", "--drop", "1", "--seed", "18.5")
+    chosen = ("--keep", "1,2", "--drop", "1", "--seed", "18.5,4.7")
     text = _invoke(test, "-o", output, *chosen)
     assert f"{' '.join(chosen)} -o {output} --report test.html" in text, "pasted, it loses nothing"
     found = read_csv(output)
     assert found.frequency.shape[0] == 3
-    first, *at_the_seed = found.mean_frequency
+    dropped, first, *at_the_seed = found.mean_frequency
+    assert dropped == pytest.approx(4.7, rel=0.02)  # mode 1 of the table, but there is a seed
     assert first == pytest.approx(13.09, rel=0.01)  # mode 2 of the table without a seed
     assert at_the_seed == pytest.approx([18.5] * len(at_the_seed), rel=0.03)
     assert at_the_seed
@@ -115,7 +116,7 @@ def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
     assert "left out by hand" in [x["reason"] for x in report["sets"][0]["rejected"]]
     with pytest.raises(InputError, match="numbers of modes, from 1 to 3"):
         _invoke(test, "-o", output, "--drop", "9")
-    with pytest.raises(InputError, match="frequencies within the band"):
+    with pytest.raises(InputError, match="frequencies of the lines, 1 to 25 Hz, found 900"):
         _invoke(test, "-o", output, "--seed", "900")
 
 

@@ -102,11 +102,13 @@ def test_what_is_wrong_is_said(tmp_path: Path, text: str, more: str, message: st
 
 
 def test_arrays_need_a_rate_names_and_the_right_shape(tmp_path: Path) -> None:
-    np.save(tmp_path / "y.npy", np.zeros((5, 5)))
-    for more, message in (
-        ("", "'rate' and 'sensors' in its"),
-        ('rate = 16.0\nsensors = ["a", "b"]\n', "samples by 2 sensors, found 5 x 5"),
+    two = 'rate = 16.0\nsensors = ["a", "b"]\n'
+    for shape, kind, more, message in (
+        ((5, 5), float, "", "'rate' and 'sensors' in its"),
+        ((5, 5), float, two, "samples by 2 sensors, which are real numbers, found 5 x 5 of float"),
+        ((5, 2), complex, two, "which are real numbers, found 5 x 2 of complex128"),
     ):
+        np.save(tmp_path / "y.npy", np.zeros(shape, kind))
         (tmp_path / "t.toml").write_text(f'{HEAD}files = ["y.npy"]\n{more}')
         with pytest.raises(InputError, match=message):
             read_test(tmp_path / "t.toml")

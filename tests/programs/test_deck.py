@@ -119,19 +119,20 @@ def test_what_cannot_be_run_is_refused(deck: Path, tmp_path: Path) -> None:
 @needs_ccx
 def test_a_deck_is_imported_with_jobs_of_its_own_and_comes_back_whole(tmp_path: Path) -> None:
     write_example("calculix", tmp_path / "decks")
+    own = (tmp_path / "decks" / "nominal.inp").read_text()
+    assert "*INCLUDE" in own
+    deck = tmp_path / "decks" / "floor.inp"
+    deck.write_text(own.replace("*FREQUENCY, SOLVER=MATRIXSTORAGE", "*FREQUENCY\n8"))
     parameters = {"columns": "material:COLUMNS", "t": "section:PLATE", "k": "spring:SPRING"}
-    imported = mf.import_deck(tmp_path / "decks" / "nominal.inp", parameters)
+    imported = mf.import_deck(deck, parameters)
     assert max(imported.errors) < 1e-10
     assert any("those that the program prints" in note for note in imported.notes)
     imported.write(tmp_path / "study")
+    assert '\nname = "floor"\n' in (tmp_path / "study" / "study.toml").read_text()
     theta = {"columns": 1.3, "t": 1.2, "k": 0.6}
-    write_deck(tmp_path / "study", theta, tmp_path)
-    text = (tmp_path / "nominal.inp").read_text()
-    (tmp_path / "updated.inp").write_text(
-        text.replace("*FREQUENCY, SOLVER=MATRIXSTORAGE", "*FREQUENCY\n8")
-    )
-    subprocess.run([str(CCX), "updated"], cwd=tmp_path, check=True, capture_output=True)
-    expected = printed_frequencies(tmp_path / "updated.dat")
+    write_deck(tmp_path / "study", theta, tmp_path / "decks")
+    subprocess.run([str(CCX), "floor"], cwd=deck.parent, check=True, capture_output=True)
+    expected = printed_frequencies(tmp_path / "decks" / "floor.dat")
     lam = model_of(imported.terms).full_modes(np.array(list(theta.values())), 8).lam
     assert np.sqrt(lam) / (2 * np.pi) == pytest.approx(expected, rel=2e-5)
 

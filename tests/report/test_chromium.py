@@ -289,7 +289,14 @@ def test_three_groups_have_parallel_coordinates_and_pairs(tmp_path: Path, opened
     front = page.view("front")
     assert front.locator("svg").count() >= 1 + 3
     assert front.locator("path.across").count() == len(front_points(three_groups()))
-    assert "stand in a row" in page.view("mode shape").inner_text()
+    shape = page.view("mode shape")
+    assert "they stand in their order" in shape.inner_text()
+    assert shape.locator(".overlay text").all_text_contents() == ["deck", "pier"]
+    stage, arrows = shape.locator(".stage"), shape.locator(".pointer")
+    assert arrows.count() == 2 * (1 + 2)  # the model and two data sets at each of two sensors
+    inside = "(all, box) => all.every((x) => { const r = x.getBoundingClientRect(); "
+    inside += "return r.left >= box.x && r.right <= box.x + box.width; })"
+    assert arrows.evaluate_all(inside, stage.bounding_box())
     mark = front.locator(".pairs circle.mark").last
     mark.click()
     assert page.chosen == mark.get_attribute("data-label")

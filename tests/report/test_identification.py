@@ -57,7 +57,7 @@ def test_clicks_write_the_lines_for_the_test_file(written: Path) -> None:
     said: list[str] = []
     with sync_playwright() as started:
         browser = started.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        page = browser.new_page()
+        page = browser.new_page(viewport={"width": 390, "height": 844})
         page.on("console", lambda message: said.append(message.text))
         page.on("pageerror", lambda error: said.append(str(error)))
         page.goto(written.as_uri())
@@ -78,5 +78,7 @@ def test_clicks_write_the_lines_for_the_test_file(written: Path) -> None:
         page.wait_for_function(  # the shape moves
             "x => document.querySelector('.stage circle').getAttribute('cx') !== x", arg=before
         )
+        long = "x => { x.textContent = '# lines that wrap '.repeat(9); "
+        assert lines.evaluate(long + "return document.documentElement.scrollWidth }") == 390
         browser.close()
     assert said == []

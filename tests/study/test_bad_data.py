@@ -2,9 +2,12 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from faultless import DATA
 from refusals import Check, edited
+
+import modefront as mf
 
 NO_FIELD = "x nan NaN inf -inf infinity 1e999 1_0 0x10 1,5 ٤ １ 1e 1.2.3 -- true 4.0Hz =1+1"
 COLUMNS = [
@@ -63,12 +66,21 @@ def test_every_column_of_the_data_misspelt_missing_and_repeated(
     misspelt = [[*rows[0][:i], column + "x", *rows[0][i + 1 :]], *rows[1:]]
     unknown = f"expected the name of a quantity or of a sensor of the model, found '{column}x'"
     refused(write(misspelt), f"column '{column}x': {unknown} (did you mean '{column}'?)")
-    if not column.endswith("_std") and column not in ("set", "damping"):
+    if column in ("mode", "frequency", "low"):  # low_std is there
         refused(write(misspelt), f"{place}: expected this column, found no such column")
         missing = [row[:i] + row[i + 1 :] for row in rows]
         refused(write(missing), f"{place}: expected this column, found no such column")
     repeated = [[*row, row[i]] for row in rows]
     refused(write(repeated), f"{place}: expected each column once, found 2 of this name")
+
+
+def test_sensors_without_a_column_have_no_data(folder: Path, refused: Check) -> None:
+    study, data = folder / "chain.toml", folder / "modes.csv"
+    study.write_text(edited(study.read_text(), ("low = 0", "low = 0, roof = 1")))
+    shape = mf.load(study).problem.data.shape
+    assert np.isnan(shape).all(axis=(0, 1)).tolist() == [False, True, False]
+    data.write_text("mode,frequency\n1,4\n2,11\n")
+    refused(study, "'low': expected the column of at least one sensor of the model, found no such")
 
 
 TWICE = "columns 'set' and 'mode': expected each mode of a data set once, found ('a', 1) again"

@@ -23,13 +23,10 @@ export function shapeView(state: State): HTMLElement {
     );
   }
   const geometry = front.geometry ?? row(front);
+  const isRow = geometry.kind === "sensors";
   const body = solid(geometry);
   const camera = new Camera(body.centre, body.radius);
   if (geometry.kind === "chain") camera.room = 1.02; // names of sensors stand beside the floors
-  if (geometry.kind === "sensors") {
-    camera.azimuth = -Math.PI / 2;
-    camera.elevation = 0;
-  }
   let mode = 0;
   let amplitude = 1;
   let isPlaying = false;
@@ -48,7 +45,7 @@ export function shapeView(state: State): HTMLElement {
     class: "stage",
     tabindex: 0,
     role: "img",
-    "aria-label": "mode shape; arrow keys turn it",
+    "aria-label": isRow ? "mode shape; arrows of each sensor" : "mode shape; arrow keys turn it",
   });
   stage.append(canvas, plain, overlay);
   const views = h("div", { class: "buttons" });
@@ -88,8 +85,7 @@ export function shapeView(state: State): HTMLElement {
       { class: "controls" },
       h("label", { for: "mode-number" }, "measured mode ", modes),
       play,
-      h("label", { for: "amplitude" }, "amplitude ", size),
-      views,
+      ...(isRow ? [] : [h("label", { for: "amplitude" }, "amplitude ", size), views]),
     ),
     h("div", { class: "captions" }, ...titles),
     stage,
@@ -168,8 +164,42 @@ export function shapeView(state: State): HTMLElement {
     };
   }
 
+  /** Arrows of each sensor in a line of its own: of the model, and what was measured below it. */
+  function rows(factor: number): void {
+    const sets = measured(front, state.point, mode);
+    const shapes = [front.shape?.[state.point]?.[mode] ?? [], ...sets];
+    const pitch = 10 * shapes.length + 12;
+    const full = pitch * front.sensors.length;
+    stage.style.height = `${Math.min(560, full)}px`;
+    const w = stage.clientWidth; // without the bar of one that scrolls
+    const letters = Math.floor(Math.min(0.4 * w, 8 * Math.max(...front.sensors.map((x) => x.length))) / 8);
+    const left = 8 * letters + 8;
+    const zero = (left + w) / 2;
+    const most = Math.max(...shapes.flat().map((x) => Math.abs(x ?? 0))) || 1;
+    const scale = (factor * ((w - left) / 2 - 10)) / most;
+    overlay.setAttribute("width", String(w));
+    overlay.setAttribute("height", String(full));
+    overlay.setAttribute("viewBox", `0 0 ${w} ${full}`);
+    overlay.replaceChildren(
+      s("g", { class: "axis" }, s("line", { class: "base", x1: zero, x2: zero, y1: 0, y2: full })),
+      ...front.sensors.flatMap((name, i) => {
+        const shown = name.length > letters ? `${name.slice(0, letters - 1)}…` : name;
+        const middle = pitch * (i + 0.5);
+        const first = middle - 5 * (shapes.length - 1);
+        const pointers = shapes.flatMap((shape, k) => {
+          const value = shape[i] ?? null;
+          const y = first + 10 * k;
+          return value === null ? [] : [pointer([zero, y], [zero + scale * value, y], k ? "measured" : "computed")];
+        });
+        return [s("text", { x: 0, y: middle + 4 }, shown), ...pointers];
+      }),
+    );
+  }
+
   function draw(factor = 1): void {
-    if (!renderer || !width) return;
+    if (!width) return;
+    if (isRow) return rows(factor);
+    if (!renderer) return;
     const { panels, pointers } = content(factor);
     renderer.draw(panels, camera, panelWidth, height);
     overlay.setAttribute("width", String(width));
@@ -261,11 +291,11 @@ export function shapeView(state: State): HTMLElement {
     const unknown = f === null ? "This model has no modes. " : "";
     const why =
       geometry.kind === "sensors"
-        ? "The study says nothing of where the sensors are: they stand in a row, in their order. "
+        ? "The study says nothing of where the sensors are: they stand in their order, each with the model's arrow above the measured ones. "
         : geometry.kind === "chain"
           ? "Floors and columns; where no sensor is, the measured shape is drawn straight between its neighbours. "
           : "Arrows are displacements at the sensors. ";
-    note.textContent = `${unknown}${why}Measured shapes have the scale of the model's (modal scale factor). Drag, or use arrow keys, to turn.`;
+    note.textContent = `${unknown}${why}Measured shapes have the scale of the model's (modal scale factor).${isRow ? "" : " Drag, or use arrow keys, to turn."}`;
     table.replaceChildren(components());
     if (!isPlaying) draw();
   }
@@ -294,7 +324,9 @@ export function shapeView(state: State): HTMLElement {
     if (Number.isFinite(value)) amplitude = Math.max(0, Math.min(10, value));
     draw();
   });
+  if (isRow) stage.classList.add("rows");
   stage.addEventListener("pointerdown", (event) => {
+    if (isRow) return;
     stage.setPointerCapture(event.pointerId);
     let [x, y] = [event.clientX, event.clientY];
     const move = (to: PointerEvent): void => {
@@ -319,13 +351,13 @@ export function shapeView(state: State): HTMLElement {
       ArrowDown: [0, 0.1],
     };
     const turn = turns[event.key];
-    if (!turn) return;
+    if (!turn || isRow) return;
     event.preventDefault();
     event.stopPropagation();
     camera.turn(...turn);
     if (!isPlaying) draw();
   });
-  begin();
+  if (!isRow) begin();
   sized(stage, (w) => {
     width = w;
     panelWidth = Math.floor(w / 2);

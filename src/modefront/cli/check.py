@@ -29,6 +29,8 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         "data set": len(problem.data.sets),
     }
     counts = ", ".join(plural(count, noun) for noun, count in sizes.items())
+    silent = int(np.isnan(problem.data.shape).all(axis=(0, 1)).sum())
+    counts += f"; {plural(silent, 'sensor')} without data" * (silent > 0)
     screen.say(f"{problem.model.size} degrees of freedom, {counts}", start="  ")
     _print_modes(screen, findings.beside)
     _print_sensors(screen, findings.beside, most)

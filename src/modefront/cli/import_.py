@@ -9,7 +9,7 @@ from typing import Any
 from modefront.cli.terminal import say
 from modefront.errors import Fault, InputError
 from modefront.programs.base import JobOptions
-from modefront.study.importing import Imported, describe, import_deck, import_model
+from modefront.study.importing import Imported, describe, import_deck, import_model, refuse_study
 
 
 def run_import(program: str, base: Path, options: JobOptions, output: Path, **given: Any) -> None:
@@ -19,6 +19,7 @@ def run_import(program: str, base: Path, options: JobOptions, output: Path, **gi
     NAME=WHAT:NAME of a deck, ``factors`` as NAME=2.0, ``functions`` as NAME=TERM,TERM, ``checks``
     as RUN:NAME=VALUE,….
     """
+    refuse_study(output)
     terms = [_pair("--function", x, "NAME=TERM,TERM, such as t=t,t^3") for x in given["functions"]]
     common: dict[str, Any] = {
         "functions": {name: [term.strip() for term in x.split(",")] for name, x in terms},

@@ -96,8 +96,9 @@ def read_csv(
     path
         File with the columns ``set, mode, frequency, damping``, then one a sensor, and standard
         deviations in columns of the same names with ``_std`` behind them; frequencies in Hz. The
-        columns ``set`` and ``damping`` may be left out. Semicolons and tabs separate columns as
-        well as commas do, and decimal commas are read where commas separate none.
+        columns ``set`` and ``damping`` may be left out, and those of sensors without data, but
+        not of all. Semicolons and tabs separate columns as well as commas do, and decimal commas
+        are read where commas separate none.
     sensors
         Names of the sensors, in the order of the shapes; those of the columns unless given.
     columns
@@ -306,14 +307,18 @@ Said = tuple[str, str, str]
 
 
 def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[Said]:
-    required = (*KEYS, *QUANTITIES, *sensors)
-    known = dict.fromkeys((*required, PAIR, *(name + STD for name in (*QUANTITIES, *sensors))))
-    counts, faults = Counter(header), list[Said]()
+    quantities, counts = (*QUANTITIES, *sensors), Counter(header)
+    known = dict.fromkeys((*KEYS, *quantities, PAIR, *(name + STD for name in quantities)))
+    faults = list[Said]()
     for k, name in enumerate(name for name in counts if name not in known):
         found = suggestion(name, known) if k < 20 else repr(clean(name, NAME))  # takes time
         faults.append((name, "the name of a quantity or of a sensor of the model", found))
-    missing = [name for name in required if name not in (*counts, "set", "damping")]
+    required = ("mode", "frequency", *(name for name in sensors if name + STD in counts))
+    missing = [name for name in required if name not in counts]
     faults += [(name, "this column", "no such column") for name in missing]
+    if sensors and counts.keys().isdisjoint(sensors):
+        expected = "the column of at least one sensor of the model"
+        faults.append((sensors[0], expected, "no such column"))
     several = [(name, count) for name, count in counts.items() if count > 1]
     return faults + [(name, "each column once", f"{n} of this name") for name, n in several]
 
@@ -335,16 +340,16 @@ def _row(
             values[column] = float(text) if is_number else math.nan
             if text and (expected := _range(column, values[column])):
                 faults.append((column, expected, text if is_number else repr(text)))
-    shape = [values[name] for name in sensors if not math.isnan(values[name])]
-    greatest = max(map(abs, shape), default=1.0)
+    there = [name for name in sensors if not math.isnan(values.get(name, math.nan))]
+    greatest = max((abs(values[name]) for name in there), default=1.0)
     if faults:
         pass
     elif not greatest:
-        faults.append((sensors[0], "a mode shape that is not zero at all sensors", "only zeros"))
+        faults.append((there[0], "a mode shape that is not zero at all sensors", "only zeros"))
     elif not 1 / LARGEST <= greatest <= LARGEST:  # squares have to be numbers
         expected = f"a mode shape with its greatest component from {1 / LARGEST:g} to {LARGEST:g}"
-        faults.append((sensors[0], expected, f"{greatest:g}"))
-    elif not shape and math.isnan(values["frequency"]):
+        faults.append((there[0], expected, f"{greatest:g}"))
+    elif not there and math.isnan(values["frequency"]):
         faults.append(("frequency", "a frequency or a mode shape", "neither"))
     return key, values, faults
 

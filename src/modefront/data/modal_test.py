@@ -193,9 +193,9 @@ def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float
     arrays, count = list(read.values()), len(setup.sensors)
     tables = [x for x in arrays if x.ndim == 2 and x.dtype.kind in "fiu" and count in x.shape]
     if len(tables) != 1:
-        expected = f"one array of samples by {count} sensors"
-        shapes = ", ".join(" x ".join(map(str, x.shape)) for x in arrays) or "none"
-        raise wrong(path, expected, shapes)
+        expected = f"one array of samples by {count} sensors, which are real numbers"
+        found = [f"{' x '.join(map(str, x.shape))} of {x.dtype}" for x in arrays]
+        raise wrong(path, expected, ", ".join(found) or "none")
     table = np.asarray(tables[0], float)
     return setup.sensors, table if len(table) == count else table.T, setup.rate
 

@@ -314,15 +314,18 @@ def _units(
     size = np.sqrt(np.mean(np.abs(np.where(np.isfinite(mean), mean, 0)) ** 2, axis=2))
     living = size[~dead & (size > 0)]
     middle = float(np.median(living)) if len(living) else 0.0
-    stray = []
+    stray, gone = list[str](), dict[tuple[str, str], list[str]]()
     for (j, i), (first, *_) in groups.items():
         ratio, place = size[j, i] / middle if middle else 1.0, f"{first.file}: {first.place}"
         if dead[j, i]:
             what = "one number at all lines" if first.H.any() else "empty or only zeros"
-            yield f"{place}: {what}; the channel is left out"
+            gone.setdefault((first.response, what), []).append(place)
         elif size[j, i] > 0 and not 1 / STRAY < ratio < STRAY:
             great = f"{ratio:.3g} times as great as the other functions are"
             stray.append(f"{place}: {great}: check its unit")
+    for (_, what), (place, *others) in gone.items():
+        more = f" and {len(others)} more" * bool(others)
+        yield f"{place}{more}: {what}; the channel is left out"
     yield from stray
 
 

@@ -183,10 +183,14 @@ def identify(
     seeds = seeds or read.chosen.seeds
     read = replace(read, chosen=ByHand(tuple(keep), tuple(drop), tuple(seeds)))
     _check_band(path, read, band)
-    low, high = band or (0.0, np.inf)
+    low, high = band or (ambient.default_band(read.setups) if read.setups else (0.0, np.inf))
+    inside = [part.data.within(low, high).frequency for part in read.sets]
+    ends = np.array(
+        [[f[0], f[-1]] for f in inside] or [[low, min([high, *(x.rate / 2 for x in read.setups)])]]
+    )
     for f in seeds:
-        if not low <= f <= high:
-            expected = f"frequencies within the band, {low:g} to {high:g} Hz"
+        if not ends.min() <= f <= ends.max():
+            expected = f"frequencies of the lines, {ends.min():g} to {ends.max():g} Hz"
             raise wrong(path, expected, f"{f:g}", "--seed")
     with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
         identified = _identified(read, band, seeds)
@@ -194,7 +198,9 @@ def identify(
     names = IdentifiedTest(read, (), None).names
     if (keep or drop) and any(each.modes for each in table):
         unwanted = _unwanted(path, combine(names, table).index, keep, drop)
-        identified = list(map(_without, identified, table, unwanted))
+        identified = [
+            _without(*each, seeds) for each in zip(identified, table, unwanted, strict=True)
+        ]
     found = any(each.modes for each in identified)
     return IdentifiedTest(read, tuple(identified), combine(names, identified) if found else None)
 
@@ -220,14 +226,17 @@ def _unwanted(
     return [{k for r, k in enumerate(of_set, 1) if r not in chosen} for of_set in index]
 
 
-def _without(each: Identification, table: Identification, unwanted: set[int]) -> Identification:
+def _without(
+    each: Identification, table: Identification, unwanted: set[int], seeds: Sequence[float]
+) -> Identification:
     """Return an identification without some modes of the table; they stay in its fit.
 
-    It may have modes at seeds beside those of the table.
+    It may have modes at seeds beside those of the table; the mode nearest each seed stays.
     """
     f, of_table = (np.array([mode.frequency for mode in x.modes]) for x in (each, table))
     rows, columns = linear_sum_assignment(np.abs(np.subtract.outer(of_table, f)))
     gone = {int(column) for row, column in zip(rows, columns, strict=True) if row in unwanted}
+    gone -= {int(np.abs(f - seed).argmin()) for seed in seeds if f.size}
     rejected = [
         Rejected(float(each.modes[k].frequency), float(each.modes[k].damping), "left out by hand")
         for k in sorted(gone)

@@ -67,7 +67,7 @@ def read(path: Path, options: JobOptions) -> Listed:
         notes.append(f"{internal} degrees of freedom that the program made belong to no node")
     nodes = np.unique(dofs.node[dofs.node > 0])
     if dead := np.setdiff1d(nodes, dofs.node[dofs.weight != 0]).size:
-        notes.append(f"{dead} nodes are held: there are no sensors at them")
+        notes.append(f"{dead} {'node is' if dead == 1 else 'nodes are'} held: no sensors there")
     mesh = deck.mesh if deck else None
     return Listed((files[".sti"], files[".mas"]), (K, M), dofs, 1e-13, mesh=mesh, notes=notes)
 

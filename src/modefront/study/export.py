@@ -94,6 +94,9 @@ def export(
         nearest = suggestion(point, labels)
         raise InputError(Fault(str(folder / FILE), "--point", "the label of a model", nearest))
     name, digest = (str(data.attrs.get(key, "")) for key in ("study", "inputs"))
+    if not digest:
+        expected = "results of a study in a file (of others, results.model(label) has the matrices)"
+        raise InputError(Fault(str(folder / FILE), "study", expected, f"'{name}', made in Python"))
     if study is None:
         loaded = _find_study(folder, name, digest)
     elif (loaded := load(study)).digest != digest:
@@ -204,8 +207,10 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[
             cells = [Cells(x, x, np.searchsorted(number, at)) for x, at in mesh.cells.items()]
             data = {**vectors, "node": number}
             write_grid(folder / "modes.vtu", mesh.coordinates, cells, data)
+    if "dofs" not in of_program:
+        return missing
     known = study.parent / CHANGES
-    changes = read_changes(known) if of_program and known.is_file() else []
+    changes = read_changes(known) if known.is_file() else []
     lines = [f"updated values, model '{model.label}'"]
     for name, value in model.theta.items():
         lines += ["", f"{name} = {value:.9g}"]

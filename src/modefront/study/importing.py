@@ -104,10 +104,7 @@ class Imported(Shown):
         Raises InputError where the folder has a study already, or cannot be written to.
         """
         directory = Path(folder)
-        study = directory / "study.toml"
-        if study.exists():
-            expected = "a folder without a study, as nothing is overwritten"
-            raise InputError(Fault(str(study), "file", expected, "an existing one"))
+        refuse_study(directory)
         with writing(directory):
             directory.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryDirectory(dir=directory, prefix=".import-") as name:
@@ -123,6 +120,13 @@ class Imported(Shown):
                 add_schema([inner / "study.toml"])
                 files = sorted(inner.iterdir(), key=lambda file: file.name == "study.toml")
                 return [Path(shutil.move(file, directory / file.name)) for file in files]
+
+
+def refuse_study(folder: Path) -> None:
+    """Raise InputError where a folder has a study."""
+    if (study := folder / "study.toml").exists():
+        expected = "a folder without a study, as nothing is overwritten"
+        raise InputError(Fault(str(study), "file", expected, "an existing one"))
 
 
 # 9 arguments and many lines: the jobs, and each option of the command by keyword, in turn.
@@ -381,7 +385,8 @@ KEYWORDS: Mapping[str, str] = {
 class Line:
     """A line of a deck, and where it is.
 
-    ``row`` counts the lines of its keyword from 1, and is 0 for the keyword itself and comments.
+    ``row`` counts the lines of its keyword from 1, and is 0 for the keyword itself and comments;
+    ``number`` is that in the deck, 0 in what it includes.
     """
 
     text: str
@@ -390,6 +395,7 @@ class Line:
     type: str = ""
     material: str = ""
     row: int = 0
+    number: int = 0
 
 
 class Target(NamedTuple):
@@ -413,7 +419,7 @@ class Target(NamedTuple):
         return (0,) if self.kind != "spring" or line.row > 1 else ()
 
 
-# 6 arguments: the deck with its parameters, and options by keyword.
+# 6 arguments and many lines: the deck with its parameters, options by keyword, and jobs in turn.
 def import_deck(
     deck: Path | str,
     parameters: Mapping[str, str],
@@ -477,6 +483,16 @@ def import_deck(
         modes=modes,
         progress=progress,
     )
+    # The deck as it is; with what it includes in its place where a change is in that.
+    own, text = {k: line.number for k, line in enumerate(lines, 1)}, text_of(path)
+    if not all(own[change.line] for change in imported.changes):
+        own, text = {k: k for k in own}, "".join(f"{line.text}\n" for line in lines)
+    imported = replace(
+        imported,
+        nominal=replace(imported.nominal, name=str(path)),
+        changes=tuple(replace(x, file=path.name, line=own[x.line]) for x in imported.changes),
+        deck=text,
+    )
     computed, printed = imported.frequencies, printed_frequencies(folder / "frequencies.dat")
     if computed is None or not printed.size:
         return imported
@@ -517,20 +533,21 @@ def lines_of(path: Path, depth: int = 0) -> Iterator[Line]:
     except OSError as error:
         raise InputError(Fault(str(path), "file", "a deck of CalculiX", reason(error))) from None
     line = Line("")
-    for text in texts:
+    for k, text in enumerate(texts, start=1):
+        number = 0 if depth else k
         if text.startswith("**"):
-            yield Line(text)
+            yield Line(text, number=number)
         elif text.startswith("*"):
             keyword, options = keyword_of(text)
             material = options.get("NAME", "").upper() if keyword == "MATERIAL" else line.material
             elset, kind = (options.get(x, "").upper() for x in ("ELSET", "TYPE"))
-            line = Line(text, keyword, elset, kind, material)
+            line = Line(text, keyword, elset, kind, material, number=number)
             if keyword == "INCLUDE" and depth < DEEPEST:
                 yield from lines_of(path.parent / options.get("INPUT", ""), depth + 1)
             else:
                 yield line
         else:
-            line = replace(line, text=text, row=line.row + 1)
+            line = replace(line, text=text, row=line.row + 1, number=number)
             yield line
 
 
