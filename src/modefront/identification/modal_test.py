@@ -231,12 +231,14 @@ def _without(
 ) -> Identification:
     """Return an identification without some modes of the table; they stay in its fit.
 
-    It may have modes at seeds beside those of the table; the mode nearest each seed stays.
+    It may have modes at seeds beside those of the table; those with a seed in their bandwidth stay.
     """
     f, of_table = (np.array([mode.frequency for mode in x.modes]) for x in (each, table))
     rows, columns = linear_sum_assignment(np.abs(np.subtract.outer(of_table, f)))
+    half = np.reshape([mode.frequency * mode.damping for mode in table.modes], (-1, 1))
+    held = (np.abs(np.subtract.outer(of_table, np.array(seeds))) <= half).any(axis=1)
+    unwanted = unwanted - set(np.flatnonzero(held).tolist())
     gone = {int(column) for row, column in zip(rows, columns, strict=True) if row in unwanted}
-    gone -= {int(np.abs(f - seed).argmin()) for seed in seeds if f.size}
     rejected = [
         Rejected(float(each.modes[k].frequency), float(each.modes[k].damping), "left out by hand")
         for k in sorted(gone)
