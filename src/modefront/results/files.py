@@ -17,8 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from modefront.datasets import Array, ArrayDataset, Dataset, write_netcdf
+from modefront.datasets import Array, ArrayDataset, Dataset
 from modefront.errors import Fault, InputError, reason, refuse
+from modefront.hdf5 import write_netcdf
 from modefront.inputs import file_size
 from modefront.isolated import isolated
 from modefront.outputs import output
@@ -27,7 +28,7 @@ from modefront.text import NAME, clean
 
 FILE = "results.nc"
 
-READER, SECONDS, EXPECTED = "modefront.datasets:contents", 120.0, "results in netCDF"
+READER, SECONDS, EXPECTED = "modefront.hdf5:contents", 120.0, "results in netCDF"
 """Function that reads the file, the time that it may take, and what the file is."""
 
 CHECKSUM = "checksum"
