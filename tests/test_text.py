@@ -6,6 +6,7 @@ import errno
 import io
 import os
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from refusals import command
 import modefront as mf
 from modefront.cli.terminal import prepare
 from modefront.errors import MOST_CHARACTERS, MOST_LINES, Fault, reason
-from modefront.text import FILE_NAME, SPELLED, clean, file_name, one_line
+from modefront.text import FILE_NAME, SPELLED, Shown, clean, file_name, one_line
 
 HOSTILE = "a\x1b]0;title\x07\x9b31m\r\n\u202e\u2028\udc80b"
 
@@ -92,3 +93,14 @@ def test_arguments_are_not_orders_to_the_terminal(
     out, err = capsys.readouterr()
     assert not out
     assert all(line.isprintable() for line in err.split("\n"))
+
+
+def test_a_record_is_shown_in_short_lines() -> None:
+    @dataclass(repr=False)
+    class Two(Shown):
+        files: tuple[Path, ...]
+        ratios: tuple[float, ...]
+
+    shown = Two((Path("a/<b>.csv"), Path("c.csv")), (1 / 3, 2.0))
+    assert repr(shown) == f"Two\n  files   {Path('a/<b>.csv')}, c.csv\n  ratios  0.333333, 2"
+    assert "&lt;b&gt;" in shown._repr_html_()

@@ -149,6 +149,6 @@ def _short(value: Any) -> str:
         return ", ".join(f"{key} {_short(item)}" for key, item in value.items())
     if isinstance(value, Sequence):
         if all(isinstance(item, str | int | float | Path) for item in value):
-            return ", ".join(map(str, value))
+            return ", ".join(f"{x:.6g}" if isinstance(x, float) else str(x) for x in value)
         return f"{len(value)} of {type(value[0]).__name__}"
     return str(value) if isinstance(value, Path) else repr(value).splitlines()[0]
