@@ -14,8 +14,8 @@ import modefront
 LAYERS = (
     ("_lazy", "_typing", "_version", "outputs", "rounding", "text"),
     ("errors",),
-    ("complete", "families", "inputs", "hdf5"),
-    ("datasets", "isolated", "options"),
+    ("complete", "datasets", "families", "inputs"),
+    ("hdf5", "isolated", "options"),
     ("linalg", "work"),
     ("data", "fem", "modes", "optim"),
     ("front", "identification", "pairing"),
