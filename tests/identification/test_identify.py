@@ -1,5 +1,7 @@
 """Simulated tests: all modes, no others, and intervals that hold the truth."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from simulation import (
@@ -12,7 +14,7 @@ from simulation import (
 )
 
 from modefront._typing import Complexes, Floats
-from modefront.data.modal_test import ModalTest
+from modefront.data.modal_test import ModalTest, Records
 from modefront.data.responses import Channel, assemble, frequency_responses
 from modefront.identification import statistics
 from modefront.identification.methods.hammer import identify
@@ -139,6 +141,10 @@ def test_a_channel_of_zeros_or_noise_is_left_empty_and_named(size: float) -> Non
     assert np.isfinite(done.data.shape[0, :, 1:]).all()
     expected = "1: nothing but noise at any mode" if size else "only zeros; the channel is left out"
     assert any(expected in text for text in done.warnings)
+    for minutes in (30, 40):
+        record = Records("1", ("1",), 1.0, np.zeros((1, 60 * minutes)))
+        ambient = replace(done, test=replace(test, sets=(), setups=(record,)))
+        assert any("records of more" in x for x in ambient.warnings) is (minutes > 35)
 
 
 def test_a_mode_that_drifts_from_blow_to_blow_stays_one_mode() -> None:
