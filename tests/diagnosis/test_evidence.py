@@ -7,16 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.optimize
+import scipy.sparse
 import scipy.stats
 
 from modefront._typing import Floats
-from modefront.data.modal import ModalData, modal_data
-from modefront.diagnosis.comparison import compare
-from modefront.diagnosis.evidence import Fits
+from modefront.data.modal import modal_data
+from modefront.diagnosis.evidence import State, point, quick
 from modefront.diagnosis.measured import SPREAD, Measured, measured, median, scaled
 from modefront.models.chain import chain
-from modefront.residuals.groups import Group
-from modefront.residuals.problem import UpdatingProblem
 
 
 def test_the_cost_of_residuals_is_that_of_students_distribution() -> None:
@@ -73,44 +71,15 @@ def test_a_fit_finds_the_structure_from_which_the_data_come() -> None:
     )
     theta, unit = np.array([1.2, 0.8, 1.1]), np.ones(3)
     modes = model.modes(theta, 4, derivatives=False)
-    data = modal_data(modes.frequency, modes.phi.T, model.sensors)
-    groups = (Group("f", frequency="all"),)
-    fits = Fits(compare(UpdatingProblem(model, data, groups, 0.2 * unit, 5 * unit, unit)))
-    (result,) = fits.fitted([fits.plain], [unit])
+    data = measured(modal_data(modes.frequency, modes.phi.T, model.sensors))
+    state = State(
+        data, np.zeros(4, dtype=bool), 4, model.selection, None, unit, 0.2 * unit, 5 * unit
+    )
+    result = quick(model, model, 4, state).fit(state, unit)
     assert result is not None
     np.testing.assert_allclose(result.theta, theta, rtol=0.03)
-    rows = fits.plain.rows.copy()
-    rows[2] *= -1
-    states = [fits.plain, replace(fits.plain, rows=rows)]
-    right, reversed_ = fits.least(states, [[result.theta], [theta]])[0]
-    assert right == pytest.approx(result.cost)
-    assert reversed_ > result.cost + 10
-
-
-def test_explanations_cost_the_same_together_and_alone() -> None:
-    """Several data sets with gaps, and modes that the model does not have, in one batch."""
-    model = chain(["k"], [1.0] * 6, [100.0] * 6, stiffness_parameters=["k"] * 6)
-    modes, rng = model.modes(np.ones(1), 4, derivatives=False), np.random.default_rng(4)
-    shape = modes.phi.T + 0.03 * rng.standard_normal((3, 4, 6))
-    shape[0, 1, 2] = shape[2, 3, 5] = np.nan
-    f = modes.frequency * np.exp(0.01 * rng.standard_normal((3, 4)))
-    nothing = np.full(f.shape, np.nan)
-    sets = ("1", "2", "3"), (1, 2, 3, 4), model.sensors
-    data = ModalData(*sets, f, nothing, shape, nothing, np.full(shape.shape, np.nan))
-    one, groups = np.ones(1), (Group("f", frequency="all"),)
-    fits = Fits(compare(UpdatingProblem(model, data, groups, 0.2 * one, 5 * one, one)))
-    turned = replace(fits.plain.data, shape=shape * np.array([1.0, 1, 1, -1, 1, 1]))
-    states = [
-        fits.plain,
-        replace(fits.plain, data=turned),
-        replace(fits.plain, foreign=np.array([False, True, False, False])),
-        replace(fits.plain, start=3 * one),
-    ]
-    thetas = [one, 1.1 * one, one, 3 * one]
-    tried = [[one, theta] for theta in thetas]
-    costs, best = fits.least(states, tried)
-    alone = [fits.least([x], [y])[0][0] for x, y in zip(states, tried, strict=True)]
-    np.testing.assert_allclose(costs, alone, rtol=1e-12)
-    again, _ = fits.least(states, [[theta] for theta in best])
-    np.testing.assert_allclose(costs, again, rtol=1e-12)
-    assert np.unique(np.round(alone, 3)).size == 4
+    selection = model.selection.toarray()
+    selection[2] *= -1
+    reversed_ = replace(state, selection=scipy.sparse.csr_array(selection))
+    whole = model.full_modes(theta, 4).Phi
+    assert point(reversed_, theta, modes.frequency, selection @ whole).cost > result.cost + 10

@@ -2,44 +2,33 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from itertools import combinations, pairwise
-from operator import attrgetter
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.diagnosis.comparison import Comparison, of_few_sets
-from modefront.diagnosis.evidence import (
-    ENOUGH,
-    TOGETHER,
-    Fits,
-    Points,
-    State,
-    points,
-    roughly,
-    stacked,
-)
+from modefront.diagnosis.comparison import Comparison, compare, of_few_sets
+from modefront.diagnosis.evidence import Point, State, Whole, places, point, point_of, quick
 from modefront.diagnosis.mistakes import sensors, values
-from modefront.diagnosis.mistakes.record import Mistake, Setting
+from modefront.diagnosis.mistakes.record import TRIED, Mistake, Setting
 from modefront.findings.record import Finding, found
 from modefront.pairing.match import match
 
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
-PROMISING, TRIED, FITTED, VARIANTS = 200, 40, 10, 2
-"""Changes of shapes of each kind that are compared with others, claims that are tried in pairs,
-those by which an explanation is extended, and mistakes of a claim that are fitted."""
-
-BEAM = 6
-"""Single mistakes to which others are added beside the best explanation."""
+BEAM, FITTED, VARIANTS, MOST = 6, 10, 2, 8
+"""Single mistakes to which others are added, claims by which each explanation is extended, mistakes
+of a claim that are fitted, and most mistakes."""
 
 FOLLOWED = 2
 """Steps of a fit after which mistakes that move the parameters are compared with others."""
+
+KEPT = 16
+"""Models that are kept, as many explanations are compared at the same parameters."""
 
 EITHER = 3
 """Explanations that the data cannot tell apart and that are named nevertheless, at most."""
@@ -67,7 +56,8 @@ MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
     sensors.wrong_place,
     values.wrong_nominal_value,
     values.excluding_bound,
-    values.odd_value,
+    values.odd_frequency,
+    values.odd_shape,
     values.wrong_frequency,
     values.damping_in_percent,
     values.foreign_mode,
@@ -78,155 +68,157 @@ MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
 Claims = frozenset[tuple[str, ...]]
 
 
-def key_of(mistakes: Sequence[Mistake]) -> object:
-    """Return what tells an explanation from others."""
-    return frozenset((*x.claim, str(x.numbers)) for x in mistakes), is_ordered(mistakes)
-
-
-def is_ordered(mistakes: Sequence[Mistake]) -> bool:
-    """Return whether values are moved back to their sensors first, so that others name these."""
-    return not any(b.moves > a.moves for a, b in pairwise(mistakes))
-
-
 @dataclass(frozen=True, eq=False)
 class Explanation:
     """Assumed mistakes, the state without them, the end of a fit, and C there with the prices."""
 
     mistakes: tuple[Mistake, ...]
     state: State
-    point: Points
+    point: Point
     cost: float
 
-    @cached_property
+    @property
     def claims(self) -> Claims:
         """What is claimed."""
         return frozenset(each.claim for each in self.mistakes)
 
+    @property
+    def is_ordered(self) -> bool:
+        """Whether values are moved back to their sensors first, so that others name these."""
+        return not any(b.moves > a.moves for a, b in pairwise(self.mistakes))
 
-COST = attrgetter("cost")
-
-
-def undone(state: State, mistakes: Iterable[Mistake]) -> State:
-    """Return the state without some mistakes."""
-    for each in mistakes:
-        state = each.change(state)
-    return state
-
-
-def promising(found: Sequence[Mistake], setting: Setting) -> list[Mistake]:
-    """Return those of each kind by which shapes come nearest to the model, and all others."""
-    old, costs = setting.state, np.full(len(found), -np.inf)
-    for k in range(0, len(found), TOGETHER):
-        states = [one.change(old) for one in found[k : k + TOGETHER]]
-        rough = [roughly(states, old, *x) for x in zip(setting.points, setting.solved, strict=True)]
-        for i, (state, cost) in enumerate(zip(states, np.min(rough, axis=0), strict=True), k):
-            if state.data.shape is not old.data.shape:
-                costs[i] = cost + found[i].price
-    chosen, counts = [], Counter[str]()
-    for k in np.argsort(costs, kind="stable").tolist():
-        counts[found[k].kind] += 1
-        if counts[found[k].kind] <= PROMISING or np.isinf(costs[k]):
-            chosen.append(k)
-    return [found[k] for k in sorted(chosen)]
+    @property
+    def key(self) -> tuple[frozenset[tuple[str, ...]], bool]:
+        """What tells the explanation from others."""
+        return frozenset(each.variant for each in self.mistakes), self.is_ordered
 
 
+@dataclass(eq=False)
 class Search:
-    """Explanations of a comparison that were fitted, each with its best fit, as ``known``."""
+    """Explanations of a comparison: those ``known`` were fitted, those ``extended`` also added to.
 
-    def __init__(self, comparison: Comparison) -> None:
-        self.comparison, self.fits = comparison, Fits(comparison)
-        self.known: dict[object, Explanation] = {}
+    Each is kept with its best fit; ``plain`` are data and model as they are.
+    """
 
-    def fit(self, several: Sequence[tuple[Mistake, ...]], *starts: Floats) -> None:
-        """Fit the explanations by some mistakes each, from the best of some parameters."""
-        states = [undone(self.fits.plain, mistakes) for mistakes in several]
-        tried = [[np.clip(x, s.lower, s.upper) for x in (s.start, *starts)] for s in states]
-        ends = self.fits.fitted(states, self.fits.least(states, tried)[1])
-        for mistakes, state, at in zip(several, states, ends, strict=True):
-            if at is not None:
-                cost = float(at.cost) + sum(each.price for each in mistakes)
-                new = Explanation(mistakes, state, at, cost)
-                key = key_of(mistakes)
-                self.known[key] = min(self.known.get(key, new), new, key=COST)
+    comparison: Comparison
+    known: dict[object, Explanation] = field(default_factory=dict)
+    extended: set[object] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        problem, matrices = self.comparison.problem, self.comparison.matrices
+        count = min(problem.model.size, self.comparison.frequency.size)
+        self.plain = State(
+            self.comparison.view,
+            np.zeros(len(problem.data.modes), dtype=bool),
+            self.comparison.candidates,
+            None if matrices is None else matrices.selection,
+            None if matrices is None else places(matrices),
+            *(problem.start, problem.lower, problem.upper),
+        )
+        self.model = quick(problem.model, matrices, count, self.plain)
+        solve = self.model.everywhere
+        self.whole = lru_cache(KEPT)(lambda theta: solve(np.frombuffer(theta)))
+
+    def fitted(self, mistakes: Sequence[Mistake], starts: Sequence[Floats]) -> Explanation | None:
+        """Return the explanation by some mistakes, after a fit from the best of some parameters."""
+        state = self.plain
+        for each in mistakes:
+            state = each.change(state)
+        starts = [np.clip(theta, state.lower, state.upper) for theta in (state.start, *starts)]
+        costs = [self._cost(state, theta) for theta in starts]
+        at = self.model.fit(state, starts[int(np.argmin(costs))]) if min(costs) < np.inf else None
+        if at is None:
+            return None
+        cost = at.cost + sum(each.price for each in mistakes)
+        new = Explanation(tuple(mistakes), state, at, cost)
+        known = self.known.setdefault(new.key, new)
+        if new.cost < known.cost:
+            self.known[new.key] = new
+        return self.known[new.key]
+
+    def _cost(self, state: State, theta: Floats) -> float:
+        """Return the cost of a state at parameters; infinite where the model has no modes."""
+        whole = self.whole(theta.tobytes())
+        return np.inf if whole is None else point_of(state, whole).cost
 
     def extend(self, old: Explanation) -> None:
         """Fit the most promising explanations with a mistake more."""
+        if old.key in self.extended:
+            return
+        self.extended.add(old.key)
         thetas = [old.point.theta] if old.mistakes else [old.state.start, old.point.theta]
-        solved = [x for theta in thetas if (x := self.fits.solved(theta))]
-        at = points(stacked([old.state] * len(solved)), solved)
+        wholes = [x for theta in thetas if (x := self.whole(theta.tobytes())) is not None]
+        points = [point_of(old.state, whole) for whole in wholes]
         names, parameters = self.comparison.data, self.comparison.problem.model.parameters
-        each = [at.at(k) for k in range(len(solved))]
-        setting = Setting(old.state, solved, each, names, parameters)
+        setting = Setting(old.state, wholes, points, names, parameters)
         found = [one for find in MISTAKES for one in find(setting) if one.claim not in old.claims]
-        found = promising(found, setting)
-        costs = self._screened([(one,) for one in found], old.state, thetas)
+        screened = [self._screened((one,), old.state, wholes) for one in found]
         # Others have made up for a wrong parameter: what it costs where they are says little.
-        order = np.argsort(costs, kind="stable").tolist()
-        moved = [k for k in order if found[k].kind == "nominal-value"][:TRIED]
-        costs[moved] = self._screened([(found[k],) for k in moved], old.state, thetas, FOLLOWED)
+        order = np.argsort(screened, kind="stable").tolist()
+        moved = [k for k in order if found[k].change(old.state).start is not old.state.start]
+        for k in moved[:TRIED]:
+            screened[k] = self._screened((found[k],), old.state, wholes, FOLLOWED)
         claims: dict[tuple[str, ...], list[Mistake]] = {}
-        for k in np.argsort(costs, kind="stable").tolist():
+        for k in np.argsort(screened, kind="stable").tolist():
             claims.setdefault(found[k].claim, []).append(found[k])
         some = list(claims.values())
-        added = [(one,) for variants in some[:FITTED] for one in variants[:VARIANTS]]
+        added: list[tuple[Mistake, ...]] = [
+            (one,) for variants in some[:FITTED] for one in variants[:VARIANTS]
+        ]
         if not old.mistakes:
             pairs = list(combinations([variants[0] for variants in some[:TRIED]], 2))
-            order = np.argsort(self._screened(pairs, old.state, thetas), kind="stable").tolist()
-            added += [pairs[k] for k in order[:FITTED]]
-        self.fit([(*old.mistakes, *new) for new in added], old.point.theta)
+            costs = [self._screened(pair, old.state, wholes) for pair in pairs]
+            added += [pairs[k] for k in np.argsort(costs, kind="stable")[:FITTED]]
+        for new in added:
+            self.fitted((*old.mistakes, *new), [old.point.theta])
 
     def _screened(
-        self,
-        several: Sequence[tuple[Mistake, ...]],
-        old: State,
-        thetas: Sequence[Floats],
-        steps: int = 0,
-    ) -> Floats:
-        """Return the costs without more mistakes, at parameters at hand or some steps away."""
-        states = [undone(old, mistakes) for mistakes in several]
-        tried = [
-            thetas if new.start is old.start else [new.theta(old.x(theta)) for theta in thetas]
-            for new in states
-        ]
-        costs, best = self.fits.least(states, tried)
-        if steps:
-            ends = self.fits.fitted(states, best, steps)
-            costs = np.array([np.inf if x is None else x.cost for x in ends])
-        return costs + [sum(each.price for each in mistakes) for mistakes in several]
+        self, mistakes: Sequence[Mistake], old: State, wholes: Sequence[Whole], steps: int = 0
+    ) -> float:
+        """Return the least cost without more mistakes, at parameters at hand or some steps away."""
+        new = old
+        for each in mistakes:
+            new = each.change(new)
+        price = sum(each.price for each in mistakes)
+        if new.start is old.start:
+            return min(point_of(new, whole).cost for whole in wholes) + price
+        thetas = [new.theta(old.x(whole.theta)) for whole in wholes]
+        costs = [self._cost(new, theta) for theta in thetas]
+        k = int(np.argmin(costs))
+        at = self.model.fit(new, thetas[k], steps) if steps else None
+        return (costs[k] if at is None else at.cost) + price
 
     def best(self) -> Explanation | None:
-        """Return the best explanation; the best ones are extended, the first one first."""
-        self.fit([()])
-        if not self.known:
+        """Return the best explanation, by extending the best ones, and by leaving mistakes out."""
+        plain = self.fitted((), [])
+        if plain is None:
             return None
-        (plain,), extended = self.known.values(), set[object]()
-        while True:
-            best = min(self.known.values(), key=COST)
-            fewer = [tuple(x for x in best.mistakes if x is not one) for one in best.mistakes]
-            self.fit([x for x in fewer if key_of(x) not in self.known], best.point.theta)
-            # What one explains may be hidden by another one, so that it is not worth its price.
-            alone = [x for x in self.bests().values() if len(x.mistakes) == 1]
-            alone = [x for x in alone if x.point.cost < plain.point.cost - LEFT][:BEAM]
-            level = [
-                best,
-                *(self.known[k] for x in fewer if (k := key_of(x)) in self.known),
-                *alone,
-            ]
-            new = next((x for x in level if key_of(x.mistakes) not in extended), None)
-            if new is not None:
-                extended.add(key_of(new.mistakes))
-                self.extend(new)
-                continue
-            # A rival may only have been fitted from where its way is barred.
-            rivals = list(self.known.values())
-            inside = [[np.clip(best.point.theta, x.state.lower, x.state.upper)] for x in rivals]
-            costs, _ = self.fits.least([x.state for x in rivals], inside)
-            nearer = costs < np.array([x.point.cost for x in rivals]) - ENOUGH
-            self.fit([rivals[k].mistakes for k in np.flatnonzero(nearer)], best.point.theta)
-            if min(self.known.values(), key=COST) is best:
+        self.extend(plain)
+        least = plain.cost
+        for size in range(1, MOST + 1):
+            of_size = [x for x in self.bests().values() if len(x.mistakes) == size]
+            level = [x for x in of_size if x.point.cost < plain.point.cost - LEFT]
+            if size > 1 and not (level and level[0].cost <= least):
                 break
-        ordered = {key: each for key, each in self.known.items() if is_ordered(each.mistakes)}
-        first = min(ordered.values(), key=COST)
+            least = min([least, *(each.cost for each in level[:1])])
+            for each in level[: BEAM if size == 1 else 1]:
+                self.extend(each)
+        while True:
+            best = min(self.known.values(), key=lambda each: each.cost)
+            theta = [best.point.theta]
+            for one in best.mistakes:
+                rest = self.fitted([each for each in best.mistakes if each is not one], theta)
+                if rest is not None:
+                    self.extend(rest)
+            # A rival may only have been fitted from where its way is barred.
+            for each in list(self.known.values()):
+                inside = np.clip(theta[0], each.state.lower, each.state.upper)
+                if self._cost(each.state, inside) < each.point.cost:
+                    self.fitted(each.mistakes, theta)
+            if min(each.cost for each in self.known.values()) >= best.cost:
+                break
+        ordered = {key: each for key, each in self.known.items() if each.is_ordered}
+        first = min(ordered.values(), key=lambda each: each.cost)
         if first.cost > best.cost + LEFT:
             return best
         self.known = ordered
@@ -235,7 +227,7 @@ class Search:
     def bests(self) -> dict[Claims, Explanation]:
         """Return the best explanation of each set of claims, the best one first."""
         out: dict[Claims, Explanation] = {}
-        for each in sorted(self.known.values(), key=COST):
+        for each in sorted(self.known.values(), key=lambda each: each.cost):
             out.setdefault(each.claims, each)
         return out
 
@@ -277,7 +269,7 @@ class Search:
 
     def _evidence(self, without: Explanation, best: Explanation) -> str:
         """Return how the MAC value changes that gains most by a mistake, where one does."""
-        before, after = without.point.mac, best.point.mac
+        before, after = (each.point.mac(each.state.data) for each in (without, best))
         rise = np.where(best.state.foreign, 0.0, np.nan_to_num(after - before))
         r = int(np.argmax(rise))
         if rise[r] < SEEN:
@@ -287,36 +279,45 @@ class Search:
 
 
 def diagnose(comparison: Comparison) -> list[Finding]:
-    """Return the mistakes of a model or its data; of many data sets, some are looked at."""
-    search = Search(of_few_sets(comparison))
+    """Return the mistakes of a model or its data; of many data sets, some are looked at.
+
+    Pairs are looked at without these mistakes.
+    """
+    comparison = of_few_sets(comparison)
+    search = Search(comparison)
     best = search.best()
     if best is None:
         return []
-    named = search.named(best)
-    return [*named.values(), *distant_pairs(search, undone(search.fits.plain, named))]
+    named, state = search.named(best), search.plain
+    for one in named:
+        state = one.change(state)
+    if named:
+        problem, model = comparison.problem, comparison.matrices
+        data = replace(comparison.data, frequency=state.data.frequency, shape=state.data.shape)
+        data = replace(data, shape_covariance=None)  # it is of other shapes
+        if model is not None and state.selection is not None:
+            problem = replace(problem, model=replace(model, selection=state.selection))
+        comparison = compare(replace(problem, data=data, start=state.start))
+    return [*named.values(), *distant_pairs(comparison, state)]
 
 
-def distant_pairs(search: Search, state: State) -> Iterator[Finding]:
-    """Yield the pairs of a state that a window mends, where they are clearly better with it."""
-    rule, data = search.comparison.problem.pairing, search.comparison.data
-    solved = search.fits.solved(state.start)
-    if rule.method == "order" or solved is None:
+def distant_pairs(comparison: Comparison, state: State) -> Iterator[Finding]:
+    """Yield the pairs of a study that a window mends, where they are clearly better with it."""
+    problem, low = comparison.problem, state.candidates
+    f, phi, rule = comparison.frequency, comparison.phi, problem.pairing
+    if rule.method == "order":
         return
-    data = replace(data, frequency=state.data.frequency, shape=state.data.shape)
-    data = replace(data, shape_covariance=None)  # it is of other shapes
-    f, phi = solved.frequency, (state.rows @ solved.phi)[:, : state.candidates]
     pairs, mended = (
-        match(each, data, f[: state.candidates], phi)
+        match(each, problem.data, f[:low], phi[:, :low])
         for each in (rule, replace(rule, window=WINDOW))
     )
-    one = stacked([state])
-    cost, least = (points(one, [solved], x.index[None]).cost[0] for x in (pairs, mended))
+    cost, least = (point(state, problem.start, f, phi, x.index).cost for x in (pairs, mended))
     changed = (pairs.index != mended.index) & ~state.foreign & (cost > least + CLEAR)
     for r in np.flatnonzero(changed).tolist():
         q, near, value = int(pairs.index[r]), int(mended.index[r]), pairs.mac[r]
         yield found(
             "distant-pair",
-            str(data.modes[r]),
+            str(problem.data.modes[r]),
             measured=float(np.exp(state.data.logs[r])),
             model=q + 1,
             f=float(f[q]),

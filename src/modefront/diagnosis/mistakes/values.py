@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import product
 from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.diagnosis.evidence import FREQUENCY, RIGID, State, log_frequencies, points, stacked
-from modefront.diagnosis.measured import NOTHING, mac_values, median
+from modefront.diagnosis.evidence import FREQUENCY, State, point_of
+from modefront.diagnosis.measured import NOTHING, RIGID, log_frequencies, mac_values, median
 from modefront.diagnosis.mistakes.record import (
     MANY,
     OFTEN,
@@ -93,11 +92,11 @@ def _ratios(setting: Setting) -> set[float]:
     """Return factors between measured and model frequencies: of pairs, and of modes in order."""
     logs, out = setting.state.data.logs, set()
     known = np.flatnonzero(np.isfinite(logs))
-    for point, (_, f, *_) in zip(setting.points, setting.solved, strict=True):
+    for point, (_, f, _) in zip(setting.points, setting.wholes, strict=True):
         elastic = np.log(f[f > RIGID * f.max()])
         if known.size and elastic.size:
             ascending = np.sort(logs[known])
-            of_pairs = np.median(logs[known] - log_frequencies(f)[point.pairs[known]])
+            of_pairs = np.median(logs[known] - log_frequencies(f)[point.index[known]])
             in_order = np.median(ascending[: elastic.size] - elastic[: known.size])
             out |= {of_pairs, in_order, *(ascending[0] - elastic[:3])}
     return {float(np.exp(round(float(value), 4))) for value in out}
@@ -146,8 +145,8 @@ def wrong_frequency(setting: Setting) -> Iterator[Mistake]:
     unknown = one_of(OFTEN, FAR / (FREQUENCY * np.sqrt(2 * np.pi)) * len(modes))
     for r in np.flatnonzero(np.isfinite(logs)).tolist():
         found = [(known, factor, f", and {1 / factor:g} times it would fit") for factor in SLIPS]
-        for point, (_, f, *_) in zip(setting.points[::-1], setting.solved[::-1], strict=True):
-            q, mac = int(point.pairs[r]), point.mac[r]
+        for point, (_, f, _) in zip(setting.points[::-1], setting.wholes[::-1], strict=True):
+            q, mac = int(point.index[r]), point.mac(setting.state.data)[r]
             found.append((unknown, float(np.exp(logs[r] - log_frequencies(f)[q])), ""))
             alike = "" if np.isnan(mac) else f" (MAC {mac:.2f})"
             numbers = {"model": q + 1, "f": float(f[q]), "alike": alike}
@@ -161,22 +160,19 @@ def wrong_frequency(setting: Setting) -> Iterator[Mistake]:
 
 def wrong_nominal_value(setting: Setting) -> Iterator[Mistake]:
     """Yield powers of ten on each positive parameter and its bounds."""
-    state, names = setting.state, setting.parameters
-    price = one_of(USUAL, len(POWERS) * len(names))
-    for j, power in product(np.flatnonzero(state.is_positive).tolist(), POWERS):
-        given, factor = float(state.start[j]), 10.0**power
-        numbers = {"name": names[j], "given": given, "better": given * factor}
-        parts = {x: getattr(state, x)[j] * factor for x in ("start", "lower", "upper")}
-        change = partial(_with, j=j, **parts)
-        yield Mistake("nominal-value", (names[j],), change, price, numbers)
+    state = setting.state
+    price = one_of(USUAL, len(POWERS) * len(setting.parameters))
+    for j, power in [(j, x) for j in np.flatnonzero(state.is_positive).tolist() for x in POWERS]:
+        factor = np.ones(state.start.size)
+        factor[j] = 10.0**power
+        name, given = setting.parameters[j], float(state.start[j])
+        numbers = {"name": name, "given": given, "better": given * 10.0**power}
+        yield Mistake("nominal-value", (name,), partial(_scaled, factor=factor), price, numbers)
 
 
-def _with(state: State, j: int, **values: float) -> State:
-    """Return the state with another nominal value or other bounds of parameter j."""
-    parts: Any = {name: getattr(state, name).copy() for name in values}
-    for name, value in values.items():
-        parts[name][j] = value
-    return replace(state, **parts)
+def _scaled(state: State, factor: Floats) -> State:
+    start, lower, upper = (x * factor for x in (state.start, state.lower, state.upper))
+    return replace(state, start=start, lower=lower, upper=upper)
 
 
 def excluding_bound(setting: Setting) -> Iterator[Mistake]:
@@ -186,8 +182,14 @@ def excluding_bound(setting: Setting) -> Iterator[Mistake]:
     for side, bounds, away in (("lower", state.lower, -1.0), ("upper", state.upper, 1.0)):
         wider = np.where(state.is_positive, bounds * WIDER**away, bounds + away * WIDER * room)
         for j in np.flatnonzero(np.abs(theta - bounds) <= 1e-6 * room).tolist():
-            change = partial(_with, j=j, **{side: wider[j]})
+            change = partial(_moved, side=side, j=j, bound=wider[j])
             yield Mistake("bound", (setting.parameters[j], side), change, price)
+
+
+def _moved(state: State, side: str, j: int, bound: float) -> State:
+    values = getattr(state, side).copy()
+    values[j] = bound
+    return replace(state, **{side: values})
 
 
 WRONG = {"frequency": 0.2, "shape": 1.0}
@@ -206,7 +208,7 @@ LOOKS = {
 def set_factor(setting: Setting) -> Iterator[Mistake]:
     """Yield the median ratio of the frequencies of each set to those of the others."""
     f, sets = setting.state.data.frequency, setting.names.sets
-    for k in range(len(sets)) if len(sets) > 1 else ():
+    for k in setting.compared:
         ratios = np.log(f[k]) - median(np.log(np.delete(f, k, axis=0)))
         if np.isfinite(ratios).sum() < 2:
             continue
@@ -234,7 +236,7 @@ def other_numbers(setting: Setting) -> Iterator[Mistake]:
     Modes without anything in common keep their numbers.
     """
     data, sets, modes = setting.state.data, setting.names.sets, setting.names.modes
-    for k in range(len(sets)) if len(sets) > 1 else ():
+    for k in setting.compared:
         rest = replace(data, **{x: np.delete(getattr(data, x), k, axis=0) for x in PARTS})
         mac = mac_values(data.psi[k], data.seen[k], rest.mean.T)
         distance = np.minimum(4 * np.abs(np.log(data.frequency[k])[:, None] - rest.logs), 1.0)
@@ -264,36 +266,56 @@ def _renumbered(state: State, k: int, index: Ints) -> State:
     return replace(state, data=replace(state.data, **parts))
 
 
-def odd_value(setting: Setting) -> Iterator[Mistake]:
-    """Yield the frequency and the shape of each mode in each of several sets.
+def odd_frequency(setting: Setting) -> Iterator[Mistake]:
+    """Yield the frequency of each mode that differs most from those of other sets."""
+    data = setting.state.data
+    yield from _odd(setting, "frequency", np.abs(np.log(data.frequency) - data.logs))
 
-    Of two sets nobody knows which one is wrong: both blame the mode.
+
+def odd_shape(setting: Setting) -> Iterator[Mistake]:
+    """Yield the shape of each mode that differs most from those of other sets."""
+    data = setting.state.data
+    away = ((data.psi - data.factors(data.mean) * data.mean) ** 2).sum(axis=2)
+    yield from _odd(setting, "shape", np.where(data.seen.any(axis=2), away, np.nan))
+
+
+def _odd(setting: Setting, part: str, away: Floats) -> Iterator[Mistake]:
+    """Yield the values of single sets that are farthest ``away`` (sets, modes), one a mode.
+
+    Of two sets nobody knows which one is wrong: both are yielded, and blame the mode.
     """
-    sets, data, modes = setting.names.sets, setting.state.data, setting.names.modes
-    price = one_of(OFTEN, len(sets) * len(modes))
-    for (part, wrong), (r, mode) in product(WRONG.items(), enumerate(modes)):
-        count = np.isfinite(getattr(data, part)[:, r].reshape(len(sets), -1)).sum(axis=1)
-        known, f = np.flatnonzero(count).tolist(), data.frequency[:, r]
-        for k in known if len(known) > 1 else ():
-            others, subject = [j for j in known if j != k], [str(mode)]
+    sets, data = setting.names.sets, setting.state.data
+    price = one_of(OFTEN, len(sets) * len(setting.names.modes))
+    for r, mode in enumerate(setting.names.modes if len(sets) > 1 else ()):
+        known = np.flatnonzero(np.isfinite(away[:, r]))
+        for k in known[np.argsort(-away[known, r])][: 2 if known.size > 1 else 0].tolist():
+            others, subject = [j for j in known.tolist() if j != k], [str(mode)]
+            value, other = (
+                data.frequency[k, r],
+                np.exp(median(np.log(data.frequency[others, r, None]))[0]),
+            )
             if len(others) > 1:
                 subject.append(sets[k])
-                who = f"set {sets[k]} disagrees with {enumeration([sets[j] for j in others], 3)}"
+                names = enumeration([sets[j] for j in others], 3)
+                who = f"set {sets[k]} disagrees with {names}"
                 look = f"look at set {sets[k]} again, or leave out its"
-                value, other = f[k], np.exp(median(np.log(f[others, None]))[0])
             else:
-                who = f"sets {sets[known[1]]} and {sets[known[0]]} disagree"
-                look = "look at both again, or leave out the worse"
-                value, other = f[known[1]], f[known[0]]
-            numbers: dict[str, Any] = {"mode": mode, "who": who, "look": look, "f": float(value)}
-            numbers |= {"other": float(other), "percent": float(100 * (value / other - 1))}
-            change = without(part, np.s_[k, r], count[k] * (NOTHING + np.log(wrong)))
+                (first, second), look = known, "look at both again, or leave out the worse"
+                value, other = data.frequency[second, r], data.frequency[first, r]
+                who = f"sets {sets[second]} and {sets[first]} disagree"
+            numbers = {
+                **{"mode": mode, "who": who, "look": look},
+                **{"f": float(value), "other": float(other)},
+                "percent": float(100 * (value / other - 1)),
+            }
+            count = np.isfinite(getattr(data, part)[k, r]).sum()
+            change = without(part, np.s_[k, r], count * (NOTHING + np.log(WRONG[part])))
             yield Mistake(f"odd-{part}", tuple(subject), change, price, numbers)
 
 
 def foreign_mode(setting: Setting) -> Iterator[Mistake]:
     """Yield modes that the model does not have, or has not so high."""
-    modes, of_model = setting.names.modes, setting.solved[-1].frequency
+    modes, (*_, (_, of_model, _)) = setting.names.modes, setting.wholes
     price = one_of(USUAL, len(modes))
     for r, f in enumerate(np.exp(setting.state.data.logs).tolist()):
         numbers = {"mode": modes[r], "at": "" if np.isnan(f) else f" at {f:.4g} Hz", "measured": f}
@@ -309,13 +331,17 @@ def _foreign(state: State, r: int) -> State:
 def later_mode(setting: Setting) -> Iterator[Mistake]:
     """Yield measured modes that are like model modes beyond those among which pairs are sought."""
     state, modes = setting.state, setting.names.modes
-    for solved, own in zip(setting.solved, setting.points, strict=True):
-        f = solved.frequency
-        free = points(stacked([replace(state, candidates=np.array(f.size))]), [solved]).at(0)
-        for r in np.flatnonzero(free.pairs >= state.candidates).tolist():
-            later = int(free.pairs[r]) + 1
-            numbers = {"later": later, "f": float(f[later - 1]), "spare": later - len(modes)}
-            numbers |= {"mac": float(free.mac[r]), "best": float(own.mac[r])}
-            change = partial(replace, candidates=np.array(later))
-            price = one_of(USUAL, f.size - float(state.candidates))
+    for whole, own in zip(setting.wholes, setting.points, strict=True):
+        free = point_of(replace(state, candidates=whole.frequency.size), whole)
+        before, after = own.mac(state.data), free.mac(state.data)
+        for r in np.flatnonzero(free.index >= state.candidates).tolist():
+            later = int(free.index[r]) + 1
+            numbers = {"later": later, "f": float(whole.frequency[later - 1])}
+            numbers |= {
+                "mac": float(after[r]),
+                "best": float(before[r]),
+                "spare": later - len(modes),
+            }
+            change = partial(replace, candidates=later)
+            price = one_of(USUAL, whole.frequency.size - state.candidates)
             yield Mistake("beyond-candidates", (str(modes[r]),), change, price, numbers)
