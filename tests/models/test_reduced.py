@@ -257,10 +257,14 @@ def test_models_too_far_for_the_factor_are_solved_in_full_and_the_others_are_not
     bounds = np.full(3, 0.01), np.full(3, 2.5)
     model = ReducedModel(full, 10, np.ones(3), *bounds)
     model.modes(np.ones(3), 8)
-    corrected = costs.corrected
-    model.take(SnapshotRequest(np.array([[0.015, 2.0, 2.0], [0.9, 1.1, 1.0]]), 6))
+    corrected, far = costs.corrected, np.array([0.015, 2.0, 2.0])
+    before = model.modes(far, 6).lam
+    error = model.take(SnapshotRequest(np.array([far, [0.9, 1.1, 1.0]]), 6))
     assert costs.eigenproblems == 2
     assert costs.corrected == corrected + 1
+    exact = full.modes(far, 6).lam
+    assert error == pytest.approx(((before - exact) / (exact - model.basis.sigma)).max(), rel=1e-3)
+    assert error > 1e-6, "of a model that is solved in full, it is known"
     for theta in ([0.015, 2.0, 2.0], [0.9, 1.1, 1.0]):
         point = np.array(theta)
         assert model.modes(point, 6).lam == pytest.approx(full.modes(point, 6).lam, rel=1e-8)

@@ -32,12 +32,14 @@ POOR_FIT = 0.5
 NAMED = 3
 """Functions that are fitted poorly, modes and warnings that are named."""
 
-LONG, NARROW = (
-    35.0,
-    "standard deviations of records of more than 35 min are up to a quarter too small where many "
-    "modes share coloured forces",
+LONG = 35
+"""Minutes of records of ambient tests; modes of longer ones have a warning."""
+
+NARROW = (
+    f"standard deviations of records of more than {LONG} min are up to a quarter too small where "
+    "many modes share coloured forces"
 )
-"""Minutes of records of ambient tests, and the warning on modes of longer ones."""
+"""The warning."""
 
 
 @dataclass(frozen=True, repr=False)
