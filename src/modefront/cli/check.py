@@ -29,8 +29,9 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         "data set": len(problem.data.sets),
     }
     counts = ", ".join(plural(count, noun) for noun, count in sizes.items())
-    silent = int(np.isnan(problem.data.shape).all(axis=(0, 1)).sum())
-    counts += f"; {plural(silent, 'sensor')} without data" * (silent > 0)
+    silent = np.isnan(problem.data.shape).all(axis=(0, 1))
+    if silent.any() and not silent.all():  # else no shapes are measured
+        counts += f"; {plural(int(silent.sum()), 'sensor')} without data"
     screen.say(f"{problem.model.size} degrees of freedom, {counts}", start="  ")
     _print_modes(screen, findings.beside)
     _print_sensors(screen, findings.beside, most)
