@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -22,11 +23,15 @@ import modefront
 from modefront.cli.main import main
 from modefront.datasets import Dataset
 from modefront.errors import UnfinishedError
+from modefront.front.options import Pareto
 from modefront.front.subproblems import Least
 from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution
 from modefront.results.files import FILE, read_dataset
 from modefront.study import session
+from modefront.study.examples import names
+from modefront.study.file import load
+from modefront.uncertainty.prior import NoisePrior
 from modefront.work import store as lock
 
 STUDY = (
@@ -138,6 +143,21 @@ def test_help_and_version(modefront_: Run) -> None:
             assert command in out
             assert modefront_(command, "--help")[0] == 0
     assert modefront_("--version") == (0, f"modefront, version {modefront.__version__}\n", "")
+
+
+def test_help_names_the_examples(modefront_: Run) -> None:
+    listed = re.search(r"One of (.*?)\.", " ".join(modefront_("init", "--help")[1].split()))
+    assert listed
+    told = listed[1].replace(" -", " three-story-").replace(" and", ",").split(", ")
+    assert told == names()
+
+
+def test_the_study_to_start_from_leaves_errors_and_programme_to_their_defaults(
+    modefront_: Run, tmp_path: Path
+) -> None:
+    assert modefront_("init", tmp_path / "first")[0] == 0
+    study = load(tmp_path / "first" / "study.toml")
+    assert (study.noise, study.pareto.programme) == (NoisePrior(), Pareto().programme)
 
 
 def test_help_waits_for_nothing_that_takes_long_to_import() -> None:

@@ -24,7 +24,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def test_the_promised_examples_are_there() -> None:
-    promised = {"footbridge", "three-groups", "eighteen-stories", "wrong-class"}
+    promised = {"three-story", "footbridge", "three-groups", "eighteen-stories", "wrong-class"}
     assert promised | {"three-story-c0", "three-story-c1"} <= set(names())
 
 
@@ -57,7 +57,7 @@ def test_every_file_in_the_way_is_named_links_to_nothing_too(tmp_path: Path) -> 
 
 def test_an_unknown_example_is_answered_with_the_known_ones(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"expected one of ambient-test, calculix, .*did you mean"):
-        write_example("three-story", tmp_path / "new")
+        write_example("three-storey", tmp_path / "new")
     assert not (tmp_path / "new").exists()
 
 

@@ -87,7 +87,13 @@ def cli(context: click.Context) -> None:
 
 @cli.command()
 @click.argument("directory", type=PATH)
-@click.option("--example", default="three-story-c0", show_default=True, help="Which example.")
+@click.option(
+    "--example",
+    default="three-story",
+    show_default=True,
+    help="One of ambient-test, calculix, eighteen-stories, footbridge, hammer-test, three-groups, "
+    "three-story, three-story-c0, -c1, -fe-c0, -fe-c1 and wrong-class.",
+)
 def init(directory: Path, example: str) -> None:
     """Write a study that runs at once into DIRECTORY."""
     from modefront.study.examples import write_example
