@@ -25,13 +25,13 @@ simple basis of them takes the fourth power of their number."""
 
 
 def enumeration(names: Sequence[str], most: int | None = None) -> str:
-    """Return names as a text, the first of many.
+    """Return names as a text, the first of many; one more is named, too.
 
-    >>> enumeration(["a", "b", "c"]), enumeration(["a", "b", "c"], 2)
-    ('a, b and c', 'a, b and 1 more')
+    >>> enumeration(["a", "b", "c"], 2), enumeration(["a", "b", "c", "d"], 2)
+    ('a, b and c', 'a, b and 2 more')
     """
-    rest = 0 if most is None else max(len(names) - most, 0)
-    *first, last = [*names[:most], f"{rest} more"] if rest else names
+    rest = 0 if most is None else len(names) - most
+    *first, last = [*names[:most], f"{rest} more"] if rest > 1 else names
     return f"{', '.join(first)} and {last}" if first else last
 
 
