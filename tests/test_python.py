@@ -49,6 +49,14 @@ def assert_short(shown: Any) -> None:
         assert "<" in shown._repr_html_()
 
 
+def test_a_study_is_checked_as_file_and_as_problem(folder: Path) -> None:
+    path = folder / "study.toml"
+    of_study, of_path, of_problem = map(mf.check, (mf.load(path), path, mf.load(path).problem))
+    assert str(of_study) == str(of_path)
+    assert of_problem.sound
+    assert of_problem.mistakes == of_study.mistakes
+
+
 def test_results_are_shown_in_a_few_lines(folder: Path) -> None:
     study = mf.load(folder / "study.toml")
     results = mf.read_results(folder / "results", study.problem)

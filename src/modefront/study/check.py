@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,7 @@ from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import TINY
 from modefront.study.definition import Study
+from modefront.study.file import as_study
 from modefront.text import Shown
 from modefront.uncertainty.inference import freed
 from modefront.uncertainty.most_probable import maximum
@@ -129,19 +131,21 @@ class Findings(Shown):
         return self.cause is None
 
 
-def check(study: Study) -> Findings:
+def check(study: Study | UpdatingProblem | Path | str) -> Findings:
     """Return the error of the derivatives of a study, and warnings before it is run.
 
     Parameters
     ----------
     study
-        The study; a few models are evaluated, and none is sought.
+        The study, the path of its file, or a problem; a few models are evaluated, and none is
+        sought.
 
     Raises
     ------
     InputError
         If no parameter changes a group.
     """
+    study = as_study(study)
     problem = study.problem
     with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
         refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))

@@ -76,6 +76,12 @@ Drafts = Sequence[tuple[Table, Prediction]]
 """Predictions as in their tables, without the defaults that follow from the nominal model."""
 
 
+def as_study(given: Study | UpdatingProblem | Path | str) -> Study:
+    """Return a study: itself, that of a file, or that of a problem with the options as usual."""
+    study = load(given) if isinstance(given, Path | str) else given
+    return Study(study) if isinstance(study, UpdatingProblem) else study
+
+
 # Many lines: a line or two for each table of the file.
 def load(path: Path | str) -> Study:
     """Return the study that a file describes.

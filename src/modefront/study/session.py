@@ -41,7 +41,7 @@ from modefront.results.shapes import mode_shapes, with_mode_shapes
 from modefront.results.verdict import with_verdict
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
-from modefront.study.file import load
+from modefront.study.file import as_study
 from modefront.uncertainty.inference import infer
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.noise import Uncertainty
@@ -141,8 +141,7 @@ def run(
         carrier = workers
     else:
         carrier = backend(workers, scheduler)
-    study = load(study) if isinstance(study, Path | str) else study
-    study = Study(study) if isinstance(study, UpdatingProblem) else study
+    study = as_study(study)
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
     study, progress = study.completed(), progress or Progress()
