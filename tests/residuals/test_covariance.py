@@ -138,6 +138,23 @@ def test_covariances_are_carried_to_objectives_by_their_roots(
     np.testing.assert_allclose(own, changes, rtol=1e-6, atol=1e-8)
 
 
+def test_errors_of_shapes_bound_those_of_whitened_objectives() -> None:
+    problem, worst = problem_of(measured(), "std"), np.zeros(3)
+    for step in np.random.default_rng(7).normal(scale=1e-3, size=(20, 5)):
+        (first, pairs), (two, _) = problem.modes(THETA), problem.modes(THETA + step)
+        assert pairs.index.tolist() == [0, 1, 2]
+        factor = np.einsum("sr,sr->r", two.phi, first.phi) / (two.phi**2).sum(axis=0)
+        away = np.linalg.norm(two.phi * factor - first.phi, axis=0)
+        shape = away / np.linalg.norm(first.phi, axis=0)
+        for k in range(3):  # one shape a group: a margin is that of the shape whose error it is
+            alone = replace(problem, groups=(mf.Group("one", shape=[k + 1], scale="std"),))
+            (margin,) = alone.margins(np.zeros(3), shape)
+            J = [alone.evaluate(x, derivatives=False).J[0] for x in (THETA, THETA + step)]
+            worst[k] = max(worst[k], abs(np.sqrt(J[1]) - np.sqrt(J[0])) / margin)
+    assert (worst < 1.05).all(), "of first order in the errors"
+    assert (worst > 0.01).all(), "and no more than the greatest whitening"
+
+
 def test_data_drawn_again_scatter_as_the_covariance_says() -> None:
     data, rng = measured(), np.random.default_rng(4)
     again = np.array([redraw(data, "std", rng).shape[1, 0] for _ in range(400)])

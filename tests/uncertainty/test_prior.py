@@ -45,6 +45,15 @@ def test_assumed_errors_are_relative_and_every_shape_loses_its_factor() -> None:
     assert scaled[1] == pytest.approx(J[1] / (0.05**2 * ratio))
 
 
+def test_the_distance_from_the_nominal_model_is_added_to_the_logarithms() -> None:
+    noise = NoisePrior().of(problem_of(), None)
+    assert noise is not None
+    J, distance = np.array([3.0, 7.0]), 0.4
+    alone = (noise.logs.a * np.log(J + noise.logs.floor)).sum()
+    assert noise.programme.value(np.append(J, distance)) == pytest.approx(alone + distance)
+    assert noise.programme.gradient(np.append(J, distance))[-1] == pytest.approx(1.0)
+
+
 def test_standard_deviations_of_the_data_come_first_and_gaps_are_assumed() -> None:
     std = np.array([[0.02, np.nan, 0.0]])
     noise = NoisePrior().of(problem_of(frequency_std=std), "std")

@@ -174,6 +174,41 @@ def test_chains_that_stay_apart_do_not_agree() -> None:
     assert agreement(crawling)[1] < 40
 
 
+def as_defined(x: Floats) -> tuple[float, float]:
+    """R-hat and effective size of chains (chains, steps): section 4 of the source, term by term."""
+    half = x.shape[1] // 2
+    split = np.concatenate([x[:, :half], x[:, -half:]])
+    ratios, sizes = [], []
+    for y in (split, np.abs(split - np.median(split))):
+        S = y.size
+        z = scipy.stats.norm.ppf((scipy.stats.rankdata(y).reshape(y.shape) - 3 / 8) / (S + 1 / 4))
+        W = float(np.mean([np.var(chain, ddof=1) for chain in z]))
+        total = (half - 1) / half * W + np.var(z.mean(axis=1), ddof=1)
+        rho = [1.0]
+        for t in range(1, half):
+            own = [(c[: half - t] - c.mean()) @ (c[t:] - c.mean()) / half for c in z]
+            rho.append(float(1 - (W - np.mean(own)) / total))
+        pairs: list[float] = []
+        for t in range(0, half - half % 2, 2):
+            if rho[t] + rho[t + 1] <= 0:
+                break
+            pairs.append(min(rho[t] + rho[t + 1], *pairs[-1:], np.inf))
+        ratios.append(np.sqrt(total / W))
+        sizes.append(S / max(2 * sum(pairs) - 1, 1 / np.log10(S)))
+    return float(max(ratios)), float(min(sizes))
+
+
+@pytest.mark.parametrize(("steps", "memory"), [(20, 0.0), (21, 0.6), (60, 0.9), (60, -0.5)])
+def test_agreement_and_size_are_as_they_are_defined(steps: int, memory: float) -> None:
+    rng = np.random.default_rng(steps)
+    x = np.zeros((4, steps, 2))
+    for t in range(steps):
+        x[:, t] = memory * x[:, max(t - 1, 0)] + np.exp(0.3 * rng.normal(size=(4, 2)))
+    known = [as_defined(x[:, :, j]) for j in range(2)]
+    expected = max(r for r, _ in known), min(size for _, size in known)
+    assert agreement(x) == pytest.approx(expected, rel=1e-10)
+
+
 @pytest.mark.parametrize("z", [-3.0, -0.4, 0.0, 2.5])
 def test_parameters_have_their_priors_between_the_bounds(z: float) -> None:
     """Uniform, normal, and lognormal with a lower bound that logarithms do not have."""
