@@ -51,7 +51,8 @@ def assert_short(shown: Any) -> None:
 
 def test_a_study_is_checked_as_file_and_as_problem(folder: Path) -> None:
     path = folder / "study.toml"
-    of_study, of_path, of_problem = map(mf.check, (mf.load(path), path, mf.load(path).problem))
+    study = mf.load(path)
+    of_study, of_path, of_problem = mf.check(study), mf.check(path), mf.check(study.problem)
     assert str(of_study) == str(of_path)
     assert of_problem.sound
     assert of_problem.mistakes == of_study.mistakes

@@ -138,13 +138,22 @@ def test_covariances_are_carried_to_objectives_by_their_roots(
     np.testing.assert_allclose(own, changes, rtol=1e-6, atol=1e-8)
 
 
-def test_errors_of_shapes_bound_those_of_whitened_objectives() -> None:
-    problem, worst = problem_of(measured(), "std"), np.zeros(3)
+@pytest.mark.parametrize("factor", [1.0, 30.0])
+def test_errors_of_shapes_bound_those_of_whitened_objectives(factor: float) -> None:
+    data = measured()
+    assert data.shape_covariance is not None
+    data = replace(
+        data,
+        shape=factor * data.shape,
+        shape_std=factor * data.shape_std,
+        shape_covariance=factor**2 * data.shape_covariance,
+    )
+    problem, worst = problem_of(data, "std"), np.zeros(3)
     for step in np.random.default_rng(7).normal(scale=1e-3, size=(20, 5)):
         (first, pairs), (two, _) = problem.modes(THETA), problem.modes(THETA + step)
         assert pairs.index.tolist() == [0, 1, 2]
-        factor = np.einsum("sr,sr->r", two.phi, first.phi) / (two.phi**2).sum(axis=0)
-        away = np.linalg.norm(two.phi * factor - first.phi, axis=0)
+        beta = np.einsum("sr,sr->r", two.phi, first.phi) / (two.phi**2).sum(axis=0)
+        away = np.linalg.norm(two.phi * beta - first.phi, axis=0)
         shape = away / np.linalg.norm(first.phi, axis=0)
         for k in range(3):  # one shape a group: a margin is that of the shape whose error it is
             alone = replace(problem, groups=(mf.Group("one", shape=[k + 1], scale="std"),))
