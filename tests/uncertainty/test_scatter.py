@@ -232,20 +232,19 @@ def test_what_no_data_determine_is_named_and_left_out() -> None:
     assert combined @ result.covariance @ combined.T == pytest.approx(expected, rel=1e-6)
 
 
-def test_a_point_of_which_no_weights_are_known_has_no_scatter() -> None:
+def test_points_between_edges_have_scatter_where_their_weights_are_known() -> None:
     case = bent(4)
     problem = case.problem()
     edges = [minimum(problem, weighted(w), np.zeros(3)) for w in np.eye(2) + 1e-4]
-    between = replace(edges[0], weights=np.zeros(2), beta=np.array([0.5, 0.5]))
-    points = [
-        *(SolvedPoint(f"edge-{i}", edges[i], Role("edge", objective=i)) for i in range(2)),
-        SolvedPoint("nbi-1", between, Role("boundary", ("edge-0", "edge-1"))),
-    ]
-    known = {
-        each.label: Local(point_of(problem, each.solution), case.noise(each.solution.theta), {})
-        for each in points
-    }
-    assert set(front_scatter(problem, points, known, np.ones(2), np.ones(2))) == {
-        "edge-0",
-        "edge-1",
-    }
+    ends = [SolvedPoint(f"edge-{i}", edges[i], Role("edge", objective=i)) for i in range(2)]
+    for weights, labels in (([0.0, 0.0], {"edge-0", "edge-1"}), ([0.5, 0.5], None)):
+        model = minimum(problem, weighted(np.array([0.5, 0.5])), np.zeros(3))
+        between = replace(model, weights=np.array(weights), beta=np.array([0.5, 0.5]))
+        role = Role("boundary", ("edge-0", "edge-1"))
+        points = [*ends, SolvedPoint("nbi-1", between, role)]
+        known = {
+            each.label: Local(point_of(problem, each.solution), case.noise(each.solution.theta), {})
+            for each in points
+        }
+        found = front_scatter(problem, points, known, np.ones(2), np.ones(2))
+        assert set(found) == (labels or set(known))
