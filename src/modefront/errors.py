@@ -6,7 +6,7 @@ import difflib
 import errno
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from modefront.text import NAME, clean, one_line, shortened
@@ -94,6 +94,16 @@ def refuse(faults: Iterable[Fault]) -> None:
     """Raise InputError where there are faults."""
     if found := tuple(faults):
         raise InputError(found)
+
+
+@contextmanager
+def noted(faults: list[Fault], place: str = "") -> Iterator[None]:
+    """Add the faults of what is done within to others, each once and behind a place; go on."""
+    try:
+        yield
+    except InputError as error:
+        placed = (replace(x, place=f"{place} {x.place}".strip()) for x in error.faults)
+        faults.extend(x for x in placed if x not in faults)
 
 
 @contextmanager

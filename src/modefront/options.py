@@ -478,14 +478,17 @@ class Table:
     def noting(self, key: str = "") -> Iterator[None]:
         """Note the faults of options, whose places are keys of the table, and of files.
 
-        Those of the file that a ``key`` names have it before their places.
+        Both have a ``key`` before their places.
         """
         try:
             yield
         except InputError as error:
-            self.note(fault for fault in error.faults if not fault.file)
             before = f"{self.place} {key}, " if key else ""
-            self.faults += [replace(x, place=before + x.place) for x in error.faults if x.file]
+            for fault in error.faults:
+                if fault.file:
+                    self.faults.append(replace(fault, place=before + fault.place))
+                else:
+                    self.fault(f"{key} {fault.place}".strip(), fault.expected, fault.found)
 
     def path(self, name: str) -> Path:
         """Return the path of a file that a table names, relative to the TOML file, and note it.
@@ -544,7 +547,7 @@ class Table:
         self.close()
         return values if len(self.faults) == before else None
 
-    def record(self, record: type[T]) -> T | None:
+    def record(self, record: Callable[..., T]) -> T | None:
         """Return the record of options that the table describes, None where something is wrong.
 
         Keys are its fields. Everything that is wrong is noted: single values first, and where these

@@ -167,7 +167,7 @@ def test_a_study_takes_modes_from_a_universal_file(tmp_path: Path) -> None:
         (PLACES.replace('"11X"', '"14X"'), "floor1: expected one of 11X, 12X, 13X, found '14X'"),
         (PLACES.replace('"11X"', "11"), "node and direction, such as"),
         (PLACES.replace("node = 12", "node = 2"), "a node of the test, found 2"),
-        (PLACES.replace('"-x"', '"u"'), "direction must be one of"),
+        (PLACES.replace('"-x"', '"u"'), "direction: expected one of x, -x"),
         (PLACES.replace("floor1", "flor1"), "did you mean 'floor1'"),
     ],
 )

@@ -13,6 +13,7 @@ from structures import STEEL, frequencies, move_inner, rigid_motions, rotation
 
 from modefront import fem
 from modefront._typing import Floats
+from modefront.errors import InputError
 
 positive = st.floats(0.2, 5.0)
 NONE = np.zeros(0)
@@ -219,7 +220,7 @@ def test_springs_and_masses_make_the_chain() -> None:
     X = np.zeros((n + 1, 3))
     X[:, 2] = np.arange(n + 1)
     springs = (fem.Spring("k", np.arange(n), k, "x", to=np.arange(1, n + 1)),)
-    with pytest.raises(fem.FemError, match="along their line"):
+    with pytest.raises(InputError, match="along their line"):
         fem.assemble(fem.Structure(X, springs=springs))
     springs = (fem.Spring("k", np.arange(n), k, to=np.arange(1, n + 1)),)
     masses = (fem.Mass("m", np.arange(1, n + 1), m),)

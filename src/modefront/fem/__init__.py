@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from modefront.fem.dofs import Dofs as Dofs
     from modefront.fem.mesh import Mesh as Mesh
     from modefront.fem.mesh import read_mesh as read_mesh
-    from modefront.fem.section import FemError as FemError
     from modefront.fem.section import Material as Material
     from modefront.fem.section import Orthotropic as Orthotropic
     from modefront.fem.section import Section as Section

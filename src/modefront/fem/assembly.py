@@ -22,12 +22,12 @@ import scipy
 from scipy import sparse
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.errors import Fault, noted, refuse, wrong
 from modefront.fem.blocks import Block, blocks_of
 from modefront.fem.check import SAME_PLACE, check_names, check_points, node_list, unit_vector
 from modefront.fem.dofs import Dofs, Followers, following_rows, hold, number_dofs
 from modefront.fem.elements.common import ByPower
 from modefront.fem.mechanism import check_mechanisms
-from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import DIRECTIONS, Load, Parameter, Sensor, Structure
 from modefront.linalg.affine import Monomials, SparseAffine, sparse_affine, sparse_rows
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError, factorise
@@ -63,7 +63,7 @@ class StructureMatrices:
 def assemble(structure: Structure, *, floating: bool = False) -> StructureMatrices:
     """Check a structure and assemble its terms.
 
-    Raises FemError with everything that is wrong with the structure; where that is nothing, with
+    Raises InputError with everything that is wrong with the structure; where that is nothing, with
     what makes it a mechanism or its sensors see nothing. Says where, what was expected and found.
 
     Parameters
@@ -71,26 +71,29 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     structure : what to assemble
     floating : whether the structure as a whole may move as a rigid body (as if hung in soft cords)
     """
-    X, checks = check_points(structure.nodes), Checks()
-    checks.attempt("", check_names, structure)
-    blocks = blocks_of(X, structure, checks)
-    following = following_rows(X, structure, checks)
+    X, faults = check_points(structure.nodes), list[Fault]()
+    with noted(faults):
+        check_names(structure)
+    blocks = blocks_of(X, structure, faults)
+    following = following_rows(X, structure, faults)
     exists = _existing(X, blocks, following)
     held = np.zeros_like(exists)
-    following += hold(X, structure.supports, held, exists, checks)
-    places = sensor_places(X, structure.sensors, np.flatnonzero(exists.any(1)), checks)
-    forces = [
-        checks.attempt(f"load {x.name!r}", _forces, x, blocks, exists) for x in structure.loads
-    ]
-    dofs = checks.attempt("", number_dofs, exists, held, following)
-    checks.close()
-    if dofs is None or places is None:
-        raise FemError("structure: expected one that can be numbered")
-    checks.attempt("", check_mechanisms, X, blocks, following, held, exists, floating)
-    selection = checks.attempt("", selection_matrix, structure.sensors, places, dofs)
-    checks.close()
-    if selection is None or len(dofs.free) == 0:
-        raise FemError("structure: no degree of freedom is free; expected at least one")
+    following += hold(X, structure.supports, held, exists, faults)
+    places = sensor_places(X, structure.sensors, np.flatnonzero(exists.any(1)), faults)
+    forces = []
+    for load in structure.loads:
+        with noted(faults, f"load {load.name!r}"):
+            forces.append(_forces(load, blocks, exists))
+    with noted(faults):
+        dofs = number_dofs(exists, held, following)
+    refuse(faults)
+    with noted(faults):
+        check_mechanisms(X, blocks, following, held, exists, floating)
+    with noted(faults):
+        selection = selection_matrix(structure.sensors, places, dofs)
+    refuse(faults)
+    if len(dofs.free) == 0:
+        raise wrong("structure", "at least one degree of freedom that is free", "none")
     K, M = (_Terms(dofs.T, structure.parameters) for _ in range(2))
     for block in blocks:
         K.add(block, block.name, block.matrices.stiffness, ("E", "spring"))
@@ -99,10 +102,9 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
             K.add(block, block.name, {0: block.prestress}, ("prestress",))
     factor = _stable(K.total()) if forces and not floating else None
     for load, f in zip(structure.loads, forces, strict=True):
-        if factor is None or f is None:
+        if factor is None:
             found = "a floating one" if floating else "another"
-            expected = "a structure that is held, and stable without it"
-            raise FemError(f"load: expected {expected}, found {found}")
+            raise wrong("load", "a structure that is held, and stable without it", found)
         u = dofs.T @ factor.solve((dofs.T.T @ f)[:, None])[:, 0]
         for block in blocks:
             if block.internal is not None:
@@ -111,10 +113,8 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
                 K.add(block, load.name, {0: made}, ("prestress",))
     prestressed = bool(forces) or any(block.prestress is not None for block in blocks)
     if prestressed and not floating and _stable(K.total()) is None:
-        raise FemError(
-            "load: expected loads and forces below the critical ones, but under them the"
-            " structure buckles"
-        )
+        expected = "loads and forces below the critical ones"
+        raise wrong("load", expected, "those under which the structure buckles")
     parameters, sensors = (
         tuple(each.name for each in named) for named in (structure.parameters, structure.sensors)
     )
@@ -169,29 +169,26 @@ class _Terms:
         order = sorted(self.terms, key=lambda e: (sum(e) > 0, [-k for k in e]))
         exponents = np.array(order, dtype=float).reshape(len(order), len(self.parameters))
         if (entries := max((A.nnz for A in self.terms.values()), default=0)) >= 2**31:
-            raise FemError(f"structure: {entries} entries in a matrix, expected fewer than 2^31")
+            raise wrong("structure", "fewer than 2^31 entries in a matrix", entries)
         # Links sum the two halves in different orders: make them equal to the last digit.
         terms = [(self.terms[e] + self.terms[e].T) / 2 for e in order]
         return sparse_affine(terms, Monomials(exponents), self.T.shape[1])
 
 
 def sensor_places(
-    X: Floats, sensors: Sequence[Sensor], used: Ints, checks: Checks
-) -> SensorPlaces | None:
+    X: Floats, sensors: Sequence[Sensor], used: Ints, faults: list[Fault]
+) -> SensorPlaces:
     """Return nodes and directions of sensors; coordinates are looked for among the nodes `used`.
 
-    What is wrong with them is noted in ``checks``; None where something is.
+    What is wrong with them is noted in ``faults``.
     """
     tree = scipy.spatial.KDTree(X[used]) if used.size else None
     rows, nodes = np.zeros((len(sensors), 6)), np.zeros(len(sensors), dtype=np.int64)
-    before = len(checks.messages)
     for n, sensor in enumerate(sensors):
-        place = f"sensor {sensor.name!r}"
-        vector = checks.attempt(place, unit_vector, sensor.direction)
-        node = checks.attempt(place, _node, X, sensor, used, tree)
-        if vector is not None and node is not None:
-            rows[n], nodes[n] = vector, node
-    return (nodes, rows) if len(checks.messages) == before else None
+        rows[n] = unit_vector(sensor.direction)
+        with noted(faults, f"sensor {sensor.name!r}"):
+            nodes[n] = _node(X, sensor, used, tree)
+    return nodes, rows
 
 
 def selection_matrix(
@@ -202,59 +199,56 @@ def selection_matrix(
     A sensor at node n along the unit vector a measures a . u_n = a . (T q)_n: one on a slave of a
     rigid link measures what its master moves.
 
-    Raises FemError with all sensors that measure what cannot move.
+    Raises InputError with all sensors that measure what cannot move.
     """
     nodes, directions = places
     columns = 6 * nodes[:, None] + np.arange(6)
     selection = sparse_rows(directions, columns, dofs.T.shape[0]) @ dofs.T
-    still = [
-        f"sensor {sensors[n].name!r}: expected a direction that can move, but at node"
-        f" {nodes[n]} direction {sensors[n].direction!r} is held or has no stiffness"
+    refuse(
+        Fault(
+            "",
+            f"sensor {sensors[n].name!r}",
+            "a direction that can move",
+            f"{sensors[n].direction!r} at node {nodes[n]}, which is held or has no stiffness",
+        )
         for n in np.flatnonzero(abs(selection).sum(1) == 0).tolist()
-    ]
-    if still:
-        raise FemError(*still)
+    )
     return selection
 
 
 def _node(X: Floats, sensor: Sensor, used: Ints, tree: scipy.spatial.KDTree | None) -> int:
-    if isinstance(sensor.at, int | np.integer):
+    if isinstance(sensor.at, int):
         return int(node_list(sensor.at, len(X))[0])
-    point = np.asarray(sensor.at, dtype=float)
-    if point.shape != (3,) or not np.isfinite(point).all():
-        raise FemError(f"expected a node or coordinates (3,), found {sensor.at!r}")
     if tree is None:
-        raise FemError("expected a node of an element, found none at all")
+        raise wrong("", "a node of an element", "none at all")
+    point = np.asarray(sensor.at, dtype=float)
     distance, nearest = tree.query(point)
     node = int(used[nearest])
     diagonal = float(np.linalg.norm(tree.maxes - tree.mins))
     tolerance = SAME_PLACE * diagonal if sensor.tolerance is None else sensor.tolerance
     if distance > tolerance:
+        expected = f"a node within {tolerance:.3g} of {tuple(point.tolist())}"
         near = f"node {node} at {tuple(X[node].tolist())}, {distance:.3g} away"
-        there = tuple(point.tolist())
-        raise FemError(f"no node within {tolerance:.3g} of {there}; the nearest is {near}")
+        raise wrong("", expected, f"none; the nearest is {near}")
     return node
 
 
 def _forces(load: Load, blocks: Sequence[Block], exists: Bools) -> Floats:
     force, a = (np.asarray(x, dtype=float) for x in (load.force, load.acceleration))
-    if force.shape not in ((3,), (6,)) or a.shape != (3,) or not np.isfinite([*force, *a]).all():
-        found = f"{load.force!r} and {load.acceleration!r}"
-        raise FemError(f"expected a force (3,) or (6,) and an acceleration (3,), found {found}")
     f = np.zeros(exists.shape)
-    if (np.size(load.nodes) > 0) != force.any():
-        raise FemError("expected nodes and a force on them, found one without the other")
-    if force.any():
+    if (load.nodes is not None) != force.any():
+        raise wrong("", "nodes and a force on them", "one without the other")
+    if load.nodes is not None:
         f[node_list(load.nodes, len(f)), : len(force)] = force
     nowhere = np.argwhere((f != 0) & ~exists)
     if len(nowhere):
         node, direction = nowhere[0]
-        raise FemError(f"nothing resists {DIRECTIONS[direction]} of node {node}")
+        raise wrong("", f"what resists {DIRECTIONS[direction]} of node {node}", "nothing")
     out = f.ravel()
     known = {block.name for block in blocks if block.internal is not None}
     if unknown := set(load.strains) - known:
-        names = ", ".join(sorted(known)) or "none"
-        raise FemError(f"nothing named {min(unknown)!r} has strains; those that do: {names}")
+        expected = f"the name of what has strains: {', '.join(sorted(known)) or 'none has'}"
+        raise wrong("strains", expected, repr(min(unknown)))
     for block in blocks:
         pull = np.tile(np.append(a, np.zeros(3))[list(block.directions)], block.cells.shape[1])
         parts = [M @ pull for M in block.matrices.mass.values()]
@@ -263,7 +257,7 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools) -> Floats:
         for each in parts:
             np.add.at(out, block.dofs(), each)
     if not out.any():
-        raise FemError("expected forces at nodes, an acceleration or strains, found none")
+        raise wrong("", "forces at nodes, an acceleration or strains", "none")
     return out
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats, Ints
+from modefront.errors import Fault, noted, wrong
 from modefront.fem import check
 from modefront.fem.elements import common
 from modefront.fem.elements.beam import Axial, beam, truss
@@ -21,7 +22,7 @@ from modefront.fem.elements.shell import (
     shell_stresses,
 )
 from modefront.fem.elements.solid import SOLIDS, solid, solid_stresses
-from modefront.fem.section import Checks, FemError, Material, at
+from modefront.fem.section import Material
 from modefront.fem.structure import ALONG, Beams, Mass, Shells, Solids, Spring, Structure, Trusses
 from modefront.rounding import TINY
 
@@ -62,47 +63,51 @@ class Block:
         return np.asarray(dofs.reshape(len(dofs), -1))
 
 
-def blocks_of(X: Floats, structure: Structure, checks: Checks) -> list[Block]:
-    """Return a block for each group, and set of springs or masses, in which nothing is wrong."""
-    shells = [each for each in structure.groups if isinstance(each, Shells)]
-    cells = [checks.attempt(f"group {each.name!r}", _shell_cells, X, each) for each in shells]
-    sound = [each for each in cells if each is not None]
-    shared = iter(zip(directors(X, sound), narrowness(X, sound), strict=True) if sound else ())
-    blocks: list[Block | None] = []
-    for group, each in zip(shells, cells, strict=True):
-        if each is not None:
-            parts = X, group, each, *next(shared), structure.varied_thickness
-            blocks.append(checks.attempt(f"group {group.name!r}", _shells, *parts))
+def blocks_of(X: Floats, structure: Structure, faults: list[Fault]) -> list[Block]:
+    """Return a block for each group, and set of springs or masses, in which nothing is wrong.
+
+    Its faults are noted.
+    """
+    shells: list[tuple[Shells, Ints]] = []
+    for group in structure.groups:
+        if isinstance(group, Shells):
+            with noted(faults, f"group {group.name!r}"):
+                cells = check.cell_array(group.cells, (3, 4), len(X))
+                check.check_sizes(check.shell_sizes(X[cells]), cells, "area")
+                shells.append((group, cells))
+    every = [cells for _, cells in shells]
+    shared = zip(directors(X, every), narrowness(X, every), strict=True) if shells else ()
+    blocks: list[Block] = []
+    for (group, cells), of_nodes in zip(shells, shared, strict=True):
+        with noted(faults, f"group {group.name!r}"):
+            blocks.append(_shells(X, group, cells, *of_nodes, structure.varied_thickness))
     for member in (*structure.groups, *structure.springs, *structure.masses):
         kind, make = MADE.get(type(member), ("", None))
-        if make:
-            blocks.append(checks.attempt(f"{kind} {member.name!r}", make, X, member))
-    return [block for block in blocks if block is not None]
+        with noted(faults, f"{kind} {member.name!r}"):
+            blocks += [make(X, member)] if make else []
+    return blocks
 
 
 def _beams(X: Floats, group: Beams) -> Block:
     r = np.asarray(group.offsets, dtype=float)
-    if r.shape != (2, 3):
-        raise FemError(f"expected offsets of the shape (2, 3), found {r.shape}")
     cells, axis = _lines(X, group, r)
     section = group.section
     if group.orientation is None:
         if section.I_y != section.I_z or section.kappa_y != section.kappa_z:
-            why = "the section is not the same in y and z, so orientation is needed: a vector in "
-            raise FemError(why + "the plane of the beam's axis and its local y")
+            expected = "a vector in the plane of the beam's axis and its local y"
+            found = "nothing, and the section is not the same in y and z"
+            raise wrong("orientation", expected, found)
         upright = np.abs(axis[:, 2:]) > 0.9
         orientation = np.where(upright, np.eye(3)[0], np.eye(3)[2])
     else:
-        with at("orientation"):
-            v = check.unit_vector(tuple(group.orientation))[:3]
+        v = check.unit_vector(group.orientation)[:3]
         orientation = np.broadcast_to(v, axis.shape)
         parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < ALONG)
         if len(parallel):
-            what = f"orientation {tuple(group.orientation)} must not be parallel to the axis, but"
             nodes = ", ".join(map(str, cells[parallel[0]].tolist()))
-            raise FemError(f"{what} it is at element {parallel[0]} (nodes {nodes})")
-    with at("releases"):
-        ends = [check.direction_indices(names) if len(names) else [] for names in group.releases]
+            expected = f"a vector not parallel to the axis of element {parallel[0]} (nodes {nodes})"
+            raise wrong("orientation", expected, tuple(group.orientation))
+    ends = map(check.direction_indices, group.releases)
     released = [6 * end + d for end, directions in enumerate(ends) for d in directions]
     made, axial = beam(X[cells], group.material, section, orientation, r, released)
     given = group.force * axial.unit if group.force else None
@@ -110,7 +115,6 @@ def _beams(X: Floats, group: Beams) -> Block:
 
 
 def _trusses(X: Floats, group: Trusses) -> Block:
-    check.check_positive(group.area, "area")
     cells, _ = _lines(X, group, np.zeros((2, 3)))
     made, axial = truss(X[cells], group.material, group.area)
     given = group.force * axial.unit if group.force else None
@@ -120,20 +124,13 @@ def _trusses(X: Floats, group: Trusses) -> Block:
 def _lines(X: Floats, group: Beams | Trusses, r: Floats) -> tuple[Ints, Floats]:
     """Return cells (elements, 2) and the unit vectors along them, with offsets r of the ends."""
     if not isinstance(group.material, Material):
-        raise FemError(f"expected an isotropic material, found {group.material!r}")
+        raise wrong("material", "an isotropic one", repr(group.material))
     cells = check.cell_array(group.cells, (2,), len(X))
     ends = X[cells] + r
     axis = ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(axis, axis=1)
     check.check_sizes(length / np.ptp(X, axis=0).max(initial=TINY), cells, "length")
     return cells, axis / length[:, None]
-
-
-def _shell_cells(X: Floats, group: Shells) -> Ints:
-    cells = check.cell_array(group.cells, (3, 4), len(X))
-    check.check_positive(group.thickness, "thickness")
-    check.check_sizes(check.shell_sizes(X[cells]), cells, "area")
-    return cells
 
 
 # 6 arguments: those of a group, and what its elements share with others.
@@ -152,22 +149,21 @@ def _grain(x: Floats, group: Shells) -> Floats:
     if isinstance(group.material, Material):
         return x[:, 1] - x[:, 0]
     if group.direction is None:
-        raise FemError("a direction is needed, along which axis 1 of the material is")
-    with at("direction"):
-        v = check.unit_vector(tuple(group.direction))[:3]
+        raise wrong("direction", "that along which axis 1 of the material is", "nothing")
+    v = check.unit_vector(group.direction)[:3]
     R = centre_axes(x)[:, :2]
     m = (R @ v)[:, None] @ R
     across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < ALONG)
     if len(across):
-        what = f"direction {tuple(group.direction)} must not be normal to the shell, but it is"
-        raise FemError(f"{what} at element {across[0]}")
+        expected = f"a vector not normal to the shell at element {across[0]}"
+        raise wrong("direction", expected, tuple(group.direction))
     return np.asarray(m[:, 0])
 
 
 def _solids(X: Floats, group: Solids) -> Block:
     if np.ndim(group.cells) == 2 and np.shape(group.cells)[1] == 4:
-        why = "tetrahedra of 4 nodes are far too stiff in bending"
-        raise FemError(f"{why}; mesh with second-order elements (10 nodes)")
+        found = "tetrahedra of 4 nodes, which are far too stiff in bending"
+        raise wrong("", "second-order elements (10 nodes)", found)
     cells = check.cell_array(group.cells, tuple(SOLIDS), len(X))
     check.check_sizes(check.solid_sizes(X[cells]), cells, "volume")
     C = common.elasticity(group.material, check.axes_of(group.axes))
@@ -185,20 +181,19 @@ def _springs(X: Floats, member: Spring) -> Block:
     if member.to is not None:
         to = check.node_list(member.to, len(X))
         if len(to) != len(nodes):
-            raise FemError(f"expected {len(nodes)} partners, found {len(to)}")
+            raise wrong("to", f"{len(nodes)} partners", len(to))
         nodes = np.stack([nodes[:, 0], to], 1)
     gap = X[nodes[:, -1]] - X[nodes[:, 0]]
     if np.ndim(member.stiffness):
         k = np.asarray(member.stiffness, dtype=float)
-        if k.shape != (6,) or not (k >= 0).all() or not k.any() or member.direction is not None:
+        if not k.any() or member.direction is not None:
             found = f"{member.stiffness!r} and direction {member.direction!r}"
-            raise FemError(f"expected 6 stiffnesses >= 0 without a direction, found {found}")
+            raise wrong("stiffness", "6 stiffnesses, not all 0, without a direction", found)
         arms = np.stack([gap / 2, -gap / 2], 1)[:, : nodes.shape[1]]
         A = common.attachment(arms, check.axes_of(member.axes))
         rows = A[:, 0] - A[:, 1] if nodes.shape[1] == 2 else A[:, 0]
     else:
         k = np.array([member.stiffness], dtype=float)
-        check.check_positive(k[0], "stiffness")
         axis = _spring_axis(X, member, nodes, gap)
         rows = np.concatenate([axis, -axis][: nodes.shape[1]], 1)[:, None]
     K = common.symmetric(np.swapaxes(rows, 1, 2) @ (k[:, None] * rows))
@@ -210,20 +205,19 @@ def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats) -> Floats:
     length = np.linalg.norm(gap, axis=1, keepdims=True)
     size = np.ptp(X, axis=0).max()
     if member.axes is not None:
-        raise FemError("axes are for 6 stiffnesses; expected a vector as direction")
+        raise wrong("axes", "none, as they are for 6 stiffnesses: a vector as direction", "some")
     if member.direction is None:
         if member.to is None or (length <= check.COINCIDENT * size).any():
-            raise FemError("a direction is needed unless it joins two distant nodes")
+            raise wrong("direction", "one, unless it joins two distant nodes", "nothing")
         return np.pad(gap / length, ((0, 0), (0, 3)))
     axis = np.tile(check.unit_vector(member.direction), (len(nodes), 1))
     slant = np.linalg.norm(np.cross(gap, axis[:, :3]), axis=1)
     skew = np.flatnonzero(slant > ALONG * length[:, 0] + check.COINCIDENT * size)
     if axis[0, :3].any() and len(skew):
-        raise FemError(
-            f"between distant nodes it must act along their line, else it resists a"
-            f" rotation of the whole; nodes {nodes[skew[0], 0]} and {nodes[skew[0], 1]} do not"
-            f" lie along {member.direction!r}. Give six stiffnesses, which act by rigid arms"
-        )
+        expected = "one along their line between distant nodes, else it resists a rotation of the "
+        expected += "whole (or six stiffnesses, which act by rigid arms)"
+        found = f"nodes {nodes[skew[0], 0]} and {nodes[skew[0], 1]} not along {member.direction!r}"
+        raise wrong("direction", expected, found)
     return axis
 
 
@@ -237,14 +231,10 @@ def _masses(X: Floats, member: Mass) -> Block:
     m = np.asarray(member.mass, dtype=float)
     m = np.repeat(m, 3) if m.shape == () else m
     inertia = np.diag(inertia) if inertia.shape == (3,) else inertia
-    if m.shape != (3,) or inertia.shape != (3, 3) or c.shape != (3,):
-        expected = "mass () or (3,), inertia (3,) or (3, 3) and offset (3,)"
-        raise FemError(f"expected {expected}, found {m.shape}, {inertia.shape} and {c.shape}")
     even = np.allclose(inertia, inertia.T, rtol=SYMMETRIC, atol=0)
     least = np.linalg.eigvalsh(inertia)[0] if even else -np.inf
-    if not (m >= 0).all() or least < -SYMMETRIC * inertia.max():
-        expected = "mass >= 0 and inertia symmetric and not negative"
-        raise FemError(f"expected {expected}, found {member.mass!r} and {inertia.tolist()}")
+    if least < -SYMMETRIC * inertia.max():
+        raise wrong("inertia", "a symmetric matrix that is not negative", inertia.tolist())
     centre = np.concatenate([np.eye(3), -common.cross_matrix(c)], 1)
     M = centre.T @ (m[:, None] * centre)
     M[3:, 3:] += inertia

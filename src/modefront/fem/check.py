@@ -8,18 +8,16 @@ on an engineer should not trust a mesh; ``benchmarks/elements.py`` measures the 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from difflib import get_close_matches
 
 import numpy as np
 import numpy.typing as npt
 
 from modefront._typing import Floats, Ints
+from modefront.errors import Fault, refuse, suggestion, wrong
 from modefront.fem.elements.shapes import jacobian
 from modefront.fem.elements.shell import FOLD, corner_normals
 from modefront.fem.elements.solid import SOLIDS
-from modefront.fem.section import FemError
 from modefront.fem.structure import (
-    ALONG,
     DIRECTIONS,
     Axes,
     Beams,
@@ -46,18 +44,17 @@ def check_points(nodes: npt.ArrayLike) -> Floats:
     """Nodes as finite floats (nodes, 3)."""
     X = np.asarray(nodes, dtype=float)
     if X.ndim != 2 or X.shape[1] != 3 or len(X) == 0:
-        raise FemError(f"nodes: expected the shape (nodes, 3), found {X.shape}")
-    wrong = np.flatnonzero(~np.isfinite(X).all(1))
-    if len(wrong):
-        raise FemError(f"nodes: node {wrong[0]} is at {X[wrong[0]].tolist()}, expected numbers")
+        raise wrong("nodes", "the shape (nodes, 3)", X.shape)
+    if len(bad := np.flatnonzero(~np.isfinite(X).all(1))):
+        raise wrong("nodes", f"numbers as coordinates of node {bad[0]}", X[bad[0]].tolist())
     return X
 
 
 def _within(nodes: npt.NDArray[np.integer], count: int) -> Ints:
     """Return nodes, which have to be those of a model of `count`."""
-    wrong = nodes[(nodes < 0) | (nodes >= count)]
-    if wrong.size:
-        raise FemError(f"expected nodes from 0 to {count - 1}, found {wrong[0]}")
+    beyond = nodes[(nodes < 0) | (nodes >= count)]
+    if beyond.size:
+        raise wrong("", f"nodes from 0 to {count - 1}", beyond[0])
     return nodes.astype(np.int64)
 
 
@@ -65,7 +62,7 @@ def node_list(nodes: npt.ArrayLike, count: int) -> Ints:
     """One node or a list of nodes as an array."""
     array = np.atleast_1d(np.asarray(nodes))
     if array.ndim != 1 or array.size == 0 or not np.issubdtype(array.dtype, np.integer):
-        raise FemError(f"expected a list of nodes, found {nodes!r}")
+        raise wrong("", "a list of nodes", repr(nodes))
     return _within(array, count)
 
 
@@ -75,17 +72,12 @@ def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int) -> Ints
     integer = np.issubdtype(array.dtype, np.integer)
     if array.ndim != 2 or array.shape[1] not in sizes or len(array) == 0 or not integer:
         expected = f"cells, integers (elements, {' or '.join(map(str, sizes))})"
-        raise FemError(f"expected {expected}, found {array.dtype} of shape {array.shape}")
+        raise wrong("", expected, f"{array.dtype} of shape {array.shape}")
     return _within(array, count)
 
 
 def direction_indices(directions: Sequence[str]) -> list[int]:
-    """Columns of `directions`, of which there is one at least, in (x, y, z, rx, ry, rz)."""
-    for name in directions:
-        if name not in DIRECTIONS:
-            raise FemError(f"direction must be one of {DIRECTIONS}, found {name!r}")
-    if not directions:
-        raise FemError(f"no direction is given, expected some of {DIRECTIONS}")
+    """Columns of `directions` in (x, y, z, rx, ry, rz)."""
     return [DIRECTIONS.index(name) for name in directions]
 
 
@@ -96,11 +88,7 @@ def unit_vector(direction: Direction) -> Floats:
         name = direction.removeprefix("-")
         vector[direction_indices((name,))] = -1.0 if direction != name else 1.0
         return vector
-    components = np.asarray(direction, dtype=float)
-    length = np.linalg.norm(components)
-    if components.shape != (3,) or not 0 < length < np.inf:
-        raise FemError(f"expected a direction or vector (3,), found {direction!r}")
-    vector[:3] = components / length
+    vector[:3] = np.asarray(direction) / np.linalg.norm(direction)
     return vector
 
 
@@ -109,18 +97,8 @@ def axes_of(axes: Axes | None) -> Floats:
     if axes is None:
         return np.eye(3)
     given = np.asarray(axes, dtype=float)
-    if given.shape != (2, 3) or not np.isfinite(given).all():
-        raise FemError(f"expected axes of the shape (2, 3), found {axes!r}")
     x, z = given[0], np.cross(*given)
-    if not np.linalg.norm(z) > ALONG * np.prod(np.linalg.norm(given, axis=1)):
-        raise FemError(f"expected axes of two directions, found {axes!r}")
     return np.stack([v / np.linalg.norm(v) for v in (x, np.cross(z, x), z)])
-
-
-def check_positive(value: float, what: str) -> None:
-    """A stiffness, thickness or mass is positive and finite."""
-    if not 0 < value < np.inf:
-        raise FemError(f"{what} must be > 0, found {value!r}")
 
 
 def check_sizes(relative: Floats, cells: Ints, what: str) -> None:
@@ -128,13 +106,12 @@ def check_sizes(relative: Floats, cells: Ints, what: str) -> None:
 
     That is (elements,) the smallest det J over the power of the element's extent.
     """
-    wrong = np.flatnonzero(~(relative > FLAT))
-    if len(wrong):
-        e = wrong[0]
-        sign = "zero" if abs(relative[e]) <= FLAT else "negative"
+    bad = np.flatnonzero(~(relative > FLAT))
+    if len(bad):
+        e = bad[0]
+        found = f"zero {what}" if abs(relative[e]) <= FLAT else f"negative {what}"
         where = f"element {e} (nodes {', '.join(map(str, cells[e].tolist()))})"
-        count = f"Such elements: {len(wrong)} of {len(cells)}"
-        raise FemError(f"{where} has {sign} {what}; expected > 0 at every corner. {count}")
+        raise wrong(where, f"{what} > 0 at every corner", f"{found}; so {len(bad)} of {len(cells)}")
 
 
 def shell_sizes(X: Floats) -> Floats:
@@ -171,32 +148,27 @@ def check_names(structure: Structure) -> None:
         | {g.name for g in structure.groups if isinstance(g, Beams | Trusses) and g.force},
     }
     members = [s.name for s in structure.springs] + [m.name for m in structure.masses]
-    wrong = []
+    faults = []
     for what, names in (
         ("member", [*has["E"], *members, *(x.name for x in structure.loads)]),
         ("sensor", [s.name for s in structure.sensors]),
         ("parameter", [p.name for p in structure.parameters]),
     ):
-        expected = "expected a name used once, found it twice"
-        wrong += [f"{what} {name!r}: {expected}" for name in repeated(names)]
+        expected = "a name used once"
+        faults += [Fault("", f"{what} {x!r}", expected, "it twice") for x in repeated(names)]
     for name in sorted(has["E"]):
         classes = sorted({type(g).__name__ for g in structure.groups if g.name == name})
         if len(classes) > 1:
-            wrong.append(f"group {name!r}: expected one kind, found {classes}")
+            faults.append(Fault("", f"group {name!r}", "one kind", ", ".join(classes)))
     for parameter in structure.parameters:
-        place, quantity = f"parameter {parameter.name!r}", parameter.quantity
-        if quantity not in has:
-            wrong.append(f"{place}: quantity must be one of {', '.join(has)}, found {quantity!r}")
-        elif isinstance(parameter.of, str) or not parameter.of:
-            wrong.append(f"{place}: expected a list of names, found {parameter.of!r}")
-        else:
-            known = sorted(has[quantity])
-            for name in (name for name in parameter.of if name not in known):
-                hint = "".join(f"; did you mean {x!r}?" for x in get_close_matches(name, known, 1))
-                those = f"those that do: {', '.join(known) or 'none'}{hint}"
-                wrong.append(f"{place}: nothing named {name!r} has a {quantity}; {those}")
-    if wrong:
-        raise FemError(*wrong)
+        known = sorted(has[parameter.quantity])
+        expected = f"the name of what has {parameter.quantity}: {', '.join(known) or 'none has'}"
+        faults += [
+            Fault("", f"parameter {parameter.name!r}", expected, suggestion(name, known))
+            for name in parameter.of
+            if name not in known
+        ]
+    refuse(faults)
 
 
 DISTORTED = 0.3

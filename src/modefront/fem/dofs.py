@@ -20,9 +20,9 @@ from scipy import sparse
 from scipy.linalg import block_diag
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.errors import Fault, noted, wrong
 from modefront.fem.check import axes_of, direction_indices, node_list
 from modefront.fem.elements.common import cross_matrix
-from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import DIRECTIONS, Coupling, Link, Structure, Support
 from modefront.linalg.affine import sparse_rows
 from modefront.rounding import ACCUMULATED
@@ -56,12 +56,16 @@ class Followers:
     weight: sparse.csr_array
 
 
-def following_rows(X: Floats, structure: Structure, checks: Checks) -> list[Followers]:
-    """Return the rows of links and couplings in which nothing is wrong."""
-    rows = [checks.attempt(f"link {n}", _link, X, x) for n, x in enumerate(structure.links)]
-    for n, each in enumerate(structure.couplings):
-        rows.append(checks.attempt(f"coupling {n}", _coupling, X, each))
-    return [row for row in rows if row is not None]
+def following_rows(X: Floats, structure: Structure, faults: list[Fault]) -> list[Followers]:
+    """Return the rows of links and couplings in which nothing is wrong; note the faults."""
+    rows = []
+    for n, link in enumerate(structure.links):
+        with noted(faults, f"link {n}"):
+            rows.append(_link(X, link))
+    for n, coupling in enumerate(structure.couplings):
+        with noted(faults, f"coupling {n}"):
+            rows.append(_coupling(X, coupling))
+    return rows
 
 
 def _link(X: Floats, link: Link) -> Followers:
@@ -82,10 +86,9 @@ def _coupling(X: Floats, coupling: Coupling) -> Followers:
     node = node_list(coupling.node, len(X))
     of = node_list(coupling.of, len(X))
     weights = np.asarray(coupling.weights, dtype=float)
-    if weights.shape not in ((), of.shape) or not (weights > 0).all() or node[0] in of:
+    if weights.shape not in ((), of.shape) or node[0] in of:
         expected = f"other nodes than {node[0]}, with a weight above 0 for each or for all"
-        found = f"nodes {of.tolist()} and weights {weights.tolist()}"
-        raise FemError(f"expected {expected}, found {found}")
+        raise wrong("", expected, f"nodes {of.tolist()} and weights {weights.tolist()}")
     directions = direction_indices(coupling.directions)
     size = np.ptp(X[of], axis=0).max() or 1.0
     P = rigid_motion(X[of] - X[node])[:, :3] * np.repeat([1, 1 / size], 3)
@@ -95,8 +98,8 @@ def _coupling(X: Floats, coupling: Coupling) -> Followers:
     lost = [d for d in directions if abs(inverse[d] @ normal - np.eye(6)[d]).max() > UNDETERMINED]
     if lost:
         names = ", ".join(DIRECTIONS[d] for d in lost)
-        expected = "expected nodes that are not on one line, or fewer directions"
-        raise FemError(f"the nodes do not determine {names} of node {node[0]}; {expected}")
+        expected = "nodes that are not on one line, or fewer directions"
+        raise wrong("", expected, f"nodes that do not determine {names} of node {node[0]}")
     factors = np.zeros((1, 6, len(of), 6))
     factors[0, :, :, :3] = np.einsum("ij,ndj->ind", inverse, weighted)
     factors[0, 3:] /= size
@@ -130,7 +133,7 @@ def rigid_motion(arms: Floats) -> Floats:
 
 
 def hold(
-    X: Floats, supports: Sequence[Support], held: Bools, exists: Bools, checks: Checks
+    X: Floats, supports: Sequence[Support], held: Bools, exists: Bools, faults: list[Fault]
 ) -> list[Followers]:
     """Hold what supports hold; return what follows where they are not along global axes.
 
@@ -138,19 +141,15 @@ def hold(
     complete pivoting. What is held altogether is added to ``held`` (nodes, 6).
     """
     skew: dict[int, list[Floats]] = {}
-
-    def support(each: Support) -> None:
-        nodes = node_list(each.nodes, len(X))
-        directions = direction_indices(each.directions)
-        R = axes_of(each.axes)
-        if each.axes is None:
-            held[nodes[:, None], directions] = True
-            return
-        for node in nodes.tolist():
-            skew.setdefault(node, []).append(block_diag(R, R)[directions])
-
     for n, each in enumerate(supports):
-        checks.attempt(f"support {n}", support, each)
+        with noted(faults, f"support {n}"):
+            nodes, directions = node_list(each.nodes, len(X)), direction_indices(each.directions)
+            if each.axes is None:
+                held[nodes[:, None], directions] = True
+                continue
+            R = axes_of(each.axes)
+            for node in nodes.tolist():
+                skew.setdefault(node, []).append(block_diag(R, R)[directions])
     out = []
     for node, several in skew.items():
         C = np.concatenate([np.eye(6)[held[node]], *several]) * exists[node]
@@ -186,7 +185,7 @@ SKEW = 1e-6
 def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> Dofs:
     """Number the DOFs node by node and build T.
 
-    Raises FemError if a DOF is slave twice, slave and held, or follows itself.
+    Raises InputError if a DOF is slave twice, slave and held, or follows itself.
 
     A DOF ``exists`` (nodes, 6) where an element or link uses it, and a support holds those that are
     ``held`` (nodes, 6). The rows ``following`` of links, couplings and supports may be chains.
@@ -196,17 +195,18 @@ def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> D
     slave = np.concatenate([each.slave for each in (none, *following)])
     weight = sparse.csr_array(sparse.vstack([each.weight for each in (none, *following)]))
 
-    def refuse(wrong: Ints, what: str) -> None:
-        if len(wrong):
-            node, direction = divmod(int(wrong[0]), 6)
-            raise FemError(f"link: node {node}, {DIRECTIONS[direction]} is a slave and {what}")
+    def refuse(slaves: Ints, expected: str, found: str) -> None:
+        if len(slaves):
+            node, direction = divmod(int(slaves[0]), 6)
+            raise wrong(f"slave at node {node}, {DIRECTIONS[direction]}", expected, found)
 
     values, counts = np.unique(slave, return_counts=True)
     refuse(
         values[counts > 1],
-        "a slave of another link, coupling or support in axes; expected one of them for each",
+        "one link, coupling or support in axes that it follows",
+        "another",
     )
-    refuse(slave[held.ravel()[slave]], "held by a support; put the support on the master")
+    refuse(slave[held.ravel()[slave]], "no support but that of the master", "held by a support")
 
     free = (exists & ~held).ravel()
     free[slave] = False
@@ -219,7 +219,7 @@ def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> D
             break
         total, step = total + step @ B, sparse.csr_array(step @ A)
         step.eliminate_zeros()
-    refuse(slave[abs(step).sum(1) > 0], "its own master, by way of others")
+    refuse(slave[abs(step).sum(1) > 0], "a master that does not follow it", "one by way of others")
     all_rows = sparse.vstack([sparse.eye_array(len(q)), total], format="coo")
     places = np.append(q, slave)[all_rows.row], all_rows.col
     T = sparse.csr_array((all_rows.data, places), shape=(6 * nodes, len(q)))

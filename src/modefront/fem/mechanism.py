@@ -21,11 +21,11 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.errors import wrong
 from modefront.fem.blocks import Block
 from modefront.fem.check import SAME_PLACE
 from modefront.fem.dofs import Followers, rigid_motion
 from modefront.fem.elements.solid import SOLIDS
-from modefront.fem.section import FemError
 from modefront.fem.structure import DIRECTIONS
 from modefront.linalg.affine import sparse_rows
 from modefront.linalg.factorisation import factorise
@@ -188,7 +188,7 @@ def check_mechanisms(
 ) -> None:
     """Refuse structures with a motion that nothing resists.
 
-    Raises FemError, which names the nodes of the part that moves, and how.
+    Raises InputError, which names the nodes of the part that moves, and how.
 
     A support holds the DOFs ``held`` (nodes, 6) of those that there are; a ``floating`` structure
     may move as a rigid body as a whole.
@@ -211,7 +211,8 @@ def check_mechanisms(
             if N.shape[1] <= allowed and loose <= 1:
                 continue
         if N.shape[1]:
-            raise FemError(_describe(X, bodies, columns, N, parts))
+            expected = "every part to be held by supports, springs or links"
+            raise wrong("mechanism", expected, _describe(X, bodies, columns, N, parts))
 
 
 def _common_motions(bodies: Bodies, inside: Ints) -> Floats:
@@ -237,9 +238,8 @@ def _describe(X: Floats, bodies: Bodies, columns: Ints, N: Floats, parts: int) -
     names = ", ".join(map(str, nodes[:8].tolist())) + (", ..." if len(nodes) > 8 else "")
     centre = ", ".join(f"{c:.4g}" for c in X[nodes].mean(0))
     message = (
-        f"mechanism: {len(nodes)} nodes ({names}) about ({centre}) can move freely in"
-        f" {ways} ({N.shape[1]} independent motions); expected every part to be held by"
-        " supports, springs or links"
+        f"{len(nodes)} nodes ({names}) about ({centre}) that can move freely in {ways}"
+        f" ({N.shape[1]} independent motions)"
     )
     message += f". The structure falls into {parts} parts that nothing connects" * (parts > 1)
     others = np.flatnonzero((bodies.home >= 0) & ~np.isin(bodies.home, moving))

@@ -23,12 +23,12 @@ from typing import Any, Literal
 
 import numpy as np
 
+from modefront import errors
 from modefront._typing import Floats, Ints
-from modefront.errors import InputError, reason
-from modefront.fem.section import FemError
+from modefront.errors import suggestion
 from modefront.fem.structure import Cells
 from modefront.hdf5 import check_tree
-from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, refuse_holes
+from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, wrong
 from modefront.isolated import isolated
 from modefront.text import one_line
 
@@ -83,17 +83,18 @@ class Mesh:
 
         Shells of more than 4 nodes are divided into triangles and quadrilaterals.
 
-        Raises FemError if there is no such group, or it has cells of which no such elements can be
-        made.
+        Raises InputError if there is no such group, or it has cells of which no such elements can
+        be made.
         """
         blocks = [b for b in self.blocks if b.group == group]
         if not blocks:
-            groups = ", ".join(sorted({b.group for b in self.blocks})) or "none"
-            raise FemError(f"mesh: no group of cells named {group!r}; there are: {groups}")
+            groups = sorted({b.group for b in self.blocks})
+            expected = f"a group of the mesh ({', '.join(groups) or 'there is none'})"
+            raise errors.wrong("", expected, suggestion(group, groups))
         for block in blocks:
             if block.type not in CELL_TYPES[kind]:
-                has = f"mesh: group {group!r} has cells of the type {block.type}"
-                raise FemError(f"{has}; a {kind} can be made of: {', '.join(CELL_TYPES[kind])}")
+                expected = f"a group of the mesh with {' or '.join(CELL_TYPES[kind])}, for a {kind}"
+                raise errors.wrong("", expected, f"{group!r} with cells of type {block.type}")
         return tuple(
             np.concatenate([block.nodes[:, part] for part in parts])
             for block in blocks
@@ -103,15 +104,15 @@ class Mesh:
     def nodes_of(self, name: str) -> Ints:
         """Nodes of a set, or of the cells of a group, ascending.
 
-        Raises FemError if there is neither.
+        Raises InputError if there is neither.
         """
         blocks = [b.nodes.ravel() for b in self.blocks if b.group == name]
         if name in self.node_sets:
             blocks.append(self.node_sets[name])
         if not blocks:
             names = sorted({b.group for b in self.blocks} | set(self.node_sets))
-            there = ", ".join(names) or "none"
-            raise FemError(f"mesh: no group or set of nodes named {name!r}; there are: {there}")
+            expected = f"a group or node set of the mesh ({', '.join(names) or 'there is none'})"
+            raise errors.wrong("", expected, suggestion(name, names))
         return np.unique(np.concatenate(blocks))
 
 
@@ -121,28 +122,20 @@ def read_mesh(path: str | Path) -> Mesh:
     The file is read in a process of its own, with limits on time and memory, and what it refers to
     in other files is refused.
 
-    Raises FemError if meshio is not installed, or the file is missing or not a mesh that it can
+    Raises InputError if meshio is not installed, or the file is missing or not a mesh that it can
     read.
     """
-    if importlib.util.find_spec("meshio") is None:
-        raise FemError("reading meshes needs meshio: install it with `pip install modefront[mesh]`")
     path = Path(path)
-    try:
-        size = file_size(path, "a mesh", MOST_DATA)
-        refuse_holes(path, "a mesh", size)
-        if reference := refers_to(path):
-            raise FemError(f"{path}: expected a mesh that is one file, found {reference}")
-        memory = min(available_memory(), MEMORY + PER_BYTE * size)
-        reader, expected = f"{__name__}:read_with_meshio", "a mesh that meshio can read"
-        arrays, parts = isolated(reader, path, expected, memory=memory)
-    except InputError as error:
-        fault = error.faults[0]
-        raise FemError(f"{path}: expected {fault.expected}, found {fault.found}") from None
-    except OSError as error:
-        raise FemError(f"{path}: expected a mesh, found {reason(error)}") from None
+    if importlib.util.find_spec("meshio") is None:
+        expected = "meshio for meshes (`pip install modefront[mesh]`)"
+        raise wrong(path, expected, "no such package")
+    size = file_size(path, "a mesh", MOST_DATA)
+    memory = min(available_memory(), MEMORY + PER_BYTE * size)
+    reader, expected = f"{__name__}:read_with_meshio", "a mesh that meshio can read"
+    arrays, parts = isolated(reader, path, expected, memory=memory)
     points = arrays.pop("points")
-    if points.ndim != 2 or not 1 <= points.shape[1] <= 3 or len(points) == 0:
-        raise FemError(f"{path}: expected nodes in up to 3 dimensions, found {points.shape}")
+    if points.ndim != 2 or not 1 <= points.shape[1] <= 3:
+        raise wrong(path, "nodes in up to 3 dimensions", str(points.shape))
     named = enumerate(parts["blocks"])
     blocks = [Cells(name, kind, arrays[f"cells {k}"]) for k, (name, kind) in named]
     sets = {name: arrays[f"set {k}"] for k, name in enumerate(parts["sets"])}
@@ -179,6 +172,8 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     import h5py
     import meshio
 
+    if reference := refers_to(path):
+        raise wrong(path, "a mesh that is one file", reference)
     if is_hdf5(path):  # MED
         with h5py.File(path, "r") as file:
             check_tree(file)
@@ -196,9 +191,9 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
                 _check_sections(path.read_bytes())
             raw = meshio.read(path)
     except (Exception, SystemExit) as error:
-        raise FemError(" ".join(f"{output.getvalue()} {error}".split())) from error
+        raise ValueError(f"{output.getvalue()} {error}") from error
     if not len(raw.points) or not any(len(block.data) for block in raw.cells):
-        raise FemError("expected nodes and cells, found none of one or the other")
+        raise wrong(path, "nodes and cells", "none of one or the other")
     blocks: dict[tuple[str, str], list[Ints]] = {}
     for name, kind, cells in _named_cells(raw):
         blocks.setdefault((str(name), kind), []).append(cells)

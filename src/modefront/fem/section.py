@@ -5,79 +5,39 @@ Warping is free: where it is held, open thin walls twist less than beams.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field
-from typing import Annotated, ParamSpec, TypeVar
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.options import NUMBER, PAIR, array, number, numbers
+from modefront.errors import wrong
+from modefront.options import (
+    ABOVE_ZERO,
+    NUMBER,
+    PAIR,
+    Checked,
+    Requirement,
+    array,
+    check_fields,
+    number,
+    numbers,
+)
 
-DENSITY, THREE = number("a density of 0 or more", least=0), array(NUMBER, 3, 3)
+DENSITY = number("a density of 0 or more", least=0)
 Length = Annotated[float, number("a number above 0", above=0)]
-Factor = Annotated[float, number("a shear factor above 0", above=0)]
-
-P = ParamSpec("P")
-T = TypeVar("T")
-
-
-class FemError(ValueError):
-    """A model that cannot be built: says where, what was expected and what was found.
-
-    Attributes
-    ----------
-    messages : one for each thing that is wrong
-    """
-
-    def __init__(self, *messages: str) -> None:
-        self.messages = messages
-        super().__init__("\n".join(messages))
-
-
-@contextmanager
-def at(place: str) -> Iterator[None]:
-    """Have messages begin with the place of what is checked; with an empty one as they are."""
-    try:
-        yield
-    except FemError as error:
-        raise FemError(*(f"{place}: {x}" if place else x for x in error.messages)) from None
+Factor = Annotated[
+    float, Requirement("a shear factor above 0", {"type": "number", "exclusiveMinimum": 0}, float)
+]
+POSITIVE = array(ABOVE_ZERO, 3, 3)
 
 
 @dataclass(frozen=True)
-class Checks:
-    """Checks that go on after one of them fails, so that all that is wrong is said at once.
-
-    Attributes
-    ----------
-    messages : what is wrong
-    """
-
-    messages: list[str] = field(default_factory=list)
-
-    def attempt(
-        self, place: str, check: Callable[P, T], *args: P.args, **kwargs: P.kwargs
-    ) -> T | None:
-        """Return the result of a function; None, with messages noted for a place, if it fails."""
-        try:
-            with at(place):
-                return check(*args, **kwargs)
-        except FemError as error:
-            self.messages.extend(m for m in error.messages if m not in self.messages)
-            return None
-
-    def close(self) -> None:
-        """Raise FemError with everything that is wrong, if anything is."""
-        if self.messages:
-            raise FemError(*self.messages)
-
-
-@dataclass(frozen=True)
-class Material:
+class Material(Checked):
     """Isotropic material, in consistent units (SI: Pa, -, kg/m^3).
 
-    Raises FemError if a value is outside its range.
+    Raises InputError if a value is outside its range.
 
     Attributes
     ----------
@@ -89,15 +49,6 @@ class Material:
     E: Annotated[float, number("Young's modulus above 0", above=0)]
     nu: Annotated[float, number("Poisson's ratio between -1 and 0.5", above=-1, below=0.5)]
     rho: Annotated[float, DENSITY]
-
-    def __post_init__(self) -> None:
-        for name, value, expected, ok in (
-            ("E", self.E, "> 0", self.E > 0),
-            ("nu", self.nu, "between -1 and 0.5", -1 < self.nu < 0.5),
-            ("rho", self.rho, ">= 0", self.rho >= 0),
-        ):
-            if not ok:
-                raise FemError(f"material: {name} must be {expected}, found {value!r}")
 
     @property
     def G(self) -> float:
@@ -113,7 +64,7 @@ class Material:
 class Orthotropic:
     """Orthotropic material, such as wood or a laminate, by its axes 1, 2 and 3.
 
-    Raises FemError if a value is outside its range, or the elasticity matrix is not positive
+    Raises InputError if a value is outside its range, or the elasticity matrix is not positive
     definite.
 
     Attributes
@@ -124,21 +75,15 @@ class Orthotropic:
     rho : density, >= 0
     """
 
-    E: Annotated[tuple[float, float, float], numbers("three values of E", THREE)]
-    nu: Annotated[tuple[float, float, float], numbers("three values of nu", THREE)]
-    G: Annotated[tuple[float, float, float], numbers("three values of G", THREE)]
+    E: Annotated[tuple[float, float, float], numbers("three values of E above 0", POSITIVE)]
+    nu: Annotated[tuple[float, float, float], numbers("three values of nu", array(NUMBER, 3, 3))]
+    G: Annotated[tuple[float, float, float], numbers("three values of G above 0", POSITIVE)]
     rho: Annotated[float, DENSITY]
 
     def __post_init__(self) -> None:
-        for name, value in (("E", self.E), ("G", self.G)):
-            if len(value) != 3 or not min(value) > 0:
-                raise FemError(f"material: {name} must be three values > 0, found {value!r}")
-        if len(self.nu) != 3 or not self.rho >= 0:
-            expected = "three Poisson's ratios and rho >= 0"
-            raise FemError(f"material: expected {expected}, found {self.nu!r} and {self.rho!r}")
+        check_fields(self)
         if not np.linalg.eigvalsh(self.compliance()[:3, :3] * max(self.E))[0] > 0:
-            what = "nu must leave the elasticity positive definite"
-            raise FemError(f"material: {what}, found {self.nu!r}")
+            raise wrong("nu", "ratios that leave the elasticity positive definite", self.nu)
 
     def compliance(self) -> Floats:
         """Return S (6, 6), strains of stresses 11, 22, 33, 23, 13, 12 (engineering shear)."""
@@ -153,10 +98,10 @@ def _compliance(E: Sequence[float], nu: Sequence[float], G: Sequence[float]) -> 
 
 
 @dataclass(frozen=True)
-class Section:
+class Section(Checked):
     """Section constants of a beam; lengths in the unit of the nodes.
 
-    Raises FemError if a constant is not positive.
+    Raises InputError if a constant is not positive.
 
     Attributes
     ----------
@@ -174,11 +119,6 @@ class Section:
     kappa_z: Factor = 5 / 6
     shear_centre: Annotated[tuple[float, float], numbers("its y and z", PAIR)] = (0.0, 0.0)
 
-    def __post_init__(self) -> None:
-        for name, value in vars(self).items():
-            if name != "shear_centre" and not value > 0:
-                raise FemError(f"section: {name} must be > 0, found {value!r}")
-
 
 def rectangle(b_y: Length, b_z: Length) -> Section:
     """Solid rectangle, b_y along local y and b_z along local z.
@@ -195,10 +135,10 @@ def rectangle(b_y: Length, b_z: Length) -> Section:
 def hollow_rectangle(b_y: Length, b_z: Length, wall: Length) -> Section:
     """Rectangular tube of outer sides b_y, b_z; J after Bredt, shear on the webs alone.
 
-    Raises FemError if the walls meet: 2 wall >= min(b_y, b_z).
+    Raises InputError if the walls meet: 2 wall >= min(b_y, b_z).
     """
     if 2 * wall >= min(b_y, b_z):
-        raise FemError(f"section: wall must be < {min(b_y, b_z) / 2}, found {wall}")
+        raise wrong("wall", f"less than {min(b_y, b_z) / 2}", wall)
     i_y, i_z = b_y - 2 * wall, b_z - 2 * wall
     A = b_y * b_z - i_y * i_z
     middle_y, middle_z = b_y - wall, b_z - wall
@@ -216,10 +156,10 @@ def circle(diameter: Length) -> Section:
 def tube(diameter: Length, wall: Length) -> Section:
     """Circular tube of outer diameter; shear factor 1/2 of a thin wall.
 
-    Raises FemError if the wall is not thinner than the radius.
+    Raises InputError if the wall is not thinner than the radius.
     """
     inner = diameter - 2 * wall
     if not 0 < inner < diameter:
-        raise FemError(f"section: wall must be between 0 and {diameter / 2}, found {wall}")
+        raise wrong("wall", f"between 0 and {diameter / 2}", wall)
     moment = np.pi * (diameter**4 - inner**4) / 64
     return Section(np.pi * (diameter**2 - inner**2) / 4, moment, moment, 2 * moment, 0.5, 0.5)

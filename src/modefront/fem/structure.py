@@ -20,6 +20,7 @@ from modefront.options import (
     NOT_NEGATIVE,
     NUMBER,
     WHOLE,
+    Checked,
     Requirement,
     any_of,
     array,
@@ -31,6 +32,7 @@ from modefront.options import (
 )
 
 Direction = str | Sequence[float]
+Vector = Sequence[float]
 Axes = tuple[Sequence[float], Sequence[float]]
 """Local axes: the local x axis, and a vector in the local x-y plane."""
 
@@ -46,6 +48,7 @@ NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
 
 VECTOR = array(NUMBER, 3, 3)
 OF_VECTOR = numbers("a vector of 3 numbers", VECTOR)
+DIRECTED = numbers("a vector of 3 numbers, not all of them 0", VECTOR, any)
 NAMES, OF_NAMES = ", ".join(DIRECTIONS), array({"enum": [*DIRECTIONS]})
 SOME = Requirement(f"a list of {NAMES}", {**OF_NAMES, "minItems": 1})
 DIRECTION = Requirement(
@@ -65,6 +68,7 @@ NODES = Requirement(
     "a node counted from 0, the name of a group or node set, or a list of these",
     any_of(NODE, array(NODE, 1)),
 )
+PLACE = Requirement("a node from 0, or 3 coordinates", any_of(whole(0, WHOLE).schema, VECTOR))
 OFFSETS = Requirement("a vector of 3 numbers for either end", array(VECTOR, 2, 2))
 RELEASES = Requirement(f"a list for either end, of {NAMES}", array(OF_NAMES, 2, 2))
 FORCE = number("an axial force")
@@ -77,8 +81,11 @@ def _one_or(count: int, expected: str, one: Mapping[str, object]) -> Requirement
 
 STIFFNESS = _one_or(6, "a stiffness above 0, or 6 of 0 or more", ABOVE_ZERO)
 MASS = _one_or(3, "a mass of 0 or more, or 3 for x, y and z", NOT_NEGATIVE)
-INERTIA = numbers("3 moments of inertia of 0 or more", array(NOT_NEGATIVE, 3, 3))
-WEIGHTS = numbers("numbers above 0", array(ABOVE_ZERO, 1))
+INERTIA = Requirement(
+    "3 moments of inertia of 0 or more, or a matrix of 3 x 3",
+    any_of(array(NOT_NEGATIVE, 3, 3), array(VECTOR, 3, 3)),
+)
+WEIGHTS = Requirement("numbers above 0, or one for all", any_of(ABOVE_ZERO, array(ABOVE_ZERO, 1)))
 LOADED = numbers("3 components, or 6 with moments", any_of(VECTOR, array(NUMBER, 6, 6)))
 STRAINS = mapping("a table, group = free strain", number("a strain"))
 SCALED = Requirement("a list of groups, springs, masses or loads", array({"type": "string"}, 1))
@@ -101,7 +108,7 @@ class Cells:
 
 
 @dataclass(frozen=True)
-class Beams:
+class Beams(Checked):
     """Group of Timoshenko beams.
 
     Attributes
@@ -121,14 +128,14 @@ class Beams:
     cells: npt.ArrayLike
     material: Material
     section: Section
-    orientation: Annotated[Sequence[float], OF_VECTOR] | None = None
+    orientation: Annotated[Vector, DIRECTED] | None = None
     offsets: Annotated[npt.ArrayLike, OFFSETS] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     releases: Annotated[tuple[Sequence[str], Sequence[str]], RELEASES] = ((), ())
     force: Annotated[float, FORCE] = 0.0
 
 
 @dataclass(frozen=True)
-class Trusses:
+class Trusses(Checked):
     """Group of straight bars that carry axial forces only, such as members of trusses and cables.
 
     Attributes
@@ -147,7 +154,7 @@ class Trusses:
 
 
 @dataclass(frozen=True)
-class Shells:
+class Shells(Checked):
     """Group of shells of 3 or 4 nodes, curved where their elements meet at small angles.
 
     Attributes
@@ -164,11 +171,11 @@ class Shells:
     material: Material | Orthotropic
     thickness: Annotated[float, number("a thickness above 0", above=0)]
     offset: Annotated[float, number("a distance")] = 0.0
-    direction: Annotated[Sequence[float], OF_VECTOR] | None = None
+    direction: Annotated[Vector, DIRECTED] | None = None
 
 
 @dataclass(frozen=True)
-class Solids:
+class Solids(Checked):
     """Group of bricks, wedges or tetrahedra.
 
     Attributes
@@ -190,7 +197,7 @@ Group = Beams | Trusses | Shells | Solids
 
 
 @dataclass(frozen=True)
-class Support:
+class Support(Checked):
     """Nodes held in the given directions.
 
     Attributes
@@ -206,7 +213,7 @@ class Support:
 
 
 @dataclass(frozen=True)
-class Spring:
+class Spring(Checked):
     """Springs, equal ones, from each node to the ground or to a partner.
 
     Attributes
@@ -232,7 +239,7 @@ class Spring:
 
 
 @dataclass(frozen=True)
-class Mass:
+class Mass(Checked):
     """Lumped mass, the same at each of the nodes.
 
     Attributes
@@ -252,7 +259,7 @@ class Mass:
 
 
 @dataclass(frozen=True)
-class Link:
+class Link(Checked):
     """Rigid link (RBE2): the slaves follow the master in the given directions.
 
     Attributes
@@ -268,7 +275,7 @@ class Link:
 
 
 @dataclass(frozen=True)
-class Coupling:
+class Coupling(Checked):
     """Interpolating coupling (RBE3): a node follows the mean motion of others.
 
     It has the rigid motion that is nearest to the displacements of the others, in weighted least
@@ -289,7 +296,7 @@ class Coupling:
 
 
 @dataclass(frozen=True)
-class Load:
+class Load(Checked):
     """Static load, of which the internal forces add to the stiffness (prestress).
 
     Forces in the structure as given are found by a linear solution, and held; the axial forces of
@@ -299,20 +306,20 @@ class Load:
     Attributes
     ----------
     name : of the load, for parameters
-    nodes, force : (3,) or (6,) with moments, global axes, at each of the nodes
+    nodes, force : (3,) or (6,) with moments, global axes, at each of the nodes; None for no nodes
     acceleration : (3,) of gravity, which acts on all masses
     strains : free strain, such as that of heat, by name of the group
     """
 
     name: Annotated[str, text("the name of the load")]
-    nodes: Annotated[npt.ArrayLike, NODES] = ()
+    nodes: Annotated[npt.ArrayLike, NODES] | None = None
     force: Annotated[Sequence[float], LOADED] = (0.0, 0.0, 0.0)
-    acceleration: Annotated[Sequence[float], OF_VECTOR] = (0.0, 0.0, 0.0)
+    acceleration: Annotated[Vector, OF_VECTOR] = (0.0, 0.0, 0.0)
     strains: Annotated[Mapping[str, float], STRAINS] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
-class Sensor:
+class Sensor(Checked):
     """Sensor at a node, or at coordinates where a node is.
 
     Attributes
@@ -326,13 +333,13 @@ class Sensor:
     """
 
     name: str
-    at: int | Sequence[float]
-    direction: Direction
-    tolerance: float | None = None
+    at: Annotated[int | Vector, PLACE]
+    direction: Annotated[Direction, DIRECTION]
+    tolerance: Annotated[float, number("a distance above 0", above=0)] | None = None
 
 
 @dataclass(frozen=True)
-class Parameter:
+class Parameter(Checked):
     """Parameter of a structure: a factor on a quantity of all members with the given names.
 
     Attributes

@@ -46,11 +46,9 @@ def mesh_model(
 
     Raises
     ------
-    modefront.fem.FemError
-        If the structure is wrong: unknown nodes, distorted elements, parts that can move freely,
-        sensors where nothing moves.
     InputError
-        For a parameter of the structure that is not among ``parameters``.
+        If the structure is wrong: unknown nodes, distorted elements, parts that can move freely,
+        sensors where nothing moves; for a parameter that is not among ``parameters``.
     """
     whole = replace(structure, sensors=(*structure.sensors, *outputs))
     built = fem.assemble(whole, floating=floating)

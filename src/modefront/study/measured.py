@@ -16,18 +16,17 @@ from modefront.data.uff import NodalModes, is_universal, read_uff55
 from modefront.errors import InputError, reason, suggestion
 from modefront.families import Family
 from modefront.fem.check import unit_vector
-from modefront.fem.section import FemError
+from modefront.fem.structure import DIRECTION
 from modefront.findings.record import found
 from modefront.inputs import file_size, wrong
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry, axis_name
 from modefront.models.matrices import MatrixModel
-from modefront.options import NAME, Requirement, Table, any_of, closed, keys, text, whole
+from modefront.options import NAME, Table, any_of, closed, keys, text, whole
 
 FILE = text("the name of a file of modal data")
 COVARIANCE = text("the name of a file of covariances of shapes, in CSV")
-NODE, DIRECTIONS = whole(0, 10**9), "x, y, z, rx, ry, rz or a vector"
-DIRECTION = Requirement(DIRECTIONS, any_of({"type": "string"}, {"type": "array"}))
+NODE = whole(0, 10**9)
 OF_PLACE = keys(["node", "direction"], node=NODE, direction=DIRECTION)
 PLACE = any_of(
     NAME, closed({"node": NODE.schema, "direction": DIRECTION.schema}, ["node", "direction"])
@@ -160,11 +159,7 @@ def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | 
     if not position.size:
         inner.fault("node", "a node of the test", str(known["node"]))
         return None
-    try:
-        return int(position[0]), unit_vector(known["direction"])
-    except FemError as error:
-        inner.fault("direction", DIRECTIONS, str(error))
-        return None
+    return int(position[0]), unit_vector(known["direction"])
 
 
 def _by_coordinates(

@@ -5,8 +5,7 @@ Each key of a table of members is the argument of a class of `modefront.fem`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -62,7 +61,7 @@ SHAPES: Mapping[str, Callable[..., fem.Section]] = {
 def _section(group: Table, key: str) -> fem.Section | None:
     table = group.table(key)
     shape = table and table.choice("shape", tuple(SHAPES))
-    return _made(table, SHAPES[shape], "section") if table and shape else None
+    return table.record(SHAPES[shape]) if table and shape else None
 
 
 SECTION = Requirement(
@@ -174,22 +173,6 @@ class MeshModel(Checked):
     ) = None
 
 
-@contextmanager
-def _noted(table: Table, key: str, expected: str) -> Iterator[None]:
-    """Note what `modefront.fem` finds wrong."""
-    try:
-        yield
-    except fem.FemError as error:
-        for message in error.messages:
-            table.fault(key, expected, message)
-
-
-def _made(table: Table, make: Callable[..., Any], what: str) -> Any:
-    """Return what a class or function makes of a table, None where something is wrong."""
-    with _noted(table, "", f"a {what} that is possible"):
-        return None if (values := table.read(options(make))) is None else make(**values)
-
-
 def listed(value: object) -> list[Any]:
     """Return a list as it is, and anything else as a list of itself."""
     return value if isinstance(value, list) else [value]
@@ -198,10 +181,7 @@ def listed(value: object) -> list[Any]:
 def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
     """Return the model that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
-    read, name, mesh = table.record(MeshModel), table.values.get("file"), None
-    if is_name(name):
-        with _noted(table, "file", "a mesh that can be read"):
-            mesh = read_mesh(table.path(str(name)))
+    read, mesh = table.record(MeshModel), table.content("file", read_mesh)
     if mesh is None:  # what the tables say cannot be judged without it
         return None
     count, used = len(mesh.nodes), set[str]()
@@ -213,7 +193,7 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
         for place in listed(member.values[key]):
             if isinstance(place, str):
                 used.add(place)
-                with _noted(member, key, "a group or node set of the mesh"):
+                with member.noting(key):
                     out |= dict.fromkeys(mesh.nodes_of(place).tolist())
             elif place >= count:
                 member.fault(key, from_zero("nodes", count, place), str(place))
@@ -241,7 +221,7 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
     outputs = _places(table, "outputs")
     table.notes += unused_groups(mesh, (g.name for g in structure.groups), used)
     if read is not None and len(table.faults) == before:
-        with _noted(table, "", "a structure that can be assembled"):
+        with table.noting():
             return mesh_model(structure, parameters, floating=read.floating, outputs=outputs)
         return None
     # What else would be wrong with the structure; names count in tables with faults as well.
@@ -261,10 +241,8 @@ def _groups(model: Table, mesh: Mesh) -> list[Group]:
     """Return the blocks of all groups; one group may have cells of several types."""
     out: list[Group] = []
     materials = {
-        name: _made(
-            entry,
-            fem.Orthotropic if isinstance(entry.values.get("E"), list) else fem.Material,
-            "material",
+        name: entry.record(
+            fem.Orthotropic if isinstance(entry.values.get("E"), list) else fem.Material
         )
         for name, entry in model.entries("material", "a table E, nu, rho", "material")
     }
@@ -278,7 +256,7 @@ def _groups(model: Table, mesh: Mesh) -> list[Group]:
         values, name = group.read([name_of, material_of, *own]), group.values.get("name")
         if kind is None or not is_name(name):
             continue
-        with _noted(group, "name", "a group of the mesh"):
+        with group.noting("name"):
             blocks = mesh.cells_of(str(name), kind)
             if values and (material := materials.get(values.pop("material"))):
                 out += [
