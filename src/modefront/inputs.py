@@ -27,9 +27,6 @@ KINDS = {
 }
 """Names of the kinds of files that are not regular."""
 
-SAMPLES, SAMPLE = 32, 4096
-"""Number and length of the parts of a file that are checked for holes."""
-
 
 def file_size(path: Path, expected: str, most: int | None = None) -> int:
     """Return the size of a regular file, ``most`` or less, in bytes; links are followed.
@@ -52,29 +49,15 @@ def file_size(path: Path, expected: str, most: int | None = None) -> int:
 
 
 def read_text_bytes(path: Path, expected: str, most: int) -> bytes:
-    """Return the content of a regular file in which there are no holes.
+    """Return the content of a regular file.
 
     Raises InputError as `file_size` does, and where the file cannot be read.
     """
-    size = file_size(path, expected, most)
+    file_size(path, expected, most)
     try:
-        refuse_holes(path, expected, size)
         return path.read_bytes()
     except (OSError, MemoryError) as error:
         raise wrong(path, expected, reason(error)) from None
-
-
-def refuse_holes(path: Path, expected: str, size: int) -> None:
-    """Raise InputError where half of a file, as far as is looked, is zeros."""
-    if size < SAMPLES * SAMPLE:
-        return
-    with path.open("rb") as stream:
-        empty = 0
-        for k in range(SAMPLES):
-            stream.seek(k * (size - SAMPLE) // (SAMPLES - 1))
-            empty += not stream.read(SAMPLE).strip(b"\0")
-    if empty > SAMPLES // 2:
-        raise wrong(path, expected, "zeros in most places: a file with holes, or torn")
 
 
 def is_hdf5(path: Path) -> bool:

@@ -71,8 +71,8 @@ def isolated(
             return _called(function, path, arguments)
         with tempfile.TemporaryDirectory(prefix="modefront-") as folder:
             answer = Path(folder) / "answer.npz"
-            request = [function, [str(path), *arguments], str(answer), seconds, memory]
-            error, found = _SERVER.answer([*request, str(Path.cwd())], seconds, memory)
+            request = [function, [str(path), *arguments], str(answer), memory, str(Path.cwd())]
+            error, found = _SERVER.answer(request, seconds, memory)
             if not error:
                 with np.load(answer, allow_pickle=False) as file:
                     return {each: file[each] for each in file.files}, found
@@ -119,10 +119,9 @@ class _Server:
         Raises RuntimeError where the process has ended, or has not answered in time.
         """
         with self._lock:
-            process, late = self._started(), time.monotonic() + seconds + 30  # to start and answer
-            timer = threading.Timer(late - time.monotonic(), _kill, [process])
+            process, late = self._started(), time.monotonic() + seconds
+            timer, line = threading.Timer(seconds, _kill, [process]), ""
             timer.start()
-            line = ""
             try:
                 assert process.stdin is not None
                 assert process.stdout is not None
@@ -137,7 +136,7 @@ class _Server:
                 timer.cancel()
                 if not line:  # it has ended, or there was an interrupt
                     self.end()
-        if time.monotonic() > late or status == -getattr(signal, "SIGALRM", 0):
+        if time.monotonic() > late:
             raise RuntimeError(f"nothing within {seconds:.0f} s, after which reading was given up")
         if status == -getattr(signal, "SIGKILL", 0):  # by the system, which has no more
             raise RuntimeError(TOO_MUCH.format(memory / 1e9))
@@ -191,31 +190,21 @@ def serve() -> None:
     for number in (1, 2):
         os.dup2(nowhere, number)
     for line in sys.stdin:
-        function, called, answer, seconds, memory, work = json.loads(line)
-        with suppress(Exception):  # what fails fails again, and is said, below
-            importlib.import_module(function.split(":")[0])
-        _alarm(seconds)
-        found = json.dumps(_read(function, called, Path(answer), memory, work))
-        _alarm(0)
+        found = json.dumps(_read(*json.loads(line)))
         os.write(answers, f"{found}\n".encode())
 
 
-def _alarm(seconds: float) -> None:
-    """End this process after some seconds, where the system can; 0 is never."""
-    if hasattr(signal, "setitimer"):
-        signal.setitimer(signal.ITIMER_REAL, seconds)
-
-
 def _read(
-    function: str, called: Sequence[str], answer: Path, memory: int, work: str
+    function: str, called: Sequence[str], answer: str, memory: int, work: str
 ) -> tuple[str, object]:
     """Read one file, and write its arrays into another; return the rest, or what is wrong."""
     path, *arguments = called
     try:
+        importlib.import_module(function.split(":")[0])
         os.chdir(work)
         limit(memory)
         arrays, texts = _called(function, Path(path), arguments)
-        with output(answer) as stream:
+        with output(Path(answer)) as stream:
             np.savez(stream, allow_pickle=False, **arrays)
         return "", texts
     except InputError as error:

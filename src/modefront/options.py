@@ -434,7 +434,7 @@ def shown(value: object) -> str:
         return f"[{', '.join(map(shown, known))}]" if short else f"a list of {len(known)}"
     if isinstance(known, int | float) and LARGEST < abs(known) < math.inf:
         return f"a number beyond {LARGEST:g}"
-    return str(known)
+    return "nothing" if known is None else str(known)
 
 
 @dataclass
@@ -508,7 +508,7 @@ class Table:
             return default
         if value is not None and requirement.holds(value):
             return requirement.read(self, key) if requirement.read else requirement.convert(value)
-        self.fault(key, requirement.expected, "nothing" if value is None else shown(value))
+        self.fault(key, requirement.expected, shown(value))
         return None if default is ... else default
 
     def take(self, key: str, expected: str, test: Callable[[Any], bool], default: Any) -> Any:

@@ -30,7 +30,6 @@ from modefront.inputs import (
     available_memory,
     ended_column,
     file_size,
-    refuse_holes,
     wrong,
 )
 from modefront.outputs import write_table
@@ -283,9 +282,8 @@ def opened(path: Path, what: str) -> Iterator[tuple[TextIO, str, int]]:
 
     Raises InputError for what is no text, too large, or torn.
     """
-    size = file_size(path, what, min(MOST_DATA, available_memory() // 4))
+    file_size(path, what, min(MOST_DATA, available_memory() // 4))
     try:
-        refuse_holes(path, what, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:
             lines, first = 1, stream.readline(10**6)
             while first and not first.strip(SEPARATORS + " \r\n"):

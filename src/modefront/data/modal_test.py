@@ -24,7 +24,7 @@ from modefront.data.impact import EVEN, TIME, Contents, Functions, Windows, aver
 from modefront.data.responses import EXPECTED, ORDERS, DataSet, assemble, joined
 from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import is_universal, read_functions, read_uff
-from modefront.errors import Fault, InputError, refuse, suggestion
+from modefront.errors import Fault, InputError, noted, refuse, suggestion
 from modefront.inputs import MOST_DATA, file_size, wrong
 from modefront.isolated import Read, isolated
 from modefront.options import (
@@ -399,10 +399,8 @@ def _setups(root: Table, sets: Sequence[SetFiles]) -> tuple[Records, ...]:
 def _data_set(root: Table, known: SetFiles) -> DataSet:
     contents = []
     for file, reference in zip(known.files, known.references, strict=True):
-        try:
+        with noted(root.faults):
             contents.append(_contents(file, reference, known.columns))
-        except InputError as error:
-            root.faults.extend(error.faults)
     for unused in sorted(frozenset.intersection(*(x.unused for x in contents or [Contents()]))):
         expected = "a column of the CSV files of the set"
         root.fault(f"[[set]] {known.name!r} columns", expected, repr(unused))

@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -94,15 +94,13 @@ def parameters_of(
 
     Raises InputError with all that is wrong with them.
     """
-    out, faults = [], []
+    out, faults = [], list[Fault]()
     for name in dict.fromkeys([*bounds, *nominal]):
-        for what in [*["bounds"] * (name not in bounds), *["nominal"] * (name not in nominal)]:
-            faults.append(Fault("", f"{what} of '{name}'", f"{what} of each parameter", "nothing"))
-        if name in bounds and name in nominal:
-            try:
-                out.append(Parameter(name, nominal[name], bounds[name]))
-            except InputError as error:
-                faults += [replace(x, place=f"{x.place} of '{name}'") for x in error.faults]
+        known: Any = nominal.get(name), bounds.get(name)
+        try:
+            out.append(Parameter(name, *known))
+        except InputError as error:
+            faults += [replace(x, place=f"{x.place} of '{name}'") for x in error.faults]
     refuse(faults)
     return out
 

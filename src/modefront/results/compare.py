@@ -19,7 +19,7 @@ import scipy
 
 from modefront._typing import Floats
 from modefront.datasets import Dataset
-from modefront.errors import Fault, InputError, refuse
+from modefront.errors import Fault, InputError, noted, refuse
 from modefront.front.point import Kind, front_points, position, preferred
 from modefront.predictions.base import kinds_in
 from modefront.results.files import read_dataset
@@ -184,10 +184,8 @@ def read_together(
     faults: list[Fault] = []
     results: list[tuple[str, Dataset]] = []
     for folder in listed:
-        try:
+        with noted(faults):
             results.append((str(folder), read_dataset(folder)))
-        except InputError as error:
-            faults.extend(error.faults)
     groups = [", ".join(map(str, data["group"].values)) for _, data in results]
     for (name, _), other in zip(results, groups, strict=True):
         if other != groups[0]:

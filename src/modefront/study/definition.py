@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
-from modefront.errors import Fault, InputError, refuse
+from modefront.errors import Fault, noted, refuse
 from modefront.findings.record import Finding
 from modefront.front.given import Weighted
 from modefront.front.methods import METHODS
@@ -99,11 +99,12 @@ class Study:
 
     def _contradictions(self) -> Iterator[Fault]:
         kinds = dict.fromkeys(prediction.kind for prediction in self.predictions)
-        for needed in (lambda: self.parameters, lambda: variables_of(kinds)):
-            try:
-                needed()
-            except InputError as error:
-                yield from error.faults
+        faults = list[Fault]()
+        with noted(faults):
+            _ = self.parameters
+        with noted(faults):
+            variables_of(kinds)
+        yield from faults
         groups = self.problem.objectives
         yield from each_once("groups", groups)
         yield from self.pareto.faults(len(groups))
@@ -153,13 +154,10 @@ class Study:
 
         Raises InputError with what this model cannot predict.
         """
-        out, faults = [], []
+        out, faults = [], list[Fault]()
         for prediction in self.predictions:
-            try:
+            with noted(faults, f"prediction '{prediction.name}'"):
                 out.append(prediction.complete(self.problem))
-            except InputError as error:
-                place = f"prediction '{prediction.name}'"
-                faults += [replace(x, place=f"{place} {x.place}".rstrip()) for x in error.faults]
         refuse(faults)
         return replace(self, predictions=tuple(out))
 
