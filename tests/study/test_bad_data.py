@@ -119,7 +119,10 @@ def test_contradictions_of_the_data(
     [
         (b"", "line 1: expected a header of column names, found an empty file"),
         (b"\n\n , ,\n", "line 1: expected a header of column names, found an empty file"),
-        (DATA.splitlines()[0].encode(), "line 2: expected a row for each measured mode, found"),
+        (
+            DATA.splitlines()[0].encode(),
+            "line 2: expected at least one row below the header, found the end",
+        ),
         (b"\xff\xfe\x00", "file: expected CSV in UTF-8, found the byte 0xff at position 0"),
         (DATA.encode("utf-16"), "file: expected CSV in UTF-8, found the byte 0xff at position 0"),
         (DATA.encode() + b"x" * 200_000, "line 5: expected CSV, found field larger than"),

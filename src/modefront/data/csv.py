@@ -54,8 +54,8 @@ MOST_FAULTS = 100
 """Faults of rows after which the rest is not looked at."""
 
 Key = tuple[str, int]
-Rows = Mapping[Key, Mapping[str, float]]
-"""Data set and mode of a row; rows by these, with values by column."""
+Values = Mapping[Key, Mapping[str, float]]
+"""Data set and mode of a row; values by column of each."""
 
 
 def is_reserved(name: str, sensors: Collection[str]) -> bool:
@@ -111,61 +111,69 @@ def read_csv(
     path, file = Path(path), str(path)
     values: dict[Key, dict[str, float]] = {}
     lines: dict[Key, int] = {}
-    last, faults = list[str](), list[Fault]()
-    with table_rows(path, "a file of modal data") as rows:
-        first, fields = next(rows, (1, []))
-        if not fields:
-            raise wrong(path, "a header of column names", "an empty file", "line 1")
-        own = "\0".join(map(str.strip, fields)).rstrip("\0").split("\0")
-        header, used = renamed(own, columns or {}, (STD,))
-        refuse(
-            Fault(file, f"columns {clean(name, NAME)!r}", "a column of it", suggestion(name, own))
-            for name in columns or {}
-            if name not in used
-        )
-        width = len(header)
-        if width > 20_000:
-            raise wrong(path, "up to 20000 columns", str(width), f"line {first}")
-        if sensors is None:
-            named = [name for name in dict.fromkeys(header) if name.isprintable() and name]
-            sensors = [name for name in named if not is_reserved(name, set(header))]
-        said = _header_faults(header, sensors)
-        refuse(Fault(file, _place(first, name), *each) for name, *each in said)
-        for line, fields in _of_width(rows, width, file, faults):
-            last.append(fields[-1])
-            key, row, found = _row(dict(zip(header, fields, strict=True)), sensors)
-            faults += [Fault(file, _place(line, name), *each) for name, *each in found]
-            if key in values:
-                expected, place = "each mode of a data set once", "columns 'set' and 'mode'"
-                if "set" not in header:
-                    expected = "each mode once, or a column 'set' that tells data sets apart"
-                    place = "column 'mode'"
-                faults.append(Fault(file, f"line {line}, {place}", expected, f"{key} again"))
-            elif key is not None:
-                values[key], lines[key] = row, line
-    refuse(faults)
-    if not last:
-        raise wrong(path, "a row for each measured mode", "the end", "line 2")
-    ended_column(path, last)
+    first, own, rows, faults = read_table(path, "a file of modal data")
+    header, used = renamed(own, columns or {}, (STD,))
+    refuse(
+        Fault(file, f"columns {clean(name, NAME)!r}", "a column of it", suggestion(name, own))
+        for name in columns or {}
+        if name not in used
+    )
+    if len(header) > 20_000:
+        raise wrong(path, "up to 20000 columns", str(len(header)), f"line {first}")
+    if sensors is None:
+        named = [name for name in dict.fromkeys(header) if name.isprintable() and name]
+        sensors = [name for name in named if not is_reserved(name, set(header))]
+    said = _header_faults(header, sensors)
+    refuse(Fault(file, _place(first, name), *each) for name, *each in said)
+    for line, fields in rows:
+        key, row, found = _row(dict(zip(header, fields, strict=True)), sensors)
+        faults += [Fault(file, _place(line, name), *each) for name, *each in found]
+        if key in values:
+            expected, place = "each mode of a data set once", "columns 'set' and 'mode'"
+            if "set" not in header:
+                expected = "each mode once, or a column 'set' that tells data sets apart"
+                place = "column 'mode'"
+            faults.append(Fault(file, f"line {line}, {place}", expected, f"{key} again"))
+        elif key is not None:
+            values[key], lines[key] = row, line
+    refuse_rows(path, rows, faults)
     paired = PAIR in header and PAIR not in sensors
     return _assembled(path, values, tuple(sensors), _pairs(path, values, lines) if paired else ())
 
 
-def _of_width(
-    rows: Iterator[tuple[int, list[str]]], width: int, file: str, faults: list[Fault]
-) -> Iterator[tuple[int, list[str]]]:
-    """Yield rows of as many fields as the header; note others, until there are `MOST_FAULTS`."""
-    for line, fields in rows:
-        if len(faults) > MOST_FAULTS:
-            return
-        fields = list(map(str.strip, fields))
-        if not any(fields[width:]):  # fields without a name may be empty
-            fields = fields[:width]
-        if len(fields) == width:
-            yield line, fields
-        else:
-            expected = f"{width} fields, as in the header"
-            faults.append(Fault(file, f"line {line}", expected, str(len(fields))))
+Rows = list[tuple[int, list[str]]]
+"""Lines of a file and their fields."""
+
+
+def read_table(path: Path, what: str) -> tuple[int, list[str], Rows, list[Fault]]:
+    """Return the line of the header, its names, the rows that have as many fields, and other rows.
+
+    The latter are faults. Raises InputError for what is no CSV, and for an empty file.
+    """
+    with table_rows(path, what) as rows:
+        first, fields = next(rows, (1, []))
+        header = "\0".join(map(str.strip, fields)).rstrip("\0").split("\0")
+        if not fields:
+            raise wrong(path, "a header of column names", "an empty file", "line 1")
+        width, out, faults = len(header), Rows(), list[Fault]()
+        for line, row in rows:
+            values = list(map(str.strip, row))
+            if not any(values[width:]):  # fields without a name may be empty
+                values = values[:width]
+            if len(values) == width:
+                out.append((line, values))
+            elif len(faults) <= MOST_FAULTS:
+                expected = f"{width} fields, as in the header"
+                faults.append(Fault(str(path), f"line {line}", expected, str(len(values))))
+    return first, header, out, faults
+
+
+def refuse_rows(path: Path, rows: Rows, faults: Sequence[Fault], column: int = -1) -> None:
+    """Raise InputError for faults, without any row, and where the last one may be cut off."""
+    refuse(faults)
+    if not rows:
+        raise wrong(path, "at least one row below the header", "the end", "line 2")
+    ended_column(path, (fields[column] for _, fields in rows))
 
 
 def read_covariance(
@@ -177,48 +185,42 @@ def read_covariance(
     covariances. ``columns`` maps sensors of the file to those of the data; ``set`` may be left out
     for one set. Shapes without rows keep their deviations. Raises InputError with what is wrong.
     """
-    file, columns, faults, last = str(path), columns or {}, list[Fault](), list[str]()
+    file, columns = str(path), columns or {}
     known = {"set": data.sets, "mode": tuple(map(str, data.modes)), SENSOR: data.sensors}
     C = np.full((*data.shape.shape, len(data.sensors)), np.nan)
-    with table_rows(path, "a file of covariances of shapes") as rows:
-        first, fields = next(rows, (1, []))
-        header = list(map(str.strip, fields))
-        keys = header[: header.index(SENSOR) + 1] if SENSOR in header else []
-        names = renamed(header[len(keys) :], columns, ())[0]
-        if sorted(keys) not in (["mode", SENSOR], ["mode", SENSOR, "set"])[len(data.sets) > 1 :]:
-            found = clean(", ".join(header[:6]), NAME) or "nothing"
-            raise wrong(path, "set, mode, sensor, then a column a sensor", found, f"line {first}")
-        refuse(
-            Fault(file, _place(first, x), "a sensor of the data, once", suggestion(x, data.sensors))
-            for k, x in enumerate(names)
-            if x not in data.sensors or x in names[:k]
-        )
-        places = [data.sensors.index(name) for name in names]
-        for line, fields in _of_width(rows, len(header), file, faults):
-            last.append(fields[-1])
-            row = {"set": data.sets[0]} | dict(zip(keys, fields, strict=False))
-            row[SENSOR] = columns.get(row[SENSOR], row[SENSOR])
-            numbers = dict(zip(names, fields[len(keys) :], strict=True))
-            said = [
-                (key, f"one of {', '.join(known[key][:8])}", suggestion(text, known[key]))
-                for key, text in row.items()
-                if text not in known[key]
-            ]
-            said += [
-                (name, "a finite number or an empty field", repr(text))
-                for name, text in numbers.items()
-                if text and not NUMBER.fullmatch(text)
-            ]
-            place = tuple(known[key].index(row[key]) for key in known) if not said else ()
-            if place and np.isfinite(C[place]).any():
-                said.append((SENSOR, "each component of a shape once", "one again"))
-            faults += [Fault(file, _place(line, name), *each) for name, *each in said]
-            if not said:
-                C[place][places] = [float(text or "nan") for text in numbers.values()]
-    refuse(faults)
-    if not last:
-        raise wrong(path, "a row for each component of a shape", "the end", "line 2")
-    ended_column(path, last)
+    first, header, rows, faults = read_table(path, "a file of covariances of shapes")
+    keys = header[: header.index(SENSOR) + 1] if SENSOR in header else []
+    names = renamed(header[len(keys) :], columns, ())[0]
+    if sorted(keys) not in (["mode", SENSOR], ["mode", SENSOR, "set"])[len(data.sets) > 1 :]:
+        found = clean(", ".join(header[:6]), NAME) or "nothing"
+        raise wrong(path, "set, mode, sensor, then a column a sensor", found, f"line {first}")
+    refuse(
+        Fault(file, _place(first, x), "a sensor of the data, once", suggestion(x, data.sensors))
+        for k, x in enumerate(names)
+        if x not in data.sensors or x in names[:k]
+    )
+    places = [data.sensors.index(name) for name in names]
+    for line, fields in rows:
+        row = {"set": data.sets[0]} | dict(zip(keys, fields, strict=False))
+        row[SENSOR] = columns.get(row[SENSOR], row[SENSOR])
+        numbers = dict(zip(names, fields[len(keys) :], strict=True))
+        said = [
+            (key, f"one of {', '.join(known[key][:8])}", suggestion(text, known[key]))
+            for key, text in row.items()
+            if text not in known[key]
+        ]
+        said += [
+            (name, "a finite number or an empty field", repr(text))
+            for name, text in numbers.items()
+            if text and not NUMBER.fullmatch(text)
+        ]
+        place = tuple(known[key].index(row[key]) for key in known) if not said else ()
+        if place and np.isfinite(C[place]).any():
+            said.append((SENSOR, "each component of a shape once", "one again"))
+        faults += [Fault(file, _place(line, name), *each) for name, *each in said]
+        if not said:
+            C[place][places] = [float(text or "nan") for text in numbers.values()]
+    refuse_rows(path, rows, faults)
     try:
         return data.with_covariance(C)
     except InputError as error:
@@ -364,7 +366,7 @@ def _range(column: str, value: float) -> str:
     return "a standard deviation of 0 or more" if column.endswith(STD) and value < 0 else ""
 
 
-def _assembled(path: Path, values: Rows, sensors: tuple[str, ...], pairs: Pairs) -> ModalData:
+def _assembled(path: Path, values: Values, sensors: tuple[str, ...], pairs: Pairs) -> ModalData:
     """Return the data of all rows; raises InputError where they are spread over too many sets."""
     sets = tuple(dict.fromkeys(name for name, _ in values))
     modes = tuple(sorted({mode for _, mode in values}))
@@ -386,7 +388,7 @@ def _assembled(path: Path, values: Rows, sensors: tuple[str, ...], pairs: Pairs)
     return ModalData(sets, modes, sensors, f, zeta, phi, f_std, phi_std, pairs)
 
 
-def _pairs(path: Path, values: Rows, lines: Mapping[Key, int]) -> Pairs:
+def _pairs(path: Path, values: Values, lines: Mapping[Key, int]) -> Pairs:
     other = {key: x for key, row in values.items() if not math.isnan(x := row[PAIR])}
     expected = "the other mode of a pair of this set"
     refuse(
@@ -509,36 +511,26 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
 
     Raises InputError.
     """
-    with opened(path, what) as (stream, separator, before):
+    with opened(path, what) as (stream, separator, _):
         header = [field.strip() for field in next(csv.reader(stream, delimiter=separator), [])]
-        rows = stream.read().splitlines()
-    if separator != ",":
-        rows = [row.replace(",", ".") for row in rows]
-    numbered = [(k, row) for k, row in enumerate(rows, before + 2) if row.strip(SEPARATORS + " ")]
-    if not any(header):
-        raise wrong(path, "a header of column names", "an empty file", "line 1")
-    if not numbered:
-        raise wrong(path, "a row for each line of frequency", "the end", "line 2")
-    texts = [row for _, row in numbered]
+        text = stream.read() if separator == "," else stream.read().replace(",", ".")
+    texts = [row for row in text.splitlines() if row.strip(SEPARATORS + " ")]
     with suppress(ValueError):
-        values = np.loadtxt(texts, delimiter=separator, comments=None, ndmin=2)
-        if values.shape == (len(numbered), len(header)) and (np.abs(values) <= LARGEST).all():
+        values = np.loadtxt(texts or ["?"], delimiter=separator, comments=None, ndmin=2)
+        if values.shape == (len(texts), len(header)) and (np.abs(values) <= LARGEST).all():
             ended_column(path, (row.rpartition(separator)[2] for row in texts))
             return header, values
-    faults, file = list[Fault](), str(path)
-    split = ((number, row.split(separator)) for number, row in numbered)
-    whole = list(_of_width(split, len(header), file, faults))
-    full = [k for k in range(len(header)) if any(row[k] for _, row in whole)]
-    values = np.full((len(whole), len(header)), np.nan)
-    for position, (number, row) in enumerate(whole):
+    _, header, rows, faults = read_table(path, what)
+    full = [k for k in range(len(header)) if any(row[k] for _, row in rows)]
+    values = np.full((len(rows), len(header)), np.nan)
+    for position, (number, row) in enumerate(rows):
         for k in full:
             if NUMBER.fullmatch(row[k]) and abs(float(row[k])) <= LARGEST:
                 values[position, k] = float(row[k])
             else:
                 expected = f"a finite number up to {LARGEST:g}"
-                faults.append(Fault(file, _place(number, header[k]), expected, repr(row[k])))
+                faults.append(Fault(str(path), _place(number, header[k]), expected, repr(row[k])))
         if len(faults) >= LISTED:
             break
-    refuse(faults[:LISTED])
-    ended_column(path, (row[full[-1]] for _, row in whole))
+    refuse_rows(path, rows, faults[:LISTED], full[-1] if full else -1)
     return header, values

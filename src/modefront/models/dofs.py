@@ -10,10 +10,10 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.data.csv import table_rows
+from modefront.data.csv import read_table, refuse_rows
 from modefront.fem.check import unit_vector
 from modefront.fem.structure import DIRECTIONS
-from modefront.inputs import ended_column, wrong
+from modefront.inputs import wrong
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
 
@@ -126,22 +126,20 @@ def read_dofs(path: Path) -> DofTable:
 
     Raises InputError for a file that is not such a table.
     """
-    with table_rows(path, "a table of degrees of freedom") as listed:
-        (_, header), *rows = listed
-    names = tuple(name.strip() for name in header)
-    if names not in (COLUMNS, COLUMNS[:2]):
+    _, names, rows, faults = read_table(path, "a table of degrees of freedom")
+    if tuple(names) not in (COLUMNS, COLUMNS[:2]):
         expected = "node,direction or node,direction,weight"
         raise wrong(path, expected, ",".join(names), "header")
-    ended_column(path, (row[-1] for _, row in rows))
+    refuse_rows(path, rows, faults)
     node, direction = np.zeros((2, len(rows)), np.intp)
     table = DofTable(node, direction, np.ones(len(rows)))
     numbers = {name: number_of(name) for name in DIRECTIONS} | {str(k): k for k in range(-1, 1000)}
     for k, (line, row) in enumerate(rows):
         try:
-            label, name, *weight = map(str.strip, row)
+            label, name, *weight = row
             node[k], direction[k] = int(label), numbers[name]
             table.weight[k : k + len(weight)] = [float(x) for x in weight]
-            if len(row) != len(names) or not np.isfinite(table.weight[k]):
+            if not np.isfinite(table.weight[k]):
                 raise ValueError
         except (ValueError, KeyError, OverflowError):
             expected = f"a node, a direction ({', '.join(DIRECTIONS)})"

@@ -112,7 +112,7 @@ def _by_rows(
         )
     highest = max(int(index.max()) for part in parts for index in part[:2])
     made = -min(0, *(int(index.min()) for part in parts for index in part[:2]))
-    own = reading.given_table(options, highest) or reading.unlabelled(highest)
+    own = reading.given_table(options, highest)
     dofs = DofTable(
         np.append(own.node, -np.arange(1, 1 + made)),
         np.append(own.direction, np.zeros(made, np.intp)),

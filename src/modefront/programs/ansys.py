@@ -32,7 +32,7 @@ from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.models.files import read_entries
 from modefront.programs.base import JobOptions
-from modefront.programs.reading import Listed, entries_of, existing, given_table, unlabelled
+from modefront.programs.reading import Listed, entries_of, existing, given_table
 
 MATRICES = {"stiffness": ("_K", "K", "_stiff", "_STIFF"), "mass": ("_M", "M", "_mass", "_MASS")}
 
@@ -43,7 +43,11 @@ def read(path: Path, options: JobOptions) -> Listed:
     """Return the matrices of a job: a .full file, or the beginning of the names of two others."""
     full = path if path.suffix.lower() == ".full" else path.with_name(path.name + ".full")
     if full is path or full.is_file():
-        return _from_full(existing(full, "a file of Ansys", ADVICE))
+        file, expected = existing(full, "a file of Ansys", ADVICE), "whole records of an assembled "
+        try:
+            return _from_full(_Words(file), file)
+        except ValueError as error:
+            raise wrong(file, f"{expected}matrix of Ansys (.full)", reason(error)) from None
     return _from_market(path, options)
 
 
@@ -69,15 +73,7 @@ class _Words:
         return np.ascontiguousarray(self.words[start + 2 : start + 2 + count]).view(kind)
 
 
-def _from_full(path: Path) -> Listed:
-    try:
-        return _content_of(_Words(path), path)
-    except ValueError as error:
-        expected = "whole records of an assembled matrix of Ansys (.full)"
-        raise wrong(path, expected, reason(error)) from None
-
-
-def _content_of(words: _Words, path: Path) -> Listed:
+def _from_full(words: _Words, path: Path) -> Listed:
     header = words.record()
 
     def long(low: int, high: int) -> int:
@@ -133,17 +129,13 @@ def _from_market(path: Path, options: JobOptions) -> Listed:
         file = next((name for name in names if name.is_file()), names[0])
         matrices.append(read_entries(existing(file, f"the {what} of Ansys", ADVICE), form=".mtx"))
         files.append(file)
-    size = matrices[0].shape[0]
-    if matrices[1].shape[0] != size:
-        raise wrong(path, f"a mass matrix of {size} rows", str(matrices[1].shape[0]))
-    dofs = given_table(options, size) or _labels(path, size)
-    return Listed((files[0], files[1]), matrices, dofs)
+    return Listed((files[0], files[1]), matrices, _labels(path, options, matrices[0].shape[0]))
 
 
-def _labels(path: Path, size: int) -> DofTable:
+def _labels(path: Path, options: JobOptions, size: int) -> DofTable:
     mapping = path.with_name(path.name + ".mapping")
     maps = [path.with_name(f"{path.name}_{name}.mmf") for name in ("nod2bcs", "back")]
-    if mapping.is_file():
+    if mapping.is_file() and not options.dofs:
         directions = {x: k for k, x in enumerate(("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"), 1)}
         lines = mapping.read_text(encoding="utf-8", errors="replace").splitlines()
         rows = [x for x in map(str.split, lines) if len(x) > 2 and "".join(x[:2]).isdigit()]
@@ -152,14 +144,9 @@ def _labels(path: Path, size: int) -> DofTable:
         if not np.array_equal(number, np.arange(1, len(listed) + 1)):
             expected = "one line for each equation: equation, node, direction"
             raise wrong(mapping, expected, "others")
-        table = DofTable(node, direction, np.ones(len(listed)))
-    elif all(file.is_file() for file in maps):
-        table = _maps(maps[0], maps[1])
-    else:
-        return unlabelled(size)
-    if table.size != size:
-        raise wrong(path, f"{size} degrees of freedom in the table of nodes", str(table.size))
-    return table
+        return DofTable(node, direction, np.ones(len(listed)))
+    is_mapped = all(file.is_file() for file in maps) and not options.dofs
+    return _maps(*maps) if is_mapped else given_table(options, size)
 
 
 def _maps(nod2bcs: Path, back: Path) -> DofTable:

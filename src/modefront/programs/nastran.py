@@ -89,15 +89,9 @@ def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
 def _from_op4(path: Path, options: JobOptions) -> reading.Listed:
     matrices = read_op4(path)
     names = _pair(path, matrices, options)
-    (K, _), (M, _) = pair = [matrices[name] for name in names]
-    size = K.shape[0]
-    for name, (A, _) in zip(names, pair, strict=True):
-        if A.shape != (size, size) or not size:
-            expected = f"'{name}' with {size or 'some'} rows and columns"
-            raise wrong(path, expected, " x ".join(map(str, A.shape)))
+    (K, digits), (M, others) = (matrices[name] for name in names)
     deck = _deck(path, options, notes := list[str]())
-    dofs = reading.given_table(options, size) or reading.unlabelled(size)
-    precision = max(each for _, each in pair)
+    dofs, precision = reading.given_table(options, K.shape[0]), max(digits, others)
     listed = reading.Listed((path, path), (K, M), dofs, precision, notes=notes)
     return listed if deck is None or options.dofs else _labelled(listed, deck, notes)
 

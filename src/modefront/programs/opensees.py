@@ -33,9 +33,6 @@ def read(path: Path, options: JobOptions) -> Listed:
         file = names[0] if names[0].is_file() else names[1]
         matrix = read_entries(existing(file, "a matrix of OpenSees", ADVICE))
         matrix.sum_duplicates()  # what a sum of elements is kept as
-        if matrix.shape != (dofs.size, dofs.size):
-            expected = f"{dofs.size} rows and columns, as '{table.name}' has rows"
-            raise wrong(file, expected, " x ".join(map(str, matrix.shape)))
         files.append(file)
         entries.append(matrix)
     return Listed((files[0], files[1]), entries, dofs, mesh=_mesh(path))

@@ -33,7 +33,7 @@ class Listed:
     ----------
     files : that of the stiffness, and that of the mass
     matrices : stiffness and mass as they are listed, one triangle or both
-    dofs : node and direction of each row; those of `unlabelled` where no file tells them
+    dofs : node and direction of each row; those of `given_table` where no file tells them
     precision : relative error of the numbers, that of binary doubles unless given
     free : which rows are not held, (N,), or what returns it, given both matrices; None for all
     counted : whether files say how many entries they have; else those that are cut off at a line
@@ -56,17 +56,11 @@ def entries_of(row: Ints, column: Ints, value: Floats, size: int) -> scipy.spars
     return scipy.sparse.coo_array((value, (row, column)), shape=(size, size))
 
 
-def unlabelled(size: int) -> DofTable:
-    """Return the table of degrees of freedom that belong to no node."""
+def given_table(options: JobOptions, size: int) -> DofTable:
+    """Return the table of degrees of freedom of ``--dofs``, or that of ones that have no node."""
+    if options.dofs:
+        return read_dofs(options.dofs)
     return DofTable(np.zeros(size, int), np.zeros(size, int), np.ones(size))
-
-
-def given_table(options: JobOptions, size: int) -> DofTable | None:
-    """Return the table of degrees of freedom of ``--dofs``, if any; it has to have so many rows."""
-    table = read_dofs(options.dofs) if options.dofs else None
-    if options.dofs and table and table.size != size:
-        raise wrong(options.dofs, f"{size} rows, one a degree of freedom", str(table.size))
-    return table
 
 
 def parts_of_job(path: Path, program: str, *given: str) -> Read:
@@ -108,6 +102,9 @@ def whole(path: Path, listed: scipy.sparse.coo_array, dofs: DofTable) -> Matrix:
     def label(i: int, j: int) -> str:
         return f"{dofs.label(i)} and {dofs.label(j)}"
 
+    if listed.shape != (dofs.size, dofs.size) or not dofs.size:
+        found = " x ".join(map(str, listed.shape))
+        raise wrong(path, f"{dofs.size or 'some'} rows and columns, as its table has rows", found)
     if (again := first_repeated(listed.row, listed.col, dofs.size)) is not None:
         place = label(listed.row[again], listed.col[again])
         raise wrong(path, "each entry once", f"the one at {place} again")
