@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import inspect
 import math
+import operator
 import re
 import tomllib
 import types
@@ -23,7 +24,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from itertools import pairwise
+from itertools import pairwise, repeat
 from pathlib import Path
 from typing import (
     Annotated,
@@ -123,44 +124,32 @@ def chosen(key: str, schemas: Mapping[str, Schema]) -> Schema:
     return {"type": "object", "properties": listed, "required": [key], "allOf": cases}
 
 
+KEYWORDS: Mapping[str, Callable[[Any, Any], bool]] = {
+    "anyOf": lambda value, schemas: any(fits(value, each) for each in schemas),
+    "enum": lambda value, known: isinstance(value, str) and value in known,
+    "pattern": lambda value, pattern: bool(re.search(pattern, value)),
+    "minimum": operator.ge,
+    "maximum": operator.le,
+    "exclusiveMinimum": operator.gt,
+    "exclusiveMaximum": operator.lt,
+    "items": lambda value, each: all(
+        map(fits, value, each if isinstance(each, list) else repeat(each))
+    ),
+    "minItems": lambda value, least: len(value) >= least,
+    "maxItems": lambda value, most: len(value) <= most,
+    "uniqueItems": lambda value, _: not any(x in value[:i] for i, x in enumerate(value)),
+    "additionalProperties": lambda value, each: all(fits(x, each) for x in value.values()),
+    "minProperties": lambda value, least: len(value) >= least,
+}
+"""Whether a value meets what a schema says under a keyword; others say nothing of single values."""
+
+
 def fits(value: Any, schema: Schema) -> bool:
     """Return whether a value in plain Python meets a schema."""
-    if "anyOf" in schema:
-        return any(fits(value, each) for each in schema["anyOf"])
-    if "enum" in schema:
-        return isinstance(value, str) and value in schema["enum"]
-    kind = schema.get("type")
-    if kind and (
-        not isinstance(value, TYPES[kind]) or isinstance(value, bool) != (kind == "boolean")
-    ):
+    kind = TYPES.get(schema.get("type", ""), object)
+    if not isinstance(value, kind) or (isinstance(value, bool) and kind not in (bool, object)):
         return False
-    if kind == "string":
-        return bool(re.search(schema.get("pattern", ""), value))
-    if kind in ("integer", "number"):
-        return (
-            schema.get("minimum", value) <= value <= schema.get("maximum", value)
-            and ("exclusiveMinimum" not in schema or value > schema["exclusiveMinimum"])
-            and ("exclusiveMaximum" not in schema or value < schema["exclusiveMaximum"])
-        )
-    if kind == "array":
-        return _is_array(value, schema)
-    if kind == "object" and "additionalProperties" in schema:
-        entries = schema["additionalProperties"]
-        return len(value) >= schema["minProperties"] and all(
-            fits(x, entries) for x in value.values()
-        )
-    return True
-
-
-def _is_array(value: list[Any], schema: Schema) -> bool:
-    """Return whether number and items of a list are those of a schema; ``items`` may be a list."""
-    items = schema.get("items", {})
-    each = items if isinstance(items, list) else [items] * len(value)
-    return (
-        schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", len(value))
-        and all(map(fits, value, each))
-        and not (schema.get("uniqueItems") and any(x in value[:i] for i, x in enumerate(value)))
-    )
+    return all(KEYWORDS[key](value, said) for key, said in schema.items() if key in KEYWORDS)
 
 
 T = TypeVar("T")
@@ -506,6 +495,11 @@ class Table:
         value = self.values.get(key)
         if value is None and default is not ...:
             return default
+        if not requirement.schema and requirement.entries:
+            return value  # a reader of its own says what is wrong with it
+        if requirement.record and isinstance(value, dict):
+            inner = self.table(key)
+            return inner and inner.record(requirement.record)
         if value is not None and requirement.holds(value):
             return requirement.read(self, key) if requirement.read else requirement.convert(value)
         self.fault(key, requirement.expected, shown(value))
@@ -532,18 +526,9 @@ class Table:
         before = len(self.faults)
         values: dict[str, Any] = {}
         for option in known:
-            name, requirement = option.name, option.requirement
-            given = self.values.get(name)
-            if given is None and not option.required:
-                self.requested.append(name)
-            elif requirement.record and isinstance(given, dict):
-                inner = self.table(name)
-                values[name] = inner and inner.record(requirement.record)
-            elif not requirement.schema:
-                self.requested.append(name)  # a reader of its own says what is wrong with it
-                values[name] = given
-            else:
-                values[name] = self.value(name, requirement)
+            if option.required or option.name in self.values:
+                values[option.name] = self.value(option.name, option.requirement)
+            self.requested.append(option.name)
         self.close()
         return values if len(self.faults) == before else None
 

@@ -7,7 +7,7 @@ on an engineer should not trust a mesh; ``benchmarks/elements.py`` measures the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -76,17 +76,12 @@ def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int) -> Ints
     return _within(array, count)
 
 
-def direction_indices(directions: Sequence[str]) -> list[int]:
-    """Columns of `directions` in (x, y, z, rx, ry, rz)."""
-    return [DIRECTIONS.index(name) for name in directions]
-
-
 def unit_vector(direction: Direction) -> Floats:
     """Unit vector (6,) in (u, r) of a named direction or a vector of displacement."""
     vector = np.zeros(6)
     if isinstance(direction, str):
         name = direction.removeprefix("-")
-        vector[direction_indices((name,))] = -1.0 if direction != name else 1.0
+        vector[DIRECTIONS.index(name)] = -1.0 if direction != name else 1.0
         return vector
     vector[:3] = np.asarray(direction) / np.linalg.norm(direction)
     return vector

@@ -21,7 +21,7 @@ from scipy.linalg import block_diag
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import Fault, noted, wrong
-from modefront.fem.check import axes_of, direction_indices, node_list
+from modefront.fem.check import axes_of, node_list
 from modefront.fem.elements.common import cross_matrix
 from modefront.fem.structure import DIRECTIONS, Coupling, Link, Structure, Support
 from modefront.linalg.affine import sparse_rows
@@ -73,7 +73,7 @@ def _link(X: Floats, link: Link) -> Followers:
     slaves = node_list(link.slaves, len(X))
     slaves = slaves[slaves != master[0]]
     motion = rigid_motion(X[slaves] - X[master])
-    directions = direction_indices(link.directions)
+    directions = [DIRECTIONS.index(name) for name in link.directions]
     return _followers(X, slaves, np.tile(master, (len(slaves), 1)), motion[:, :, None], directions)
 
 
@@ -89,7 +89,7 @@ def _coupling(X: Floats, coupling: Coupling) -> Followers:
     if weights.shape not in ((), of.shape) or node[0] in of:
         expected = f"other nodes than {node[0]}, with a weight above 0 for each or for all"
         raise wrong("", expected, f"nodes {of.tolist()} and weights {weights.tolist()}")
-    directions = direction_indices(coupling.directions)
+    directions = [DIRECTIONS.index(name) for name in coupling.directions]
     size = np.ptp(X[of], axis=0).max() or 1.0
     P = rigid_motion(X[of] - X[node])[:, :3] * np.repeat([1, 1 / size], 3)
     weighted = np.broadcast_to(weights, of.shape)[:, None, None] * P
@@ -143,7 +143,8 @@ def hold(
     skew: dict[int, list[Floats]] = {}
     for n, each in enumerate(supports):
         with noted(faults, f"support {n}"):
-            nodes, directions = node_list(each.nodes, len(X)), direction_indices(each.directions)
+            nodes = node_list(each.nodes, len(X))
+            directions = [DIRECTIONS.index(name) for name in each.directions]
             if each.axes is None:
                 held[nodes[:, None], directions] = True
                 continue

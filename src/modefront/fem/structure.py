@@ -91,6 +91,20 @@ STRAINS = mapping("a table, group = free strain", number("a strain"))
 SCALED = Requirement("a list of groups, springs, masses or loads", array({"type": "string"}, 1))
 
 
+FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
+    "triangle": ((0, 1, 2),),
+    "quad": ((0, 1, 2, 3),),
+    "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
+    "wedge": ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+    "pyramid": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+    "hexahedron": (
+        *((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4)),
+        *((1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+    ),
+}
+"""Corners of the faces of cells, in the order of VTK; nodes between corners follow them there."""
+
+
 @dataclass(frozen=True, eq=False)
 class Cells:
     """Cells of one type in one group.

@@ -23,6 +23,7 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.datasets import ArrayDataset, Dataset
 from modefront.errors import Fault, InputError, ModelError, writing
+from modefront.fem.structure import FACES
 from modefront.models.base import full_of, geometry_of, shapes_at
 from modefront.models.geometry import Cells, Geometry
 from modefront.outputs import output_by_name
@@ -38,19 +39,6 @@ TOLERANCE = 1e-3
 """Error of a shape in the basis, over its length, at most."""
 
 AXES = ("x", "y", "z")
-
-FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
-    "triangle": ((0, 1, 2),),
-    "quad": ((0, 1, 2, 3),),
-    "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
-    "wedge": ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
-    "pyramid": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
-    "hexahedron": (
-        *((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4)),
-        *((1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
-    ),
-}
-"""Corners of the faces of cells, in the order of VTK; nodes between corners follow them there."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -20,9 +20,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.fem.elements import common, shapes
-
-QUADS = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
-"""Faces of a brick."""
+from modefront.fem.structure import FACES
 
 
 @dataclass(frozen=True)
@@ -43,17 +41,16 @@ class Solid:
         return 1 + max(max(face) for face in self.faces)
 
 
-TRIANGLES = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
-SIDES = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
-"""Faces of a tetrahedron, and of a wedge."""
-
 SOLIDS = {
-    8: Solid(shapes.CUBE_8, QUADS, shapes.gauss_box(2, 3), shapes.gauss_box(3, 3)),
+    8: Solid(shapes.CUBE_8, FACES["hexahedron"], shapes.gauss_box(2, 3), shapes.gauss_box(3, 3)),
     10: Solid(
-        shapes.TETRAHEDRON_10, TRIANGLES, shapes.gauss_tetrahedron_4(), shapes.gauss_simplex(3, 3)
+        shapes.TETRAHEDRON_10,
+        FACES["tetra"],
+        shapes.gauss_tetrahedron_4(),
+        shapes.gauss_simplex(3, 3),
     ),
-    15: Solid(shapes.WEDGE_15, SIDES, shapes.gauss_wedge(3), shapes.gauss_wedge(3)),
-    20: Solid(shapes.CUBE_20, QUADS, shapes.gauss_box(3, 3), shapes.gauss_box(3, 3)),
+    15: Solid(shapes.WEDGE_15, FACES["wedge"], shapes.gauss_wedge(3), shapes.gauss_wedge(3)),
+    20: Solid(shapes.CUBE_20, FACES["hexahedron"], shapes.gauss_box(3, 3), shapes.gauss_box(3, 3)),
 }
 """Kinds of solids by their number of nodes."""
 
