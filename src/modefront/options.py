@@ -132,9 +132,7 @@ KEYWORDS: Mapping[str, Callable[[Any, Any], bool]] = {
     "maximum": operator.le,
     "exclusiveMinimum": operator.gt,
     "exclusiveMaximum": operator.lt,
-    "items": lambda value, each: all(
-        map(fits, value, each if isinstance(each, list) else repeat(each))
-    ),
+    "items": lambda value, of: all(map(fits, value, of if isinstance(of, list) else repeat(of))),
     "minItems": lambda value, least: len(value) >= least,
     "maxItems": lambda value, most: len(value) <= most,
     "uniqueItems": lambda value, _: not any(x in value[:i] for i, x in enumerate(value)),

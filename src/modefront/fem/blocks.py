@@ -23,17 +23,7 @@ from modefront.fem.elements.shell import (
 )
 from modefront.fem.elements.solid import SOLIDS, solid, solid_stresses
 from modefront.fem.section import Material
-from modefront.fem.structure import (
-    ALL,
-    ALONG,
-    Beams,
-    Mass,
-    Shells,
-    Solids,
-    Spring,
-    Structure,
-    Trusses,
-)
+from modefront.fem.structure import ALONG, Beams, Mass, Shells, Solids, Spring, Structure, Trusses
 from modefront.rounding import TINY
 
 SYMMETRIC = 1e-9
@@ -117,10 +107,9 @@ def _beams(X: Floats, group: Beams) -> Block:
             nodes = ", ".join(map(str, cells[parallel[0]].tolist()))
             expected = f"a vector not parallel to the axis of element {parallel[0]} (nodes {nodes})"
             raise wrong("orientation", expected, tuple(group.orientation))
-    released = [6 * end + ALL.index(name) for end in (0, 1) for name in group.releases[end]]
-    made, axial = beam(X[cells], group.material, section, orientation, r, released)
+    made, axial = beam(X[cells], group.material, section, orientation, r, group.released)
     given = group.force * axial.unit if group.force else None
-    return Block(group.name, cells, SIX, made, not released, given, lambda: axial)
+    return Block(group.name, cells, SIX, made, not group.released, given, lambda: axial)
 
 
 def _trusses(X: Floats, group: Trusses) -> Block:

@@ -147,6 +147,11 @@ class Beams(Checked):
     releases: Annotated[tuple[Sequence[str], Sequence[str]], RELEASES] = ((), ())
     force: Annotated[float, FORCE] = 0.0
 
+    @property
+    def released(self) -> list[int]:
+        """Numbers of the released of the 12 directions of both ends."""
+        return [6 * end + DIRECTIONS.index(x) for end in (0, 1) for x in self.releases[end]]
+
 
 @dataclass(frozen=True)
 class Trusses(Checked):
