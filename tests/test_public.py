@@ -63,7 +63,7 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     ),
     (
         lambda: mf.matrices(["k"], {"k": I2}, {"base": np.eye(3)}, {"one": 0}),
-        "mass 'base': expected a matrix 2 x 2, as the first one, found 3 x 3",
+        "stiffness k: expected 3 x 3, as the other matrices, found 2 x 2",
     ),
     (
         lambda: mf.matrices(["k"], {"k": I2}, {}, {"one": 0}),

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.errors import Fault, refuse, suggestion
+from modefront.errors import Fault, refuse, suggestion, wrong
 from modefront.text import Shown
 
 MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std", "shape_covariance")
@@ -94,9 +94,9 @@ class ModalData(Shown):
         """Return the data with covariances of shapes, NaN where none is known.
 
         They are (sets, modes, sensors, sensors), and give the standard deviations that the data
-        lack. Raises InputError for what is no covariance of these shapes, ValueError for others.
+        lack. Raises InputError for what is no covariance of these shapes.
         """
-        C = np.asarray(covariance, float).reshape(*self.shape.shape, len(self.sensors))
+        C = _like("shape_covariance", covariance, (*self.shape.shape, len(self.sensors)))
         variance = np.einsum("krss->krs", C)
         known = (self.shape_std > 0) | np.isnan(variance)
         std = np.where(known, self.shape_std, np.sqrt(np.maximum(variance, 0.0)))
@@ -168,6 +168,16 @@ def _mean(values: Floats) -> Floats:
     return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)
 
 
+def _like(name: str, value: Floats | None, shape: tuple[int, ...]) -> Floats:
+    """Return an array of a shape, of which one set may lack the first axis; NaN for None."""
+    if value is None:
+        return np.full(shape, np.nan)
+    array = np.asarray(value, float)
+    if array.shape not in (shape, shape[shape[0] == 1 :]):
+        raise wrong(name, " x ".join(map(str, shape)), " x ".join(map(str, array.shape)))
+    return array.reshape(shape)
+
+
 # 8 arguments: the parts of modal data, the optional ones by keyword.
 def modal_data(
     frequency: Floats,
@@ -202,20 +212,15 @@ def modal_data(
 
     Raises
     ------
-    ValueError
-        If the arrays do not fit together; `InputError` for what is no covariance.
+    InputError
+        If the arrays do not fit together, and for what is no covariance.
     """
     f = np.atleast_2d(np.asarray(frequency, float))
-    phi = np.asarray(shape, float).reshape(*f.shape, -1)
-    if phi.shape[2] != len(sensors):
-        raise ValueError(f"expected shapes at {len(sensors)} sensors, found {phi.shape[2]}")
-
-    def like(value: Floats | None, reference: Floats) -> Floats:
-        if value is None:
-            return np.full(reference.shape, np.nan)
-        return np.asarray(value, float).reshape(reference.shape)
-
+    phi = _like("shape", shape, (*f.shape, len(sensors)))
+    zeta = _like("damping", damping, f.shape)
+    f_std = _like("frequency_std", frequency_std, f.shape)
+    phi_std = _like("shape_std", shape_std, phi.shape)
     names = sets if sets is not None else tuple(str(k + 1) for k in range(len(f)))
-    modes, stds = tuple(range(1, f.shape[1] + 1)), (like(frequency_std, f), like(shape_std, phi))
-    data = ModalData(names, modes, tuple(sensors), f, like(damping, f), phi, *stds)
+    modes = tuple(range(1, f.shape[1] + 1))
+    data = ModalData(names, modes, tuple(sensors), f, zeta, phi, f_std, phi_std)
     return data if shape_covariance is None else data.with_covariance(shape_covariance)

@@ -3,6 +3,7 @@ r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j c_j(\theta) 
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -309,7 +310,8 @@ def matrices(
     >>> model.modes(np.array([1.0]), 1).lam.tolist()
     [4.0]
     """
-    size = _common_size(parameters, {"stiffness": stiffness, "mass": mass})
+    size, faults = common_size(parameters, {"stiffness": stiffness, "mass": mass})
+    refuse(faults)
     K, M = (affine(parameters, terms, size) for terms in (stiffness, mass))
     others = weights_of(outputs, size, "outputs"), weights_of(base, size, "base")
     named = tuple(parameters), tuple(sensors), select(sensors, size)
@@ -322,14 +324,13 @@ def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) ->
     return sparse_affine(list(map(scipy.sparse.coo_array, terms.values())), coefficients, size)
 
 
-def _common_size(parameters: Sequence[str], tables: Mapping[str, Mapping[str, Matrix]]) -> int:
-    """Return N where all terms are N x N and named.
-
-    Raises InputError where they are not.
-    """
+def common_size(
+    parameters: Sequence[str], tables: Mapping[str, Mapping[str, Matrix]]
+) -> tuple[int, list[Fault]]:
+    """Return the N of most terms, which have to be N x N and named, and what is wrong with them."""
     faults = []
-    shapes = [A.shape for terms in tables.values() for A in terms.values()]
-    size = shapes[0][0] if shapes and shapes[0] else 0
+    counts = Counter(A.shape[0] for terms in tables.values() for A in terms.values() if A.ndim)
+    size = max(counts, key=lambda n: (counts[n], n), default=0)
     for place, terms in tables.items():
         if not terms:
             faults.append(Fault("", place, f"'{BASE}' or a parameter", "nothing"))
@@ -338,11 +339,12 @@ def _common_size(parameters: Sequence[str], tables: Mapping[str, Mapping[str, Ma
                 found = suggestion(name, [BASE, *parameters])
                 faults.append(Fault("", place, form_of(name), found))
             if A.shape != (size, size):
-                expected = f"a matrix {size} x {size}, as the first one"
-                found = " x ".join(map(str, A.shape))
-                faults.append(Fault("", f"{place} '{name}'", expected, found))
-    refuse(faults)
-    return size
+                expected, found = (
+                    f"{size} x {size}, as the other matrices",
+                    " x ".join(map(str, A.shape)),
+                )
+                faults.append(Fault("", f"{place} {name}", expected, found))
+    return size, faults
 
 
 def select(

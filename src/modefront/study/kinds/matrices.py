@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
@@ -16,7 +15,7 @@ from modefront.models.base import Model
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
 from modefront.models.files import READERS, read_matrix
 from modefront.models.geometry import Cells, Geometry
-from modefront.models.matrices import DOF, WEIGHTED, matrices
+from modefront.models.matrices import DOF, WEIGHTED, common_size, matrices
 from modefront.models.parameters import BASE, exponents_of, form_of
 from modefront.options import (
     TRUE_OR_FALSE,
@@ -35,7 +34,7 @@ from modefront.programs.base import ProgramMesh, read_mesh
 from modefront.study.kinds.sensors import BY_NODE, ModelKind, read_places
 
 FILE = text("the name of a file")
-
+Terms = Mapping[str, dict[str, scipy.sparse.coo_array]]
 
 ALONE = "of the matrix in it; empty for the only one"
 OF_SEVERAL = (
@@ -92,7 +91,7 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     before = len(table.faults)
     read = table.record(Matrices)
     terms = {key: _terms(table, key, parameters) for key in ("stiffness", "mass")}
-    size = _size(table, terms)
+    size = _size(table, terms, parameters)
     dofs = table.content("dofs", read_dofs)
     if dofs is not None and size not in (None, dofs.size):
         expected = f"{size} rows, one a degree of freedom"
@@ -159,30 +158,19 @@ def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_arr
     return Geometry(mesh.coordinates, cells, motion[translations.ravel()], nodes, directions)
 
 
-def _size(model: Table, terms: Mapping[str, dict[str, scipy.sparse.coo_array]]) -> int | None:
-    """Return the N of most N x N matrices; a fault names those that differ, which are left out.
-
-    So do a mass that is zero, and degrees of freedom with neither stiffness nor mass.
-    """
-    counts = Counter(A.shape[0] for known in terms.values() for A in known.values())
-    if not counts:
-        return None
-    common = max(counts, key=lambda size: (counts[size], size))
-    expected = f"{common} x {common}, as the other matrices"
-    for key, known in terms.items():
-        for name in [name for name, A in known.items() if A.shape[0] != common]:
-            size = known.pop(name).shape[0]
-            model.fault(f"{key} {name}", expected, f"{size} x {size}")
-    mass = terms["mass"]
-    if mass and not any(A.nnz for A in mass.values()):
+def _size(model: Table, terms: Terms, parameters: Sequence[str]) -> int | None:
+    """Return N, None without matrices; note where they, or degrees of freedom, are not right."""
+    size, faults = common_size(parameters, {name: known for name, known in terms.items() if known})
+    model.note(faults)
+    if (mass := terms["mass"]) and not any(A.nnz for A in mass.values()):
         model.fault("mass", "a mass matrix that is not zero", "only zeros")
     elif all(terms.values()) and not model.faults:
         rows = [A.row for known in terms.values() for A in known.values()]
-        empty = np.setdiff1d(np.arange(common), np.concatenate(rows))
+        empty = np.setdiff1d(np.arange(size), np.concatenate(rows))
         if empty.size:
             expected = "stiffness or mass at every degree of freedom"
             model.fault("", expected, f"neither at {empty[0]} (from 0)")
-    return common
+    return size or None
 
 
 MATRICES = ModelKind("matrices", read_matrices, table=Matrices)
