@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Literal, Self
@@ -34,7 +33,6 @@ from modefront.predictions.reliability import (
     LARGEST_ANGLE,
     METHODS,
     FirstPassage,
-    Share,
     estimate,
     step_effect,
 )
@@ -55,9 +53,6 @@ from modefront.predictions.system import (
 )
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import ACCUMULATED
-
-MOST_WORKERS = 8
-"""Threads at most; each takes some 100 MB."""
 
 STEPS_A_PERIOD = 20
 """Time steps in the shortest period, where the step is not given."""
@@ -314,21 +309,14 @@ class Passage:
         Raises ModelError where the model cannot be evaluated at ``theta``, InputError where the
         time step is too long there.
         """
-        P, variation = estimate(*self._sampled(problem, theta, seed))
+        method, passage = METHODS[self.method], self.problem(problem, theta)
+        P, variation = estimate(method, passage, np.array(self.levels), self.samples, seed)
         return {"probability": P, "variation": variation}
 
     def check(
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
     ) -> Mapping[str, Floats]:
         """Return P with half the time step over P, and its standard error, (levels,)."""
-        ratio, error = step_effect(*self._sampled(problem, theta, seed))
-        return {"ratio": ratio, "error": error}
-
-    def _sampled(
-        self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
-    ) -> tuple[Share | None, FirstPassage, Floats, int, np.random.SeedSequence, int]:
-        """Return what estimates at a model take."""
         method, passage = METHODS[self.method], self.problem(problem, theta)
-        # How many threads there are changes no digit, only memory and time.
-        workers = min(os.cpu_count() or 1, MOST_WORKERS)
-        return method, passage, np.array(self.levels), self.samples, seed, workers
+        ratio, error = step_effect(method, passage, np.array(self.levels), self.samples, seed)
+        return {"ratio": ratio, "error": error}

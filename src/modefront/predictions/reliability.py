@@ -48,6 +48,7 @@ nothing.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -374,6 +375,9 @@ METHODS: Final[Mapping[str, Share | None]] = MappingProxyType(
 LARGEST_CHUNK = 32
 """Samples in a chunk: enough for the loops in C, few enough for the cache."""
 
+MOST_WORKERS = 8
+"""Threads at most; each takes some 100 MB. How many there are changes no digit."""
+
 LARGEST_BLOCK = 2**20
 """Normal numbers in a chunk, 8 MB: bounds the memory of a worker to some 100 MB."""
 
@@ -391,7 +395,7 @@ def estimate(
     levels: Floats,
     samples: int,
     seed: np.random.SeedSequence,
-    workers: int = 1,
+    workers: int = 0,
 ) -> tuple[Floats, Floats]:
     """Return P and the coefficient of variation of its estimate at barriers, (n_levels,) each.
 
@@ -401,6 +405,7 @@ def estimate(
     sums = [elementary_failures(response, level) for level in levels.tolist()]
     largest = LARGEST_BLOCK // (response.n_inputs * response.n_steps)
     chunk = min(max(largest, 1), LARGEST_CHUNK)
+    workers = workers or min(os.cpu_count() or 1, MOST_WORKERS)
     free: SimpleQueue[Convolution] = SimpleQueue()
     for _ in range(workers):
         free.put(Convolution(response, chunk))
@@ -432,7 +437,6 @@ def step_effect(
     levels: Floats,
     samples: int,
     seed: np.random.SeedSequence,
-    workers: int = 1,
 ) -> tuple[Floats, Floats]:
     """Return P with half the time step over P, and its standard error, (n_levels,) each.
 
@@ -442,7 +446,7 @@ def step_effect(
     """
     finer = replace(problem, time_step=problem.time_step / 2)
     (P, own), (halved, other) = (
-        estimate(method, each, levels, samples, spawn(seed, k), workers)
+        estimate(method, each, levels, samples, spawn(seed, k))
         for k, each in enumerate((problem, finer))
     )
     ratio = np.divide(halved, P, out=np.full(P.size, np.nan), where=P > 0)
