@@ -63,6 +63,9 @@ def test_standard_deviations_of_the_data_come_first_and_gaps_are_assumed() -> No
     half = NoisePrior(frequency=0.01).of(problem_of(frequency_std=std), "std")
     assert half is not None
     assert half.assumed == "shapes known to 3 %"
+    usual = NoisePrior(frequency=0.005, shape=0.03).of(problem_of(), None)
+    assert usual is not None
+    assert usual.assumed == "", "the user has said what is usual"
     without = NoisePrior().of(problem_of(frequency_std=std), None)
     assert without is not None
     assert without.problem.data.frequency_std[0] == pytest.approx(0.005 * FREQUENCY)

@@ -325,7 +325,8 @@ class Load(Checked):
     Attributes
     ----------
     name : of the load, for parameters
-    nodes, force : (3,) or (6,) with moments, global axes, at each of the nodes; None for no nodes
+    nodes : at which the force acts; None for no force
+    force : (3,) or (6,) with moments, global axes, at each of the nodes
     acceleration : (3,) of gravity, which acts on all masses
     strains : free strain, such as that of heat, by name of the group
     """

@@ -8,6 +8,7 @@ parameter is nearest to its nominal value by the further term :math:`\varepsilon
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -28,6 +29,9 @@ from modefront.uncertainty.noise import Source
 PULL = 1e-3
 """Weight of the distance from the nominal model: a normal prior of thirty ranges."""
 
+USUAL = {"frequency": 0.005, "shape": 0.03}
+"""Standard deviations of errors that are assumed, and said, where no one else says any."""
+
 NINETY = 1.6449
 """Half the 90 % interval of a normal distribution, over its standard deviation."""
 
@@ -43,13 +47,14 @@ class NoisePrior(Checked):
 
     Attributes
     ----------
-    frequency : relative standard deviation of a frequency, where the data have none
-    shape : of a component of a shape, over the greatest one, on average over the shapes
+    frequency : relative standard deviation of a frequency, where the data have none; None for 0.005
+    shape : of a component of a shape, over the greatest one, on average over the shapes; None for
+        0.03
     weight : how many data this expectation is worth; 0 for none, and optimal weights
     """
 
-    frequency: Annotated[float, number("a number above 0", above=0)] = 0.005
-    shape: Annotated[float, number("a number above 0", above=0)] = 0.03
+    frequency: Annotated[float, number("a number above 0", above=0)] | None = None
+    shape: Annotated[float, number("a number above 0", above=0)] | None = None
     weight: Annotated[float, number("a number of 0 or more", least=0)] = 4.0
 
     def of(self, problem: UpdatingProblem, source: Source | None) -> NoiseModel | None:
@@ -59,7 +64,9 @@ class NoisePrior(Checked):
         """
         if self.weight == 0:
             return None
-        data, assumed = expected(problem.data, self, source)
+        unsaid = {kind: size for kind, size in USUAL.items() if getattr(self, kind) is None}
+        sizes = {kind: unsaid.get(kind) or getattr(self, kind) for kind in USUAL}
+        data, assumed = expected(problem.data, sizes, source)
         groups = tuple(
             Group(each.name, scale="std", **dict(each.chosen)) for each in problem.groups
         )
@@ -70,9 +77,8 @@ class NoisePrior(Checked):
         if source == "sets":
             level = (self.weight + S) / (self.weight + d)
         plural = {"frequency": "frequencies", "shape": "shapes"}
-        usual = [kind for kind in assumed if getattr(self, kind) == getattr(NoisePrior, kind)]
-        sizes = [f"{plural[kind]} to {100 * getattr(self, kind):g} %" for kind in usual]
-        words = ", ".join(sizes).replace(" to", " known to", 1)
+        said = [f"{plural[kind]} to {100 * unsaid[kind]:g} %" for kind in assumed if kind in unsaid]
+        words = ", ".join(said).replace(" to", " known to", 1)
         logs = LogSum(a + self.weight, self.weight * level - S)
         return NoiseModel(replace(scaled, likelihood=logs), a, S, level, self.weight, words)
 
@@ -255,9 +261,9 @@ def prior_widths(problem: UpdatingProblem) -> Floats:
 
 
 def expected(
-    data: ModalData, prior: NoisePrior, source: Source | None
+    data: ModalData, sizes: Mapping[str, float], source: Source | None
 ) -> tuple[ModalData, tuple[str, ...]]:
-    """Return data with expected standard deviations, and the kinds of which some are assumed.
+    """Return data with expected standard deviations, and the kinds of which some are of ``sizes``.
 
     They are such that means over the data sets become sums.
     """
@@ -266,7 +272,7 @@ def expected(
     std = data.frequency_std if known else np.full(data.frequency.shape, np.nan)
     given = np.asarray(std > NEGLIGIBLE * np.where(there, data.frequency, 1.0))
     sets = np.maximum(there.sum(axis=0), 1)
-    frequency = np.where(given, std, prior.frequency * data.frequency) / np.sqrt(sets)
+    frequency = np.where(given, std, sizes["frequency"] * data.frequency) / np.sqrt(sets)
     assumed = ["frequency"] if (there & ~given).any() else []
 
     measured = np.asarray(np.isfinite(data.shape).any(axis=2))
@@ -285,7 +291,7 @@ def expected(
         else:
             assumed += ["shape"]
             rms = np.sqrt((data.shape[k, r, here] ** 2).mean())
-            size = np.full(here.sum(), prior.shape * ratio * rms)
+            size = np.full(here.sum(), sizes["shape"] * ratio * rms)
         shape[k, r, here] = size / np.sqrt(measured[:, r].sum())
     C = data.shape_covariance if known else None
     if C is not None:
