@@ -17,14 +17,13 @@ import scipy.sparse
 from modefront._typing import Bools
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
-from modefront.programs import reading
-from modefront.programs.base import JobOptions, Matrix
+from modefront.programs import base
 from modefront.programs.inp import deck_of
 
 ADVICE = "*MATRIX GENERATE, STIFFNESS, MASS with *MATRIX OUTPUT, STIFFNESS, MASS writes them"
 
 
-def read(path: Path, options: JobOptions) -> reading.Listed:
+def read(path: Path, options: base.JobOptions) -> base.Listed:
     """Return the matrices of a job, given by its name or by its file of the stiffness."""
     files = _files(path)
     rows = [_first(file)[0] for file in files] == [3, 3]
@@ -36,14 +35,14 @@ def read(path: Path, options: JobOptions) -> reading.Listed:
         notes.append("the deck numbers nodes in parts: coordinates are left out")
     mesh = None if deck is None or deck.parts else deck.mesh
 
-    def free(K: Matrix, M: Matrix) -> Bools:
+    def free(K: base.Matrix, M: base.Matrix) -> Bools:
         off = scipy.sparse.coo_array(K)
         beside = (off.row != off.col) & (off.data != 0)
         used: Bools = K.diagonal() + M.diagonal() != 0
         used[off.row[beside]] = used[off.col[beside]] = True  # those of Lagrange multipliers too
         return used & (K.diagonal() < 0.9e36)  # supports are diagonal entries of 1e36
 
-    return reading.Listed(files, (K, M), dofs, free=free, counted=False, mesh=mesh, notes=notes)
+    return base.Listed(files, (K, M), dofs, free=free, counted=False, mesh=mesh, notes=notes)
 
 
 def _files(path: Path) -> tuple[Path, Path]:
@@ -59,10 +58,10 @@ def _files(path: Path) -> tuple[Path, Path]:
             names = ", ".join(file.name for file in files)
             raise wrong(path, "matrices of one step, or the name of one of them", names)
         files = files or [job.with_name(job.name + "_STIF1.mtx")]
-    stiffness = reading.existing(files[0], "the stiffness of Abaqus", ADVICE)
+    stiffness = base.existing(files[0], "the stiffness of Abaqus", ADVICE)
     name = re.sub(r"_STIF(?=\d+\.\w+$)", "_MASS", stiffness.name)
     name = re.sub(r"_stif(?=\d+\.\w+$)", "_mass", name)
-    return stiffness, reading.existing(stiffness.with_name(name), "the mass of Abaqus", ADVICE)
+    return stiffness, base.existing(stiffness.with_name(name), "the mass of Abaqus", ADVICE)
 
 
 def _first(path: Path) -> tuple[int, str]:
@@ -85,7 +84,7 @@ def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[scipy.sparse.co
     """Return the table of all labels, nodes made by the program last, and rows and columns."""
     parts, slots = [], 32  # more than the greatest number of a direction
     for file in files:
-        *labels, value = reading.columns(file, _first(file)[1], "iiiif", comment="*")
+        *labels, value = base.columns(file, _first(file)[1], "iiiif", comment="*")
         node, direction, other, its = (x.astype(np.int64) for x in labels)
         parts.append((node * slots + direction, other * slots + its, value))
     used = np.unique(np.concatenate([np.unique(key) for part in parts for key in part[:2]]))
@@ -95,24 +94,22 @@ def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[scipy.sparse.co
     entries = []
     for row, column, value in parts:
         i, j = (place[np.searchsorted(used, key)] for key in (row, column))
-        entries.append(reading.entries_of(i, j, value, used.size))
+        entries.append(base.entries_of(i, j, value, used.size))
     node, direction = used[order] // slots, used[order] % slots
     return DofTable(node, direction, (node > 0).astype(float)), entries
 
 
 def _by_rows(
-    files: tuple[Path, Path], options: JobOptions
+    files: tuple[Path, Path], options: base.JobOptions
 ) -> tuple[DofTable, list[scipy.sparse.coo_array]]:
     """Return what files in the format COORDINATE list; rows below 0 are nodes of the program."""
     parts = []
     for file in files:
         separator = _first(file)[1]
-        parts.append(
-            reading.columns(file, separator, "iif", comment="*" if separator == "," else "%")
-        )
+        parts.append(base.columns(file, separator, "iif", comment="*" if separator == "," else "%"))
     highest = max(int(index.max()) for part in parts for index in part[:2])
     made = -min(0, *(int(index.min()) for part in parts for index in part[:2]))
-    own = reading.given_table(options, highest)
+    own = base.given_table(options, highest)
     dofs = DofTable(
         np.append(own.node, -np.arange(1, 1 + made)),
         np.append(own.direction, np.zeros(made, np.intp)),
@@ -121,5 +118,5 @@ def _by_rows(
     entries = []
     for *places, value in parts:
         row, column = (np.where(x > 0, x - 1, highest - 1 - x) for x in places)
-        entries.append(reading.entries_of(row, column, value, dofs.size))
+        entries.append(base.entries_of(row, column, value, dofs.size))
     return dofs, entries

@@ -31,8 +31,7 @@ from modefront.errors import reason
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.models.files import read_entries
-from modefront.programs.base import JobOptions
-from modefront.programs.reading import Listed, entries_of, existing, given_table
+from modefront.programs.base import JobOptions, Listed, entries_of, existing, given_table
 
 MATRICES = {"stiffness": ("_K", "K", "_stiff", "_STIFF"), "mass": ("_M", "M", "_mass", "_MASS")}
 

@@ -21,9 +21,8 @@ import numpy as np
 
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
-from modefront.programs.base import JobOptions
+from modefront.programs.base import JobOptions, Listed, columns, entries_of, existing
 from modefront.programs.inp import Deck, deck_of
-from modefront.programs.reading import Listed, columns, entries_of, existing
 
 SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
 

@@ -25,15 +25,7 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.errors import reason
 from modefront.inputs import fortran, wrong
 from modefront.models.dofs import DofTable
-from modefront.programs import reading
-from modefront.programs.base import (
-    CORNERS,
-    JobOptions,
-    Matrix,
-    ProgramMesh,
-    mesh_of,
-    refuse_unknown_nodes,
-)
+from modefront.programs import base
 from modefront.programs.nastran_files import read_dmig, read_op4
 
 DECKS = (".dat", ".bdf", ".nas", ".inp")
@@ -45,7 +37,7 @@ SETS = ("AA", "AAX", "LL", "XX", "HH", "GG", "JJ", "2GG", "")
 ADVICE = "OUTPUT4 KAA,MAA,,,//-1/21 writes an .op4 file, EXTSEOUT or PARAM,EXTOUT,DMIGPCH a .pch"
 
 
-def read(path: Path, options: JobOptions) -> reading.Listed:
+def read(path: Path, options: base.JobOptions) -> base.Listed:
     """Return the matrices of a job, given by its .op4 or .pch file, or without suffix.
 
     A file with another suffix that is no deck, such as that of a Fortran unit, is one of OUTPUT4.
@@ -56,11 +48,11 @@ def read(path: Path, options: JobOptions) -> reading.Listed:
         job = path.with_suffix("") if deck else path
         files = [job.with_name(job.name + suffix) for suffix in MATRICES]
         file = next((each for each in files if each.is_file()), files[0])
-    file = reading.existing(file, "matrices of Nastran", ADVICE)
+    file = base.existing(file, "matrices of Nastran", ADVICE)
     return (_from_dmig if file.suffix.lower() == ".pch" else _from_op4)(file, options)
 
 
-def _pair(path: Path, names: Iterable[str], options: JobOptions) -> tuple[str, str]:
+def _pair(path: Path, names: Iterable[str], options: base.JobOptions) -> tuple[str, str]:
     known = list(names)
     if options.stiffness or options.mass:
         pair = (options.stiffness or "").upper(), (options.mass or "").upper()
@@ -75,7 +67,7 @@ def _pair(path: Path, names: Iterable[str], options: JobOptions) -> tuple[str, s
     return pair
 
 
-def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
+def _deck(path: Path, options: base.JobOptions, notes: list[str]) -> Bulk | None:
     deck = options.deck or next((x for x in map(path.with_suffix, DECKS) if x.is_file()), None)
     if deck is None:
         notes.append(f"there is no deck ({path.stem}.dat or .bdf), and so there are no coordinates")
@@ -86,17 +78,17 @@ def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
         raise wrong(deck, "a deck that can be read", reason(error)) from None
 
 
-def _from_op4(path: Path, options: JobOptions) -> reading.Listed:
+def _from_op4(path: Path, options: base.JobOptions) -> base.Listed:
     matrices = read_op4(path)
     names = _pair(path, matrices, options)
     (K, digits), (M, others) = (matrices[name] for name in names)
     deck = _deck(path, options, notes := list[str]())
-    dofs, precision = reading.given_table(options, K.shape[0]), max(digits, others)
-    listed = reading.Listed((path, path), (K, M), dofs, precision, notes=notes)
+    dofs, precision = base.given_table(options, K.shape[0]), max(digits, others)
+    listed = base.Listed((path, path), (K, M), dofs, precision, notes=notes)
     return listed if deck is None or options.dofs else _labelled(listed, deck, notes)
 
 
-def _labelled(listed: reading.Listed, deck: Bulk, notes: list[str]) -> reading.Listed:
+def _labelled(listed: base.Listed, deck: Bulk, notes: list[str]) -> base.Listed:
     """Return a job with nodes and components of the deck, of which some may be held."""
     path, size = listed.files[0], listed.dofs.size
     choices = {
@@ -113,7 +105,7 @@ def _labelled(listed: reading.Listed, deck: Bulk, notes: list[str]) -> reading.L
     dofs = DofTable(node, direction, np.ones(size))
     unheld = np.array([dof not in deck.held | deck.followers for dof in fitting[0]])
 
-    def free(K: Matrix, M: Matrix) -> Bools:
+    def free(K: base.Matrix, M: base.Matrix) -> Bools:
         rows: Bools = unheld & (K.diagonal() + M.diagonal() != 0)
         _check_labels(path, deck, K, dofs, rows)
         return rows
@@ -124,14 +116,14 @@ def _labelled(listed: reading.Listed, deck: Bulk, notes: list[str]) -> reading.L
     return replace(listed, dofs=dofs, free=free, mesh=_drawn(deck, notes))
 
 
-def _drawn(deck: Bulk, notes: list[str]) -> ProgramMesh | None:
+def _drawn(deck: Bulk, notes: list[str]) -> base.ProgramMesh | None:
     if np.isfinite(deck.mesh.coordinates).all():
         return deck.mesh
     notes.append("nodes in coordinate systems of their own (CP): coordinates are left out")
     return None
 
 
-def _check_labels(path: Path, deck: Bulk, K: Matrix, dofs: DofTable, free: Bools) -> None:
+def _check_labels(path: Path, deck: Bulk, K: base.Matrix, dofs: DofTable, free: Bools) -> None:
     moving = set(zip(dofs.node[free].tolist(), dofs.direction[free].tolist(), strict=True))
     held = {n for n in deck.mesh.number.tolist() if any((n, c) not in moving for c in (1, 2, 3))}
     held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)
@@ -152,7 +144,7 @@ def _check_labels(path: Path, deck: Bulk, K: Matrix, dofs: DofTable, free: Bools
             )
 
 
-def _from_dmig(path: Path, options: JobOptions) -> reading.Listed:
+def _from_dmig(path: Path, options: base.JobOptions) -> base.Listed:
     matrices = read_dmig(path)
     K, M = (matrices[name] for name in _pair(path, matrices, options))
     table = np.unique(np.concatenate([K[0].reshape(-1, 2), M[0].reshape(-1, 2)]), axis=0)
@@ -160,10 +152,10 @@ def _from_dmig(path: Path, options: JobOptions) -> reading.Listed:
 
     def numbered(labels: Ints, value: Floats, _: float) -> scipy.sparse.coo_array:
         row, column = np.searchsorted(keys, labels.reshape(-1, 2, 2) @ [10, 1]).T
-        return reading.entries_of(row, column, value, keys.size)
+        return base.entries_of(row, column, value, keys.size)
 
     deck = _deck(path, options, notes := list[str]())
-    return reading.Listed(
+    return base.Listed(
         (path, path),
         (numbered(*K), numbered(*M)),
         DofTable(table[:, 0], table[:, 1], np.ones(len(table))),
@@ -228,10 +220,10 @@ class Bulk:
     turned: set[int] = field(default_factory=set)
 
     @cached_property
-    def mesh(self) -> ProgramMesh:
+    def mesh(self) -> base.ProgramMesh:
         """Nodes and elements."""
         elements = self.elements.values()
-        return mesh_of(self.nodes, ((_ELEMENTS[name][2], nodes) for name, nodes in elements))
+        return base.mesh_of(self.nodes, ((_ELEMENTS[name][2], nodes) for name, nodes in elements))
 
     @property
     def joined(self) -> list[tuple[int, ...]]:
@@ -284,7 +276,7 @@ class Bulk:
     def _stiffness(self, name: str, nodes: list[int]) -> Floats:
         """Return which translations and rotations (2, 3, 3) of its nodes an element makes stiff."""
         _, _, cell, kind = _ELEMENTS[name]
-        points = [self.nodes[n] for n in nodes[: CORNERS[cell]] if n in self.nodes]
+        points = [self.nodes[n] for n in nodes[: base.CORNERS[cell]] if n in self.nodes]
         known = [x for x in points if np.isfinite(x).all()]
         one, none = np.eye(3), np.zeros((3, 3))
         if kind == "rod":
@@ -324,7 +316,7 @@ def read_bulk(path: Path) -> Bulk:
             raise wrong(path, "entries GRID of nodes", "none")
         known = content.nodes.keys() | content.scalar
         used = (node for _, nodes in content.elements.values() for node in nodes)
-        refuse_unknown_nodes(path, known, used)
+        base.refuse_unknown_nodes(path, known, used)
     content.held |= content.chosen("SPC", control)
     content.followers |= content.chosen("MPC", control)
     return content
@@ -403,8 +395,8 @@ def _take(content: Bulk, card: list[str], default: list[str]) -> None:
         nodes = [n for n in map(_whole, card[first : first + most]) if n]
         if number in content.elements:
             raise ValueError(f"element {number} again")
-        if len(nodes) < CORNERS[cell] and name != "CBUSH":  # one end of it may be the ground
-            raise ValueError(f"{len(nodes)} nodes of {CORNERS[cell]}")
+        if len(nodes) < base.CORNERS[cell] and name != "CBUSH":  # one end of it may be the ground
+            raise ValueError(f"{len(nodes)} nodes of {base.CORNERS[cell]}")
         content.elements[number] = name, nodes
     elif name.startswith(("CELAS", "CDAMP")):
         ends = [(_whole(card[k]), _whole(card[k + 1])) for k in (3, 5)]

@@ -32,7 +32,7 @@ from scipy.io import FortranEOFError, FortranFile
 from modefront._typing import Floats, Ints
 from modefront.errors import reason
 from modefront.inputs import ended, fortran, wrong
-from modefront.programs.reading import fixed_width
+from modefront.programs.base import fixed_width
 
 STRING = 65536
 """Unit of the length in the header of a string."""

@@ -17,8 +17,14 @@ from modefront.errors import reason
 from modefront.inputs import ended, once, wrong
 from modefront.models.dofs import read_dofs
 from modefront.models.files import read_entries
-from modefront.programs.base import JobOptions, ProgramMesh, mesh_of, refuse_unknown_nodes
-from modefront.programs.reading import Listed, existing
+from modefront.programs.base import (
+    JobOptions,
+    Listed,
+    ProgramMesh,
+    existing,
+    mesh_of,
+    refuse_unknown_nodes,
+)
 
 ADVICE = "the snippet in docs/import.md writes it"
 
