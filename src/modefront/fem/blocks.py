@@ -22,8 +22,17 @@ from modefront.fem.elements.shell import (
     shell_stresses,
 )
 from modefront.fem.elements.solid import SOLIDS, solid, solid_stresses
-from modefront.fem.section import Material
-from modefront.fem.structure import ALONG, Beams, Mass, Shells, Solids, Spring, Structure, Trusses
+from modefront.fem.structure import (
+    ALONG,
+    Beams,
+    Mass,
+    Material,
+    Shells,
+    Solids,
+    Spring,
+    Structure,
+    Trusses,
+)
 from modefront.rounding import TINY
 
 SYMMETRIC = 1e-9
