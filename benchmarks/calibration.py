@@ -45,7 +45,7 @@ from modefront.identification.methods import ambient
 from modefront.identification.sets import combine
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import begin
-from modefront.results.analysis import DETERMINED
+from modefront.results.assemble import DETERMINED
 from modefront.uncertainty.inference import refused
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.prior import NoisePrior

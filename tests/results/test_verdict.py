@@ -13,7 +13,7 @@ import pytest
 
 from modefront.findings.catalogue import VERDICT, page
 from modefront.front.point import Kind
-from modefront.results.analysis import intervals
+from modefront.results.assemble import intervals
 from modefront.results.findings import _scatter
 from modefront.results.verdict import closed
 from modefront.uncertainty.scatter import LinearisationWarning

@@ -26,7 +26,7 @@ from modefront.options import TRUE_OR_FALSE, Checked, Requirement, check_fields,
 from modefront.residuals.problem import UpdatingProblem
 from modefront.text import NAME, clean
 
-Values = Literal["number", "count", "truth", "text"]
+Contents = Literal["number", "count", "truth", "text"]
 """Types of values of a variable."""
 
 
@@ -40,7 +40,7 @@ class Variable:
     name: str
     dimensions: tuple[str, ...]
     meaning: str
-    values: Values = "number"
+    values: Contents = "number"
     unit: str = ""
     required: bool = False
 

@@ -1,4 +1,4 @@
-"""A front and its analysis as one dataset."""
+"""A front, its analysis, and what the posterior says of the parameters, as one dataset."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools, Floats, Ints
 from modefront.analysis.certified import certificate_values
 from modefront.analysis.front import FrontAnalysis
 from modefront.datasets import ArrayDataset
@@ -15,15 +15,33 @@ from modefront.front.dominance import nondominated, undominated
 from modefront.front.front import Front
 from modefront.front.gaps import branch_numbers
 from modefront.front.methods import METHODS
-from modefront.front.point import WEIGHTED, Kind, label
+from modefront.front.point import WEIGHTED, Kind, label, of_kind
+from modefront.identifiability.combinations import cosines, determination, index
 from modefront.optim.problem import at_bounds
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.analysis import Values, analysis_values, determinations
-from modefront.results.findings import as_values, findings
-from modefront.results.schema import FORMAT, described
+from modefront.results.findings import Determinations, as_values, findings
+from modefront.results.schema import FORMAT, Values, described
+from modefront.rounding import TINY
+from modefront.uncertainty.inference import Inference
+from modefront.uncertainty.prediction import summary
+from modefront.uncertainty.prior import NoiseModel, prior_widths
+from modefront.uncertainty.scatter import std
 
 ITERATED = "iterated-weights"
 """Name of the fixed point of the iteration of the weights, among the minima."""
+
+PART = 1e-9
+"""Component of a direction over the greatest that is rounding of its basis."""
+
+QUANTILES = (0.05, 0.5, 0.95)
+"""Quantiles of the parameters: a 90 % interval and the median."""
+
+DETERMINED, OPEN = 1 / 3, 0.8
+"""Width of the 90 % interval over that of the prior, below which a parameter is determined, and
+above which it is not."""
+
+TRUST = ("determined", "partly", "not determined")
+"""What the data say of a parameter."""
 
 
 def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> ArrayDataset:
@@ -154,3 +172,193 @@ def _weights(front: Front, J: Floats, a: Floats) -> Floats:
         elif point.kind in WEIGHTED or (point.kind is Kind.FRONT and swept):
             out[i] = point.solution.weights
     return out
+
+
+def determinations(problem: UpdatingProblem, front: Front) -> Determinations:
+    """Return the determined combinations of parameters."""
+    points = [front.reference, *of_kind(front.points, Kind.EDGE)]
+    return [(x.label, determination(problem, x.solution.evaluation)) for x in points]
+
+
+def analysis_values(
+    problem: UpdatingProblem,
+    front: Front,
+    analysis: FrontAnalysis,
+    determined: Determinations,
+) -> Values:
+    """Return the values; ``front`` holds all points, those of ``analysis`` too."""
+    boundary = METHODS[front.method].programme == "boundary"
+    parts = {Kind.FRONT: "whole" if boundary else ""}
+    parts |= dict.fromkeys((Kind.IDENTIFIABLE, Kind.IDENTIFIABLE_EDGE), "identifiable")
+    part = analysis.identifiable
+    return {
+        "front_part": [parts.get(point.kind, "") for point in front.points],
+        "flat": part.flat if part else np.zeros(len(problem.objectives), dtype=int),
+        **_identifiability(determined),
+        **_equivalent(analysis),
+        **_scatter(problem, front, analysis),
+        **_posterior(front, analysis),
+        **_replicates(problem, front, analysis),
+    }
+
+
+def _identifiability(determined: Determinations) -> Values:
+    rows = [
+        (at, name, combination, each.scale.unit)
+        for at, each in determined
+        for name, of_data in each.combinations
+        for combination in of_data
+    ]
+    at, of, chosen, unit = zip(*rows, strict=True)
+    effects = determined[0][1].effects
+    active = np.flatnonzero(np.diag(effects) > 0).tolist()
+    return {
+        "combination_at": at,
+        "combination_of": of,
+        "combination_direction": [x.direction for x in chosen],
+        "combination_unit": unit,
+        "combination_sensitivity": [x.sensitivity for x in chosen],
+        "combination_share": [x.share for x in chosen],
+        "collinearity": cosines(effects),
+        "collinearity_index": index(effects[np.ix_(active, active)]) if active else np.nan,
+    }
+
+
+def _equivalent(analysis: FrontAnalysis) -> Values:
+    rows = [
+        (name, number, manifold, model)
+        for name, manifolds in analysis.manifolds
+        for number, manifold in enumerate(manifolds, start=1)
+        for model in manifold.models
+    ]
+    return {
+        "equal_of": [name for name, *_ in rows],
+        "equal_manifold": [number for _, number, *_ in rows],
+        "equal_dimension": [x.dimension for _, _, x, _ in rows],
+        "equal_extent": [x.extent.name.lower() for _, _, x, _ in rows],
+        "equal_theta": [model.theta for *_, model in rows],
+        "equal_objective": [model.J for *_, model in rows],
+    }
+
+
+def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:
+    if analysis.source is None:
+        return {}
+    n, p, modes = len(problem.objectives), len(problem.model.parameters), len(problem.data.modes)
+    sizes = {"theta_std": (p,), "theta_covariance": (p, p), "objective_std": (n,)}
+    sizes |= {"objective_covariance": (n, n), "frequency_std": (modes,), "mac_std": (modes,)}
+    unknown = {name: np.full(size, np.nan) for name, size in sizes.items()}
+    rows: list[Values] = []
+    for point in front.points:
+        row: Values = {**unknown, "scatter_doubt": ""}
+        if (scatter := analysis.scatter.get(point.label)) is not None:
+            J = scatter.J.T @ scatter.J
+            row |= {"theta_covariance": scatter.covariance, "objective_covariance": J}
+            row["theta_std"] = _std(scatter.covariance, scatter.free)
+            row["objective_std"] = np.sqrt(np.diag(J))
+            row["scatter_doubt"] = ", ".join(x.name.lower() for x in scatter.warnings)
+            for quantity, slopes in analysis.slopes.get(point.label, {}).items():
+                row[f"{quantity}_std"] = std(scatter.theta @ slopes.T)
+        rows.append(row)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def _std(covariance: Floats, free: Floats) -> Floats:
+    """Return standard deviations, infinite for parameters that have a part in what is free."""
+    return np.where(left_open(free), np.inf, np.sqrt(np.diag(covariance)))
+
+
+def left_open(free: Floats) -> Bools:
+    """Return the parameters that have a part in directions (p, d)."""
+    out: Bools = (np.abs(free) > PART * np.abs(free).max(initial=TINY)).any(axis=1)
+    return out
+
+
+def _posterior(front: Front, analysis: FrontAnalysis) -> Values:
+    posterior = analysis.posterior
+    if posterior is None:
+        return {}
+    out: Values = {
+        "posterior_std": _std(posterior.covariance, posterior.free),
+        "posterior_covariance": posterior.covariance,
+    }
+    for name in ("frequency", "mac"):
+        slopes = analysis.slopes[front.reference.label][name]
+        out[f"posterior_{name}_std"] = np.linalg.norm(slopes @ posterior.axes, axis=1)
+    return out
+
+
+def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:
+    """Return the solutions with data drawn again, NaN where one did not converge."""
+    if not analysis.replicates:
+        return {}
+    p, n = len(problem.model.parameters), len(problem.objectives)
+    solutions = [[each.get(x.label) for x in front.points] for each in analysis.replicates]
+    nothing = np.full(p + n, np.nan)
+    both = np.array(
+        [
+            [np.concatenate([x.theta, x.J]) if x and x.converged else nothing for x in row]
+            for row in solutions
+        ]
+    )
+    deviation = summary(both.reshape(len(both), -1))[1].reshape(-1, p + n)
+    theta, J = both[..., :p], both[..., p:]
+    return {
+        "bootstrap_theta": theta,
+        "bootstrap_objective": J,
+        "bootstrap_theta_std": deviation[..., :p],
+        "bootstrap_objective_std": deviation[..., p:],
+    }
+
+
+def intervals(theta: Floats, side: Ints, bounds: Floats) -> Floats:
+    """Return 90 % intervals, with the medians between their ends, (p, 3), of draws (draws, p).
+
+    They have equal tails. Where the most probable model is at a bound, at -1 or 1 as ``side`` (p,)
+    says, they begin there, ``bounds`` (p, 2), and have one tail: they contain what they are of.
+    """
+    tails = (QUANTILES[0], 2 * QUANTILES[0], QUANTILES[1], 1 - 2 * QUANTILES[0], QUANTILES[2])
+    low, below, median, above, high = np.quantile(theta, tails, axis=0, method="weibull")
+    low, high = np.where(side > 0, below, low), np.where(side < 0, above, high)
+    low, high = np.where(side < 0, bounds[:, 0], low), np.where(side > 0, bounds[:, 1], high)
+    return np.column_stack([low, median, high])
+
+
+def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) -> ArrayDataset:
+    """Return results with what the posterior says.
+
+    A quantile is such that the next draw is below it with its probability. Of draws that do not
+    settle, and of a model that cannot be used, no parameter is called determined.
+    """
+    draws, fit, widths = inference.draws, inference.fit, prior_widths(noise.problem)
+    freed, unfixed = inference.freed, inference.unfixed
+    settled = draws.settled and not fit.is_refused
+    (side,) = data["at_bound"].values[data["kind"].values == Kind.MOST_PROBABLE.value]
+    interval = intervals(draws.theta, side, data["bounds"].values)
+    share = (interval[:, 2] - interval[:, 0]) / widths
+    place = np.where((share < DETERMINED) & settled, 0, np.where(share > OPEN, 2, 1))
+    values = {
+        "sample_theta": draws.theta,
+        "interval": interval,
+        "trust": np.array(TRUST)[place],
+        "prior_width": widths,
+        "misfit": fit.misfit,
+        "nominal_misfit": fit.nominal,
+        "likely_mode": fit.pairs,
+        "posterior_std": draws.theta.std(axis=0, ddof=1),
+        "posterior_covariance": np.atleast_2d(np.cov(draws.theta, rowvar=False)),
+        "posterior_frequency_std": summary(draws.frequency)[1],
+        "posterior_mac_std": summary(draws.mac)[1],
+        "candidate_frequency": fit.candidates.frequency,
+        "candidate_sensor": list(fit.candidates.sensor),
+        "candidate_gain": fit.candidates.gain,
+    }
+    attributes: dict[str, Any] = {"assumed": noise.assumed, "settled": int(settled)}
+    if freed is not None:
+        values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
+        attributes["freed_less"] = freed.less
+    if unfixed is not None:
+        attributes |= {"fixed_parameter": unfixed.name, "fixed_value": unfixed.value}
+        values["unfixed_misfit"] = unfixed.misfit
+    out = data.assign(described(values)).assign_coords({"quantile": QUANTILES})
+    return out.assign_attrs(attributes)

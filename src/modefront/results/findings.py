@@ -21,10 +21,14 @@ from modefront.findings.knowledge import (
 from modefront.findings.record import Finding, as_text, found, in_order
 from modefront.front.front import Front
 from modefront.front.point import INTERNAL, Kind, label, of_kind
+from modefront.identifiability.combinations import Determination
 from modefront.optim.problem import AT_BOUND
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.analysis import Determinations, Values
+from modefront.results.schema import Values
 from modefront.uncertainty.scatter import LinearisationWarning
+
+Determinations = Sequence[tuple[str, Determination]]
+"""What is determined at the reference, then at each edge, with the labels of these."""
 
 FEW = 10
 """Points that are named one by one in a sentence."""

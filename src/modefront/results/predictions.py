@@ -28,9 +28,9 @@ from modefront.predictions import Prediction, PredictionKind, ResultVariable
 from modefront.predictions.base import ATTRIBUTE, as_text, kinds_in
 from modefront.predictions.ranges import Sampled, extreme
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.analysis import Values, left_open
+from modefront.results.assemble import left_open
 from modefront.results.findings import as_values
-from modefront.results.schema import described
+from modefront.results.schema import Values, described
 from modefront.uncertainty.prediction import (
     SUMMARY,
     Stencil,

@@ -15,7 +15,7 @@ import numpy as np
 
 from modefront.datasets import Array
 from modefront.errors import wrong
-from modefront.predictions.base import PredictionKind, Values, Variable
+from modefront.predictions.base import Contents, PredictionKind, Variable
 
 FORMAT = 4
 """Version of the schema: raised when a variable changes its meaning, or a required one is added."""
@@ -32,7 +32,7 @@ def _rows(of: str) -> dict[str, Variable]:
         for row in re.finditer(r"^\| `(\w+)`( \*)? \| (.*) \|$", table, re.MULTILINE):
             cells = row[3].replace("–", "").split(" | ")
             named, holds = cells[:-2], "".join(cells[-2:-1])
-            values: Values = next((x for x in get_args(Values) if x in holds.split()), "number")
+            values: Contents = next((x for x in get_args(Contents) if x in holds.split()), "number")
             dimensions = tuple("".join(named).replace(",", "").split())
             unit = holds.replace(values, "").strip()
             out[row[1]] = Variable(row[1], dimensions, cells[-1], values, unit, bool(row[2]))
@@ -44,6 +44,10 @@ DIMENSIONS = {name: row.meaning for name, row in _rows("dimension").items()}
 
 VARIABLES, ATTRIBUTES = _rows("variable"), _rows("attribute")
 """Variables by name, without those of predictions, and attributes, numbers or texts."""
+
+
+Values = dict[str, object]
+"""Values of variables by name."""
 
 
 def variables_of(kinds: Iterable[PredictionKind]) -> dict[str, Variable]:

@@ -29,8 +29,7 @@ from modefront.models.geometry import Cells, Geometry
 from modefront.outputs import output_by_name
 from modefront.pairing.match import mean_mac, modes_needed
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.analysis import Values
-from modefront.results.schema import described
+from modefront.results.schema import Values, described
 from modefront.rounding import TINY
 from modefront.text import Shown
 from modefront.work.codec import record

@@ -18,7 +18,7 @@ from modefront.findings.catalogue import VERDICT
 from modefront.findings.knowledge import SHOWN, bound, enumeration, held
 from modefront.front.point import Kind, front_points, preferred
 from modefront.predictions.base import predictions_in
-from modefront.results.analysis import TRUST
+from modefront.results.assemble import TRUST
 from modefront.results.remarks import fit_of
 from modefront.uncertainty.inference import GAIN, LARGE, WORSE, Freed, refused
 

@@ -32,8 +32,7 @@ from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text
 from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.analysis import with_intervals
-from modefront.results.assemble import dataset
+from modefront.results.assemble import dataset, with_intervals
 from modefront.results.files import FILE, write, written_for
 from modefront.results.predictions import PredictionRunner, with_predictions
 from modefront.results.results import Results
