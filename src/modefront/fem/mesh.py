@@ -50,6 +50,8 @@ DIVISIONS: Mapping[str, list[list[Sequence[int]]]] = {
 MEMORY, PER_BYTE = 2 * 10**9, 40
 """Memory that reading may take, in bytes, and that for each byte of the file besides."""
 
+READABLE = "a mesh that meshio can read"
+
 REFERRING = (
     *(".xdmf", ".xmf", ".h5m", ".cgns", ".hmf", ".exo", ".e", ".ex2"),
     *(".ele", ".node", ".xml"),
@@ -131,8 +133,7 @@ def read_mesh(path: str | Path) -> Mesh:
         raise wrong(path, expected, "no such package")
     size = file_size(path, "a mesh", MOST_DATA)
     memory = min(available_memory(), MEMORY + PER_BYTE * size)
-    reader, expected = f"{__name__}:read_with_meshio", "a mesh that meshio can read"
-    arrays, parts = isolated(reader, path, expected, memory=memory)
+    arrays, parts = isolated(f"{__name__}:read_with_meshio", path, READABLE, memory=memory)
     points = arrays.pop("points")
     if points.ndim != 2 or not 1 <= points.shape[1] <= 3:
         raise wrong(path, "nodes in up to 3 dimensions", str(points.shape))
@@ -190,8 +191,10 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
             if path.suffix.lower() == ".msh":
                 _check_sections(path.read_bytes())
             raw = meshio.read(path)
+    except MemoryError:
+        raise
     except (Exception, SystemExit) as error:
-        raise ValueError(f"{output.getvalue()} {error}") from error
+        raise wrong(path, READABLE, one_line(f"{output.getvalue()} {error}", 400)) from error
     if not len(raw.points) or not any(len(block.data) for block in raw.cells):
         raise wrong(path, "nodes and cells", "none of one or the other")
     blocks: dict[tuple[str, str], list[Ints]] = {}
