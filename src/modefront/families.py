@@ -6,7 +6,8 @@ installed package as an entry point.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, Generic, TypeVar
 
@@ -16,6 +17,7 @@ from modefront.text import NAME, clean
 T = TypeVar("T")
 
 
+@dataclass(eq=False)
 class Family(Mapping[str, T], Generic[T]):
     """The members of a family by their names, in the order in which they came.
 
@@ -24,21 +26,14 @@ class Family(Mapping[str, T], Generic[T]):
     the place of the package's ``own``.
     """
 
-    # 6 arguments: what a family is.
-    def __init__(
-        self,
-        group: str,
-        what: str,
-        takes: Callable[[Any], bool],
-        name: Callable[[T], str],
-        own: Iterable[T] = (),
-        faults: Callable[[T], Iterable[Fault]] = lambda _: (),
-    ) -> None:
-        self.group, self.what, self.takes, self.name = group, what, takes, name
-        self._own = {name(member): member for member in own}
-        self._faults = faults
-        self.added: dict[str, T] = {}
-        self._loaded = False
+    group: str
+    what: str
+    takes: Callable[[Any], bool]
+    name: Callable[[T], str]
+    own: Sequence[T] = ()
+    faults: Callable[[T], Iterable[Fault]] = lambda _: ()
+    added: dict[str, T] = field(default_factory=dict)
+    _is_loaded: bool = False
 
     def add(self, member: T) -> T:
         """Add a member, in place of one that was added under its name, and return it.
@@ -47,9 +42,9 @@ class Family(Mapping[str, T], Generic[T]):
         """
         if not self.takes(member):
             raise wrong("register", self.what, clean(repr(member), NAME))
-        refuse(self._faults(member))
+        refuse(self.faults(member))
         name = self.name(member)
-        if name in self._own:
+        if name in map(self.name, self.own):
             raise wrong("register", f"{self.what} with a name of its own", repr(name))
         self.added[name] = member
         return member
@@ -65,7 +60,7 @@ class Family(Mapping[str, T], Generic[T]):
 
     def _all(self) -> dict[str, T]:
         """Return all members; raises InputError for an entry point that brings none."""
-        if not self._loaded:
+        if not self._is_loaded:
             for each in _entry_points().select(group=self.group):
                 try:
                     self.add(each.load())
@@ -74,8 +69,8 @@ class Family(Mapping[str, T], Generic[T]):
                         raise
                     place = f"entry point '{each.name}' = {each.value} of {self.group}"
                     raise wrong(place, self.what, reason(error)) from None
-            self._loaded = True
-        return self._own | self.added
+            self._is_loaded = True
+        return {self.name(member): member for member in self.own} | self.added
 
 
 @cache

@@ -26,30 +26,26 @@ HIDDEN = (
 """Attributes that say how a file, or `xarray`, holds a variable."""
 
 
-class ForeignError(ValueError):
-    """A file refers to others."""
-
-
 def inner(group: h5py.Group, name: str) -> Any:
     """Return a group or dataset of a group that the file itself holds.
 
-    Raises ForeignError for links to other files, soft links, and data that is kept elsewhere.
+    Raises ValueError for links to other files, soft links, and data that is kept elsewhere.
     """
     link = group.get(name, getlink=True)
     if isinstance(link, h5py.ExternalLink):
-        raise ForeignError(f"'{name}' is a link to another file, '{link.filename}'")
+        raise ValueError(f"'{name}' is a link to another file, '{link.filename}'")
     if not isinstance(link, h5py.HardLink):
-        raise ForeignError(f"'{name}' is a link to another place")
+        raise ValueError(f"'{name}' is a link to another place")
     item = group[name]
     if isinstance(item, h5py.Dataset) and item.is_virtual:
-        raise ForeignError(f"'{name}' is a virtual dataset, made of other files")
+        raise ValueError(f"'{name}' is a virtual dataset, made of other files")
     if isinstance(item, h5py.Dataset) and item.id.get_create_plist().get_external_count():
-        raise ForeignError(f"the data of '{name}' is kept in another file")
+        raise ValueError(f"the data of '{name}' is kept in another file")
     return item
 
 
 def check_tree(group: h5py.Group) -> None:
-    """Raise ForeignError where any part of a group, at any depth, is kept elsewhere."""
+    """Raise ValueError where any part of a group, at any depth, is kept elsewhere."""
     waiting = [group]
     while waiting:
         node = waiting.pop()
@@ -116,7 +112,7 @@ def contents(path: Path) -> tuple[dict[str, Any], list[Any]]:
     """Return the values of all variables of a netCDF file in their order, and what belongs to them.
 
     That is the name, dimensions and attributes of each variable, and the attributes of the file.
-    Raises ForeignError where the file refers to others.
+    Raises ValueError where the file refers to others.
     """
     arrays: dict[str, Any] = {}
     named: list[Any] = []
