@@ -95,9 +95,12 @@ SINGLE = ("master", "node")
 NAMED_KINDS = ("group", "spring", "mass", "load")
 """Tables whose entries have names that parameters scale."""
 
-TOLERANCE = number("a distance above 0", above=0)
-PLACED = {"node": whole(0, 10**9), "at": numbers("3 coordinates", VECTOR)}
-"""Keys of which one says where a sensor is."""
+PLACED = {
+    "node": whole(0, 10**9),
+    "at": numbers("3 coordinates", VECTOR),
+    "tolerance": number("a distance above 0", above=0),
+}
+"""Keys of a sensor besides its direction; one of the first two says where it is."""
 
 OF_GROUP = keys(
     ["name", "material"], name=text("the name of a group of cells"), material=text("a material")
@@ -120,14 +123,10 @@ MATERIALS = entries(
     table_of(any_of(schema_of(fem.Material), schema_of(fem.Orthotropic)), 1),
 )
 GROUPS = {kind: of_options(_of_group(kind)) for kind in ELEMENTS}
-PLACES = any_of(
-    *(
-        closed(
-            {key: place.described, "tolerance": TOLERANCE.described} | ORIENTED, [key, "direction"]
-        )
-        for key, place in PLACED.items()
-    )
-)
+PLACES = {
+    **closed({key: each.described for key, each in PLACED.items()} | ORIENTED, ["direction"]),
+    "oneOf": [{"required": ["node"]}, {"required": ["at"]}],
+}
 SCALES = entries("a table, parameter = { quantity, of }", table_of(schema_of(fem.Parameter)))
 
 
@@ -210,7 +209,8 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
             replace(x, requirement=on_mesh) if x.requirement is NODES else x for x in options(make)
         ]
         found = [member.read(known) for member in table.tables(kind, required=False)]
-        members[f"{kind}es" if kind == "mass" else f"{kind}s"] = [make(**x) for x in found if x]
+        with table.noting(kind):
+            members[f"{kind}es" if kind == "mass" else f"{kind}s"] = [make(**x) for x in found if x]
     structure = fem.Structure(
         mesh.nodes,
         _groups(table, mesh),
@@ -272,9 +272,8 @@ def _places(model: Table, key: str) -> list[fem.Sensor]:
     for name, place in model.entries(
         key, "a table node or at, and direction", "sensor" if required else "", required=required
     ):
-        node, at = (place.value(each, PLACED[each], None) for each in ("node", "at"))
+        node, at, tolerance = (place.value(each, PLACED[each], None) for each in PLACED)
         directions = read_directions(place)
-        tolerance = place.value("tolerance", TOLERANCE, None)
         place.close()
         if (node is None) == (at is None):
             place.fault("", "either node or at", "neither" if at is None else "both")
