@@ -24,6 +24,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import cache
 from itertools import pairwise, repeat
 from pathlib import Path
 from typing import (
@@ -302,8 +303,9 @@ def keys(required: Sequence[str], **known: Requirement) -> tuple[Option, ...]:
     return tuple(Option(name, each, required=name in required) for name, each in known.items())
 
 
-def options(record: Callable[..., Any]) -> tuple[Option, ...]:
-    """Return the fields of a class of records, or arguments of a function, with requirements."""
+@cache
+def _declared(record: Callable[..., Any]) -> tuple[tuple[Any, Any, str], ...]:
+    """Return the arguments of a class or function, each with its annotation and its meaning."""
     hints = get_type_hints(record, include_extras=True)
     _, _, section = (inspect.getdoc(record) or "").partition("\n----------\n")
     form = r"^([\w, ]+)(?: : |\n    )(.*(?:\n    .*)*)"  # of Attributes, or of Parameters
@@ -312,16 +314,21 @@ def options(record: Callable[..., Any]) -> tuple[Option, ...]:
         for names, text in re.findall(form, section, re.MULTILINE)
         for name in names.split(", ")
     }
+    arguments = inspect.signature(record).parameters.values()
+    return tuple((each, hints[each.name], meanings.get(each.name, "")) for each in arguments)
+
+
+def options(record: Callable[..., Any]) -> tuple[Option, ...]:
+    """Return the fields of a class of records, or arguments of a function, with requirements."""
     out = []
-    for each in inspect.signature(record).parameters.values():
-        requirement = _requirement(hints[each.name])
+    for each, hint, meaning in _declared(record):
+        requirement = _requirement(hint)
         if requirement is not None:
             required = each.default is each.empty
-            optional = types.NoneType in get_args(hints[each.name])
+            optional = types.NoneType in get_args(hint)
             default = None if required else plain(each.default)
             if default in ("", []) or not fits(default, requirement.schema):
                 default = None
-            meaning = meanings.get(each.name, "")
             out.append(Option(each.name, requirement, optional, required, default, meaning))
     return tuple(out)
 
