@@ -139,7 +139,6 @@ def ended(path: Path) -> None:
 
 
 def _last(path: Path) -> bytes:
-    """Return the last byte of a file; nothing of an empty one."""
     with path.open("rb") as stream:
         stream.seek(-min(1, stream.seek(0, 2)), 2)
         return stream.read(1)

@@ -90,7 +90,6 @@ _INSIDE = False
 
 
 def _called(function: str, path: Path, arguments: Sequence[str]) -> Read:
-    """Return what a function reads in this process."""
     module, name = function.split(":")
     try:
         found: Read = getattr(importlib.import_module(module), name)(path, *arguments)

@@ -262,7 +262,6 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools) -> Floats:
 
 
 def _stable(K: sparse.csr_array) -> Factorisation | None:
-    """Return the factor of K; None where it is not positive definite."""
     try:
         factor = factorise(K)
     except SingularMatrixError:

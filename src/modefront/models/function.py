@@ -311,7 +311,6 @@ def _checked(value: Matrix, place: str, size: int | None, real: bool = True) -> 
 
 
 def _imaginary(A: Any, h: float) -> Any:
-    """Return the imaginary part over the step h; None where there is none."""
     slope = A.imag / h
     return slope if abs(slope).max() > 0 else None
 

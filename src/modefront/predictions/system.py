@@ -352,7 +352,6 @@ def _more(model: Model, theta: Floats, known: Floats) -> Floats:
 
 
 def _in_words(weights: NamedWeights) -> str:
-    """Return the names of weights, with the weights that are not 1."""
     return " + ".join(
         name if weight == 1 else f"{weight:g} {name}" for name, weight in weights.items()
     )

@@ -212,7 +212,6 @@ def _length(data: Dataset) -> float:
 
 
 def _models(data: Dataset) -> tuple[Dataset, Dataset, Dataset]:
-    """Return all Pareto-optimal models, the reference, and the optimally weighted ones."""
     best, optimal = data["pareto"].values, data["kind"].values == Kind.OPTIMAL.value
     return data.isel(point=best), data.isel(point=position(data)), data.isel(point=optimal)
 

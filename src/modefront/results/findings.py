@@ -206,5 +206,4 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
 
 
 def _places(labels: Sequence[str], points: int) -> str:
-    """Return the labels of points, or how many of them there are."""
     return ", ".join(labels) if len(labels) <= FEW else f"{len(labels)} of {points} points"

@@ -236,7 +236,6 @@ RANGE = ("minimum", "maximum", "spread")
 def _by_kind(
     predictions: Sequence[Prediction],
 ) -> Iterator[tuple[PredictionKind, list[Prediction]]]:
-    """Yield the kinds of predictions in their order, each with these."""
     for kind in dict.fromkeys(each.kind for each in predictions):
         yield kind, [each for each in predictions if each.kind == kind]
 
@@ -281,7 +280,6 @@ def with_predictions(
 
 
 def _at_points(data: ArrayDataset, runner: PredictionRunner, slack: float) -> ArrayDataset:
-    """Return results with the predictions of every point, and their ranges."""
     optimal = data["pareto"].values
     values: Values = {"frequency_range": _range(data["frequency"].values, optimal)}
     coordinates = {"range": list(RANGE)}

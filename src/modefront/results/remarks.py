@@ -94,7 +94,6 @@ def headlines(data: Dataset) -> list[str]:
 
 
 def _failures(data: Dataset) -> Iterator[Finding]:
-    """Yield which models are not what they should be."""
     status, pareto = data["status"].values, data["pareto"].values
     if (status == "sampled").any():
         spent = int(data.attrs["front_evaluations"])

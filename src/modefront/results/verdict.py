@@ -82,7 +82,6 @@ def _say(kind: str, **values: Any) -> str:
 
 
 def _use(data: Dataset) -> str:
-    """Return that the reference can be used, and how well it fits."""
     misfit, groups = data["misfit"].values, data["group"].values
     worst = np.argsort(-misfit) if misfit.size > SHOWN else np.arange(misfit.size)
     size = enumeration([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], SHOWN)
@@ -109,7 +108,6 @@ def _at_bounds(data: Dataset) -> Iterator[str]:
 
 
 def _fixed(data: Dataset) -> Iterator[str]:
-    """Yield which fixed parameter the data contradict."""
     if "fixed_parameter" not in data.attrs:
         return
     before, after = data["misfit"].values, data["unfixed_misfit"].values

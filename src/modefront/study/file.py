@@ -164,7 +164,6 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
 
 
 def _digest(content: bytes, files: Sequence[Path]) -> str:
-    """Return a hash of what the study file says and of all files that were read for it."""
     total = hashlib.sha256(content)
     for path in files:
         with path.open("rb") as stream:

@@ -574,7 +574,6 @@ def job_text(
 
 
 def _run(program: str, job: Path, text: str, result: str) -> None:
-    """Write a job and run it; raises InputError where it has no result."""
     made = job.with_name(job.name + result)
     made.unlink(missing_ok=True)
     write_text(job.with_name(f"{job.name}.inp"), text)

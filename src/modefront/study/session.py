@@ -228,7 +228,6 @@ def worked(study: Study, work: Run) -> Dataset:
 
 
 def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | float]:
-    """Return version, seed, costs, and the coverage of the front."""
     total = work.total(lambda stage: stage != "shapes")
     along, predictions, shapes = (
         work.total(name.__eq__) for name in ("front", "predict", "shapes")
@@ -257,7 +256,6 @@ def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | 
 
 
 def _set_aside(path: Path) -> None:
-    """Rename a file or a folder to a name that is free."""
     if path.exists():
         number = 1
         while (aside := path.with_name(f"{path.stem}.{number}{path.suffix}")).exists():

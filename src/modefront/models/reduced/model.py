@@ -267,7 +267,6 @@ class ReducedModel:
 
     @property
     def _begins(self) -> bool:
-        """Whether the requested snapshots begin with those that were taken."""
         return self.version[: len(self._taken)] == tuple(what.key for what, *_ in self._taken)
 
     def _projected(self) -> _Projected:

@@ -109,12 +109,10 @@ OF_BEAMS = keys(["section"], section=SECTION)
 
 
 def _of_group(kind: Kind) -> list[Option]:
-    """Return the keys of a group of elements."""
     return [*OF_GROUP, *OF_BEAMS * (kind == "beam"), *options(ELEMENTS[kind])]
 
 
 def _tables(kind: str) -> Requirement:
-    """Return the requirement of the tables of a kind of members."""
     return entries(f"tables [[model.{kind}]]", array(schema_of(MEMBERS[kind]), 1))
 
 
@@ -290,7 +288,6 @@ def _places(model: Table, key: str) -> list[fem.Sensor]:
 
 
 def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:
-    """Return what each parameter scales: one quantity of named members."""
     out: list[fem.Parameter] = []
     for name, scale in model.entries("scale", "a table { quantity = ..., of = [...] }"):
         if name not in parameters:
