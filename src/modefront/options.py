@@ -510,21 +510,9 @@ class Table:
         self.fault(key, requirement.expected, shown(value))
         return None if default is ... else default
 
-    def take(self, key: str, expected: str, test: Callable[[Any], bool], default: Any) -> Any:
-        """Return a value that passes a test."""
-        return self.value(key, Requirement(expected, {}, further=test), default)
-
     def text(self, key: str, expected: str = "a text", default: Any = ...) -> Any:
         """Return a text of printable characters that is not empty."""
         return self.value(key, text(expected), default)
-
-    def choice(self, key: str, choices: Sequence[str], default: Any = ...) -> Any:
-        """Return one of some texts."""
-        return self.value(key, one_of(*choices), default)
-
-    def number(self, key: str, expected: str, default: Any = ..., **limits: float) -> Any:
-        """Return a finite number within limits, those of `number`."""
-        return self.value(key, number(expected, **limits), default)
 
     def read(self, known: Iterable[Option]) -> dict[str, Any] | None:
         """Return the values of keys that are given, None where anything is wrong with the table."""
@@ -550,7 +538,7 @@ class Table:
 
     def table(self, key: str, expected: str = "a table", default: Any = ...) -> Table | None:
         """Return a table within this one."""
-        value = self.take(key, expected, lambda x: isinstance(x, dict), default)
+        value = self.value(key, Requirement(expected, TABLE), default)
         if value is None:
             return None
         place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
@@ -586,12 +574,8 @@ class Table:
     def tables(self, key: str, required: bool) -> list[Table]:
         """Return the tables of a list, such as ``[[parameter]]``."""
         path = f"{self.place.strip('[]')}.{key}" if self.place else key
-        value = self.take(
-            key,
-            f"at least one table [[{path}]]" if required else f"tables [[{path}]]",
-            lambda x: isinstance(x, list) and bool(x) and all(isinstance(y, dict) for y in x),
-            ... if required else [],
-        )
+        expected = f"at least one table [[{path}]]" if required else f"tables [[{path}]]"
+        value = self.value(key, Requirement(expected, array(TABLE, 1)), ... if required else [])
         out = []
         for k, item in enumerate(value or [], start=1):
             named = f" ({item['name']!r})" if isinstance(item.get("name"), str) else ""

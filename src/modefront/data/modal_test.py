@@ -28,6 +28,7 @@ from modefront.errors import Fault, InputError, noted, refuse, suggestion
 from modefront.inputs import MOST_DATA, file_size, wrong
 from modefront.isolated import Read, isolated
 from modefront.options import (
+    NAME,
     NOT_NEGATIVE,
     Requirement,
     Table,
@@ -35,7 +36,9 @@ from modefront.options import (
     array,
     is_name,
     keys,
+    number,
     numbers,
+    one_of,
     read_toml,
     repeated,
     rising,
@@ -216,6 +219,12 @@ def _rate(path: Path, time: Floats) -> float:
 MOST_MODES = 200
 """Modes that a test file may ask for."""
 
+FILES, SENSORS, REFERENCES = (
+    Requirement(words, array(NAME, 1), further=lambda names: all(map(is_name, names)))
+    for words in ("a list of files", "a list of names", "one reference a file")
+)
+RATE = number("samples per s, above zero", above=0)
+TAU = number("a time constant in s above zero", above=0)
 MODES = Requirement("a list of numbers of modes, from 1", array(whole_number(1, 10**9)), tuple)
 
 IDENTIFY = keys(
@@ -296,8 +305,8 @@ def _from_toml(path: Path) -> ModalTest:
     name, quantity, ambient = path.stem, "", False
     if table := root.table("test", "a table [test]"):
         name = table.text("name", default=None) or name
-        ambient = table.choice("kind", ("hammer", "ambient"), "hammer") == "ambient"
-        quantity = table.choice("quantity", tuple(RECORDED if ambient else ORDERS), None) or ""
+        ambient = table.value("kind", one_of("hammer", "ambient"), "hammer") == "ambient"
+        quantity = table.value("quantity", one_of(*RECORDED if ambient else ORDERS), "")
         table.close()
     channels: dict[str, str] = {}
     if table := root.table("sensors", default=None):
@@ -348,17 +357,17 @@ def _set_tables(root: Table, ambient: bool) -> list[SetFiles]:
     out = []
     for position, table in enumerate(root.tables("set", required=True), start=1):
         name = table.text("name", default=str(position)) or str(position)
-        names = table.take("files", "a list of files", _are_names, ...) or []
+        names = table.value("files", FILES) or []
         files = tuple(Path(root.file).parent / file for file in names)
         known = SetFiles(name, files, table.names("columns"))
         if ambient:
-            rate = table.number("rate", "samples per s, above zero", None, above=0)
-            sensors = tuple(table.take("sensors", "a list of names", _are_names, []))
+            rate = table.value("rate", RATE, None)
+            sensors = tuple(table.value("sensors", SENSORS, []))
             for sensor in repeated(sensors):
                 table.fault("sensors", "each sensor once", f"{sensor!r} twice")
             known = replace(known, rate=rate, sensors=sensors)
         else:
-            references = table.take("reference", "one reference a file", _are_names, None)
+            references = table.value("reference", REFERENCES, None)
             if references is None:
                 for file in (file for file in files if not is_universal(file)):
                     table.fault("reference", f"the reference of {file.name}", "nothing")
@@ -368,7 +377,7 @@ def _set_tables(root: Table, ambient: bool) -> list[SetFiles]:
             tau = None
             window = table.table("window", "a table { exponential = time constant in s }", None)
             if window:
-                tau = window.number("exponential", "a time constant in s above zero", above=0)
+                tau = window.value("exponential", TAU)
                 window.close()
             given = tuple(references or [""] * len(files))
             known = replace(known, references=given, decay=1 / tau if tau else 0.0)
@@ -377,10 +386,6 @@ def _set_tables(root: Table, ambient: bool) -> list[SetFiles]:
     for name in repeated(known.name for known in out):
         root.fault("[[set]]", "a name for each data set", f"{name!r} twice")
     return out
-
-
-def _are_names(value: object) -> bool:
-    return isinstance(value, list) and bool(value) and all(map(is_name, value))
 
 
 def _setups(root: Table, sets: Sequence[SetFiles]) -> tuple[Records, ...]:

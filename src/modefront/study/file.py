@@ -201,7 +201,7 @@ def read_parameters(root: Table) -> tuple[list[str], tuple[Parameter, ...]]:
 def read_model(root: Table, parameters: Sequence[str]) -> tuple[Model | None, Any]:
     """Return the model of a study, None where it has faults, and how far it is reduced."""
     table = root.table("model", "a table [model]")
-    name = table and table.choice("kind", tuple(KINDS))
+    name = table and table.value("kind", one_of(*KINDS))
     if table is None or not name:
         return None, "auto"
     kind = KINDS[name]

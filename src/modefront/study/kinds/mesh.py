@@ -60,7 +60,7 @@ SHAPES: Mapping[str, Callable[..., fem.Section]] = {
 
 def _section(group: Table, key: str) -> fem.Section | None:
     table = group.table(key)
-    shape = table and table.choice("shape", tuple(SHAPES))
+    shape = table and table.value("shape", one_of(*SHAPES))
     return table.record(SHAPES[shape]) if table and shape else None
 
 
@@ -249,7 +249,7 @@ def _groups(model: Table, mesh: Mesh) -> list[Group]:
     if isinstance(declared, dict) and declared:
         material_of = replace(material_of, requirement=one_of(*declared))
     for group in model.tables("group", required=True):
-        kind: Kind | None = group.choice("elements", tuple(ELEMENTS))
+        kind: Kind | None = group.value("elements", one_of(*ELEMENTS))
         own = _of_group(kind)[2:] if kind else ()
         values, name = group.read([name_of, material_of, *own]), group.values.get("name")
         if kind is None or not is_name(name):
