@@ -248,9 +248,10 @@ def entries(expected: str, schema: Schema) -> Requirement:
 def mapping(expected: str, each: Requirement) -> Requirement:
     """Return the requirement of a table of any names, of which each value meets another one."""
 
-    def read(outer: Table, key: str) -> dict[str, Any] | None:
+    def read(outer: Table, key: str) -> dict[str, Any]:
         table = outer.table(key)
-        return {name: table.value(name, each) for name in table.values} if table else None
+        values = {name: table.value(name, each) for name in table.values} if table else {}
+        return {name: value for name, value in values.items() if value is not None}
 
     return Requirement(expected, TABLE, entries=table_of(each.schema), read=read)
 
@@ -564,12 +565,6 @@ class Table:
         with self.noting():
             return read(self.path(name)) if is_name(name) else None
         return None
-
-    def names(self, key: str) -> dict[str, str]:
-        """Return a table of names for names, such as those of columns; an empty one without it."""
-        table = self.table(key, "a table, name in the file = name here", None)
-        found = {name: table.text(name) for name in table.values} if table is not None else {}
-        return {name: text for name, text in found.items() if text is not None}
 
     def tables(self, key: str, required: bool) -> list[Table]:
         """Return the tables of a list, such as ``[[parameter]]``."""

@@ -197,7 +197,7 @@ def test_a_table_that_ends_within_its_last_number_is_refused(tmp_path: Path, end
     [
         ("[identify]\nkeep = [0]", "a list of numbers of modes, from 1"),
         ('[identify]\nseed = ["4 Hz"]', "a list of frequencies in Hz"),
-        ("[geometry]\nfloor1 = [0, 0, 1]", "x, y, z and a direction, six numbers"),
+        ("[geometry]\nfloor1 = [0, 0, 1]", "x, y, z and a direction that is not zero, six numbers"),
         ("[geometry]\nfloor1 = [0, 0, 1, 0, 0, 0]", "a direction that is not zero"),
         ("[geometry]\nflor1 = [0, 0, 1, 1, 0, 0]", "did you mean 'floor1'"),
     ],

@@ -32,6 +32,7 @@ from modefront.inputs import (
     file_size,
     wrong,
 )
+from modefront.options import mapping, text
 from modefront.outputs import write_table
 from modefront.rounding import LARGEST
 from modefront.text import NAME, clean
@@ -49,6 +50,9 @@ NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORE
 
 DECIMAL_COMMA = re.compile(r"^(\s*[+-]?[0-9]*),([0-9]*(?:e[+-]?[0-9]+)?\s*)$", re.IGNORECASE)
 """A number with a decimal comma, before and behind it."""
+
+COLUMNS = mapping("a table, name in the file = name here", text("a text"))
+"""Names that columns of a file stand for."""
 
 MOST_FAULTS = 100
 """Faults of rows after which the rest is not looked at."""
@@ -334,12 +338,12 @@ def _row(
     if not re.fullmatch("[0-9]{1,9}", mode) or not 1 <= int(mode) <= 10**6:
         faults.append(("mode", f"a whole number from 1 to {10**6}", repr(mode)))
     key = None if faults else (name, int(mode))
-    for column, text in texts.items():
+    for column, given in texts.items():
         if column not in KEYS:
-            is_number = NUMBER.fullmatch(text) is not None
-            values[column] = float(text) if is_number else math.nan
-            if text and (expected := _range(column, values[column])):
-                faults.append((column, expected, text if is_number else repr(text)))
+            is_number = NUMBER.fullmatch(given) is not None
+            values[column] = float(given) if is_number else math.nan
+            if given and (expected := _range(column, values[column])):
+                faults.append((column, expected, given if is_number else repr(given)))
     there = [name for name in sensors if not math.isnan(values.get(name, math.nan))]
     greatest = max((abs(values[name]) for name in there), default=1.0)
     if faults:

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.csv import read_numbers, read_test_csv, renamed
+from modefront.data.csv import COLUMNS, read_numbers, read_test_csv, renamed
 from modefront.data.impact import EVEN, TIME, Contents, Functions, Windows, averaged_blows
 from modefront.data.responses import EXPECTED, ORDERS, DataSet, assemble, joined
 from modefront.data.uff import TIME as OF_TIME
@@ -36,12 +36,14 @@ from modefront.options import (
     array,
     is_name,
     keys,
+    mapping,
     number,
     numbers,
     one_of,
     read_toml,
     repeated,
     rising,
+    text,
     whole_number,
 )
 from modefront.rounding import LARGEST
@@ -225,6 +227,15 @@ FILES, SENSORS, REFERENCES = (
 )
 RATE = number("samples per s, above zero", above=0)
 TAU = number("a time constant in s above zero", above=0)
+CHANNELS = mapping("a table, name = channel", text("node and direction of a channel, such as '1Z'"))
+PLACES = mapping(
+    "a table, sensor = place",
+    numbers(
+        "x, y, z and a direction that is not zero, six numbers",
+        array({"type": "number"}, 6, 6),
+        lambda six: any(six[3:]),
+    ),
+)
 MODES = Requirement("a list of numbers of modes, from 1", array(whole_number(1, 10**9)), tuple)
 
 IDENTIFY = keys(
@@ -308,19 +319,19 @@ def _from_toml(path: Path) -> ModalTest:
         ambient = table.value("kind", one_of("hammer", "ambient"), "hammer") == "ambient"
         quantity = table.value("quantity", one_of(*RECORDED if ambient else ORDERS), "")
         table.close()
-    channels: dict[str, str] = {}
-    if table := root.table("sensors", default=None):
-        for sensor in table.values:
-            channel = table.text(sensor, "node and direction of a channel, such as '1Z'") or ""
-            channels[channel.upper().replace("+", "")] = sensor
-        table.close()
+    named: dict[str, str] = root.value("sensors", CHANNELS, {})
+    channels = {channel.upper().replace("+", ""): sensor for sensor, channel in named.items()}
     windows = None
     if not ambient and (table := root.table("impact", default=None)):
         windows = table.record(Windows)
     table = root.table("identify", default=None)
     given = (table.read(IDENTIFY) if table else None) or {}
     chosen = ByHand(*(given.get(key, ()) for key in ("keep", "drop", "seed")))
-    places = _places(root)
+    placed: dict[str, Sequence[float]] = root.value("geometry", PLACES, {})
+    places = {
+        name: (np.array(six[:3]), np.array(six[3:]) / np.linalg.norm(six[3:]))
+        for name, six in placed.items()
+    }
     sets = [
         replace(each, channels=channels, quantity=quantity, windows=windows)
         for each in _set_tables(root, ambient)
@@ -339,27 +350,13 @@ def _from_toml(path: Path) -> ModalTest:
     return ModalTest(name, band, modes, data_sets, setups, chosen, places)
 
 
-def _places(root: Table) -> dict[str, tuple[Floats, Floats]]:
-    """Return the places of ``[geometry]``: sensor = [x, y, z, direction, of three numbers too]."""
-    table, out = root.table("geometry", default=None), {}
-    six = numbers("x, y, z and a direction, six numbers", array({"type": "number"}, 6, 6))
-    for name in table.values if table else ():
-        if table and (values := table.value(name, six)) is not None:
-            place = np.array(values)
-            size = float(np.linalg.norm(place[3:]))
-            if not size:
-                table.fault(name, "a direction that is not zero", "zeros")
-            out[name] = place[:3], place[3:] / (size or 1.0)
-    return out
-
-
 def _set_tables(root: Table, ambient: bool) -> list[SetFiles]:
     out = []
     for position, table in enumerate(root.tables("set", required=True), start=1):
         name = table.text("name", default=str(position)) or str(position)
         names = table.value("files", FILES) or []
         files = tuple(Path(root.file).parent / file for file in names)
-        known = SetFiles(name, files, table.names("columns"))
+        known = SetFiles(name, files, table.value("columns", COLUMNS, {}))
         if ambient:
             rate = table.value("rate", RATE, None)
             sensors = tuple(table.value("sensors", SENSORS, []))

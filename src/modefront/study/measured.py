@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.csv import read_covariance, read_csv
+from modefront.data.csv import COLUMNS, read_covariance, read_csv
 from modefront.data.modal import ModalData
 from modefront.data.uff import NodalModes, is_universal, read_uff55
 from modefront.errors import InputError, reason, suggestion
@@ -62,12 +62,12 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
     table = root.table("data", "a table [data]")
     if table is None:
         return None
-    name, places, columns = table.value("file", FILE), None, {}
+    name, places, columns = table.value("file", FILE), None, dict[str, str]()
     covariance = table.value("covariance", COVARIANCE, None)
     if name is not None and is_universal(name):
         places = table.table("sensors", "a table, sensor = node and direction", None)
     else:
-        columns = table.names("columns")
+        columns = table.value("columns", COLUMNS, None) or {}
     table.close()
     if name is None:
         return None
