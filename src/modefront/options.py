@@ -69,11 +69,6 @@ TYPES: Mapping[str, Any] = {
 }
 
 
-def whole_number(least: int, most: int) -> Schema:
-    """Return the schema of a whole number within limits."""
-    return {"type": "integer", "minimum": least, "maximum": most}
-
-
 def array(
     items: Schema | list[Schema], least: int = 0, most: int | None = None, *, once: bool = False
 ) -> Schema:
@@ -205,7 +200,8 @@ def one_of(*choices: str) -> Requirement:
 
 def whole(least: int, most: int) -> Requirement:
     """Return the requirement of a whole number within limits."""
-    return Requirement(f"a whole number from {least} to {most}", whole_number(least, most))
+    schema = {"type": "integer", "minimum": least, "maximum": most}
+    return Requirement(f"a whole number from {least} to {most}", schema)
 
 
 def number(

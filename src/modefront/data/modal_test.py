@@ -44,7 +44,7 @@ from modefront.options import (
     repeated,
     rising,
     text,
-    whole_number,
+    whole,
 )
 from modefront.rounding import LARGEST
 
@@ -236,14 +236,14 @@ PLACES = mapping(
         lambda six: any(six[3:]),
     ),
 )
-MODES = Requirement("a list of numbers of modes, from 1", array(whole_number(1, 10**9)), tuple)
+MODES = Requirement("a list of numbers of modes, from 1", array(whole(1, 10**9).schema), tuple)
 
 IDENTIFY = keys(
     (),
     band=numbers("a band [low, high] in Hz, 0 <= low < high", array(NOT_NEGATIVE, 2, 2), rising),
     modes=Requirement(
         f"'auto' or a number of modes from 1 to {MOST_MODES}",
-        any_of({"enum": ["auto"]}, whole_number(1, MOST_MODES)),
+        any_of({"enum": ["auto"]}, whole(1, MOST_MODES).schema),
         lambda value: None if value == "auto" else value,
     ),
     keep=MODES,

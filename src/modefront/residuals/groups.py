@@ -9,7 +9,7 @@ from typing import Literal, get_args
 from modefront.data.modal import ModalData
 from modefront.errors import suggestion
 from modefront.families import Family
-from modefront.options import WHOLE, Requirement, any_of, array, plain, whole_number
+from modefront.options import WHOLE, Requirement, any_of, array, plain, whole
 from modefront.residuals.base import Member, ResidualKind, Scale, Stack
 from modefront.residuals.frequency import FrequencyKind
 from modefront.residuals.shape import ShapeKind
@@ -35,7 +35,7 @@ ModeNumbers = Sequence[int] | Literal["all"]
 
 MODE_NUMBERS = Requirement(
     "'all' or a list of measured modes, counted from 1, each once",
-    any_of({"enum": ["all"]}, array(whole_number(1, WHOLE), once=True)),
+    any_of({"enum": ["all"]}, array(whole(1, WHOLE).schema, once=True)),
 )
 """Requirement of `ModeNumbers`."""
 
