@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from modefront.study.file import register as register
     from modefront.study.importing import import_deck as import_deck
     from modefront.study.importing import import_model as import_model
-    from modefront.study.kinds.matrices import ModelKind as ModelKind
+    from modefront.study.kinds.sensors import ModelKind as ModelKind
     from modefront.study.measured import DataReader as DataReader
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve

@@ -59,7 +59,7 @@ from modefront.residuals.groups import MODE_NUMBERS, Group, faults
 from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.study.definition import Origin, Study, label_faults, undrawn
 from modefront.study.kinds import KINDS
-from modefront.study.kinds.matrices import ModelKind
+from modefront.study.kinds.sensors import ModelKind
 from modefront.study.measured import COVARIANCE, FILE, PLACE, READERS, read_data
 from modefront.text import NAME as LENGTH
 from modefront.text import clean

@@ -1,10 +1,12 @@
-"""Kinds of models that a study file can name; those of the package are named here."""
+"""Kinds of models that a study file can name, one a file; those of the package are named here."""
 
 from __future__ import annotations
 
 from modefront.families import Family
-from modefront.study.kinds.matrices import CHAIN, MATRICES, ModelKind
+from modefront.study.kinds.chain import CHAIN
+from modefront.study.kinds.matrices import MATRICES
 from modefront.study.kinds.mesh import MESH
+from modefront.study.kinds.sensors import ModelKind
 
 KINDS: Family[ModelKind] = Family(
     "modefront.models",

@@ -41,7 +41,7 @@ from modefront.options import (
     text,
     whole,
 )
-from modefront.study.kinds.matrices import (
+from modefront.study.kinds.sensors import (
     ORIENTED,
     ModelKind,
     from_zero,
