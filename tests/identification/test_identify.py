@@ -173,7 +173,7 @@ def test_what_poles_explain_of_residuals_is_that_of_sums_over_lines() -> None:
     data = frequency_responses(f, blows(H, 0.05, np.random.default_rng(0)))
     assert data.variance is not None
     task, _, _ = problem(data, data.variance, 0)
-    fit = evaluate(task, np.zeros(0, complex), np.zeros((0, 2), complex), np.zeros(0, int))
+    fit = evaluate(task, np.zeros(0, complex), np.zeros((0, 2), complex))
     found, r = fit.found, fit.residual
     for k in range(0, len(found.lam), 37):
         e = task.s**2 / (task.s - found.lam[k])

@@ -11,7 +11,7 @@ every :math:`\beta_i` from the normal equations leaves
 R, S and T are (block) Toeplitz: one matrix product yields their entries for all orders. With
 :math:`A_0 = I`, poles that belong to noise lie outside of the unit circle and are unstable
 (Cauberghe, Guillaume, Verboven et al. 2005). Poles are the eigenvalues of the companion matrix,
-:math:`\lambda = s_1 + \ln z / c`, and its eigenvectors hold the modal participation factors L.
+:math:`\lambda = s_1 + \ln z / c`, and participation factors L the left null vectors of A there.
 
 ===================  =====================================================================
 symbol               meaning
@@ -159,13 +159,12 @@ def poles(sums: Moments, p: int, shift: float, rate: float) -> Poles:
     normal = M[rest, rest] / np.outer(scale[rest], scale[rest])
     right = -M[rest, :n_in] / scale[rest, None]
     alpha = la.lstsq(normal, right, lapack_driver="gelsd")[0] / scale[rest, None]
-    # sum_m z^m A_m v = 0 with A_0 = I: a companion matrix in 1/z on [v, v/z, ..., v/z^(p-1)]
+    # sum_m z^m A_m v = 0 with A_0 = I: a companion matrix in 1/z
     companion = np.zeros((p * n_in, p * n_in), complex)
     companion[n_in:, :-n_in] = np.eye((p - 1) * n_in)
     companion[:n_in] = -np.hstack(list(alpha.reshape(p, n_in, n_in)))
-    inverse, vectors = la.eig(companion)
-    safe = np.abs(inverse) > np.finfo(float).eps
-    inverse, vectors = inverse[safe], vectors[-n_in:, safe]
+    inverse = la.eigvals(companion)
+    inverse = inverse[np.abs(inverse) > np.finfo(float).eps]
     middle = np.pi * ARC
     angle = np.angle(np.exp(1j * (-np.angle(inverse) - middle))) + middle
     value = -np.log(np.abs(inverse)) / rate + 1j * (shift + angle / rate)

@@ -19,10 +19,10 @@ primitives, weighted by 1/v of each function, are one matrix product; all else i
 symbol               meaning
 ===================  =====================================================================
 lam, L, phi          poles (modes,), participation (modes, references), shapes
-                     (modes, responses); the greatest :math:`|L_{rj}|` of a mode is 1
+                     (modes, responses)
 E                    primitives, (functions, lines): e, o of all modes, then residuals,
                      then :math:`e_2, o_2`
-alpha                Re and Im of lam, then Re and Im of the L that are not held at 1
+alpha                Re and Im of lam, then of the changes of L across itself
 c                    Re and Im of phi of one response, then its residuals by reference
 ===================  =====================================================================
 
@@ -35,6 +35,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -51,6 +52,9 @@ MOST_EVALUATIONS = 40
 
 TINY = float(np.finfo(float).tiny)
 
+ROUNDING = 1e-13
+"""Share of the squares of a column that may be rounding."""
+
 BEND = 1 / 8
 """Width of a block of lines over the distance of the nearest pole."""
 
@@ -62,8 +66,7 @@ class ModalModel:
     Attributes
     ----------
     lam : (modes,) poles
-    L : (modes, references) participation factors; that of ``held`` is 1
-    held : (modes,) index of the reference with the greatest factor
+    L : (modes, references) participation factors
     phi : (modes, responses)
     residual : (powers, references, responses)
     pairs : modes that have one and the same pole; their shapes are a basis of a plane
@@ -71,7 +74,6 @@ class ModalModel:
 
     lam: Complexes
     L: Complexes
-    held: Ints
     phi: Complexes
     residual: Floats
     pairs: tuple[tuple[int, int], ...] = ()
@@ -79,8 +81,27 @@ class ModalModel:
     def __len__(self) -> int:
         return len(self.lam)
 
+    @cached_property
+    def alphas(self) -> list[tuple[int, int, Complexes | None]]:
+        """Number and mode of each complex parameter, and direction, (references,), of factors.
 
-# 12 fields: a model, what was fitted, and the equations of linear and nonlinear parameters there.
+        Modes of a pair share the number of their pole. Directions are across the factors of a mode,
+        or of both of a pair: what moves within them changes shapes, and not the functions.
+        """
+        first = np.arange(len(self))
+        for r, s in self.pairs:
+            first[s] = r
+        pole = np.unique(first, return_inverse=True)[1].tolist()
+        spans = [self.L[first == k].conj() for k in first]
+        across = [(r, v) for r, span in enumerate(spans) for v in la.null_space(span).T]
+        start = max(pole, default=-1) + 1
+        return [
+            *((k, r, None) for r, k in enumerate(pole)),
+            *((k, r, v) for k, (r, v) in enumerate(across, start)),
+        ]
+
+
+# 11 fields: a model, what was fitted, and the equations of linear and nonlinear parameters there.
 @dataclass(frozen=True)
 class Fit:
     """A model with the cost and the curvature there; linear parameters are eliminated.
@@ -91,12 +112,11 @@ class Fit:
     model : the parameters
     cost : J, sum of squared weighted residuals
     gradient : (alphas,) half the gradient of J
-    information : (alphas, alphas) projected Gauss-Newton matrix without the term in U
-    curvature : (alphas, alphas) with it
+    information : (alphas, alphas) projected Gauss-Newton matrix, the first term of A
     inverse : (responses, linear, linear) inverse of G; one where the responses share their weights
     Z : (responses, linear, alphas), G^-1 Phi^T D
-    U : (responses, linear, alphas), derivatives of the columns of Phi on the residual
-    unlike : (alphas,) share of each column of D, squared, that no linear parameter can make up
+    rho : (references, responses, primitives), weighted products of the residuals with them
+    size : (alphas,) squares of the columns of D; parts that Phi can make up are in them
     evaluations : number of evaluations of the model
     converged : whether the iteration met its tolerance
     """
@@ -106,11 +126,10 @@ class Fit:
     cost: float
     gradient: Floats
     information: Floats
-    curvature: Floats
     inverse: Floats
     Z: Floats
-    U: Floats
-    unlike: Floats
+    rho: Floats
+    size: Floats
     evaluations: int = 1
     converged: bool = False
 
@@ -125,40 +144,57 @@ class Fit:
         return np.where(self.task.weight > 0, self.task.H - self.functions, 0)
 
     @cached_property
+    def U(self) -> Floats:
+        """Derivatives of the columns of Phi on the residual, (responses, linear, alphas).
+
+        With z = rho_e + i rho_o, the product of the residual with x e + y o is Re(conj(x + iy) z).
+        """
+        model, n = self.model, len(self.model)
+        z: Complexes = self.rho[..., ::2] + 1j * self.rho[..., 1::2]
+        out = np.zeros(self.Z.shape)
+        for k, r, v in model.alphas:
+            seen = model.L[r].conj() @ z[..., r - n] if v is None else v.conj() @ z[..., r]
+            out[:, 2 * r : 2 * r + 2, 2 * k : 2 * k + 2] = _turned(seen).transpose(2, 0, 1)
+        return out
+
+    @cached_property
     def observed(self) -> Floats:
-        """Half the second derivatives of J by alpha, (alphas, alphas).
+        """A, half the second derivatives of J by alpha, (alphas, alphas).
 
         Where these have no minimum, as with a pole on the imaginary axis: the information.
         """
-        task, model, n = self.task, self.model, len(self.model)
+        task, model = self.task, self.model
         weighted = task.s**task.order * (task.weight * self.residual).conj()
         upper, lower = (1 / (task.s - lam[:, None]) for lam in (model.lam, model.lam.conj()))
         # products of the residuals with squares and cubes of the functions of poles
-        second, third = ((weighted @ (upper**p).T).conj() + weighted @ (lower**p).T for p in (2, 3))
-        by_pole = 2 * np.einsum("rj,ri,jir->r", model.L.conj(), model.phi.conj(), third)
-        by_factor = np.einsum("ri,jir->rj", model.phi.conj(), second)
-        factors = free_factors(model.held, model.L.shape[1])
-        both = [(r, r, z) for r, z in enumerate(by_pole)]
-        both += [(r, k, by_factor[r, j]) for k, (r, j) in enumerate(factors, start=n)]
+        second, third = (
+            np.einsum(
+                "ri,jir->rj",
+                model.phi.conj(),
+                (weighted @ (upper**p).T).conj() + weighted @ (lower**p).T,
+            )
+            for p in (2, 3)
+        )
         out = _rows(self.U).T @ _rows(self.Z - self.inverse @ self.U / 2)
         out = self.information + out + out.T
-        for r, k, z in both:
-            for row, column in {(r, k), (k, r)}:
-                block = out[2 * row : 2 * row + 2, 2 * column : 2 * column + 2]
-                block -= [[z.real, z.imag], [z.imag, -z.real]]
-        free = directions(model)
-        size = np.sqrt(np.maximum((free.T @ self.information @ free).diagonal(), TINY))
-        least = np.linalg.eigvalsh(free.T @ out @ free / np.outer(size, size)).min(initial=1.0)
+        pole = [k for k, _, v in model.alphas if v is None]
+        for k, r, v in model.alphas:
+            own = slice(2 * k, 2 * k + 2), slice(2 * pole[r], 2 * pole[r] + 2)
+            if v is None:
+                out[own] -= 2 * _turned(model.L[r].conj() @ third[r])
+            else:
+                out[own] -= (block := _turned(v.conj() @ second[r]))
+                out[own[::-1]] -= block
+        size = np.sqrt(np.maximum(self.information.diagonal(), TINY))
+        least = np.linalg.eigvalsh(out / np.outer(size, size)).min(initial=1.0)
         return out if least > 1e-12 else self.information
 
-    def inverted(self, A: Floats) -> Floats:
-        """Return A^-1 in the directions in which alpha is free; large where it is singular."""
-        free = directions(self.model)
-        A = free.T @ A @ free
-        least = 1e-30 * A.diagonal().max(initial=0.0) + TINY
+    def inverted(self, A: Floats, damping: float = 0.0) -> Floats:
+        """Return A^-1 of a matrix by alpha, large where it is singular; of A (I + damping)."""
+        least = np.where(self.size > 0, ROUNDING * self.size, 1.0)
         scale = 1 / np.sqrt(np.maximum(A.diagonal(), least))
         value, vector = np.linalg.eigh(A * np.outer(scale, scale))
-        half = free @ (scale[:, None] * vector / np.sqrt(np.maximum(value, 1e-13)))
+        half = scale[:, None] * vector / np.sqrt(np.maximum(value, ROUNDING) + damping)
         out: Floats = half @ half.T
         return out
 
@@ -185,7 +221,6 @@ def evaluate(
     task: Problem,
     lam: Complexes,
     L: Complexes,
-    held: Ints,
     pairs: tuple[tuple[int, int], ...] = (),
 ) -> Fit:
     """Return the model with the best shapes for the given poles and participation factors."""
@@ -207,7 +242,7 @@ def evaluate(
     n, powers = len(lam), len(task.powers)
     phi = (c[:, : 2 * n : 2] + 1j * c[:, 1 : 2 * n : 2]).T
     residual = c[:, 2 * n :].reshape(len(c), L.shape[1], powers).transpose(2, 1, 0)
-    model = ModalModel(lam, L, held, phi, residual, pairs)
+    model = ModalModel(lam, L, phi, residual, pairs)
     row, coefficient = derivatives(model, E.shape[0])
     direct = np.zeros((row.size, row.size))
     for j, i in np.ndindex(M.shape[:2]):
@@ -220,21 +255,10 @@ def evaluate(
         for k in range(2):
             cross += part[..., row[:, k]] * coefficient[j, :, None, :, k]
     Z = inverse @ cross
-    U = _second(model, rho, len(task.powers))
     information = direct - _rows(cross).T @ _rows(Z)
     slope = (rho[..., row] * coefficient).sum(axis=(0, 1, 3))
-    return Fit(
-        task,
-        model,
-        cost - float(np.sum(lost * right)),
-        -slope,
-        information,
-        information + _rows(U).T @ _rows(inverse @ U),
-        inverse,
-        Z,
-        U,
-        information.diagonal() / np.maximum(direct.diagonal(), TINY),
-    )
+    cost -= float(np.sum(lost * right))
+    return Fit(task, model, cost, -slope, information, inverse, Z, rho, direct.diagonal())
 
 
 def synthesise(task: Problem, model: ModalModel) -> Complexes:
@@ -295,19 +319,14 @@ def maximise(
     standard deviations of the parameters, is below ``tolerance``, and fails after ``most``
     evaluations. Modes of ``pairs`` keep one pole.
     """
-    held = np.abs(L).argmax(axis=1)
-    L = L / L[np.arange(len(L)), held][:, None]
-    for pair in map(list, pairs):
-        held[pair] = la.qr(L[pair], mode="economic", pivoting=True)[2][:2]
-        L[pair] = np.linalg.solve(L[np.ix_(pair, held[pair])], L[pair])
-    fit = evaluate(task, lam, L, held, pairs)
+    fit = evaluate(task, lam, L / np.abs(L).max(axis=1, keepdims=True), pairs)
     damping, evaluations = 0.0, 1
     converged = not len(lam)
     while evaluations < most and not converged:
         step = _step(fit, damping)
-        decrement = float(step @ fit.curvature @ step)
+        decrement = float(step @ fit.information @ step)
         noise = max(2 * fit.cost / max(task.count, 1), 1.0)
-        trial = evaluate(task, *_moved(fit.model, step), held, pairs)
+        trial = evaluate(task, *_moved(fit.model, step), pairs)
         evaluations += 1
         if trial.cost <= fit.cost * (1 + 1e-14):
             converged = 2 * decrement <= tolerance * noise
@@ -377,27 +396,18 @@ def design(L: Complexes, powers: int) -> Floats:
     return T
 
 
-def free_factors(held: Ints, references: int) -> list[tuple[int, int]]:
-    """Return (mode, reference) of the participation factors that are parameters."""
-    return [(r, j) for r, kept in enumerate(held) for j in range(references) if j != kept]
-
-
 def derivatives(model: ModalModel, functions: int) -> tuple[Ints, Floats]:
     """Return the columns of D in the primitives, of which each has two.
 
     They are the numbers of the primitives, (alphas, 2), and their coefficients, (references,
     responses, alphas, 2).
     """
-    n, n_in = model.L.shape
-    free = free_factors(model.held, n_in)
-    a = model.L.T[:, None, :] * model.phi.T[None]  # (references, responses, modes)
-    row = np.zeros((n + len(free), 2), int)
-    row[:n] = (functions - 2 * n + 2 * np.arange(n))[:, None] + [0, 1]
-    value = np.zeros((n_in, model.phi.shape[1], n + len(free)), complex)
-    value[..., :n] = a
-    for k, (r, j) in enumerate(free, start=n):
-        row[k] = 2 * r, 2 * r + 1
-        value[j, :, k] = model.phi[r]
+    count, n = len({k for k, _, _ in model.alphas}), len(model)
+    row = np.zeros((count, 2), int)
+    value = np.zeros((model.L.shape[1], model.phi.shape[1], count), complex)
+    for k, r, v in model.alphas:
+        row[k] = np.arange(2) + 2 * r + (functions - 2 * n if v is None else 0)
+        value[..., k] += np.outer(model.L[r] if v is None else v, model.phi[r])
     turned = np.stack([value, 1j * value], axis=-1).reshape(*value.shape[:2], -1)
     return row.repeat(2, axis=0), np.stack([turned.real, turned.imag], axis=-1)
 
@@ -417,68 +427,28 @@ def columns(fit: Fit) -> tuple[Complexes, Floats, Floats]:
     return E, T, X
 
 
-def _second(model: ModalModel, rho: Floats, powers: int) -> Floats:
-    """Return U, (responses, linear, alphas): derivatives of the columns of Phi on the residual.
-
-    With z = rho_e + i rho_o, the product of the residual with x e + y o is Re(conj(x + iy) z).
-    """
-    n, n_in = model.L.shape
-    free = free_factors(model.held, n_in)
-    base = 2 * n + powers
-    single = rho[..., : 2 * n : 2] + 1j * rho[..., 1 : 2 * n : 2]
-    double = rho[..., base::2] + 1j * rho[..., base + 1 :: 2]
-    seen = np.einsum("rj,jir->ir", model.L.conj(), double)
-    U = np.zeros((rho.shape[1], 2 * n + powers * n_in, 2 * n + 2 * len(free)))
-    for r in range(n):
-        U[:, 2 * r, 2 * r], U[:, 2 * r + 1, 2 * r] = seen[:, r].real, seen[:, r].imag
-        U[:, 2 * r, 2 * r + 1], U[:, 2 * r + 1, 2 * r + 1] = seen[:, r].imag, -seen[:, r].real
-    for k, (r, j) in enumerate(free, start=n):
-        z = single[j, :, r]
-        U[:, 2 * r, 2 * k], U[:, 2 * r + 1, 2 * k] = z.real, z.imag
-        U[:, 2 * r, 2 * k + 1], U[:, 2 * r + 1, 2 * k + 1] = z.imag, -z.real
-    return U
-
-
-def directions(model: ModalModel) -> Floats:
-    """Return the directions in which alpha is free, (alphas, free): all, unless there are pairs.
-
-    Both modes of a pair have one pole. Factors of either at the references that are held for both
-    stay: another basis of the plane of their shapes would change them, and not the functions.
-    """
-    n = len(model)
-    factors = free_factors(model.held, model.L.shape[1])
-    out, gone = np.eye(2 * (n + len(factors))), np.zeros(n + len(factors), bool)
-    for r, s in model.pairs:
-        out[2 * s : 2 * s + 2, 2 * r : 2 * r + 2] = np.eye(2)
-        gone[s] = True
-        for k, factor in enumerate(factors, start=n):
-            gone[k] |= factor in ((r, model.held[s]), (s, model.held[r]))
-    return out[:, ~gone.repeat(2)]
+def _turned(z: Any) -> Floats:
+    """Return the second derivatives of Re(conj(x + iy) (a + ib) z) by x, y and by a, b."""
+    return np.array([[z.real, z.imag], [z.imag, -z.real]])
 
 
 def _step(fit: Fit, damping: float) -> Floats:
-    free = directions(fit.model)
-    curvature = free.T @ fit.curvature @ free
-    diagonal = curvature.diagonal()
-    rounding = np.finfo(float).eps ** 2 * diagonal.max()  # of a dead channel it is all there is
-    scale = 1 / np.sqrt(np.where(diagonal > rounding, diagonal, 1.0))
-    scaled = curvature * np.outer(scale, scale) + (damping + 1e-12) * np.eye(len(scale))
-    slope = scale * (free.T @ fit.gradient)
-    step: Floats = -free @ (scale * la.solve(scaled, slope, assume_a="sym"))
-    n = len(fit.model)
-    sigma, omega = fit.model.lam.real, fit.model.lam.imag
+    step: Floats = -fit.inverted(fit.information, damping) @ fit.gradient
     # poles stay in the second quadrant, and none goes beyond its neighbourhood; each for itself,
     # as one that is drawn to the imaginary axis would hold up all others
-    room = np.empty(2 * n)
-    room[::2], room[1::2] = 0.7 * np.abs(sigma), np.minimum(10 * np.abs(sigma), 0.5 * omega)
-    step[: 2 * n] = np.clip(step[: 2 * n], -room, room)
+    for k, r, v in fit.model.alphas:
+        if v is None:
+            lam = fit.model.lam[r]
+            room = np.array([-0.7 * lam.real, min(-10 * lam.real, 0.5 * lam.imag)])
+            step[2 * k : 2 * k + 2] = np.clip(step[2 * k : 2 * k + 2], -room, room)
     return step
 
 
 def _moved(model: ModalModel, step: Floats) -> tuple[Complexes, Complexes]:
-    n = len(model)
-    lam = model.lam + step[: 2 * n : 2] + 1j * step[1 : 2 * n : 2]
-    L = model.L.copy()
-    for k, (r, j) in enumerate(free_factors(model.held, L.shape[1]), start=n):
-        L[r, j] += step[2 * k] + 1j * step[2 * k + 1]
+    lam, L, step = model.lam.copy(), model.L.copy(), step.view(complex)
+    for k, r, v in model.alphas:
+        if v is None:
+            lam[r] += step[k]
+        else:
+            L[r] += step[k] * v
     return lam, L

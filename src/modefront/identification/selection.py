@@ -21,7 +21,6 @@ from modefront.identification.modal_model import (
     COARSE,
     Fit,
     evaluate,
-    free_factors,
     maximise,
     synthesise,
     thinned,
@@ -94,7 +93,7 @@ def choose_level(fit: Fit) -> Fit:
     measured = int(np.count_nonzero(fit.task.weights.any(axis=2)))
     noise = float(np.median(found.noise[found.lam.real == found.lam.real.min()]))
     best = min(
-        (evaluate(replace(few, powers=p), model.lam, model.L, model.held) for p in RESIDUALS),
+        (evaluate(replace(few, powers=p), model.lam, model.L) for p in RESIDUALS),
         key=lambda trial: 2 * trial.cost / noise + 2 * measured * len(trial.task.powers),
     )
     return of_all_lines(best, replace(fit.task, powers=best.task.powers))
@@ -106,30 +105,33 @@ def gains(fit: Fit) -> Floats:
     It is the Wald statistic of a shape whose poles are held, while all else may follow: with the
     covariance B + Z A^-1 Z^T, B of the shape's own equations, A of all other alphas.
     """
+    owner, unit = np.repeat([r for _, r, _ in fit.model.alphas], 2), np.eye(2 * len(fit.model))
+    out = [_wald(fit, unit[2 * r : 2 * r + 2], owner != r) for r in range(len(fit.model))]
+    return np.array(out) / fit.found.noise_of(fit.model.lam)
+
+
+def _wald(fit: Fit, of: Floats, free: Bools) -> float:
+    """Return 2 Delta J of a fit in which combinations of the shapes of every response vanish.
+
+    They are real, (combinations, 2 modes); some alphas are ``free``. With the covariance of the
+    combinations B + Z A^-1 Z^T, B of the responses' own equations, A of the alphas.
+    """
     seen: Bools = np.any(fit.task.weights, axis=(0, 2))
-    out, n = np.zeros(len(fit.model)), len(fit.model)
-    owner = np.append(
-        np.arange(n).repeat(2),
-        np.repeat([r for r, _ in free_factors(fit.model.held, len(fit.task.H))], 2),
-    )
-    for r, phi in enumerate(fit.model.phi[:, seen]):
-        rows, others = slice(2 * r, 2 * r + 2), owner != r
-        block = np.broadcast_to(fit.inverse[:, rows, rows], (len(seen), 2, 2))[seen]
-        Z = fit.Z[seen][:, rows][..., others]
-        c = np.stack([phi.real, phi.imag], axis=1)[..., None]
-        both = np.linalg.solve(block, np.concatenate([c, Z], axis=2))
-        W = both.reshape(-1, both.shape[2])
-        S = np.concatenate([c, Z], axis=2).reshape(W.shape).T @ W
-        A = S[1:, 1:] + fit.information[np.ix_(others, others)]
-        follows = S[0, 1:] @ la.lstsq(A, S[1:, 0])[0] if len(A) else 0.0
-        out[r] = S[0, 0] - follows
-    return 2 * out / fit.found.noise_of(fit.model.lam)
+    c = np.stack([fit.model.phi.real, fit.model.phi.imag], axis=1).reshape(of.shape[1], -1)
+    block = of @ fit.inverse[:, : of.shape[1], : of.shape[1]] @ of.T
+    block = np.broadcast_to(block, (len(seen), *block.shape[1:]))[seen]
+    Z = of @ fit.Z[seen][:, : of.shape[1], free]
+    parts = np.concatenate([(of @ c).T[seen, :, None], Z], axis=2)
+    S = np.tensordot(parts, np.linalg.solve(block, parts), ((0, 1), (0, 1)))
+    A = S[1:, 1:] + fit.information[np.ix_(free, free)]
+    follows = S[0, 1:] @ la.lstsq(A, S[1:, 0])[0] if len(A) else 0.0
+    return 2 * float(S[0, 0] - follows)
 
 
 def start(task: Problem, poles: Poles, omega: float) -> Fit:
     """Return the fit from poles in rad/s, ``omega`` of which are the unit of the task."""
     lam, L = poles.value / omega, poles.participation
-    return refit(evaluate(task, lam, L, np.abs(L).argmax(axis=1)), lam, L)
+    return refit(evaluate(task, lam, L), lam, L)
 
 
 def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
@@ -147,7 +149,8 @@ def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
             fit = maximise(task, fit.model.lam, fit.model.L)
         lam, L = fit.model.lam, fit.model.L
         over = -lam.real > OVERDAMPED * np.abs(lam)
-        over |= fit.unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
+        unlike = fit.information.diagonal() / np.maximum(fit.size, np.finfo(float).tiny)
+        over |= unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
         if not over.any():
             break
         lam, L = lam[~over], L[~over]
@@ -162,24 +165,33 @@ def of_all_lines(fit: Fit, task: Problem) -> Fit:
     return replace(fit, task=task, cost=float(np.sum(task.weight * square(r))))
 
 
-def backward(fit: Fit, count: int | None = None) -> Fit:
-    """Return the fit without modes that gain less than needed, the weakest first, and doubles.
+def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
+    """Return the fit without modes that gain less than needed and doubles, and what modes gain.
 
-    Where the ``count`` of modes is given, the strongest are kept instead.
+    The weakest go first, where a fit without them is no worse. The Wald statistic says too little
+    of close modes, whose shapes are large and cancel: what they gain is what that fit loses. Where
+    the ``count`` of modes is given, the strongest are kept instead.
     """
+    gain, together = gains(fit), True
     while len(fit.model):
-        gain, lam, least = gains(fit), fit.model.lam, needed(fit.task)
-        gone = doubles(lam, fit.model.phi, gain)
-        if gone.any():  # shapes of a pair may be alike by chance
-            both = paired(fit, gone).model.pairs
-            gone[[k for pair in both for k in pair]] = False
+        lam, least = fit.model.lam, needed(fit.task)
+        double = doubles(lam, fit.model.phi, gain, fit)
         if count is not None:
             least = np.sort(gain)[::-1][count - 1] if count < len(gain) else -np.inf
-        gone = with_weak(gone, gain, least, lam)
+        gone = with_weak(double.copy(), gain, least, lam)
         if not gone.any():
-            return fit
-        fit = refit(fit, lam[~gone], fit.model.L[~gone])
-    return fit
+            break
+        if not together:
+            gone = double if double.any() else gain == gain.min()
+        trial = refit(fit, lam[~gone], fit.model.L[~gone])
+        lost = 2 * (trial.cost - fit.cost) / fit.found.noise_of(lam[gone]).min()
+        together = lost - np.sort(gain[gone])[:-1].sum() < least
+        if together or double.any() or count is not None:
+            fit, together = trial, True
+            gain = gains(fit)
+        elif gone.sum() == 1:
+            gain[gone], together = lost, True
+    return fit, gain
 
 
 def with_weak(gone: Bools, gain: Floats, least: float, lam: Complexes) -> Bools:
@@ -213,7 +225,7 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
         if not new:
             break
         L = np.vstack([model.L, fit.found.L[new]])
-        trial = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
+        trial, _ = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
         gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise[new])
         before, after = model.lam, trial.model.lam
         stays = [
@@ -254,7 +266,7 @@ def paired(fit: Fit, among: Bools) -> Fit:
                 L[pair] = np.linalg.solve(plane_basis(trial.model.phi[pair]).T, L[pair])
             pairs = trial.model.pairs
             fit = replace(
-                evaluate(task, trial.model.lam, L, trial.model.held, pairs),
+                evaluate(task, trial.model.lam, L, pairs),
                 evaluations=trial.evaluations,
                 converged=trial.converged,
             )
@@ -281,12 +293,28 @@ def seeded(fit: Fit, omega: Floats) -> tuple[Complexes, Complexes]:
     return out, L
 
 
-def doubles(poles: Complexes, shapes: Complexes, strength: Floats) -> Bools:
+def doubles(poles: Complexes, shapes: Complexes, strength: Floats, fit: Fit | None = None) -> Bools:
     """Return which modes lie within half the bandwidth of a stronger one and have its shape.
 
-    Nonlinearity, leakage and drift make peaks that two poles fit better than one.
+    Nonlinearity, leakage and drift make peaks that two poles fit better than one. Of close modes,
+    shapes may be alike as well: those of a ``fit`` are the same where it cannot tell them apart.
     """
     half = CLOSEST * np.maximum.outer(-poles.real, -poles.real)
     near = np.abs(poles[:, None] - poles) < half
-    weaker = strength[:, None] < strength
-    return np.asarray(np.any(near & (auto_mac(shapes) > SAME) & weaker, axis=1))
+    double: Bools = near & (auto_mac(shapes) > SAME) & (strength[:, None] < strength)
+    if fit is not None:
+        for r, s in np.argwhere(double):
+            double[r, s] = not _differ(fit, r, s)
+    return np.asarray(double.any(axis=1))
+
+
+def _differ(fit: Fit, r: int, s: int) -> bool:
+    """Return whether the shape of a mode is more than a multiple of that of another one."""
+    phi = fit.model.phi[:, np.any(fit.task.weights, axis=(0, 2))]
+    factor = np.vdot(phi[s], phi[r]) / np.vdot(phi[s], phi[s])
+    of = np.zeros((2, 2 * len(phi)))
+    of[:, 2 * r : 2 * r + 2] = np.eye(2)
+    of[:, 2 * s : 2 * s + 2] = [[-factor.real, factor.imag], [-factor.imag, -factor.real]]
+    freedom, noise = 2 * phi.shape[1] - 2, fit.found.noise_of(fit.model.lam[[r]])[0]
+    statistic = _wald(fit, of, np.ones(len(fit.gradient), bool)) / noise
+    return bool(freedom and statistic > chi2.isf(APART, freedom))

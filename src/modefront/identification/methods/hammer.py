@@ -90,21 +90,22 @@ def identify(
     for _ in range(2):
         fit = selection.refit(selection.choose_level(fit), fit.model.lam, fit.model.L)
         fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
-        fit = selection.grow(selection.backward(fit, modes), modes)
+        fit = selection.grow(selection.backward(fit, modes)[0], modes)
     task, omega, size = problem(data, first, RESIDUALS.index(fit.task.powers))
-    fit = modal_model.evaluate(task, fit.model.lam, fit.model.L, fit.model.held)
+    fit = modal_model.evaluate(task, fit.model.lam, fit.model.L)
     for _ in range(2):
         fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
-    fit = selection.grow(selection.backward(fit, modes), modes)
+    fit = selection.grow(selection.backward(fit, modes)[0], modes)
     while True:
         last = selection.refit(fit, fit.model.lam, fit.model.L, fine=True)
-        fit = selection.backward(last, modes)
+        fit, gain = selection.backward(last, modes)
         if fit is last:
             break
     if len(seeds):
         start = selection.seeded(fit, 2 * np.pi * np.array(seeds) / omega)
         fit = selection.refit(fit, *start, fine=True)
-    return _result(data, fit, omega, size, diagram)
+        gain = selection.gains(fit)
+    return _result(data, fit, gain, omega, size, diagram)
 
 
 def weighting(data: FrequencyResponses) -> Weighting:
@@ -174,9 +175,14 @@ def _reweighted(fit: Fit, kind: Weighting) -> Fit:
 
 
 def _result(
-    data: FrequencyResponses, apart: Fit, omega: float, size: float, diagram: StabilisationDiagram
+    data: FrequencyResponses,
+    apart: Fit,
+    gain: Floats,
+    omega: float,
+    size: float,
+    diagram: StabilisationDiagram,
 ) -> Identification:
-    """Return the modes of the last fit, in which no two have one pole yet.
+    """Return the modes of the last fit, in which no two have one pole yet, and what each gains.
 
     Those outside the band stand for residual terms.
     """
@@ -190,7 +196,6 @@ def _result(
         for mode, why in zip(estimates, reasons, strict=True)
         if why
     ]
-    gain = selection.gains(apart)
     shares = support(diagram, fit.model.lam * omega, gain)
     evidence = _evidence(fit, f, gain / selection.needed(task), shares, estimates, kept)
     modes = [replace(estimates[k], evidence=evidence[k]) for k in kept]
