@@ -41,7 +41,7 @@ import numpy as np
 import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats, Ints
-from modefront.identification.problem import Problem, combined, gram, primitives, products
+from modefront.identification.problem import RESIDUALS, Problem, combined, gram, primitives
 from modefront.identification.scan import Scan, scan
 
 FINE, COARSE = 1e-4, 1e-2
@@ -213,7 +213,7 @@ class Fit:
     def found(self) -> Scan:
         """What poles all over the band explain of the residuals."""
         E = primitives(self.task, self.model.lam, squares=False)
-        T = design(self.model.L, len(self.task.powers))
+        T = design(self.model.L)
         return scan(self.task, self.residual, self.misfit, E, T)
 
 
@@ -226,8 +226,8 @@ def evaluate(
     """Return the model with the best shapes for the given poles and participation factors."""
     E = primitives(task, lam)
     M = gram(task, E)
-    first = 2 * len(lam) + len(task.powers)
-    T = design(L, len(task.powers))
+    first = 2 * len(lam) + len(RESIDUALS)
+    T = design(L)
     TM = T.transpose(0, 2, 1)[:, None] @ M[..., :first, :]  # (references, responses, linear, Q)
     G = (TM[..., :first] @ T[:, None]).sum(axis=0)
     inverse = _inverse(G)
@@ -239,7 +239,7 @@ def evaluate(
     right = (G @ lost[..., None])[..., 0]
     c = c + lost
     rho = rho - (lost[None, :, None] @ TM)[:, :, 0]
-    n, powers = len(lam), len(task.powers)
+    n, powers = len(lam), len(RESIDUALS)
     phi = (c[:, : 2 * n : 2] + 1j * c[:, 1 : 2 * n : 2]).T
     residual = c[:, 2 * n :].reshape(len(c), L.shape[1], powers).transpose(2, 1, 0)
     model = ModalModel(lam, L, phi, residual, pairs)
@@ -341,24 +341,6 @@ def maximise(
     return replace(fit, evaluations=evaluations, converged=converged)
 
 
-def leverage(fit: Fit) -> Floats:
-    """Return the share of the noise of each line that the fit takes, of the shape of ``H``.
-
-    It is the mean over the real and the imaginary part of the diagonal of the projection on the
-    columns of Phi and of the rest of D.
-    """
-    E, T, X = columns(fit)
-    first = T.shape[1]
-    S = X @ fit.inverted(fit.information) @ X.swapaxes(2, 3)
-    S[:, :, :first, :first] += (T[:, None] @ fit.inverse) @ T[:, None].swapaxes(2, 3)
-    p, q = np.triu_indices(len(E))
-    coefficients = S[..., p, q] * np.where(p == q, 1.0, 2.0)
-    out = np.empty(fit.task.H.shape)
-    for lines, values in products(E):
-        out[..., lines] = coefficients @ values
-    return fit.task.weight * out / 2
-
-
 def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[Floats, float]:
     """Return the weighted products of residuals with the primitives, and the cost.
 
@@ -383,9 +365,9 @@ def _inverse(G: Floats) -> Floats:
     return (out + out.transpose(0, 2, 1)) / 2
 
 
-def design(L: Complexes, powers: int) -> Floats:
+def design(L: Complexes) -> Floats:
     """Return T, (references, primitives, linear): columns of Phi in the primitives."""
-    n, n_in = L.shape
+    (n, n_in), powers = L.shape, len(RESIDUALS)
     T = np.zeros((n_in, 2 * n + powers, 2 * n + powers * n_in))
     r = np.arange(n)
     T[:, 2 * r, 2 * r] = T[:, 2 * r + 1, 2 * r + 1] = L.real.T
@@ -418,7 +400,7 @@ def columns(fit: Fit) -> tuple[Complexes, Floats, Floats]:
     X is (references, responses, primitives, alphas).
     """
     E = primitives(fit.task, fit.model.lam)
-    T = design(fit.model.L, len(fit.task.powers))
+    T = design(fit.model.L)
     row, coefficient = derivatives(fit.model, len(E))
     X = np.zeros((*coefficient.shape[:2], len(E), len(row)))
     X[:, :, : T.shape[1]] = -(T[:, None] @ fit.Z)

@@ -1,25 +1,16 @@
 """The variance of frequency response functions, smooth over frequency.
 
 Where nothing is known, the first raw values are fourth differences over neighbouring lines, which
-no smooth function passes, made robust by running medians. The model is that of
-docs/methods/deviations.md.
+no smooth function passes. The model is that of docs/methods/deviations.md.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from modefront._typing import Complexes, Floats
-from modefront.data.responses import FrequencyResponses
 
 DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
-
-MEDIAN = np.log(2)
-"""Median of an exponentially distributed value of mean 1."""
-
-HALF_WINDOW = 10
-"""Lines on either side of a running median."""
 
 LINES_A_HAT = 30
 """Lines a hat function, enough for its coefficient to be known within some 20 %."""
@@ -42,26 +33,15 @@ def square(values: Complexes) -> Floats:
     return values.real**2 + values.imag**2
 
 
-def variance_from_differences(data: FrequencyResponses) -> Floats:
-    """Return the variance that neighbouring lines show, of the shape of ``H``; NaN stays."""
-    measured = data.measured
-    H = np.where(measured, data.H, 0)
-    lines = H.shape[-1]
-    power = np.mean(square(H), axis=-1, keepdims=True)
-    if lines <= len(DIFFERENCE):
-        return np.where(measured, np.maximum(1e-4 * power, np.finfo(float).tiny), np.nan)
-    kernel = DIFFERENCE / np.sqrt(np.sum(DIFFERENCE**2))
-    passed = sum(c * H[..., k : lines - len(kernel) + 1 + k] for k, c in enumerate(kernel))
-    raw = np.pad(square(np.asarray(passed)), [(0, 0), (0, 0), (2, 2)], mode="edge")
-    # running medians, linear between windows that half overlap
-    width = [(0, 0), (0, 0), (HALF_WINDOW, 3 * HALF_WINDOW)]
-    windows = sliding_window_view(np.pad(raw, width, mode="edge"), 2 * HALF_WINDOW + 1, axis=-1)
-    knots = np.median(windows[..., ::HALF_WINDOW, :], axis=-1)
-    before, past = np.divmod(np.arange(lines), HALF_WINDOW)
-    smooth = knots[..., before]
-    smooth = (smooth + (knots[..., before + 1] - smooth) * (past / HALF_WINDOW)) / MEDIAN
-    floor = np.maximum(ROUNDING * power, 1e-3 * np.median(smooth, axis=-1, keepdims=True))
-    return np.where(measured, np.maximum(smooth, floor + np.finfo(float).tiny), np.nan)
+def squared_differences(H: Complexes) -> Floats:
+    """Return the variance that neighbouring lines show, of the shape of ``H``, at least five lines.
+
+    It is NaN where one of them was not measured.
+    """
+    size = np.sqrt(np.sum(DIFFERENCE**2))
+    lines = H.shape[-1] - len(DIFFERENCE) + 1
+    passed = sum(c / size * H[..., k : k + lines] for k, c in enumerate(DIFFERENCE))
+    return np.pad(square(np.asarray(passed)), [(0, 0), (0, 0), (2, 2)], mode="edge")
 
 
 def fitted_variance(raw: Floats, H: Complexes) -> Floats:

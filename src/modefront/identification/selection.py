@@ -16,7 +16,6 @@ from scipy.special import gammaln
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
-from modefront.identification.lscf import Poles
 from modefront.identification.modal_model import (
     COARSE,
     Fit,
@@ -26,15 +25,12 @@ from modefront.identification.modal_model import (
     thinned,
 )
 from modefront.identification.noise import square
-from modefront.identification.problem import RESIDUALS, Problem
+from modefront.identification.problem import Problem
 from modefront.identification.scan import alike
 from modefront.identification.shapes import auto_mac, plane_basis
 
 FALSE = 1e-3
 """Expected number of modes in a band that noise alone makes."""
-
-EVEN = 0.5
-"""The same number from which on a pole is tried in the model."""
 
 MOST_ROUNDS = 20
 """Rounds in which poles are added, at most."""
@@ -74,29 +70,13 @@ PAIR_FREEDOM = 6
 """Real numbers of a matrix, 2 by 2, beyond those of one pole."""
 
 
-def needed(task: Problem, expected: float = FALSE) -> float:
-    """Return 2 Delta J of which noise of unit variance makes so many poles in the band."""
+def needed(task: Problem) -> float:
+    """Return 2 Delta J of which noise of unit variance makes `FALSE` poles in the band."""
     n_in, n_out = task.live
     k = n_in + n_out
     ways = gammaln(k - 1) - gammaln(n_in) - gammaln(n_out)
     poles = np.log(len(task.s) * (k - 1) / (2 * np.pi)) + ways
-    return float(chi2.isf(min(expected * np.exp(-poles), 0.5), 2 * k))
-
-
-def choose_level(fit: Fit) -> Fit:
-    """Return the fit with the number of residual terms of the least AIC, poles held.
-
-    A term too few shifts frequencies, one too many costs next to nothing. Source: Akaike, IEEE
-    Trans. Autom. Control 19 (1974) 716-723, doi:10.1109/TAC.1974.1100705.
-    """
-    few, model, found = thinned(fit, fit.model.lam), fit.model, fit.found
-    measured = int(np.count_nonzero(fit.task.weights.any(axis=2)))
-    noise = float(np.median(found.noise[found.lam.real == found.lam.real.min()]))
-    best = min(
-        (evaluate(replace(few, powers=p), model.lam, model.L) for p in RESIDUALS),
-        key=lambda trial: 2 * trial.cost / noise + 2 * measured * len(trial.task.powers),
-    )
-    return of_all_lines(best, replace(fit.task, powers=best.task.powers))
+    return float(chi2.isf(min(FALSE * np.exp(-poles), 0.5), 2 * k))
 
 
 def gains(fit: Fit) -> Floats:
@@ -126,12 +106,6 @@ def _wald(fit: Fit, of: Floats, free: Bools) -> float:
     A = S[1:, 1:] + fit.information[np.ix_(free, free)]
     follows = S[0, 1:] @ la.lstsq(A, S[1:, 0])[0] if len(A) else 0.0
     return 2 * float(S[0, 0] - follows)
-
-
-def start(task: Problem, poles: Poles, omega: float) -> Fit:
-    """Return the fit from poles in rad/s, ``omega`` of which are the unit of the task."""
-    lam, L = poles.value / omega, poles.participation
-    return refit(evaluate(task, lam, L), lam, L)
 
 
 def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
@@ -213,7 +187,7 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
     blocked: Complexes = np.zeros(0, complex)
     for _ in range(MOST_ROUNDS):
         task, model, lam, gain = fit.task, fit.model, fit.found.lam, fit.found.gain
-        least = needed(task, EVEN) if count is None else 0.0
+        least = needed(task) if count is None else 0.0
         most = len(lam) if count is None else count - len(model)
         new: list[int] = []
         for c in gain.argsort()[::-1]:

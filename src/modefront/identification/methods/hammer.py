@@ -15,9 +15,9 @@ import numpy as np
 
 from modefront._typing import Bools, Complexes, Floats
 from modefront.data.responses import FrequencyResponses
-from modefront.identification import modal_model, selection
-from modefront.identification.modal_model import Fit
-from modefront.identification.noise import fitted_variance, square, variance_from_differences
+from modefront.identification import selection
+from modefront.identification.modal_model import Fit, evaluate
+from modefront.identification.noise import fitted_variance, square, squared_differences
 from modefront.identification.problem import RESIDUALS, primitives, problem
 from modefront.identification.record import (
     Evidence,
@@ -43,9 +43,6 @@ LEAST_LINES = 20
 PRINCIPAL = 48
 """Principal responses from which the modes are chosen where there are more responses."""
 
-LEAST_LEFT = 0.1
-"""Least share of the noise of a line that its residual is taken to hold."""
-
 FEW = 0.5
 """Share of the orders below which a mode is flagged, and phase collinearity."""
 
@@ -54,9 +51,6 @@ VISIBLE = 1 / 3
 
 NEIGHBOURS = 0.05
 """Relative distance of frequencies within which modes of the same shape may be one."""
-
-SEED = 20080410
-"""Of the random combinations of the singular value decomposition."""
 
 
 def identify(
@@ -77,22 +71,20 @@ def identify(
     if not np.any(np.abs(np.nan_to_num(data.H)) > 0):
         raise ValueError("expected functions that are not zero, found only zeros")
     kind = weighting(data)
-    if data.variance is None or kind == "residuals":
-        first = variance_from_differences(data)
-    else:
-        first = fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
+    raw = None if kind == "residuals" else data.variance
+    raw = squared_differences(data.H) if raw is None else np.where(data.measured, raw, np.nan)
+    first = fitted_variance(raw, data.H)
     small, shared = _principal(data, first)
     diagram, poles = diagram_of(small, shared)
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
         small, shared = data, first
-    task, omega, _ = problem(small, shared, 1)
-    fit = selection.start(task, poles, omega)
-    for _ in range(2):
-        fit = selection.refit(selection.choose_level(fit), fit.model.lam, fit.model.L)
-        fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
-        fit = selection.grow(selection.backward(fit, modes)[0], modes)
-    task, omega, size = problem(data, first, RESIDUALS.index(fit.task.powers))
-    fit = modal_model.evaluate(task, fit.model.lam, fit.model.L)
+    task, omega, _ = problem(small, shared)
+    lam, L = poles.value / omega, poles.participation
+    fit = selection.refit(evaluate(task, lam, L), lam, L)
+    fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
+    fit = selection.grow(selection.backward(fit, modes)[0], modes)
+    task, omega, size = problem(data, first)
+    fit = evaluate(task, fit.model.lam, fit.model.L)
     for _ in range(2):
         fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
     fit = selection.grow(selection.backward(fit, modes)[0], modes)
@@ -125,8 +117,7 @@ def weighting(data: FrequencyResponses) -> Weighting:
 def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
     """Return responses over their noise, principal ones where they are many, and their variance.
 
-    It is that of the mean response, (references, 1, lines). The singular value decomposition is
-    randomised: Halko, Martinsson & Tropp, SIAM Rev. 53 (2011) 217-288, doi:10.1137/090771806.
+    It is that of the mean response, (references, 1, lines).
     """
     n_in, n_out, lines = data.H.shape
     live = data.measured.any(axis=(0, 2))
@@ -142,9 +133,7 @@ def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyRes
     if n_out > PRINCIPAL:
         # real combinations: complex ones would not be conjugate at conjugate poles
         flat = np.ascontiguousarray(H.transpose(1, 0, 2)).reshape(n_out, -1).view(float)
-        draws = np.random.default_rng(SEED).standard_normal((flat.shape[1], PRINCIPAL + 10))
-        basis = np.linalg.qr(flat @ draws)[0]
-        U = basis @ np.linalg.svd(basis.T @ flat, full_matrices=False)[0][:, :PRINCIPAL]
+        U = np.linalg.eigh(flat @ flat.T)[1][:, -PRINCIPAL:]
         H = (U.T @ flat).view(complex).reshape(PRINCIPAL, n_in, lines).transpose(1, 0, 2)
         names = tuple(f"principal {i + 1}" for i in range(PRINCIPAL))
     return replace(data, H=H, responses=names, variance=None), shared
@@ -159,10 +148,9 @@ def _reweighted(fit: Fit, kind: Weighting) -> Fit:
     if kind == "given":
         return fit
     used, raw = task.weight > 0, square(fit.residual)
-    if task.weight.shape == task.H.shape:
-        raw /= np.maximum(1 - modal_model.leverage(fit), LEAST_LEFT)
-    else:
-        raw = raw.mean(axis=1, keepdims=True) * task.count / fit.freedom
+    raw *= task.count / fit.freedom
+    if task.weight.shape != H.shape:
+        raw = raw.mean(axis=1, keepdims=True)
         H = np.sqrt(np.mean(square(H), axis=1, keepdims=True))
     raw = np.where(used, raw, np.nan)
     if kind == "scaled":
@@ -205,7 +193,7 @@ def _result(
         fit.functions * size,
         size**2 / weight,
         misfit,
-        RESIDUALS.index(task.powers),
+        len(RESIDUALS) // 2,
     )
     return Identification(
         data.responses,
@@ -295,8 +283,8 @@ def _evidence(
 def _visibility(fit: Fit) -> Floats:
     """Return the greatest share of every mode, over all functions, at its own frequency."""
     task, model = fit.task, fit.model
-    resonances = replace(task, s=1j * np.abs(model.lam) + task.s[0].real, powers=())
-    E = primitives(resonances, model.lam, squares=False)
+    resonances = replace(task, s=1j * np.abs(model.lam) + task.s[0].real)
+    E = primitives(resonances, model.lam, squares=False)[: 2 * len(model)]
     a = (model.L.T[:, None, :] * model.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
     parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
     shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), np.finfo(float).tiny)
