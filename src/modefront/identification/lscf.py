@@ -88,29 +88,13 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
     n_in, n_out, lines = H.shape
     weighted = (weight * H).transpose(1, 0, 2).reshape(-1, lines)
     second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True).reshape(-1, lines)
-    values = np.concatenate([weight[None], weighted, weighted.conj(), second])
-    sums = np.zeros((len(values), highest + 1), complex)
+    values, lags = np.concatenate([weight[None], weighted, second]), np.arange(-highest, highest + 1)
+    sums = np.zeros((len(values), len(lags)), complex)
     for start in range(0, lines, PORTION):
         part = slice(start, start + PORTION)
-        powers = np.ones((len(z[part]), highest + 1), complex)
-        powers[:, 1:] = z[part, None]
-        sums += values[:, part] @ np.multiply.accumulate(powers, axis=1)
-    of_weight, of_first, of_conjugate, of_second = np.split(
-        sums, np.cumsum([1, n_out * n_in, n_out * n_in])
-    )
-    # |z| = 1, so that sums of values with z^-m are conjugate to those of conjugate values with z^m
-    square = of_second.reshape(n_in, n_in, -1)
-    return Moments(
-        _both(of_weight, of_weight)[0],
-        _both(of_first, of_conjugate).reshape(n_out, n_in, -1),
-        _both(square, square.transpose(1, 0, 2)),
-    )
-
-
-def _both(positive: Complexes, conjugate: Complexes) -> Complexes:
-    """Return sums for lags of both signs from those of lags of positive sign."""
-    out: Complexes = np.concatenate([conjugate[..., :0:-1].conj(), positive], axis=-1)
-    return out
+        sums += values[:, part] @ z[part, None] ** lags
+    first = sums[1 : 1 + n_out * n_in].reshape(n_out, n_in, -1)
+    return Moments(sums[0], first, sums[1 + n_out * n_in :].reshape(n_in, n_in, -1))
 
 
 def without_decay(poles: Poles, decay: float) -> Poles:

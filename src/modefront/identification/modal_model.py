@@ -369,12 +369,11 @@ def design(L: Complexes) -> Floats:
     """Return T, (references, primitives, linear): columns of Phi in the primitives."""
     (n, n_in), powers = L.shape, len(RESIDUALS)
     T = np.zeros((n_in, 2 * n + powers, 2 * n + powers * n_in))
-    r = np.arange(n)
-    T[:, 2 * r, 2 * r] = T[:, 2 * r + 1, 2 * r + 1] = L.real.T
-    T[:, 2 * r, 2 * r + 1], T[:, 2 * r + 1, 2 * r] = -L.imag.T, L.imag.T
+    for j, r in np.ndindex(n_in, n):
+        a = L[r, j]
+        T[j, 2 * r : 2 * r + 2, 2 * r : 2 * r + 2] = [[a.real, -a.imag], [a.imag, a.real]]
     for j in range(n_in):
-        k = np.arange(powers)
-        T[j, 2 * n + k, 2 * n + powers * j + k] = 1.0
+        T[j, 2 * n :, 2 * n + powers * j :][:, :powers] = np.eye(powers)
     return T
 
 

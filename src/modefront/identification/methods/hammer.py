@@ -87,7 +87,6 @@ def identify(
     fit = evaluate(task, fit.model.lam, fit.model.L)
     for _ in range(2):
         fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
-    fit = selection.grow(selection.backward(fit, modes)[0], modes)
     while True:
         last = selection.refit(fit, fit.model.lam, fit.model.L, fine=True)
         fit, gain = selection.backward(last, modes)
