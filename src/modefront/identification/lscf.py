@@ -88,7 +88,10 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
     n_in, n_out, lines = H.shape
     weighted = (weight * H).transpose(1, 0, 2).reshape(-1, lines)
     second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True).reshape(-1, lines)
-    values, lags = np.concatenate([weight[None], weighted, second]), np.arange(-highest, highest + 1)
+    values, lags = (
+        np.concatenate([weight[None], weighted, second]),
+        np.arange(-highest, highest + 1),
+    )
     sums = np.zeros((len(values), len(lags)), complex)
     for start in range(0, lines, PORTION):
         part = slice(start, start + PORTION)

@@ -1,16 +1,21 @@
 """The variance of frequency response functions, smooth over frequency.
 
 Where nothing is known, the first raw values are fourth differences over neighbouring lines, which
-no smooth function passes. The model is that of docs/methods/deviations.md.
+no smooth function passes, made robust by running medians. The model is that of
+docs/methods/deviations.md.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from modefront._typing import Complexes, Floats
 
 DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
+
+WINDOW = 21
+"""Lines of a running median."""
 
 LINES_A_HAT = 30
 """Lines a hat function, enough for its coefficient to be known within some 20 %."""
@@ -33,15 +38,19 @@ def square(values: Complexes) -> Floats:
     return values.real**2 + values.imag**2
 
 
-def squared_differences(H: Complexes) -> Floats:
-    """Return the variance that neighbouring lines show, of the shape of ``H``, at least five lines.
+def variance_from_differences(H: Complexes) -> Floats:
+    """Return the variance that neighbouring lines show, of the shape of ``H``; NaN stays.
 
-    It is NaN where one of them was not measured.
+    It is the running median of squared differences, which peaks do not reach.
     """
-    size = np.sqrt(np.sum(DIFFERENCE**2))
-    lines = H.shape[-1] - len(DIFFERENCE) + 1
-    passed = sum(c / size * H[..., k : k + lines] for k, c in enumerate(DIFFERENCE))
-    return np.pad(square(np.asarray(passed)), [(0, 0), (0, 0), (2, 2)], mode="edge")
+    lines, size = H.shape[-1] - len(DIFFERENCE) + 1, np.sqrt(np.sum(DIFFERENCE**2))
+    known = np.where(np.isfinite(H), H, 0) / size
+    raw = square(sum((c * known[..., k : k + lines] for k, c in enumerate(DIFFERENCE)), 0j))
+    raw = np.pad(raw, [(0, 0), (0, 0), (2, 2)], mode="edge")
+    medians = median_filter(raw, (1, 1, WINDOW), mode="nearest") / np.log(2)  # of mean 1: ln 2
+    power = ROUNDING * np.mean(square(known), axis=-1, keepdims=True)
+    least = np.maximum(power, 1e-3 * np.median(medians, axis=-1, keepdims=True))
+    return np.where(np.isfinite(H), np.maximum(medians, least + np.finfo(float).tiny), np.nan)
 
 
 def fitted_variance(raw: Floats, H: Complexes) -> Floats:

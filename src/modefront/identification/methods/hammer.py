@@ -17,7 +17,7 @@ from modefront._typing import Bools, Complexes, Floats
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import selection
 from modefront.identification.modal_model import Fit, evaluate
-from modefront.identification.noise import fitted_variance, square, squared_differences
+from modefront.identification.noise import fitted_variance, square, variance_from_differences
 from modefront.identification.problem import RESIDUALS, primitives, problem
 from modefront.identification.record import (
     Evidence,
@@ -71,9 +71,10 @@ def identify(
     if not np.any(np.abs(np.nan_to_num(data.H)) > 0):
         raise ValueError("expected functions that are not zero, found only zeros")
     kind = weighting(data)
-    raw = None if kind == "residuals" else data.variance
-    raw = squared_differences(data.H) if raw is None else np.where(data.measured, raw, np.nan)
-    first = fitted_variance(raw, data.H)
+    if data.variance is None or kind == "residuals":
+        first = variance_from_differences(data.H)
+    else:
+        first = fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
     small, shared = _principal(data, first)
     diagram, poles = diagram_of(small, shared)
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
