@@ -45,7 +45,7 @@ def variance_from_differences(H: Complexes) -> Floats:
     """
     lines, size = H.shape[-1] - len(DIFFERENCE) + 1, np.sqrt(np.sum(DIFFERENCE**2))
     known = np.where(np.isfinite(H), H, 0) / size
-    raw = square(sum((c * known[..., k : k + lines] for k, c in enumerate(DIFFERENCE)), 0j))
+    raw = square(np.asarray(sum(c * known[..., k : k + lines] for k, c in enumerate(DIFFERENCE))))
     raw = np.pad(raw, [(0, 0), (0, 0), (2, 2)], mode="edge")
     medians = median_filter(raw, (1, 1, WINDOW), mode="nearest") / np.log(2)  # of mean 1: ln 2
     power = ROUNDING * np.mean(square(known), axis=-1, keepdims=True)

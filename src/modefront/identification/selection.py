@@ -2,8 +2,8 @@ r"""Which modes are in the data: a pole is one where noise alone would hardly ma
 
 Evidence, noise and pairs are those of docs/methods/identification.md. Poles come from the
 stabilisation diagram, and then from the residuals: wherever a pole would explain more of them than
-noise does in every other test, one is added, until nothing stands out. Backwards,
-:math:`\Delta J` of a mode is the Wald statistic of its shape.
+noise does, one is added, until nothing stands out. Backwards, :math:`\Delta J` of a mode is the
+Wald statistic of its shape, or what the fit without it loses.
 """
 
 from __future__ import annotations
@@ -211,18 +211,18 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
     return fit
 
 
-def paired(fit: Fit, among: Bools) -> Fit:
+def paired(fit: Fit) -> Fit:
     """Return the fit in which modes are pairs whose poles the data cannot tell apart.
 
-    The closest are tried first, of which one at least is ``among`` some, (modes,), and which are
-    not clearly apart by their deviations. Real parts of the shapes of a pair are orthonormal.
+    The closest are tried first that are not clearly apart by their deviations. Real parts of the
+    shapes of a pair are orthonormal.
     """
     task, lam, pairs = fit.task, fit.model.lam, fit.model.pairs
     apart = np.abs(lam[:, None] - lam) / np.minimum.outer(-lam.real, -lam.real)
     close = np.argwhere(np.triu(apart < 1, 1)) if len(task.H) > 1 else np.zeros((0, 2), int)
     C, noise = fit.inverted(fit.information) / 2, fit.found.noise_of(lam)
     for r, s in close[apart[tuple(close.T)].argsort()].tolist():
-        if {r, s} & {k for pair in pairs for k in pair} or not among[[r, s]].any():
+        if {r, s} & {k for pair in pairs for k in pair}:
             continue
         difference = np.array([(lam[r] - lam[s]).real, (lam[r] - lam[s]).imag])
         both = np.zeros((2, len(C)))

@@ -38,7 +38,7 @@ from modefront.identification.statistics import mode_estimates, residuals
 Weighting = Literal["given", "scaled", "residuals"]
 
 LEAST_LINES = 20
-"""Lines of a band, at least: a mode with its residual terms has twelve numbers a function."""
+"""Lines of a band, at least: two modes with their residual terms have twelve numbers a function."""
 
 PRINCIPAL = 48
 """Principal responses from which the modes are chosen where there are more responses."""
@@ -174,7 +174,7 @@ def _result(
 
     Those outside the band stand for residual terms.
     """
-    fit = selection.paired(apart, np.ones(len(apart.model), bool))
+    fit = selection.paired(apart)
     task, misfit, f = fit.task, residuals(fit), data.frequency
     estimates = _with_split(mode_estimates(fit, misfit, omega), fit, apart.model.lam * omega)
     reasons = [_reason(mode, f) for mode in estimates]
