@@ -64,20 +64,9 @@ class Poles:
     participation: Complexes
 
 
-@dataclass(frozen=True)
-class Moments:
-    """Sums over the lines that all orders share, for lags of z up to the highest order.
-
-    Attributes
-    ----------
-    weight : (lags,): sum of w z^m
-    first : (responses, references, lags): sum of w H z^m
-    second : (references, references, lags): sum of w conj(H) H z^m, over all responses
-    """
-
-    weight: Complexes
-    first: Complexes
-    second: Complexes
+Moments = tuple[Complexes, Complexes, Complexes]
+"""Sums over the lines for lags m, last, of w z^m, (lags,), of w H z^m, (responses, references,
+lags), and over all responses of w conj(H) H z^m, (references, references, lags)."""
 
 
 def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments:
@@ -85,19 +74,16 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
 
     ``H`` is (references, responses, lines) without NaN; ``weight`` (lines,).
     """
-    n_in, n_out, lines = H.shape
-    weighted = (weight * H).transpose(1, 0, 2).reshape(-1, lines)
-    second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True).reshape(-1, lines)
-    values, lags = (
-        np.concatenate([weight[None], weighted, second]),
-        np.arange(-highest, highest + 1),
-    )
-    sums = np.zeros((len(values), len(lags)), complex)
-    for start in range(0, lines, PORTION):
-        part = slice(start, start + PORTION)
-        sums += values[:, part] @ z[part, None] ** lags
-    first = sums[1 : 1 + n_out * n_in].reshape(n_out, n_in, -1)
-    return Moments(sums[0], first, sums[1 + n_out * n_in :].reshape(n_in, n_in, -1))
+    second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True)
+    parts = weight, (weight * H).transpose(1, 0, 2), second
+    lags = np.arange(-highest, highest + 1)
+    out = [np.zeros((*part.shape[:-1], len(lags)), complex) for part in parts]
+    for start in range(0, len(z), PORTION):
+        lines = slice(start, start + PORTION)
+        powers = z[lines, None] ** lags
+        for total, part in zip(out, parts, strict=True):
+            total += part[..., lines] @ powers
+    return out[0], out[1], out[2]
 
 
 def without_decay(poles: Poles, decay: float) -> Poles:
@@ -124,12 +110,10 @@ def _toeplitz(values: Complexes, p: int) -> Complexes:
 
 def _reduced(sums: Moments, p: int) -> Complexes:
     """Return M, (powers and references) squared."""
-    n_in = sums.first.shape[1]
-    T = _toeplitz(sums.second, p)  # (references, references, p + 1, p + 1)
-    M = T.transpose(2, 0, 3, 1).reshape((p + 1) * n_in, -1)
-    value, vector = la.eigh(_toeplitz(sums.weight, p))
+    R, S, T = (_toeplitz(x, p) for x in sums)  # the last axes are (p + 1, p + 1)
+    M = T.transpose(2, 0, 3, 1).reshape((p + 1) * len(T), -1)
+    value, vector = la.eigh(R)
     kept = value > SINGULAR * value[-1]
-    S = _toeplitz(sums.first, p)  # (responses, references, p + 1, p + 1)
     root = vector[:, kept].conj().T / np.sqrt(value[kept])[:, None]
     half = root @ S.transpose(2, 0, 3, 1).reshape(p + 1, -1)
     half = half.reshape(-1, len(M))  # columns (power, reference)
@@ -138,8 +122,7 @@ def _reduced(sums: Moments, p: int) -> Complexes:
 
 def poles(sums: Moments, p: int, shift: float, rate: float) -> Poles:
     """Return the stable poles of one order, of z = exp(i rate (omega - shift))."""
-    n_in = sums.first.shape[1]
-    M = _reduced(sums, p)
+    n_in, M = len(sums[2]), _reduced(sums, p)
     M = (M + M.conj().T) / 2
     scale = np.sqrt(np.maximum(M.diagonal().real, np.finfo(float).tiny))
     rest = slice(n_in, None)

@@ -328,16 +328,11 @@ def maximise(
         noise = max(2 * fit.cost / max(task.count, 1), 1.0)
         trial = evaluate(task, *_moved(fit.model, step), pairs)
         evaluations += 1
+        converged = 2 * decrement <= tolerance * noise
         if trial.cost <= fit.cost * (1 + 1e-14):
-            converged = 2 * decrement <= tolerance * noise
-            damping = 0.0 if damping < 1e-6 else damping / 10
-            fit = trial
-        elif 2 * decrement <= tolerance * noise:
-            converged = True
+            fit, damping = trial, 0.0 if damping < 1e-6 else damping / 10
         else:
             damping = max(10 * damping, 1e-4)
-            if damping > 1e8:
-                break
     return replace(fit, evaluations=evaluations, converged=converged)
 
 

@@ -128,11 +128,6 @@ def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
         if not over.any():
             break
         lam, L = lam[~over], L[~over]
-    return of_all_lines(fit, task)
-
-
-def of_all_lines(fit: Fit, task: Problem) -> Fit:
-    """Return a fit to means of the lines of a problem as one to these lines."""
     if fit.task is task:
         return fit
     r = task.H - synthesise(task, fit.model)
