@@ -2,7 +2,7 @@ r"""The maximum-likelihood modal model by variable projection.
 
 The functions of modes and the likelihood are those of docs/methods/identification.md; of records
 with an exponential window :math:`e^{-dt}`, at :math:`s = \mathrm{i}\omega + d`, so that poles are
-those without it. Of the real residuals R, k = -2 and 0 are the lower and the upper one. Variable
+those without it. Of the real residuals R, those of negative powers are the lower ones. Variable
 projection is that of docs/methods/deviations.md. Every column of :math:`\Phi` and D is a
 combination of a few *primitives*, real functions of frequency that all responses share: with a
 residue a = x + iy,
