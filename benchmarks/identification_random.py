@@ -105,7 +105,7 @@ def energy(test: dict[str, Any], mode: int) -> float:
     H = np.einsum("rj,ri,rk->jik", test["factors"], test["phi"], G, optimize=True)
     v = test["H"].var(axis=0, ddof=1).mean(axis=-1, keepdims=True) / len(test["H"])
     data = frequency_responses(test["frequency"], H, test["quantity"])
-    task, unit, _ = problem(data, np.broadcast_to(v, H.shape), 2)
+    task, unit, _ = problem(data, np.broadcast_to(v, H.shape))
     pole = (omega * (-zeta + 1j * np.sqrt(1 - zeta**2)))[:, 0] / unit
     others = np.delete(np.arange(len(pole)), mode)
     return maximise(task, pole[others], test["factors"][others].astype(complex)).cost

@@ -18,9 +18,10 @@ from modefront.data.modal_test import ModalTest, Records
 from modefront.data.responses import Channel, assemble, frequency_responses
 from modefront.identification import statistics
 from modefront.identification.methods.hammer import identify
-from modefront.identification.modal_model import evaluate, maximise
+from modefront.identification.modal_model import maximise
 from modefront.identification.modal_test import IdentifiedTest
 from modefront.identification.problem import problem
+from modefront.identification.scan import scan
 from modefront.identification.sets import combine
 
 F = np.arange(0.1, 30.05, 0.1)
@@ -172,9 +173,9 @@ def test_what_poles_explain_of_residuals_is_that_of_sums_over_lines() -> None:
     H = accelerance(f, THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2])
     data = frequency_responses(f, blows(H, 0.05, np.random.default_rng(0)))
     assert data.variance is not None
-    task, _, _ = problem(data, data.variance, 0)
-    fit = evaluate(task, np.zeros(0, complex), np.zeros((0, 2), complex), np.zeros(0, int))
-    found, r = fit.found, fit.residual
+    task, _, _ = problem(data, data.variance)
+    r, nothing = task.H, np.zeros((0, len(task.s)), complex)
+    found = scan(task, r, 1.0, nothing, np.zeros((2, 0, 0)))
     for k in range(0, len(found.lam), 37):
         e = task.s**2 / (task.s - found.lam[k])
         products = np.sum(task.weight * r * e.conj(), axis=2)
@@ -191,7 +192,7 @@ def test_what_a_pole_explains_beside_a_close_one_is_what_a_fit_gains_by_it() -> 
     H = accelerance(f, f0, zeta, phi, [0])
     data = frequency_responses(f, blows(H, 0.05, np.random.default_rng(0)))
     assert data.variance is not None
-    task, omega, _ = problem(data, data.variance, 1)
+    task, omega, _ = problem(data, data.variance)
     one = maximise(task, lam[[0, 2]] / omega, np.ones((2, 1), complex))
     gain = one.found.gain * one.found.noise
     start: Complexes = np.append(one.model.lam, one.found.lam[gain.argmax()])

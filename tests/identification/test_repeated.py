@@ -87,3 +87,11 @@ def test_a_pair_without_its_other_mode_is_refused(tmp_path: Path, other: str) ->
     (tmp_path / "modes.csv").write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match="the other mode of a pair"):
         read_csv(tmp_path / "modes.csv")
+
+
+def test_close_modes_of_nearly_one_shape_stay_two_where_noise_is_small() -> None:
+    phi = shapes()
+    phi[2] = phi[1] + 0.15 * phi[2]
+    H = accelerance(F, np.array([7.0, 15.0, 15.05, 31.0]), ZETA, phi, [0, 5])
+    result = identify(frequency_responses(F, blows(H, 1e-4, np.random.default_rng(0))))
+    assert [round(mode.frequency, 2) for mode in result.modes] == [7.0, 15.0, 15.05, 31.0]

@@ -11,7 +11,7 @@ every :math:`\beta_i` from the normal equations leaves
 R, S and T are (block) Toeplitz: one matrix product yields their entries for all orders. With
 :math:`A_0 = I`, poles that belong to noise lie outside of the unit circle and are unstable
 (Cauberghe, Guillaume, Verboven et al. 2005). Poles are the eigenvalues of the companion matrix,
-:math:`\lambda = s_1 + \ln z / c`, and its eigenvectors hold the modal participation factors L.
+:math:`\lambda = s_1 + \ln z / c`, and participation factors L the left null vectors of A there.
 
 ===================  =====================================================================
 symbol               meaning
@@ -64,20 +64,9 @@ class Poles:
     participation: Complexes
 
 
-@dataclass(frozen=True)
-class Moments:
-    """Sums over the lines that all orders share, for lags of z up to the highest order.
-
-    Attributes
-    ----------
-    weight : (lags,): sum of w z^m
-    first : (responses, references, lags): sum of w H z^m
-    second : (references, references, lags): sum of w conj(H) H z^m, over all responses
-    """
-
-    weight: Complexes
-    first: Complexes
-    second: Complexes
+Moments = tuple[Complexes, Complexes, Complexes]
+"""Sums over the lines for lags m, last, of w z^m, (lags,), of w H z^m, (responses, references,
+lags), and over all responses of w conj(H) H z^m, (references, references, lags)."""
 
 
 def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments:
@@ -85,32 +74,16 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
 
     ``H`` is (references, responses, lines) without NaN; ``weight`` (lines,).
     """
-    n_in, n_out, lines = H.shape
-    weighted = (weight * H).transpose(1, 0, 2).reshape(-1, lines)
-    second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True).reshape(-1, lines)
-    values = np.concatenate([weight[None], weighted, weighted.conj(), second])
-    sums = np.zeros((len(values), highest + 1), complex)
-    for start in range(0, lines, PORTION):
-        part = slice(start, start + PORTION)
-        powers = np.ones((len(z[part]), highest + 1), complex)
-        powers[:, 1:] = z[part, None]
-        sums += values[:, part] @ np.multiply.accumulate(powers, axis=1)
-    of_weight, of_first, of_conjugate, of_second = np.split(
-        sums, np.cumsum([1, n_out * n_in, n_out * n_in])
-    )
-    # |z| = 1, so that sums of values with z^-m are conjugate to those of conjugate values with z^m
-    square = of_second.reshape(n_in, n_in, -1)
-    return Moments(
-        _both(of_weight, of_weight)[0],
-        _both(of_first, of_conjugate).reshape(n_out, n_in, -1),
-        _both(square, square.transpose(1, 0, 2)),
-    )
-
-
-def _both(positive: Complexes, conjugate: Complexes) -> Complexes:
-    """Return sums for lags of both signs from those of lags of positive sign."""
-    out: Complexes = np.concatenate([conjugate[..., :0:-1].conj(), positive], axis=-1)
-    return out
+    second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True)
+    parts = weight, (weight * H).transpose(1, 0, 2), second
+    lags = np.arange(-highest, highest + 1)
+    out = [np.zeros((*part.shape[:-1], len(lags)), complex) for part in parts]
+    for start in range(0, len(z), PORTION):
+        lines = slice(start, start + PORTION)
+        powers = z[lines, None] ** lags
+        for total, part in zip(out, parts, strict=True):
+            total += part[..., lines] @ powers
+    return out[0], out[1], out[2]
 
 
 def without_decay(poles: Poles, decay: float) -> Poles:
@@ -137,12 +110,10 @@ def _toeplitz(values: Complexes, p: int) -> Complexes:
 
 def _reduced(sums: Moments, p: int) -> Complexes:
     """Return M, (powers and references) squared."""
-    n_in = sums.first.shape[1]
-    T = _toeplitz(sums.second, p)  # (references, references, p + 1, p + 1)
-    M = T.transpose(2, 0, 3, 1).reshape((p + 1) * n_in, -1)
-    value, vector = la.eigh(_toeplitz(sums.weight, p))
+    R, S, T = (_toeplitz(x, p) for x in sums)  # the last axes are (p + 1, p + 1)
+    M = T.transpose(2, 0, 3, 1).reshape((p + 1) * len(T), -1)
+    value, vector = la.eigh(R)
     kept = value > SINGULAR * value[-1]
-    S = _toeplitz(sums.first, p)  # (responses, references, p + 1, p + 1)
     root = vector[:, kept].conj().T / np.sqrt(value[kept])[:, None]
     half = root @ S.transpose(2, 0, 3, 1).reshape(p + 1, -1)
     half = half.reshape(-1, len(M))  # columns (power, reference)
@@ -151,21 +122,19 @@ def _reduced(sums: Moments, p: int) -> Complexes:
 
 def poles(sums: Moments, p: int, shift: float, rate: float) -> Poles:
     """Return the stable poles of one order, of z = exp(i rate (omega - shift))."""
-    n_in = sums.first.shape[1]
-    M = _reduced(sums, p)
+    n_in, M = len(sums[2]), _reduced(sums, p)
     M = (M + M.conj().T) / 2
     scale = np.sqrt(np.maximum(M.diagonal().real, np.finfo(float).tiny))
     rest = slice(n_in, None)
     normal = M[rest, rest] / np.outer(scale[rest], scale[rest])
     right = -M[rest, :n_in] / scale[rest, None]
     alpha = la.lstsq(normal, right, lapack_driver="gelsd")[0] / scale[rest, None]
-    # sum_m z^m A_m v = 0 with A_0 = I: a companion matrix in 1/z on [v, v/z, ..., v/z^(p-1)]
+    # sum_m z^m A_m v = 0 with A_0 = I: a companion matrix in 1/z
     companion = np.zeros((p * n_in, p * n_in), complex)
     companion[n_in:, :-n_in] = np.eye((p - 1) * n_in)
     companion[:n_in] = -np.hstack(list(alpha.reshape(p, n_in, n_in)))
-    inverse, vectors = la.eig(companion)
-    safe = np.abs(inverse) > np.finfo(float).eps
-    inverse, vectors = inverse[safe], vectors[-n_in:, safe]
+    inverse = la.eigvals(companion)
+    inverse = inverse[np.abs(inverse) > np.finfo(float).eps]
     middle = np.pi * ARC
     angle = np.angle(np.exp(1j * (-np.angle(inverse) - middle))) + middle
     value = -np.log(np.abs(inverse)) / rate + 1j * (shift + angle / rate)

@@ -2,7 +2,7 @@ r"""The maximum-likelihood modal model by variable projection.
 
 The functions of modes and the likelihood are those of docs/methods/identification.md; of records
 with an exponential window :math:`e^{-dt}`, at :math:`s = \mathrm{i}\omega + d`, so that poles are
-those without it. Of the real residuals R, k = -2 and 0 are the lower and the upper one. Variable
+those without it. Of the real residuals R, those of negative powers are the lower ones. Variable
 projection is that of docs/methods/deviations.md. Every column of :math:`\Phi` and D is a
 combination of a few *primitives*, real functions of frequency that all responses share: with a
 residue a = x + iy,
@@ -19,10 +19,10 @@ primitives, weighted by 1/v of each function, are one matrix product; all else i
 symbol               meaning
 ===================  =====================================================================
 lam, L, phi          poles (modes,), participation (modes, references), shapes
-                     (modes, responses); the greatest :math:`|L_{rj}|` of a mode is 1
+                     (modes, responses)
 E                    primitives, (functions, lines): e, o of all modes, then residuals,
                      then :math:`e_2, o_2`
-alpha                Re and Im of lam, then Re and Im of the L that are not held at 1
+alpha                Re and Im of lam, then of the changes of L across itself
 c                    Re and Im of phi of one response, then its residuals by reference
 ===================  =====================================================================
 
@@ -35,12 +35,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats, Ints
-from modefront.identification.problem import Problem, combined, gram, primitives, products
+from modefront.identification.problem import RESIDUALS, Problem, combined, gram, primitives
 from modefront.identification.scan import Scan, scan
 
 FINE, COARSE = 1e-4, 1e-2
@@ -50,6 +51,9 @@ MOST_EVALUATIONS = 40
 """Evaluations after which a fit has failed; simulated tests take three to fifteen."""
 
 TINY = float(np.finfo(float).tiny)
+
+ROUNDING = 1e-13
+"""Share of the squares of a column that may be rounding."""
 
 BEND = 1 / 8
 """Width of a block of lines over the distance of the nearest pole."""
@@ -62,8 +66,7 @@ class ModalModel:
     Attributes
     ----------
     lam : (modes,) poles
-    L : (modes, references) participation factors; that of ``held`` is 1
-    held : (modes,) index of the reference with the greatest factor
+    L : (modes, references) participation factors
     phi : (modes, responses)
     residual : (powers, references, responses)
     pairs : modes that have one and the same pole; their shapes are a basis of a plane
@@ -71,7 +74,6 @@ class ModalModel:
 
     lam: Complexes
     L: Complexes
-    held: Ints
     phi: Complexes
     residual: Floats
     pairs: tuple[tuple[int, int], ...] = ()
@@ -79,8 +81,27 @@ class ModalModel:
     def __len__(self) -> int:
         return len(self.lam)
 
+    @cached_property
+    def alphas(self) -> list[tuple[int, int, Complexes | None]]:
+        """Number and mode of each complex parameter, and direction, (references,), of factors.
 
-# 12 fields: a model, what was fitted, and the equations of linear and nonlinear parameters there.
+        Modes of a pair share the number of their pole. Directions are across the factors of a mode,
+        or of both of a pair: what moves within them changes shapes, and not the functions.
+        """
+        first = np.arange(len(self))
+        for r, s in self.pairs:
+            first[s] = r
+        pole = np.unique(first, return_inverse=True)[1].tolist()
+        spans = [self.L[first == k].conj() for k in first]
+        across = [(r, v) for r, span in enumerate(spans) for v in la.null_space(span).T]
+        start = max(pole, default=-1) + 1
+        return [
+            *((k, r, None) for r, k in enumerate(pole)),
+            *((k, r, v) for k, (r, v) in enumerate(across, start)),
+        ]
+
+
+# 11 fields: a model, what was fitted, and the equations of linear and nonlinear parameters there.
 @dataclass(frozen=True)
 class Fit:
     """A model with the cost and the curvature there; linear parameters are eliminated.
@@ -91,12 +112,11 @@ class Fit:
     model : the parameters
     cost : J, sum of squared weighted residuals
     gradient : (alphas,) half the gradient of J
-    information : (alphas, alphas) projected Gauss-Newton matrix without the term in U
-    curvature : (alphas, alphas) with it
+    information : (alphas, alphas) projected Gauss-Newton matrix, the first term of A
     inverse : (responses, linear, linear) inverse of G; one where the responses share their weights
     Z : (responses, linear, alphas), G^-1 Phi^T D
-    U : (responses, linear, alphas), derivatives of the columns of Phi on the residual
-    unlike : (alphas,) share of each column of D, squared, that no linear parameter can make up
+    rho : (references, responses, primitives), weighted products of the residuals with them
+    size : (alphas,) squares of the columns of D; parts that Phi can make up are in them
     evaluations : number of evaluations of the model
     converged : whether the iteration met its tolerance
     """
@@ -106,11 +126,10 @@ class Fit:
     cost: float
     gradient: Floats
     information: Floats
-    curvature: Floats
     inverse: Floats
     Z: Floats
-    U: Floats
-    unlike: Floats
+    rho: Floats
+    size: Floats
     evaluations: int = 1
     converged: bool = False
 
@@ -125,40 +144,57 @@ class Fit:
         return np.where(self.task.weight > 0, self.task.H - self.functions, 0)
 
     @cached_property
+    def U(self) -> Floats:
+        """Derivatives of the columns of Phi on the residual, (responses, linear, alphas).
+
+        With z = rho_e + i rho_o, the product of the residual with x e + y o is Re(conj(x + iy) z).
+        """
+        model, n = self.model, len(self.model)
+        z: Complexes = self.rho[..., ::2] + 1j * self.rho[..., 1::2]
+        out = np.zeros(self.Z.shape)
+        for k, r, v in model.alphas:
+            seen = model.L[r].conj() @ z[..., r - n] if v is None else v.conj() @ z[..., r]
+            out[:, 2 * r : 2 * r + 2, 2 * k : 2 * k + 2] = _turned(seen).transpose(2, 0, 1)
+        return out
+
+    @cached_property
     def observed(self) -> Floats:
-        """Half the second derivatives of J by alpha, (alphas, alphas).
+        """A, half the second derivatives of J by alpha, (alphas, alphas).
 
         Where these have no minimum, as with a pole on the imaginary axis: the information.
         """
-        task, model, n = self.task, self.model, len(self.model)
+        task, model = self.task, self.model
         weighted = task.s**task.order * (task.weight * self.residual).conj()
         upper, lower = (1 / (task.s - lam[:, None]) for lam in (model.lam, model.lam.conj()))
         # products of the residuals with squares and cubes of the functions of poles
-        second, third = ((weighted @ (upper**p).T).conj() + weighted @ (lower**p).T for p in (2, 3))
-        by_pole = 2 * np.einsum("rj,ri,jir->r", model.L.conj(), model.phi.conj(), third)
-        by_factor = np.einsum("ri,jir->rj", model.phi.conj(), second)
-        factors = free_factors(model.held, model.L.shape[1])
-        both = [(r, r, z) for r, z in enumerate(by_pole)]
-        both += [(r, k, by_factor[r, j]) for k, (r, j) in enumerate(factors, start=n)]
+        second, third = (
+            np.einsum(
+                "ri,jir->rj",
+                model.phi.conj(),
+                (weighted @ (upper**p).T).conj() + weighted @ (lower**p).T,
+            )
+            for p in (2, 3)
+        )
         out = _rows(self.U).T @ _rows(self.Z - self.inverse @ self.U / 2)
         out = self.information + out + out.T
-        for r, k, z in both:
-            for row, column in {(r, k), (k, r)}:
-                block = out[2 * row : 2 * row + 2, 2 * column : 2 * column + 2]
-                block -= [[z.real, z.imag], [z.imag, -z.real]]
-        free = directions(model)
-        size = np.sqrt(np.maximum((free.T @ self.information @ free).diagonal(), TINY))
-        least = np.linalg.eigvalsh(free.T @ out @ free / np.outer(size, size)).min(initial=1.0)
+        pole = [k for k, _, v in model.alphas if v is None]
+        for k, r, v in model.alphas:
+            own = slice(2 * k, 2 * k + 2), slice(2 * pole[r], 2 * pole[r] + 2)
+            if v is None:
+                out[own] -= 2 * _turned(model.L[r].conj() @ third[r])
+            else:
+                out[own] -= (block := _turned(v.conj() @ second[r]))
+                out[own[::-1]] -= block
+        size = np.sqrt(np.maximum(self.information.diagonal(), TINY))
+        least = np.linalg.eigvalsh(out / np.outer(size, size)).min(initial=1.0)
         return out if least > 1e-12 else self.information
 
-    def inverted(self, A: Floats) -> Floats:
-        """Return A^-1 in the directions in which alpha is free; large where it is singular."""
-        free = directions(self.model)
-        A = free.T @ A @ free
-        least = 1e-30 * A.diagonal().max(initial=0.0) + TINY
+    def inverted(self, A: Floats, damping: float = 0.0) -> Floats:
+        """Return A^-1 of a matrix by alpha, large where it is singular; of A (I + damping)."""
+        least = np.where(self.size > 0, ROUNDING * self.size, 1.0)
         scale = 1 / np.sqrt(np.maximum(A.diagonal(), least))
         value, vector = np.linalg.eigh(A * np.outer(scale, scale))
-        half = free @ (scale[:, None] * vector / np.sqrt(np.maximum(value, 1e-13)))
+        half = scale[:, None] * vector / np.sqrt(np.maximum(value, ROUNDING) + damping)
         out: Floats = half @ half.T
         return out
 
@@ -177,7 +213,7 @@ class Fit:
     def found(self) -> Scan:
         """What poles all over the band explain of the residuals."""
         E = primitives(self.task, self.model.lam, squares=False)
-        T = design(self.model.L, len(self.task.powers))
+        T = design(self.model.L)
         return scan(self.task, self.residual, self.misfit, E, T)
 
 
@@ -185,14 +221,13 @@ def evaluate(
     task: Problem,
     lam: Complexes,
     L: Complexes,
-    held: Ints,
     pairs: tuple[tuple[int, int], ...] = (),
 ) -> Fit:
     """Return the model with the best shapes for the given poles and participation factors."""
     E = primitives(task, lam)
     M = gram(task, E)
-    first = 2 * len(lam) + len(task.powers)
-    T = design(L, len(task.powers))
+    first = 2 * len(lam) + len(RESIDUALS)
+    T = design(L)
     TM = T.transpose(0, 2, 1)[:, None] @ M[..., :first, :]  # (references, responses, linear, Q)
     G = (TM[..., :first] @ T[:, None]).sum(axis=0)
     inverse = _inverse(G)
@@ -204,10 +239,10 @@ def evaluate(
     right = (G @ lost[..., None])[..., 0]
     c = c + lost
     rho = rho - (lost[None, :, None] @ TM)[:, :, 0]
-    n, powers = len(lam), len(task.powers)
+    n, powers = len(lam), len(RESIDUALS)
     phi = (c[:, : 2 * n : 2] + 1j * c[:, 1 : 2 * n : 2]).T
     residual = c[:, 2 * n :].reshape(len(c), L.shape[1], powers).transpose(2, 1, 0)
-    model = ModalModel(lam, L, held, phi, residual, pairs)
+    model = ModalModel(lam, L, phi, residual, pairs)
     row, coefficient = derivatives(model, E.shape[0])
     direct = np.zeros((row.size, row.size))
     for j, i in np.ndindex(M.shape[:2]):
@@ -220,21 +255,10 @@ def evaluate(
         for k in range(2):
             cross += part[..., row[:, k]] * coefficient[j, :, None, :, k]
     Z = inverse @ cross
-    U = _second(model, rho, len(task.powers))
     information = direct - _rows(cross).T @ _rows(Z)
     slope = (rho[..., row] * coefficient).sum(axis=(0, 1, 3))
-    return Fit(
-        task,
-        model,
-        cost - float(np.sum(lost * right)),
-        -slope,
-        information,
-        information + _rows(U).T @ _rows(inverse @ U),
-        inverse,
-        Z,
-        U,
-        information.diagonal() / np.maximum(direct.diagonal(), TINY),
-    )
+    cost -= float(np.sum(lost * right))
+    return Fit(task, model, cost, -slope, information, inverse, Z, rho, direct.diagonal())
 
 
 def synthesise(task: Problem, model: ModalModel) -> Complexes:
@@ -295,49 +319,21 @@ def maximise(
     standard deviations of the parameters, is below ``tolerance``, and fails after ``most``
     evaluations. Modes of ``pairs`` keep one pole.
     """
-    held = np.abs(L).argmax(axis=1)
-    L = L / L[np.arange(len(L)), held][:, None]
-    for pair in map(list, pairs):
-        held[pair] = la.qr(L[pair], mode="economic", pivoting=True)[2][:2]
-        L[pair] = np.linalg.solve(L[np.ix_(pair, held[pair])], L[pair])
-    fit = evaluate(task, lam, L, held, pairs)
+    fit = evaluate(task, lam, L / np.abs(L).max(axis=1, keepdims=True), pairs)
     damping, evaluations = 0.0, 1
     converged = not len(lam)
     while evaluations < most and not converged:
         step = _step(fit, damping)
-        decrement = float(step @ fit.curvature @ step)
+        decrement = float(step @ fit.information @ step)
         noise = max(2 * fit.cost / max(task.count, 1), 1.0)
-        trial = evaluate(task, *_moved(fit.model, step), held, pairs)
+        trial = evaluate(task, *_moved(fit.model, step), pairs)
         evaluations += 1
+        converged = 2 * decrement <= tolerance * noise
         if trial.cost <= fit.cost * (1 + 1e-14):
-            converged = 2 * decrement <= tolerance * noise
-            damping = 0.0 if damping < 1e-6 else damping / 10
-            fit = trial
-        elif 2 * decrement <= tolerance * noise:
-            converged = True
+            fit, damping = trial, 0.0 if damping < 1e-6 else damping / 10
         else:
             damping = max(10 * damping, 1e-4)
-            if damping > 1e8:
-                break
     return replace(fit, evaluations=evaluations, converged=converged)
-
-
-def leverage(fit: Fit) -> Floats:
-    """Return the share of the noise of each line that the fit takes, of the shape of ``H``.
-
-    It is the mean over the real and the imaginary part of the diagonal of the projection on the
-    columns of Phi and of the rest of D.
-    """
-    E, T, X = columns(fit)
-    first = T.shape[1]
-    S = X @ fit.inverted(fit.information) @ X.swapaxes(2, 3)
-    S[:, :, :first, :first] += (T[:, None] @ fit.inverse) @ T[:, None].swapaxes(2, 3)
-    p, q = np.triu_indices(len(E))
-    coefficients = S[..., p, q] * np.where(p == q, 1.0, 2.0)
-    out = np.empty(fit.task.H.shape)
-    for lines, values in products(E):
-        out[..., lines] = coefficients @ values
-    return fit.task.weight * out / 2
 
 
 def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[Floats, float]:
@@ -364,22 +360,16 @@ def _inverse(G: Floats) -> Floats:
     return (out + out.transpose(0, 2, 1)) / 2
 
 
-def design(L: Complexes, powers: int) -> Floats:
+def design(L: Complexes) -> Floats:
     """Return T, (references, primitives, linear): columns of Phi in the primitives."""
-    n, n_in = L.shape
+    (n, n_in), powers = L.shape, len(RESIDUALS)
     T = np.zeros((n_in, 2 * n + powers, 2 * n + powers * n_in))
-    r = np.arange(n)
-    T[:, 2 * r, 2 * r] = T[:, 2 * r + 1, 2 * r + 1] = L.real.T
-    T[:, 2 * r, 2 * r + 1], T[:, 2 * r + 1, 2 * r] = -L.imag.T, L.imag.T
+    for j, r in np.ndindex(n_in, n):
+        a = L[r, j]
+        T[j, 2 * r : 2 * r + 2, 2 * r : 2 * r + 2] = [[a.real, -a.imag], [a.imag, a.real]]
     for j in range(n_in):
-        k = np.arange(powers)
-        T[j, 2 * n + k, 2 * n + powers * j + k] = 1.0
+        T[j, 2 * n :, 2 * n + powers * j :][:, :powers] = np.eye(powers)
     return T
-
-
-def free_factors(held: Ints, references: int) -> list[tuple[int, int]]:
-    """Return (mode, reference) of the participation factors that are parameters."""
-    return [(r, j) for r, kept in enumerate(held) for j in range(references) if j != kept]
 
 
 def derivatives(model: ModalModel, functions: int) -> tuple[Ints, Floats]:
@@ -388,16 +378,12 @@ def derivatives(model: ModalModel, functions: int) -> tuple[Ints, Floats]:
     They are the numbers of the primitives, (alphas, 2), and their coefficients, (references,
     responses, alphas, 2).
     """
-    n, n_in = model.L.shape
-    free = free_factors(model.held, n_in)
-    a = model.L.T[:, None, :] * model.phi.T[None]  # (references, responses, modes)
-    row = np.zeros((n + len(free), 2), int)
-    row[:n] = (functions - 2 * n + 2 * np.arange(n))[:, None] + [0, 1]
-    value = np.zeros((n_in, model.phi.shape[1], n + len(free)), complex)
-    value[..., :n] = a
-    for k, (r, j) in enumerate(free, start=n):
-        row[k] = 2 * r, 2 * r + 1
-        value[j, :, k] = model.phi[r]
+    count, n = len({k for k, _, _ in model.alphas}), len(model)
+    row = np.zeros((count, 2), int)
+    value = np.zeros((model.L.shape[1], model.phi.shape[1], count), complex)
+    for k, r, v in model.alphas:
+        row[k] = np.arange(2) + 2 * r + (functions - 2 * n if v is None else 0)
+        value[..., k] += np.outer(model.L[r] if v is None else v, model.phi[r])
     turned = np.stack([value, 1j * value], axis=-1).reshape(*value.shape[:2], -1)
     return row.repeat(2, axis=0), np.stack([turned.real, turned.imag], axis=-1)
 
@@ -408,7 +394,7 @@ def columns(fit: Fit) -> tuple[Complexes, Floats, Floats]:
     X is (references, responses, primitives, alphas).
     """
     E = primitives(fit.task, fit.model.lam)
-    T = design(fit.model.L, len(fit.task.powers))
+    T = design(fit.model.L)
     row, coefficient = derivatives(fit.model, len(E))
     X = np.zeros((*coefficient.shape[:2], len(E), len(row)))
     X[:, :, : T.shape[1]] = -(T[:, None] @ fit.Z)
@@ -417,68 +403,28 @@ def columns(fit: Fit) -> tuple[Complexes, Floats, Floats]:
     return E, T, X
 
 
-def _second(model: ModalModel, rho: Floats, powers: int) -> Floats:
-    """Return U, (responses, linear, alphas): derivatives of the columns of Phi on the residual.
-
-    With z = rho_e + i rho_o, the product of the residual with x e + y o is Re(conj(x + iy) z).
-    """
-    n, n_in = model.L.shape
-    free = free_factors(model.held, n_in)
-    base = 2 * n + powers
-    single = rho[..., : 2 * n : 2] + 1j * rho[..., 1 : 2 * n : 2]
-    double = rho[..., base::2] + 1j * rho[..., base + 1 :: 2]
-    seen = np.einsum("rj,jir->ir", model.L.conj(), double)
-    U = np.zeros((rho.shape[1], 2 * n + powers * n_in, 2 * n + 2 * len(free)))
-    for r in range(n):
-        U[:, 2 * r, 2 * r], U[:, 2 * r + 1, 2 * r] = seen[:, r].real, seen[:, r].imag
-        U[:, 2 * r, 2 * r + 1], U[:, 2 * r + 1, 2 * r + 1] = seen[:, r].imag, -seen[:, r].real
-    for k, (r, j) in enumerate(free, start=n):
-        z = single[j, :, r]
-        U[:, 2 * r, 2 * k], U[:, 2 * r + 1, 2 * k] = z.real, z.imag
-        U[:, 2 * r, 2 * k + 1], U[:, 2 * r + 1, 2 * k + 1] = z.imag, -z.real
-    return U
-
-
-def directions(model: ModalModel) -> Floats:
-    """Return the directions in which alpha is free, (alphas, free): all, unless there are pairs.
-
-    Both modes of a pair have one pole. Factors of either at the references that are held for both
-    stay: another basis of the plane of their shapes would change them, and not the functions.
-    """
-    n = len(model)
-    factors = free_factors(model.held, model.L.shape[1])
-    out, gone = np.eye(2 * (n + len(factors))), np.zeros(n + len(factors), bool)
-    for r, s in model.pairs:
-        out[2 * s : 2 * s + 2, 2 * r : 2 * r + 2] = np.eye(2)
-        gone[s] = True
-        for k, factor in enumerate(factors, start=n):
-            gone[k] |= factor in ((r, model.held[s]), (s, model.held[r]))
-    return out[:, ~gone.repeat(2)]
+def _turned(z: Any) -> Floats:
+    """Return the second derivatives of Re(conj(x + iy) (a + ib) z) by x, y and by a, b."""
+    return np.array([[z.real, z.imag], [z.imag, -z.real]])
 
 
 def _step(fit: Fit, damping: float) -> Floats:
-    free = directions(fit.model)
-    curvature = free.T @ fit.curvature @ free
-    diagonal = curvature.diagonal()
-    rounding = np.finfo(float).eps ** 2 * diagonal.max()  # of a dead channel it is all there is
-    scale = 1 / np.sqrt(np.where(diagonal > rounding, diagonal, 1.0))
-    scaled = curvature * np.outer(scale, scale) + (damping + 1e-12) * np.eye(len(scale))
-    slope = scale * (free.T @ fit.gradient)
-    step: Floats = -free @ (scale * la.solve(scaled, slope, assume_a="sym"))
-    n = len(fit.model)
-    sigma, omega = fit.model.lam.real, fit.model.lam.imag
+    step: Floats = -fit.inverted(fit.information, damping) @ fit.gradient
     # poles stay in the second quadrant, and none goes beyond its neighbourhood; each for itself,
     # as one that is drawn to the imaginary axis would hold up all others
-    room = np.empty(2 * n)
-    room[::2], room[1::2] = 0.7 * np.abs(sigma), np.minimum(10 * np.abs(sigma), 0.5 * omega)
-    step[: 2 * n] = np.clip(step[: 2 * n], -room, room)
+    for k, r, v in fit.model.alphas:
+        if v is None:
+            lam = fit.model.lam[r]
+            room = np.array([-0.7 * lam.real, min(-10 * lam.real, 0.5 * lam.imag)])
+            step[2 * k : 2 * k + 2] = np.clip(step[2 * k : 2 * k + 2], -room, room)
     return step
 
 
 def _moved(model: ModalModel, step: Floats) -> tuple[Complexes, Complexes]:
-    n = len(model)
-    lam = model.lam + step[: 2 * n : 2] + 1j * step[1 : 2 * n : 2]
-    L = model.L.copy()
-    for k, (r, j) in enumerate(free_factors(model.held, L.shape[1]), start=n):
-        L[r, j] += step[2 * k] + 1j * step[2 * k + 1]
+    lam, L, step = model.lam.copy(), model.L.copy(), step.view(complex)
+    for k, r, v in model.alphas:
+        if v is None:
+            lam[r] += step[k]
+        else:
+            L[r] += step[k] * v
     return lam, L

@@ -8,18 +8,14 @@ docs/methods/deviations.md.
 from __future__ import annotations
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
+from scipy.ndimage import median_filter
 
 from modefront._typing import Complexes, Floats
-from modefront.data.responses import FrequencyResponses
 
 DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 
-MEDIAN = np.log(2)
-"""Median of an exponentially distributed value of mean 1."""
-
-HALF_WINDOW = 10
-"""Lines on either side of a running median."""
+WINDOW = 21
+"""Lines of a running median."""
 
 LINES_A_HAT = 30
 """Lines a hat function, enough for its coefficient to be known within some 20 %."""
@@ -42,26 +38,19 @@ def square(values: Complexes) -> Floats:
     return values.real**2 + values.imag**2
 
 
-def variance_from_differences(data: FrequencyResponses) -> Floats:
-    """Return the variance that neighbouring lines show, of the shape of ``H``; NaN stays."""
-    measured = data.measured
-    H = np.where(measured, data.H, 0)
-    lines = H.shape[-1]
-    power = np.mean(square(H), axis=-1, keepdims=True)
-    if lines <= len(DIFFERENCE):
-        return np.where(measured, np.maximum(1e-4 * power, np.finfo(float).tiny), np.nan)
-    kernel = DIFFERENCE / np.sqrt(np.sum(DIFFERENCE**2))
-    passed = sum(c * H[..., k : lines - len(kernel) + 1 + k] for k, c in enumerate(kernel))
-    raw = np.pad(square(np.asarray(passed)), [(0, 0), (0, 0), (2, 2)], mode="edge")
-    # running medians, linear between windows that half overlap
-    width = [(0, 0), (0, 0), (HALF_WINDOW, 3 * HALF_WINDOW)]
-    windows = sliding_window_view(np.pad(raw, width, mode="edge"), 2 * HALF_WINDOW + 1, axis=-1)
-    knots = np.median(windows[..., ::HALF_WINDOW, :], axis=-1)
-    before, past = np.divmod(np.arange(lines), HALF_WINDOW)
-    smooth = knots[..., before]
-    smooth = (smooth + (knots[..., before + 1] - smooth) * (past / HALF_WINDOW)) / MEDIAN
-    floor = np.maximum(ROUNDING * power, 1e-3 * np.median(smooth, axis=-1, keepdims=True))
-    return np.where(measured, np.maximum(smooth, floor + np.finfo(float).tiny), np.nan)
+def variance_from_differences(H: Complexes) -> Floats:
+    """Return the variance that neighbouring lines show, of the shape of ``H``; NaN stays.
+
+    It is the running median of squared differences, which peaks do not reach.
+    """
+    lines, size = H.shape[-1] - len(DIFFERENCE) + 1, np.sqrt(np.sum(DIFFERENCE**2))
+    known = np.where(np.isfinite(H), H, 0) / size
+    raw = square(np.asarray(sum(c * known[..., k : k + lines] for k, c in enumerate(DIFFERENCE))))
+    raw = np.pad(raw, [(0, 0), (0, 0), (2, 2)], mode="edge")
+    medians = median_filter(raw, (1, 1, WINDOW), mode="nearest") / np.log(2)  # of mean 1: ln 2
+    power = ROUNDING * np.mean(square(known), axis=-1, keepdims=True)
+    least = np.maximum(power, 1e-3 * np.median(medians, axis=-1, keepdims=True))
+    return np.where(np.isfinite(H), np.maximum(medians, least + np.finfo(float).tiny), np.nan)
 
 
 def fitted_variance(raw: Floats, H: Complexes) -> Floats:

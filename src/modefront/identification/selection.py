@@ -2,8 +2,8 @@ r"""Which modes are in the data: a pole is one where noise alone would hardly ma
 
 Evidence, noise and pairs are those of docs/methods/identification.md. Poles come from the
 stabilisation diagram, and then from the residuals: wherever a pole would explain more of them than
-noise does in every other test, one is added, until nothing stands out. Backwards,
-:math:`\Delta J` of a mode is the Wald statistic of its shape.
+noise does, one is added, until nothing stands out. Backwards, :math:`\Delta J` of a mode is the
+Wald statistic of its shape, or what the fit without it loses.
 """
 
 from __future__ import annotations
@@ -16,26 +16,21 @@ from scipy.special import gammaln
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
-from modefront.identification.lscf import Poles
 from modefront.identification.modal_model import (
     COARSE,
     Fit,
     evaluate,
-    free_factors,
     maximise,
     synthesise,
     thinned,
 )
 from modefront.identification.noise import square
-from modefront.identification.problem import RESIDUALS, Problem
+from modefront.identification.problem import Problem
 from modefront.identification.scan import alike
 from modefront.identification.shapes import auto_mac, plane_basis
 
 FALSE = 1e-3
 """Expected number of modes in a band that noise alone makes."""
-
-EVEN = 0.5
-"""The same number from which on a pole is tried in the model."""
 
 MOST_ROUNDS = 20
 """Rounds in which poles are added, at most."""
@@ -75,29 +70,13 @@ PAIR_FREEDOM = 6
 """Real numbers of a matrix, 2 by 2, beyond those of one pole."""
 
 
-def needed(task: Problem, expected: float = FALSE) -> float:
-    """Return 2 Delta J of which noise of unit variance makes so many poles in the band."""
+def needed(task: Problem) -> float:
+    """Return 2 Delta J of which noise of unit variance makes `FALSE` poles in the band."""
     n_in, n_out = task.live
     k = n_in + n_out
     ways = gammaln(k - 1) - gammaln(n_in) - gammaln(n_out)
     poles = np.log(len(task.s) * (k - 1) / (2 * np.pi)) + ways
-    return float(chi2.isf(min(expected * np.exp(-poles), 0.5), 2 * k))
-
-
-def choose_level(fit: Fit) -> Fit:
-    """Return the fit with the number of residual terms of the least AIC, poles held.
-
-    A term too few shifts frequencies, one too many costs next to nothing. Source: Akaike, IEEE
-    Trans. Autom. Control 19 (1974) 716-723, doi:10.1109/TAC.1974.1100705.
-    """
-    few, model, found = thinned(fit, fit.model.lam), fit.model, fit.found
-    measured = int(np.count_nonzero(fit.task.weights.any(axis=2)))
-    noise = float(np.median(found.noise[found.lam.real == found.lam.real.min()]))
-    best = min(
-        (evaluate(replace(few, powers=p), model.lam, model.L, model.held) for p in RESIDUALS),
-        key=lambda trial: 2 * trial.cost / noise + 2 * measured * len(trial.task.powers),
-    )
-    return of_all_lines(best, replace(fit.task, powers=best.task.powers))
+    return float(chi2.isf(min(FALSE * np.exp(-poles), 0.5), 2 * k))
 
 
 def gains(fit: Fit) -> Floats:
@@ -106,30 +85,27 @@ def gains(fit: Fit) -> Floats:
     It is the Wald statistic of a shape whose poles are held, while all else may follow: with the
     covariance B + Z A^-1 Z^T, B of the shape's own equations, A of all other alphas.
     """
+    owner, unit = np.repeat([r for _, r, _ in fit.model.alphas], 2), np.eye(2 * len(fit.model))
+    out = [_wald(fit, unit[2 * r : 2 * r + 2], owner != r) for r in range(len(fit.model))]
+    return np.array(out) / fit.found.noise_of(fit.model.lam)
+
+
+def _wald(fit: Fit, of: Floats, free: Bools) -> float:
+    """Return 2 Delta J of a fit in which combinations of the shapes of every response vanish.
+
+    They are real, (combinations, 2 modes); some alphas are ``free``. With the covariance of the
+    combinations B + Z A^-1 Z^T, B of the responses' own equations, A of the alphas.
+    """
     seen: Bools = np.any(fit.task.weights, axis=(0, 2))
-    out, n = np.zeros(len(fit.model)), len(fit.model)
-    owner = np.append(
-        np.arange(n).repeat(2),
-        np.repeat([r for r, _ in free_factors(fit.model.held, len(fit.task.H))], 2),
-    )
-    for r, phi in enumerate(fit.model.phi[:, seen]):
-        rows, others = slice(2 * r, 2 * r + 2), owner != r
-        block = np.broadcast_to(fit.inverse[:, rows, rows], (len(seen), 2, 2))[seen]
-        Z = fit.Z[seen][:, rows][..., others]
-        c = np.stack([phi.real, phi.imag], axis=1)[..., None]
-        both = np.linalg.solve(block, np.concatenate([c, Z], axis=2))
-        W = both.reshape(-1, both.shape[2])
-        S = np.concatenate([c, Z], axis=2).reshape(W.shape).T @ W
-        A = S[1:, 1:] + fit.information[np.ix_(others, others)]
-        follows = S[0, 1:] @ la.lstsq(A, S[1:, 0])[0] if len(A) else 0.0
-        out[r] = S[0, 0] - follows
-    return 2 * out / fit.found.noise_of(fit.model.lam)
-
-
-def start(task: Problem, poles: Poles, omega: float) -> Fit:
-    """Return the fit from poles in rad/s, ``omega`` of which are the unit of the task."""
-    lam, L = poles.value / omega, poles.participation
-    return refit(evaluate(task, lam, L, np.abs(L).argmax(axis=1)), lam, L)
+    c = np.stack([fit.model.phi.real, fit.model.phi.imag], axis=1).reshape(of.shape[1], -1)
+    block = of @ fit.inverse[:, : of.shape[1], : of.shape[1]] @ of.T
+    block = np.broadcast_to(block, (len(seen), *block.shape[1:]))[seen]
+    Z = of @ fit.Z[seen][:, : of.shape[1], free]
+    parts = np.concatenate([(of @ c).T[seen, :, None], Z], axis=2)
+    S = np.tensordot(parts, np.linalg.solve(block, parts), ((0, 1), (0, 1)))
+    A = S[1:, 1:] + fit.information[np.ix_(free, free)]
+    follows = S[0, 1:] @ la.lstsq(A, S[1:, 0])[0] if len(A) else 0.0
+    return 2 * float(S[0, 0] - follows)
 
 
 def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
@@ -147,39 +123,44 @@ def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
             fit = maximise(task, fit.model.lam, fit.model.L)
         lam, L = fit.model.lam, fit.model.L
         over = -lam.real > OVERDAMPED * np.abs(lam)
-        over |= fit.unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
+        unlike = fit.information.diagonal() / np.maximum(fit.size, np.finfo(float).tiny)
+        over |= unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
         if not over.any():
             break
         lam, L = lam[~over], L[~over]
-    return of_all_lines(fit, task)
-
-
-def of_all_lines(fit: Fit, task: Problem) -> Fit:
-    """Return a fit to means of the lines of a problem as one to these lines."""
     if fit.task is task:
         return fit
     r = task.H - synthesise(task, fit.model)
     return replace(fit, task=task, cost=float(np.sum(task.weight * square(r))))
 
 
-def backward(fit: Fit, count: int | None = None) -> Fit:
-    """Return the fit without modes that gain less than needed, the weakest first, and doubles.
+def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
+    """Return the fit without modes that gain less than needed and doubles, and what modes gain.
 
-    Where the ``count`` of modes is given, the strongest are kept instead.
+    The weakest go first, where a fit without them is no worse. The Wald statistic says too little
+    of close modes, whose shapes are large and cancel: what they gain is what that fit loses. Where
+    the ``count`` of modes is given, the strongest are kept instead.
     """
+    gain, together = gains(fit), True
     while len(fit.model):
-        gain, lam, least = gains(fit), fit.model.lam, needed(fit.task)
-        gone = doubles(lam, fit.model.phi, gain)
-        if gone.any():  # shapes of a pair may be alike by chance
-            both = paired(fit, gone).model.pairs
-            gone[[k for pair in both for k in pair]] = False
+        lam, least = fit.model.lam, needed(fit.task)
+        double = doubles(lam, fit.model.phi, gain, fit)
         if count is not None:
             least = np.sort(gain)[::-1][count - 1] if count < len(gain) else -np.inf
-        gone = with_weak(gone, gain, least, lam)
+        gone = with_weak(double.copy(), gain, least, lam)
         if not gone.any():
-            return fit
-        fit = refit(fit, lam[~gone], fit.model.L[~gone])
-    return fit
+            break
+        if not together:
+            gone = double if double.any() else gain == gain.min()
+        trial = refit(fit, lam[~gone], fit.model.L[~gone])
+        lost = 2 * (trial.cost - fit.cost) / fit.found.noise_of(lam[gone]).min()
+        together = lost - np.sort(gain[gone])[:-1].sum() < least
+        if together or double.any() or count is not None:
+            fit, together = trial, True
+            gain = gains(fit)
+        elif gone.sum() == 1:
+            gain[gone], together = lost, True
+    return fit, gain
 
 
 def with_weak(gone: Bools, gain: Floats, least: float, lam: Complexes) -> Bools:
@@ -201,7 +182,7 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
     blocked: Complexes = np.zeros(0, complex)
     for _ in range(MOST_ROUNDS):
         task, model, lam, gain = fit.task, fit.model, fit.found.lam, fit.found.gain
-        least = needed(task, EVEN) if count is None else 0.0
+        least = needed(task) if count is None else 0.0
         most = len(lam) if count is None else count - len(model)
         new: list[int] = []
         for c in gain.argsort()[::-1]:
@@ -213,7 +194,7 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
         if not new:
             break
         L = np.vstack([model.L, fit.found.L[new]])
-        trial = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
+        trial, _ = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
         gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise[new])
         before, after = model.lam, trial.model.lam
         stays = [
@@ -225,18 +206,18 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
     return fit
 
 
-def paired(fit: Fit, among: Bools) -> Fit:
+def paired(fit: Fit) -> Fit:
     """Return the fit in which modes are pairs whose poles the data cannot tell apart.
 
-    The closest are tried first, of which one at least is ``among`` some, (modes,), and which are
-    not clearly apart by their deviations. Real parts of the shapes of a pair are orthonormal.
+    The closest are tried first that are not clearly apart by their deviations. Real parts of the
+    shapes of a pair are orthonormal.
     """
     task, lam, pairs = fit.task, fit.model.lam, fit.model.pairs
     apart = np.abs(lam[:, None] - lam) / np.minimum.outer(-lam.real, -lam.real)
     close = np.argwhere(np.triu(apart < 1, 1)) if len(task.H) > 1 else np.zeros((0, 2), int)
     C, noise = fit.inverted(fit.information) / 2, fit.found.noise_of(lam)
     for r, s in close[apart[tuple(close.T)].argsort()].tolist():
-        if {r, s} & {k for pair in pairs for k in pair} or not among[[r, s]].any():
+        if {r, s} & {k for pair in pairs for k in pair}:
             continue
         difference = np.array([(lam[r] - lam[s]).real, (lam[r] - lam[s]).imag])
         both = np.zeros((2, len(C)))
@@ -254,7 +235,7 @@ def paired(fit: Fit, among: Bools) -> Fit:
                 L[pair] = np.linalg.solve(plane_basis(trial.model.phi[pair]).T, L[pair])
             pairs = trial.model.pairs
             fit = replace(
-                evaluate(task, trial.model.lam, L, trial.model.held, pairs),
+                evaluate(task, trial.model.lam, L, pairs),
                 evaluations=trial.evaluations,
                 converged=trial.converged,
             )
@@ -281,12 +262,28 @@ def seeded(fit: Fit, omega: Floats) -> tuple[Complexes, Complexes]:
     return out, L
 
 
-def doubles(poles: Complexes, shapes: Complexes, strength: Floats) -> Bools:
+def doubles(poles: Complexes, shapes: Complexes, strength: Floats, fit: Fit | None = None) -> Bools:
     """Return which modes lie within half the bandwidth of a stronger one and have its shape.
 
-    Nonlinearity, leakage and drift make peaks that two poles fit better than one.
+    Nonlinearity, leakage and drift make peaks that two poles fit better than one. Of close modes,
+    shapes may be alike as well: those of a ``fit`` are the same where it cannot tell them apart.
     """
     half = CLOSEST * np.maximum.outer(-poles.real, -poles.real)
     near = np.abs(poles[:, None] - poles) < half
-    weaker = strength[:, None] < strength
-    return np.asarray(np.any(near & (auto_mac(shapes) > SAME) & weaker, axis=1))
+    double: Bools = near & (auto_mac(shapes) > SAME) & (strength[:, None] < strength)
+    if fit is not None:
+        for r, s in np.argwhere(double):
+            double[r, s] = not _differ(fit, r, s)
+    return np.asarray(double.any(axis=1))
+
+
+def _differ(fit: Fit, r: int, s: int) -> bool:
+    """Return whether the shape of a mode is more than a multiple of that of another one."""
+    phi = fit.model.phi[:, np.any(fit.task.weights, axis=(0, 2))]
+    factor = np.vdot(phi[s], phi[r]) / np.vdot(phi[s], phi[s])
+    of = np.zeros((2, 2 * len(phi)))
+    of[:, 2 * r : 2 * r + 2] = np.eye(2)
+    of[:, 2 * s : 2 * s + 2] = [[-factor.real, factor.imag], [-factor.imag, -factor.real]]
+    freedom, noise = 2 * phi.shape[1] - 2, fit.found.noise_of(fit.model.lam[[r]])[0]
+    statistic = _wald(fit, of, np.ones(len(fit.gradient), bool)) / noise
+    return bool(freedom and statistic > chi2.isf(APART, freedom))

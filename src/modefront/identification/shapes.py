@@ -59,39 +59,35 @@ def phase_collinearity(phi: Complexes) -> float:
 
 def real_shape(phi: Complexes) -> RealShape:
     """Return the rotation of a shape that loses least; its greatest component is positive."""
-    total = np.sum(phi**2)
-    turn = np.exp(-0.5j * np.angle(total))
-    psi = turn * phi
-    if psi.real[np.abs(psi.real).argmax()] < 0:
-        turn, psi = -turn, -psi
-    norm = max(float(np.linalg.norm(psi.real)), TINY)
-    u: Floats = psi.real / norm
-    return RealShape(psi / norm, u, phase_collinearity(phi), norm, complex(turn), u[:, None])
+    return real_shapes(phi[None])[0]
 
 
-def plane_basis(phi: Complexes) -> Floats:
-    """Return B so that the real parts of turned shapes B phi, (2, responses), are orthonormal.
-
-    The greatest component of either is positive; ``phi`` is (2, responses).
-    """
-    x = (np.exp(-0.5j * np.angle(np.sum(phi**2))) * phi).real
-    left, size, right = np.linalg.svd(x, full_matrices=False)
-    sign = np.sign(right[[0, 1], np.abs(right).argmax(axis=1)])
-    out: Floats = (sign / np.maximum(size, TINY))[:, None] * left.T
-    return out
-
-
-def real_plane(phi: Complexes) -> list[RealShape]:
-    """Return the real shapes of a pair that has the basis of `plane_basis`."""
+def real_shapes(phi: Complexes) -> list[RealShape]:
+    """Return the real shape of a mode, or those of a pair that has the basis of `plane_basis`."""
     turn = np.exp(-0.5j * np.angle(np.sum(phi**2)))
     psi = turn * phi
     if psi[0].real[np.abs(psi[0].real).argmax()] < 0:
         turn, psi = -turn, -psi
-    plane: Floats = psi.real.T
+    norm = np.maximum(np.linalg.norm(psi.real, axis=1), TINY)
+    psi = psi / norm[:, None]
     return [
-        RealShape(each, each.real, phase_collinearity(each), 1.0, complex(turn), plane)
-        for each in psi
+        RealShape(each, each.real, phase_collinearity(each), size, complex(turn), psi.real.T)
+        for each, size in zip(psi, norm.tolist(), strict=True)
     ]
+
+
+def plane_basis(phi: Complexes) -> Complexes:
+    """Return B so that the real parts of the shapes B phi, (2, responses), are orthonormal.
+
+    They are the plane nearest to that of the shapes, (2, responses); the greatest component of
+    either is positive.
+    """
+    span = np.linalg.svd(phi, full_matrices=False)[2]
+    plane = np.linalg.svd(np.vstack([span.real, span.imag]), full_matrices=False)[2][:2]
+    plane *= np.sign(plane[[0, 1], np.abs(plane).argmax(axis=1)])[:, None]
+    B: Complexes = plane @ np.linalg.pinv(phi)
+    x = (B @ phi).real
+    return np.asarray(np.linalg.solve(np.linalg.cholesky(x @ x.T), B), complex)
 
 
 def auto_mac(phi: Complexes) -> Floats:

@@ -20,7 +20,7 @@ from modefront.identification.modal_model import Fit, columns
 from modefront.identification.noise import square
 from modefront.identification.problem import CHUNK, Problem, gram
 from modefront.identification.record import MOST_COVARIED, ModeEstimate, Residuals
-from modefront.identification.shapes import TINY, RealShape, real_plane, real_shape
+from modefront.identification.shapes import TINY, RealShape, real_shape, real_shapes
 
 SIGNIFICANT = 3.0
 """Standard errors beyond which a correlation of the residuals is one."""
@@ -120,9 +120,10 @@ def _force(fit: Fit) -> Floats:
 def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEstimate]:
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
     model = fit.model
+    pole = [k for k, _, v in model.alphas if v is None]
     shapes = [real_shape(phi) for phi in model.phi]
-    for pair in map(list, model.pairs):
-        shapes[pair[0]], shapes[pair[1]] = real_plane(model.phi[pair])
+    for r, s in model.pairs:
+        shapes[r], shapes[s] = real_shapes(model.phi[[r, s]])
     inverse, follows = fit.inverted(fit.observed), fit.Z - fit.inverse @ fit.U
     linear, alpha = _roots_of_responses(fit, residuals)
     C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
@@ -134,7 +135,7 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
         answer = shape.differential(_as_complex(follows[:, rows] @ inverse))
         direct = _as_complex(linear[:, rows])
         spread.append(_shape_covariance(shape, direct, answer, alpha, products))
-    for steps, phi in _force_influence(fit, residuals.force):
+    for steps, phi in _force_influence(fit, residuals.force, inverse, follows):
         C = C + steps @ steps.T
         for r, shape in enumerate(shapes):
             change = shape.differential(phi[:, r])
@@ -147,7 +148,7 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
         each[gone] = np.nan
         if whole:
             each[:, gone] = np.nan
-        lam, own = model.lam[r], C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2] * scale
+        lam, own = model.lam[r], C[2 * pole[r] :, 2 * pole[r] :][:2, :2] * scale
         size = float(abs(lam))
         df = np.array([lam.real, lam.imag]) / size
         both = np.array([df, np.array([-1 / size, 0.0]) + lam.real / size**2 * df])
@@ -236,7 +237,9 @@ def _roots_of_responses(fit: Fit, residuals: Residuals) -> tuple[Floats, Floats]
     return roots[:, : 2 * n], roots[:, 2 * n :]
 
 
-def _force_influence(fit: Fit, force: Floats) -> Iterator[tuple[Floats, Complexes]]:
+def _force_influence(
+    fit: Fit, force: Floats, inverse: Floats, follows: Floats
+) -> Iterator[tuple[Floats, Complexes]]:
     """Yield changes of alpha and of the shapes by independent errors of the force, in portions.
 
     The changes of the shapes are (responses, modes, errors).
@@ -244,7 +247,6 @@ def _force_influence(fit: Fit, force: Floats) -> Iterator[tuple[Floats, Complexe
     n = len(fit.model)
     E, T, X = columns(fit)
     first, H = T.shape[1], fit.functions
-    inverse, follows = fit.inverted(fit.observed), fit.Z - fit.inverse @ fit.U
     for j in np.flatnonzero(force).tolist():
         for y in _force_products(fit.task, E, H[j], j, force[j]):
             alpha = inverse @ np.einsum("iqa,iqk->ak", X[j], y, optimize=True)

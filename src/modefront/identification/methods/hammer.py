@@ -15,8 +15,8 @@ import numpy as np
 
 from modefront._typing import Bools, Complexes, Floats
 from modefront.data.responses import FrequencyResponses
-from modefront.identification import modal_model, selection
-from modefront.identification.modal_model import Fit
+from modefront.identification import selection
+from modefront.identification.modal_model import Fit, evaluate
 from modefront.identification.noise import fitted_variance, square, variance_from_differences
 from modefront.identification.problem import RESIDUALS, primitives, problem
 from modefront.identification.record import (
@@ -38,13 +38,10 @@ from modefront.identification.statistics import mode_estimates, residuals
 Weighting = Literal["given", "scaled", "residuals"]
 
 LEAST_LINES = 20
-"""Lines of a band, at least: a mode with its residual terms has twelve numbers a function."""
+"""Lines of a band, at least: two modes with their residual terms have twelve numbers a function."""
 
 PRINCIPAL = 48
 """Principal responses from which the modes are chosen where there are more responses."""
-
-LEAST_LEFT = 0.1
-"""Least share of the noise of a line that its residual is taken to hold."""
 
 FEW = 0.5
 """Share of the orders below which a mode is flagged, and phase collinearity."""
@@ -54,9 +51,6 @@ VISIBLE = 1 / 3
 
 NEIGHBOURS = 0.05
 """Relative distance of frequencies within which modes of the same shape may be one."""
-
-SEED = 20080410
-"""Of the random combinations of the singular value decomposition."""
 
 
 def identify(
@@ -78,33 +72,32 @@ def identify(
         raise ValueError("expected functions that are not zero, found only zeros")
     kind = weighting(data)
     if data.variance is None or kind == "residuals":
-        first = variance_from_differences(data)
+        first = variance_from_differences(data.H)
     else:
         first = fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
     small, shared = _principal(data, first)
     diagram, poles = diagram_of(small, shared)
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
         small, shared = data, first
-    task, omega, _ = problem(small, shared, 1)
-    fit = selection.start(task, poles, omega)
+    task, omega, _ = problem(small, shared)
+    lam, L = poles.value / omega, poles.participation
+    fit = selection.refit(evaluate(task, lam, L), lam, L)
+    fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
+    fit = selection.grow(selection.backward(fit, modes)[0], modes)
+    task, omega, size = problem(data, first)
+    fit = evaluate(task, fit.model.lam, fit.model.L)
     for _ in range(2):
-        fit = selection.refit(selection.choose_level(fit), fit.model.lam, fit.model.L)
         fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
-        fit = selection.grow(selection.backward(fit, modes), modes)
-    task, omega, size = problem(data, first, RESIDUALS.index(fit.task.powers))
-    fit = modal_model.evaluate(task, fit.model.lam, fit.model.L, fit.model.held)
-    for _ in range(2):
-        fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
-    fit = selection.grow(selection.backward(fit, modes), modes)
     while True:
         last = selection.refit(fit, fit.model.lam, fit.model.L, fine=True)
-        fit = selection.backward(last, modes)
+        fit, gain = selection.backward(last, modes)
         if fit is last:
             break
     if len(seeds):
         start = selection.seeded(fit, 2 * np.pi * np.array(seeds) / omega)
         fit = selection.refit(fit, *start, fine=True)
-    return _result(data, fit, omega, size, diagram)
+        gain = selection.gains(fit)
+    return _result(data, fit, gain, omega, size, diagram)
 
 
 def weighting(data: FrequencyResponses) -> Weighting:
@@ -124,8 +117,7 @@ def weighting(data: FrequencyResponses) -> Weighting:
 def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
     """Return responses over their noise, principal ones where they are many, and their variance.
 
-    It is that of the mean response, (references, 1, lines). The singular value decomposition is
-    randomised: Halko, Martinsson & Tropp, SIAM Rev. 53 (2011) 217-288, doi:10.1137/090771806.
+    It is that of the mean response, (references, 1, lines).
     """
     n_in, n_out, lines = data.H.shape
     live = data.measured.any(axis=(0, 2))
@@ -141,9 +133,7 @@ def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyRes
     if n_out > PRINCIPAL:
         # real combinations: complex ones would not be conjugate at conjugate poles
         flat = np.ascontiguousarray(H.transpose(1, 0, 2)).reshape(n_out, -1).view(float)
-        draws = np.random.default_rng(SEED).standard_normal((flat.shape[1], PRINCIPAL + 10))
-        basis = np.linalg.qr(flat @ draws)[0]
-        U = basis @ np.linalg.svd(basis.T @ flat, full_matrices=False)[0][:, :PRINCIPAL]
+        U = np.linalg.eigh(flat @ flat.T)[1][:, -PRINCIPAL:]
         H = (U.T @ flat).view(complex).reshape(PRINCIPAL, n_in, lines).transpose(1, 0, 2)
         names = tuple(f"principal {i + 1}" for i in range(PRINCIPAL))
     return replace(data, H=H, responses=names, variance=None), shared
@@ -158,10 +148,9 @@ def _reweighted(fit: Fit, kind: Weighting) -> Fit:
     if kind == "given":
         return fit
     used, raw = task.weight > 0, square(fit.residual)
-    if task.weight.shape == task.H.shape:
-        raw /= np.maximum(1 - modal_model.leverage(fit), LEAST_LEFT)
-    else:
-        raw = raw.mean(axis=1, keepdims=True) * task.count / fit.freedom
+    raw *= task.count / fit.freedom
+    if task.weight.shape != H.shape:
+        raw = raw.mean(axis=1, keepdims=True)
         H = np.sqrt(np.mean(square(H), axis=1, keepdims=True))
     raw = np.where(used, raw, np.nan)
     if kind == "scaled":
@@ -174,13 +163,18 @@ def _reweighted(fit: Fit, kind: Weighting) -> Fit:
 
 
 def _result(
-    data: FrequencyResponses, apart: Fit, omega: float, size: float, diagram: StabilisationDiagram
+    data: FrequencyResponses,
+    apart: Fit,
+    gain: Floats,
+    omega: float,
+    size: float,
+    diagram: StabilisationDiagram,
 ) -> Identification:
-    """Return the modes of the last fit, in which no two have one pole yet.
+    """Return the modes of the last fit, in which no two have one pole yet, and what each gains.
 
     Those outside the band stand for residual terms.
     """
-    fit = selection.paired(apart, np.ones(len(apart.model), bool))
+    fit = selection.paired(apart)
     task, misfit, f = fit.task, residuals(fit), data.frequency
     estimates = _with_split(mode_estimates(fit, misfit, omega), fit, apart.model.lam * omega)
     reasons = [_reason(mode, f) for mode in estimates]
@@ -190,7 +184,6 @@ def _result(
         for mode, why in zip(estimates, reasons, strict=True)
         if why
     ]
-    gain = selection.gains(apart)
     shares = support(diagram, fit.model.lam * omega, gain)
     evidence = _evidence(fit, f, gain / selection.needed(task), shares, estimates, kept)
     modes = [replace(estimates[k], evidence=evidence[k]) for k in kept]
@@ -200,7 +193,7 @@ def _result(
         fit.functions * size,
         size**2 / weight,
         misfit,
-        RESIDUALS.index(task.powers),
+        len(RESIDUALS) // 2,
     )
     return Identification(
         data.responses,
@@ -290,8 +283,8 @@ def _evidence(
 def _visibility(fit: Fit) -> Floats:
     """Return the greatest share of every mode, over all functions, at its own frequency."""
     task, model = fit.task, fit.model
-    resonances = replace(task, s=1j * np.abs(model.lam) + task.s[0].real, powers=())
-    E = primitives(resonances, model.lam, squares=False)
+    resonances = replace(task, s=1j * np.abs(model.lam) + task.s[0].real)
+    E = primitives(resonances, model.lam, squares=False)[: 2 * len(model)]
     a = (model.L.T[:, None, :] * model.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
     parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
     shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), np.finfo(float).tiny)
