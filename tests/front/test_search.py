@@ -334,8 +334,7 @@ def state_of(problem: Known, subproblems: list[Subproblem], thetas: list[list[fl
     state = State(problem, TOLERANCE)
     for theta in thetas:
         solution = begin(problem.evaluate(np.array(theta)))
-        state.archive.add(solution.theta, solution.J)
-        state.models.append(solution)
+        state.archive.add(solution.J, solution)
     state.add(subproblems)
     return state
 
@@ -595,7 +594,7 @@ def test_models_that_cannot_be_evaluated_do_not_compete() -> None:
     outcome = recorded(lambda of: begin(of.evaluate(np.array([1.0, 0.0]))), None, problem)
     assert state.tell(0, before[0], outcome) == 0.0
     assert all(x is place.incumbent for x, place in zip(before, state.places, strict=True))
-    assert len(state.models) == 1
+    assert len(state.archive.models) == 1
 
 
 @pytest.mark.parametrize(("status", "closed"), [("EXHAUSTED", False), ("CONVERGED", True)])

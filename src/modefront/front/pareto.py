@@ -113,7 +113,7 @@ class _Run:
         sizes = self._sizes()
         models = [point.solution for point in self.known.points] if self.known else []
         starts = [at(x.theta) for x in self.state.distinct(models)]
-        self.state.models += [x for x in self._evaluated(("known",), starts) if x.feasible]
+        self._evaluated(("known",), starts)
         anchors: list[Subproblem] = [
             Least(Lexicographic(i, sizes), x) for i, x in enumerate(self.problem.objectives)
         ]

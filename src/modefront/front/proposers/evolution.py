@@ -45,7 +45,8 @@ class Evolution:
     def _children(self, state: State) -> Floats:
         """Return the parameters of a generation, (children, p)."""
         lower, upper, span = state.problem.lower, state.problem.upper, state.span
-        known = np.array([*(x.incumbent.theta for x in state.places), *state.archive.theta])
+        models = [*(x.incumbent for x in state.places), *state.archive.models]
+        known = np.array([x.theta for x in models])
         out = []
         for _ in range(USUAL):
             base = state.places[int(self.rng.integers(len(state.places)))].incumbent.theta
