@@ -406,12 +406,13 @@ def test_the_chance_of_a_start_is_what_is_not_covered(
 ) -> None:
     known, place = ended(1.0, tries, min(gains, tries), counts)
     w = len(counts)
-    assert known.unseen == min(w * (w + 1) / (tries * (tries - 1)), 1.0)
+    N = sum(counts)
+    assert known.unseen == (min(w * (w + 1) / (N * (N - 1)), 1.0) if N > 1 else 1.0)
     assert known.hits(place, TOLERANCE) == counts[0]
     rare = counts[0] < SURE
     least = min(known.unseen, (known.gains + 1) / (tries + 2))
     assert known.chance(place, TOLERANCE) == (known.unseen if rare else least)
-    assert Minima(1, 0, known.ends, counts).unseen == 1.0, "nothing is known of what one start says"
+    assert Minima(9).unseen == 1.0, "nothing is known of what starts say that met no minimum"
 
 
 def test_starts_that_lead_to_the_same_value_are_counted_together() -> None:
@@ -429,8 +430,7 @@ def test_starts_that_end_at_the_limit_of_iterations_have_met_no_minimum() -> Non
     for J in (1.0, 2.0, 5.0):
         known.note(place, begin(Evaluation(np.zeros(1), np.array([J]))), TOLERANCE)
     assert known.counts == [1, 1]
-    assert known.unseen == pytest.approx(6 / 90)
-    assert Minima(3).unseen == pytest.approx(2 / 6), "where all of them do, there is one"
+    assert known.unseen == 1.0, "two starts that met two minima"
 
 
 def test_starts_begin_at_the_problem_s_own_and_cover_each_range_evenly() -> None:

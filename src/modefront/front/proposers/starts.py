@@ -1,7 +1,8 @@
 r"""Starts: subproblems are solved from random models, until unseen minima are unlikely.
 
-With w minima of different values after N random starts, the part of the box from which unseen
-minima would be reached is expected to be (Boender & Rinnooy Kan 1987, doi:10.1007/BF02591684)
+With w minima of different values, to which N random starts have led, the part of the box from
+which unseen ones would be reached is expected to be (Boender & Rinnooy Kan 1987,
+doi:10.1007/BF02591684)
 
 .. math:: \frac{w (w + 1)}{N (N - 1)} .
 
@@ -36,7 +37,7 @@ class Minima:
     Attributes
     ----------
     tries, gains : numbers of starts, and of those that gained
-    ends : minima of different values; what ended at the limit of iterations is none
+    ends : minima of different values; what ended at the limit of iterations has met none
     counts : number of starts that led to each
     """
 
@@ -64,7 +65,7 @@ class Minima:
     @property
     def unseen(self) -> float:
         """Part of the box from which unseen minima are reached."""
-        w, N = max(len(self.ends), 1), self.tries
+        w, N = len(self.ends), sum(self.counts)
         return min(w * (w + 1) / (N * (N - 1)), 1.0) if N > 1 else 1.0
 
     def chance(self, place: Place, tolerance: float) -> float:
