@@ -11,12 +11,10 @@ Printed are, in processor time:
 - ``evaluations`` of the work, and ``setup``: seconds of snapshots and certificates;
 - ``gain``: the time with full solutions over that with the basis, both without what the solvers
   take on top, which is the same: evaluations * full over setup + evaluations * reduced;
-- what the estimate of costs says of it (`modefront.models.reduced.options`), and ``loss``: the time
+- what operation counts say of it (`modefront.models.reduced.options`), and ``loss``: the time
   of the choice that it makes over that of the better one.
 
 With ``--both`` the work is done with full solutions too, and ``measured`` is the ratio of both.
-The constants of the model are those of the machine on which this was last run; what counts are
-their ratios.
 """
 
 from __future__ import annotations
@@ -34,7 +32,7 @@ from modefront.identifiability.options import Identifiability
 from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
-from modefront.models.reduced.options import estimate
+from modefront.models.reduced.options import share
 from modefront.work.task import counted
 
 BOUNDS = 0.4, 2.5
@@ -122,12 +120,9 @@ def line(name: str, both: bool) -> dict[str, float]:
     out["setup"] = costs.full_time + costs.corrected_time + costs.certificate_time
     with_basis = out["setup"] + costs.reduced_time
     out["gain"] = costs.reduced * out["full"] / with_basis
-    estimated = estimate(full, model.count)
-    out["estimated_full"], out["estimated_reduced"] = estimated.full, estimated.reduced
-    out["estimated_setup"] = estimated.setup
-    out["work"], out["estimated_gain"] = spent, estimated.gain
+    out["work"], out["estimated_gain"] = spent, 1 / share(full, model.count)
     without = spent - with_basis + costs.reduced * out["full"]
-    out["loss"] = (spent if estimated.gain > 1 else without) / min(spent, without)
+    out["loss"] = (spent if out["estimated_gain"] >= 1 else without) / min(spent, without)
     if both:
         other = problem_of(full, basis=False)
         out["measured"] = timed(lambda: work(other))[0] / spent

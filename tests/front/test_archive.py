@@ -30,15 +30,15 @@ def test_it_holds_the_nondominated_models_of_all(n: int) -> None:
     J = rng.integers(0, 12, size=(300, n)).astype(float)
     J[7, 0] = np.inf
     theta = rng.uniform(size=(300, 2))
-    archive = Archive(2, n)
+    archive = Archive(n)
     for chosen, value in zip(theta, J, strict=True):
-        archive.add(chosen, value)
+        archive.add(value, chosen)
     finite = J[np.isfinite(J).all(axis=1)]
     expected = {tuple(row) for row in finite.tolist() if not dominated(np.array(row), finite)}
     assert len(archive.J) == len(expected), "models with the same objectives are kept once"
     assert {tuple(row) for row in archive.J.tolist()} == expected
     known = {chosen.tobytes(): value for chosen, value in zip(theta, J, strict=True)}
-    for chosen, value in zip(archive.theta, archive.J, strict=True):
+    for chosen, value in zip(archive.models, archive.J, strict=True):
         assert (known[chosen.tobytes()] == value).all(), "each with its own parameters"
     for row in finite[:50]:
         beaten = (archive.J <= row).all(axis=1) & (archive.J < row).any(axis=1)

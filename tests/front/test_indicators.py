@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from modefront.front.dominance import nondominated, undominated
 from modefront.front.indicators import hypervolume, igd_plus, largest_gap
-from modefront.front.simplex import is_flat, lattice, neighbours, payoff, size
+from modefront.front.simplex import is_flat, lattice, payoff, size
 from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution, begin
 
@@ -68,12 +68,6 @@ def test_the_lattice_is_the_simplex(n: int, divisions: int) -> None:
     assert len({tuple(row) for row in counts.tolist()}) == len(counts) == size(n, divisions + 1)
     assert counts[0, 0] == divisions
     assert counts[-1, -1] == divisions
-    for place in map(tuple, counts.tolist()):
-        near = neighbours(place)
-        assert len(set(near)) == n * (n - 1)
-        for other in near:
-            assert place in neighbours(other)
-            assert np.abs(np.array(place) - other).sum() == 2
 
 
 def solution_at(*J: float) -> Solution:

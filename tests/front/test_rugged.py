@@ -141,7 +141,7 @@ def test_a_front_that_is_resumed_keeps_what_was_explored() -> None:
     assert len(J) == len(before) > 12
     utopia, scale = before.min(axis=0), np.ptp(before, axis=0)
     assert hypervolume((J - utopia) / scale) > 0.998 * hypervolume((before - utopia) / scale)
-    assert costs.eigenproblems < 0.15 * spent
+    assert costs.eigenproblems < 0.25 * spent
 
 
 # ---- four and more objectives ------------------------------------------------------------------

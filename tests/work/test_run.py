@@ -193,10 +193,10 @@ def tasks_on(problem: Known, seed: int) -> list[Task[Outcome]]:
 
 
 def archived(outcomes: Sequence[Outcome]) -> Archive:
-    archive = Archive(2, 2)
+    archive = Archive(2)
     for outcome in outcomes:
         for theta, J in zip(outcome.theta, outcome.J, strict=True):
-            archive.add(theta, J)
+            archive.add(J, theta)
     return archive
 
 
@@ -222,7 +222,7 @@ def test_the_archive_is_that_of_one_evaluation_after_another(seed: int) -> None:
         assert [x.result for x in outcomes] == straight.result
         assert sum(x.evaluations for x in outcomes) == straight.evaluations == 30
         archive = archived(outcomes)
-        assert archive.theta.tolist() == straight.theta.tolist(), "in the order of tasks"
+        assert np.array_equal(archive.models, straight.theta), "in the order of tasks"
         assert archive.J.tolist() == straight.J.tolist()
 
 
@@ -234,7 +234,7 @@ def test_kept_tasks_bring_the_models_that_they_had_evaluated(tmp_path: Path) -> 
             archives.append(archived(Run(Store(tmp_path)).run(tasks_on(problem, 0))))
     assert costs.eigenproblems == 0
     assert archives[0].J.tolist() == archives[1].J.tolist()
-    assert archives[0].theta.tolist() == archives[1].theta.tolist()
+    assert np.array_equal(archives[0].models, archives[1].models)
 
 
 # ---- progress ----------------------------------------------------------------------------------

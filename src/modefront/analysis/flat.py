@@ -102,9 +102,8 @@ def identifiable_part(
     if target is None:
         return Identifiable(flat, uncut, ends)
     state = State(problem, Search().tolerance, work)
-    for solution in [*ends, *known]:
-        state.archive.add(solution.theta, solution.J)
-    state.models += [*ends, *points]
+    for solution in [*ends, *known, *points]:
+        state.archive.add(solution.J, solution)
     counts = lattice(len(edges), divisions)
     subproblems = [Point(row / divisions, tuple(row.tolist()), target) for row in counts]
     state.add(subproblems)

@@ -27,6 +27,7 @@ import scipy.linalg
 
 from modefront._typing import Bools, Floats
 from modefront.analysis.tangents import ARRIVED, Context, TangentPoint, context_of
+from modefront.front.state import DISTINCT
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem, SpentError, Wrapped
 from modefront.optim.qp import HALVINGS
 from modefront.optim.scalarisation import Scalarisation
@@ -42,19 +43,12 @@ SHORT = 1 - NEAR
 """Share below which a step leads nowhere: of h or of what it is to gain, and the cosine of a turn
 (73 degrees)."""
 
-SAME_MINIMUM = 100 * ARRIVED
-"""Distance in u below which two isolated minima are the same: those that are nearly flat miss the
-tolerance of a step by as much."""
-
 FAR = 0.25
 """H: longest step of a walk over the ranges of the parameters."""
 
 GAIN = 1e-2
 """Share of its range by which a parameter has to go on, lest it counts as at its end: what is
 reported of a range has two digits."""
-
-WALK = int(4 / FAR)
-"""Steps of a walk at most: of the longest ones, four times across the range of a parameter."""
 
 SPEND = 10
 """Evaluations for the manifolds of a programme, over the number of models of one of them."""
@@ -161,7 +155,7 @@ def _is_on(manifold: Manifold, minimum: Evaluation, span: Floats, h: float) -> b
     """Return whether a minimum is next to a model of a manifold."""
     theta = np.array([model.theta for model in manifold.models])
     near = float(np.linalg.norm((theta - minimum.theta) / span, axis=1).min())
-    return near <= (h if manifold.dimension else SAME_MINIMUM)
+    return near <= (h if manifold.dimension else DISTINCT)
 
 
 def _position(
@@ -182,7 +176,7 @@ def _position(
 
 def _reaches(context: Context, point: TangentPoint, evaluation: Evaluation, h: float) -> bool:
     """Return whether a walk along the manifold from a point arrives next to a point on it."""
-    for _ in range(WALK):
+    while True:
         offset = context.offset(point.u, evaluation)
         distance = float(np.linalg.norm(offset))
         if distance <= h:
@@ -196,7 +190,6 @@ def _reaches(context: Context, point: TangentPoint, evaluation: Evaluation, h: f
         if landed is None or np.linalg.norm(context.offset(landed.u, evaluation)) >= distance:
             return False
         point = landed
-    return False
 
 
 def _follow(context: Context, first: TangentPoint, h: float, limit: int) -> Manifold:
@@ -305,7 +298,7 @@ def _span(context: Context, points: list[TangentPoint], limit: int) -> Extent:
 def _walk(context: Context, walk: list[TangentPoint], j: int, sign: int) -> None:
     """Add the points of a walk that increases sign * u_j as far as it can."""
     length = FAR
-    for _ in range(WALK):
+    while True:
         point = walk[-1]
         step = _best_step(point, j, sign, length)
         gain = float(sign * step[j])

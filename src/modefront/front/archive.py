@@ -10,38 +10,34 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.optim.problem import Evaluation, Problem, SpentError, Wrapped
+from modefront.optim.sqp import Solution, begin
 from modefront.work.codec import record
 from modefront.work.task import Task
 
 
 @dataclass
 class Archive:
-    """The models that no other evaluated model dominates: ``theta`` (., p) and ``J`` (., n).
+    """The models that no other evaluated model dominates, with their objectives ``J`` (., n).
 
-    They are in the order in which they were evaluated.
+    They are in the order in which they were evaluated; of equal ones the last is there.
     """
 
-    parameters: int
     objectives: int
-    thetas: list[Floats] = field(default_factory=list)
+    models: list[Any] = field(default_factory=list)
     J: Floats = field(init=False)
 
     def __post_init__(self) -> None:
         self.J = np.zeros((0, self.objectives))
 
-    @property
-    def theta(self) -> Floats:
-        """Parameters (models, p)."""
-        return np.array(self.thetas).reshape(-1, self.parameters)
-
-    def add(self, theta: Floats, J: Floats) -> None:
-        """Keep a model, unless another one is nowhere worse, and drop those that it dominates."""
-        if not np.isfinite(J).all() or not (self.J > J).any(axis=1).all():
+    def add(self, J: Floats, model: Any) -> None:
+        """Keep a model unless another one dominates it, and drop those that it dominates."""
+        dominating = (self.J <= J).all(axis=1) & (self.J < J).any(axis=1)
+        if not np.isfinite(J).all() or dominating.any():
             return
         kept = (self.J < J).any(axis=1)
         if not kept.all():
-            self.thetas = [self.thetas[k] for k in np.flatnonzero(kept)]
-        self.thetas.append(theta)
+            self.models = [self.models[k] for k in np.flatnonzero(kept)]
+        self.models.append(model)
         self.J = np.vstack([self.J[kept], J])
 
 
@@ -64,6 +60,16 @@ class Outcome:
     evaluations: int
     spent: bool = False
 
+    @property
+    def models(self) -> list[Solution]:
+        """The models, with the result if it is one of them."""
+        result = self.result if isinstance(self.result, Solution) else None
+        pairs = zip(self.theta, self.J, strict=True)
+        return [
+            result if result and np.array_equal(result.theta, x) else begin(Evaluation(x, J))
+            for x, J in pairs
+        ]
+
 
 def recorded(
     function: Callable[..., Any],
@@ -73,7 +79,7 @@ def recorded(
     **options: Any,
 ) -> Outcome:
     """Return the result of a function of a problem, with the models that it evaluates."""
-    archive, count = Archive(problem.lower.size, len(problem.objectives)), 0
+    archive, count = Archive(len(problem.objectives)), 0
 
     def evaluation(of: Problem, theta: Floats, derivatives: bool, second: bool) -> Evaluation:
         nonlocal count
@@ -81,14 +87,16 @@ def recorded(
             raise SpentError
         count += 1
         found = of.evaluate(theta, derivatives=derivatives, second=second)
-        archive.add(found.theta, found.J)
+        archive.add(found.J, found.theta)
         return found
 
+    result, spent = None, False
     try:
         result = function(Wrapped(problem, evaluation), *arguments, **options)
     except SpentError:
-        return Outcome(None, archive.theta, archive.J, count, spent=True)
-    return Outcome(result, archive.theta, archive.J, count)
+        spent = True
+    thetas = np.array(archive.models).reshape(-1, problem.lower.size)
+    return Outcome(result, thetas, archive.J, count, spent)
 
 
 def limited(task: Task[Any], most: int | None) -> Task[Outcome]:

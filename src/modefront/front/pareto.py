@@ -22,14 +22,13 @@ from modefront.front.proposers.base import Proposer, at, evaluated
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Starts
-from modefront.front.search import Loop, Search
+from modefront.front.search import EDGES, Loop, Search
 from modefront.front.simplex import (
     Payoff,
     default_points,
     is_flat,
     lattice,
     nearest,
-    neighbours,
     payoff,
 )
 from modefront.front.state import DISTINCT, Place, State, distinct_points
@@ -106,7 +105,7 @@ class _Run:
         self.starts = Starts(rng, again if self.known else None)
         proposers: list[Proposer] = [Polish(), self.starts]
         if self.known is None:
-            proposers.append(Evolution(others, self.starts))
+            proposers.append(Evolution(others))
         self.loop = Loop(self.state, proposers, self.search)
 
     def front(self) -> Front:
@@ -114,14 +113,14 @@ class _Run:
         sizes = self._sizes()
         models = [point.solution for point in self.known.points] if self.known else []
         starts = [at(x.theta) for x in self.state.distinct(models)]
-        self.state.models += [x for x in self._evaluated(("known",), starts) if x.feasible]
+        self._evaluated(("known",), starts)
         anchors: list[Subproblem] = [
             Least(Lexicographic(i, sizes), x) for i, x in enumerate(self.problem.objectives)
         ]
         for kind, name, w in self.weighted:
             anchors.append(Weights(w, ("weights", kind.value, name), EXACT * float(w @ sizes)))
         self.state.add(anchors)
-        self.loop.run("edges")
+        self.loop.run("edges", EDGES)
         for place in self.places:
             if not place.incumbent.feasible:
                 raise UnfinishedError(f"no minimum of {place.subproblem.key} was found")
@@ -218,7 +217,7 @@ class _Run:
             if METHODS[self.options.method].programme is None:
                 break  # its points are the models of a population
             self._drop_points()
-            more = (self._beyond(), self._apart(target, len(counts)), self._halfway(target))
+            more = (self._apart(target, len(counts), 1 / divisions), self._halfway(target))
             for new_points in chain([counts], *more):
                 self._add_points(target, new_points)
                 self.loop.run("front")
@@ -263,44 +262,28 @@ class _Run:
         pairs = ((x, x.subproblem) for x in self.places)
         return [(x, point) for x, point in pairs if isinstance(point, LatticePoint)]
 
-    def _beyond(self) -> Iterator[list[tuple[int, ...]]]:
-        """Yield points beside such as lie on their normals, while there are any beyond the simplex.
-
-        The simplex between the edges of more than two objectives does not cover the whole front. At
-        most as many points are added as there are within it.
-        """
-        most = 2 * len(self._lattice())
-        while self.n > 2:
-            here = self._lattice()
-            at_points = [point.place for x, point in here if point.met(x.incumbent)]
-            beyond = {place for point in at_points for place in neighbours(point)}
-            added = sorted(beyond - {point.place for _, point in here})[: most - len(here)]
-            if not added:
-                lost = {p.key for _, p in here if min(p.place) < 0 and p.place not in at_points}
-                self.state.keep([x for x in self.places if x.subproblem.key not in lost])
-                break
-            yield added
-
-    def _apart(self, target: Payoff, asked: int) -> Iterator[list[tuple[int, ...]]]:
+    def _apart(self, target: Payoff, asked: int, step: float) -> Iterator[list[tuple[int, ...]]]:
         """Yield points at models that all points are far from, until as many as asked are distinct.
 
-        Far is a model that each point is behind in some objective, over the ranges (the additive
+        The simplex between the edges of more than two objectives does not cover the whole front:
+        where a model is farther than a step of the lattice, up to twice as many are sought. It is
+        as far from a point as that is behind it in some objective, over the ranges (the additive
         epsilon indicator; Zitzler et al. 2003, doi:10.1109/TEVC.2003.810758).
         """
         known = 0
-        while self.n > 2 and self._lattice():
+        while self.n > 2:
             solutions = [x.incumbent for x, _ in self._lattice()]
             points = np.array([x.J for x in distinct_points(solutions, target.scale)])
-            if not known < len(points) < asked:
+            if len(points) <= known:
                 break
-            known = len(points)
+            known = count = len(points)
             J = self.state.archive.J / target.scale
             behind = (points / target.scale - J[:, None]).max(axis=2).min(axis=1)
             added: set[tuple[int, ...]] = set()
-            while len(points) + len(added) < asked and behind.max() > LOOSE:
+            while count < 2 * asked and behind.max() > (LOOSE if count < asked else step):
                 k = int(behind.argmax())
                 added.add(nearest(target.place(J[k] * target.scale), MOST))
-                behind = np.minimum(behind, (J[k] - J).max(axis=1))
+                behind, count = np.minimum(behind, (J[k] - J).max(axis=1)), count + 1
             yield sorted(added)
 
     def _halfway(self, target: Payoff) -> Iterator[list[tuple[int, ...]]]:
@@ -344,7 +327,7 @@ class _Run:
                 continue
             rare = known.hits(place, self.state.tolerance) < SURE
             doubtful = rare and known.unseen >= self.loop.search.doubt
-            out.append(Edge(place.incumbent, minima, known.rate.tries, len(known.ends), doubtful))
+            out.append(Edge(place.incumbent, minima, known.tries, len(known.ends), doubtful))
         return out
 
     def _points(

@@ -1,10 +1,9 @@
 """The search: proposers are asked, the best offers are solved, and all are told what was found.
 
-An offer is worth making as long as the chance that some subproblem gains more than the tolerance,
-or for the first half of the budget, the part of the box that may hold something better, is above
-the doubt that is allowed. Of these, the ones with the greatest chance per evaluation are solved,
-some at a time. The search ends when no offer is worth making, or at its budget. Nothing depends on
-who solves the offers, and in which order they are done.
+An offer is worth making as long as the chance that some subproblem gains more than the tolerance
+is above the doubt that is allowed. Of these, the ones with the greatest chance are solved, some at
+a time. The search ends when no offer is worth making, or at its budget. Nothing depends on who
+solves the offers, and in which order they are done.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from modefront.front.proposers.base import USUAL, Offer, Proposer
+from modefront.front.proposers.base import Offer, Proposer
 from modefront.front.state import State
 from modefront.options import Checked, number, whole
 from modefront.work.task import Key, Task
@@ -21,15 +20,11 @@ from modefront.work.task import Key, Task
 BATCH = 6
 """Offers that are solved at the same time."""
 
+EDGES, POINTS = 0.5, 0.9
+"""Shares of the budget up to which edges and weighted models, and then points between edges, are
+searched for; the rest is for what follows from these: optimal weights and the ends of branches."""
+
 SHARE = number("a share above 0 and below 1", above=0, below=1)
-
-CONFIRMING = 0.5
-"""Share of the budget up to which offers are made for the sake of what is unseen alone; the rest is
-for the points between the edges."""
-
-SEARCHING = 0.9
-"""Share of the budget that is searched with; the rest is for what follows from the front: optimal
-weights and the ends of its branches."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +55,6 @@ class Loop:
     proposers : in the order in which they are asked
     search : when it ends
     turn : number of batches that were solved
-    costs : searches and evaluations of each proposer
     open : subproblems for which offers were left at the budget
     """
 
@@ -68,14 +62,13 @@ class Loop:
     proposers: Sequence[Proposer]
     search: Search
     turn: int = 0
-    costs: dict[str, list[int]] = field(default_factory=dict)
     open: set[Key] = field(default_factory=set)
 
-    def run(self, stage: str) -> None:
-        """Search until nothing is worth it, or until the budget is spent."""
-        budget = int(SEARCHING * self.search.evaluations)
+    def run(self, stage: str, share: float = POINTS) -> None:
+        """Search until nothing is worth it, or until a share of the budget is spent."""
+        most = int(share * self.search.evaluations)
         while offers := self._offers():
-            left = budget - self.state.evaluations
+            left = most - self.state.evaluations
             if left <= 0:
                 places = self.state.places
                 self.open |= {places[offer.place].subproblem.key for _, offer in offers}
@@ -92,20 +85,9 @@ class Loop:
                 gain = self.state.tell(offer.place, offer.start, outcome)
                 if outcome.result is not None:
                     proposer.learn(self.state, offer, outcome, gain)
-                spent = self.costs.setdefault(proposer.name, [0, 0])
-                spent[0] += 1
-                spent[1] += outcome.evaluations
 
     def _offers(self) -> list[tuple[Proposer, Offer]]:
-        """Return the offers worth making, the greatest chance per evaluation first."""
-        offers: list[tuple[float, Proposer, Offer]] = []
-        confirming = self.state.evaluations < CONFIRMING * self.search.evaluations
-        for proposer in self.proposers:
-            tries, spent = self.costs.get(proposer.name, (0, 0))
-            cost = (spent + USUAL) / (tries + 1)  # that a search is expected to take
-            for offer in proposer.offers(self.state, BATCH):
-                doubt = offer.unseen if confirming else 0.0
-                if max(offer.chance, doubt) >= self.search.doubt:
-                    offers.append((offer.chance / cost, proposer, offer))
-        offers.sort(key=lambda each: -each[0])
-        return [(proposer, offer) for _, proposer, offer in offers]
+        """Return the offers worth making, the greatest chance first."""
+        asked = ((x, offer) for x in self.proposers for offer in x.offers(self.state, BATCH))
+        offers = [(x, offer) for x, offer in asked if offer.chance >= self.search.doubt]
+        return sorted(offers, key=lambda each: -each[1].chance)

@@ -38,17 +38,6 @@ def lattice(objectives: int, divisions: int) -> Ints:
     return np.asarray(np.diff(ends, axis=1)[::-1] - 1)
 
 
-def neighbours(place: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """Return the points of the lattice one step from one, within the simplex or beyond it."""
-    n = len(place)
-    return [
-        tuple(x + (k == i) - (k == j) for k, x in enumerate(place))
-        for i in range(n)
-        for j in range(n)
-        if i != j
-    ]
-
-
 def nearest(beta: Floats, divisions: int) -> tuple[int, ...]:
     """Return a point of the lattice next to coordinates (n,) of the plane.
 

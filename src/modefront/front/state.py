@@ -12,8 +12,8 @@ from modefront._typing import Floats
 from modefront.front.archive import Archive, Outcome, limited
 from modefront.front.dominance import SAME
 from modefront.front.subproblems import Order, Subproblem, competes, together
-from modefront.optim.problem import Evaluation, Problem
-from modefront.optim.sqp import Solution, Status, begin
+from modefront.optim.problem import Problem
+from modefront.optim.sqp import Solution, Status
 from modefront.work.task import IMMEDIATE, Executor, Task
 
 DISTINCT = 1e-3
@@ -48,22 +48,20 @@ class State:
     tolerance : gain of a subproblem that counts
     work : carries out tasks
     places : subproblems with their incumbents, changed by `add` and `keep`
-    models : solutions that programmes led to, each once, in the order in which they were found
     evaluations : so far
-    archive : nondominated models of all evaluations
+    archive : nondominated models of all evaluations, as the solutions that they are
     """
 
     problem: Problem
     tolerance: float
     work: Executor = IMMEDIATE
     places: list[Place] = field(default_factory=list)
-    models: list[Solution] = field(default_factory=list)
     evaluations: int = 0
     archive: Archive = field(init=False)
     _orders: Order | None = None
 
     def __post_init__(self) -> None:
-        self.archive = Archive(self.problem.lower.size, len(self.problem.objectives))
+        self.archive = Archive(len(self.problem.objectives))
 
     @property
     def span(self) -> Floats:
@@ -87,14 +85,8 @@ class State:
 
     def best(self, subproblem: Subproblem) -> Solution:
         """Return the best of the known models in a subproblem."""
-        order = subproblem.order
-        k = int(order.value(self.archive.J).argmin())
-        best = begin(Evaluation(self.archive.thetas[k], self.archive.J[k]))
-        values = order.value(np.array([x.J for x in self.models])) if self.models else ()
-        near = int(np.argmin(values)) if self.models else -1
-        # a model whose derivatives are known saves an evaluation
-        close = near >= 0 and subproblem.gain(best.J, self.models[near]) <= self.tolerance
-        return self.models[near] if close else best
+        best: Solution = self.archive.models[int(subproblem.order.value(self.archive.J).argmin())]
+        return best
 
     def run(self, tasks: Sequence[Task[Any]], most: int | None = None) -> list[Outcome]:
         """Return what tasks on the problem find in ``most`` evaluations, of which each has a share.
@@ -110,8 +102,8 @@ class State:
     def note(self, outcome: Outcome) -> None:
         """Count the evaluations of a task, and archive its models."""
         self.evaluations += outcome.evaluations
-        for theta, J in zip(outcome.theta, outcome.J, strict=True):
-            self.archive.add(theta, J)
+        for model in outcome.models:
+            self.archive.add(model.J, model)
 
     def tell(self, k: int, start: Solution, outcome: Outcome) -> float:
         """Let what a search led to compete; return the greatest gain of a subproblem.
@@ -133,16 +125,9 @@ class State:
             place.closed = place.closed or (is_incumbent and ended)
         if len(outcome.J):
             values = self.orders.value(outcome.J[:, None])
-            best = values.argmin(axis=0)
+            best, models = values.argmin(axis=0), outcome.models
             for j in self.behind(values.min(axis=0)):
-                theta, J = outcome.theta[best[j]], outcome.J[best[j]]
-                model = begin(Evaluation(theta.copy(), J.copy()))
-                if solution and solution.feasible and np.array_equal(solution.theta, theta):
-                    model = solution
-                gain = max(gain, self._challenge(self.places[j], model))
-        is_known = not (solution and solution.feasible and solution.evaluation.derivatives)
-        if solution and not is_known and self.is_new(solution, self.models):
-            self.models.append(solution)
+                gain = max(gain, self._challenge(self.places[j], models[best[j]]))
         return gain
 
     def _replaces(self, solution: Solution, gain: float, place: Place, is_incumbent: bool) -> bool:

@@ -23,7 +23,7 @@ from modefront.front.subproblems import Least
 from modefront.identifiability.combinations import LEAST
 from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.options import estimate as reduced_cost
+from modefront.models.reduced.options import share
 from modefront.optim.lexicographic import Lexicographic
 from modefront.optim.sqp import Solution, begin
 from modefront.predictions import Passage, Prediction
@@ -184,7 +184,7 @@ def _search(study: Study) -> tuple[float, float] | None:
     if found:
         seconds, average = (float(np.mean(x)) for x in zip(*found, strict=True))
     if is_reduced(study.problem.model) and isinstance(problem.model, MatrixModel):
-        seconds *= reduced_cost(problem.model, len(problem.data.modes)).share
+        seconds *= share(problem.model, len(problem.data.modes))
     return seconds, average
 
 

@@ -16,8 +16,7 @@ from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, begin
 
 USUAL = 10
-"""Evaluations that a search is expected to take before any is known, models of a generation, and
-random starts that cover the box together."""
+"""Models of a generation, and random starts that cover the box together."""
 
 
 @dataclass(frozen=True)
@@ -30,8 +29,6 @@ class Offer:
     start : model from which it is solved
     chance : probability that some subproblem gains
     function : what is done with the problem and ``arguments``
-    unseen : part of the box that may lead to something better; the offer is worth making as long as
-        this or the chance is above the doubt that is allowed
     """
 
     place: int
@@ -39,52 +36,16 @@ class Offer:
     chance: float
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
-    unseen: float = 0.0
 
 
 class Proposer(Protocol):
     """Proposes searches."""
-
-    @property
-    def name(self) -> str:
-        """Name, by which tasks and costs are told apart."""
 
     def offers(self, state: State, most: int, /) -> Iterator[Offer]:
         """Yield the searches that are most likely to gain, best first, ``most`` or fewer."""
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float, /) -> None:
         """Take note of what an offer of its own has led to."""
-
-
-@dataclass
-class Rate:
-    """How often searches have gained: the posterior mean of a uniform prior.
-
-    Attributes
-    ----------
-    tries, gains : numbers of searches, and of those that gained
-    idle : searches since the last gain
-    """
-
-    tries: int = 0
-    gains: int = 0
-    idle: int = 0
-
-    def note(self, gained: bool) -> None:
-        """Count a search."""
-        self.tries += 1
-        self.gains += gained
-        self.idle = 0 if gained else self.idle + 1
-
-    @property
-    def chance(self) -> float:
-        """Probability that the next search gains."""
-        return (self.gains + 1) / (self.tries + 2)
-
-    @property
-    def recent(self) -> float:
-        """Likewise, of the searches since the last gain: it falls as a front is completed."""
-        return 1 / (self.idle + 2)
 
 
 def solve_from(k: int, place: Place, start: Solution, chance: float) -> Offer:

@@ -7,14 +7,13 @@ Each child is the incumbent of a subproblem, moved by the difference of two othe
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.archive import Outcome
-from modefront.front.proposers.base import USUAL, Offer, Rate, evaluate_all
-from modefront.front.proposers.starts import Starts
+from modefront.front.proposers.base import USUAL, Offer, evaluate_all
 from modefront.front.state import State
 
 INDEX = 20.0
@@ -23,34 +22,31 @@ INDEX = 20.0
 
 @dataclass
 class Evolution:
-    """Proposes generations of children, more where starts have left minima unseen.
+    """Proposes generations of children, until enough of them have gained nothing.
 
     Attributes
     ----------
     rng : random numbers
-    starts : tell how much of the box has not been covered
-    rate : of the generations so far
+    idle : generations since the last gain
     """
 
     rng: np.random.Generator
-    starts: Starts
-    name: str = "evolution"
-    rate: Rate = field(default_factory=Rate)
+    idle: int = 0
 
     def offers(self, state: State, _: int) -> Iterator[Offer]:
         """Yield one generation."""
         if len(state.places) > 1 and all(place.closed for place in state.places):
-            chance = max(self.rate.recent, self.starts.unseen * self.rate.chance)
-            yield evaluate_all(self._children(state), chance)
+            yield evaluate_all(self._children(state), 1 / (self.idle + 2))
 
     def learn(self, state: State, _: Offer, __: Outcome, gain: float) -> None:
         """Count the generation."""
-        self.rate.note(gain > state.tolerance)
+        self.idle = 0 if gain > state.tolerance else self.idle + 1
 
     def _children(self, state: State) -> Floats:
         """Return the parameters of a generation, (children, p)."""
         lower, upper, span = state.problem.lower, state.problem.upper, state.span
-        known = np.array([*(x.incumbent.theta for x in state.places), *state.archive.theta])
+        models = [*(x.incumbent for x in state.places), *state.archive.models]
+        known = np.array([x.theta for x in models])
         out = []
         for _ in range(USUAL):
             base = state.places[int(self.rng.integers(len(state.places)))].incumbent.theta

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from modefront.front.archive import Outcome
-from modefront.front.proposers.base import Offer, Rate, solve_from
+from modefront.front.proposers.base import Offer, solve_from
 from modefront.front.state import State
 from modefront.front.subproblems import Point
 from modefront.work.task import Key
@@ -26,11 +26,10 @@ class Polish:
 
     Attributes
     ----------
-    rate : of the searches from other points
+    idle : searches from other points since the last gain
     """
 
-    name: str = "polish"
-    rate: Rate = field(default_factory=Rate)
+    idle: int = 0
     _tried: set[tuple[Key, bytes]] = field(default_factory=set)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
@@ -45,7 +44,7 @@ class Polish:
         J = np.array([x.J for x in met]).reshape(-1, len(state.problem.objectives))
         for k, x, of in pairs:
             if isinstance(of, Point) and state.places[k].closed and not of.met(x):
-                chance, count = (1.0, J.shape[1]) if of.equations else (self.rate.recent, 1)
+                chance, count = (1.0, J.shape[1]) if of.equations else (1 / (self.idle + 2), 1)
                 for m in of.order.spread(J).argsort(kind="stable")[:count].tolist():
                     if (of.key, met[m].theta.tobytes()) not in self._tried:
                         yield solve_from(k, state.places[k], met[m], chance)
@@ -54,4 +53,4 @@ class Polish:
         """Remember from which model a place was solved, and count what others have led to."""
         self._tried.add((state.places[offer.place].subproblem.key, offer.start.theta.tobytes()))
         if offer.chance < 1:
-            self.rate.note(gain > state.tolerance)
+            self.idle = 0 if gain > state.tolerance else self.idle + 1

@@ -1,25 +1,26 @@
 r"""Starts: subproblems are solved from random models, until unseen minima are unlikely.
 
-With w minima of different values after N random starts, the part of the box from which unseen
-minima would be reached is expected to be (Boender & Rinnooy Kan 1987, doi:10.1007/BF02591684)
+With w minima of different values, to which N random starts have led, the part of the box from
+which unseen ones would be reached is expected to be (Boender & Rinnooy Kan 1987,
+doi:10.1007/BF02591684)
 
 .. math:: \frac{w (w + 1)}{N (N - 1)} .
 
-That bounds the chance that the next start gains, and so does the rate at which starts have gained.
-As long as hardly any start has led to the best model, starts go on until that part is small. Points
-of the lattice have none: they start from what others have found.
+That bounds the chance that the next start gains, and where enough starts have led to the best
+model, so does the rate at which they have gained. Points of the lattice have none: they start from
+what others have found.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.archive import Outcome
-from modefront.front.proposers.base import USUAL, Offer, Rate, at, solve_from
+from modefront.front.proposers.base import USUAL, Offer, at, solve_from
 from modefront.front.state import Place, State
 from modefront.front.subproblems import is_along
 from modefront.optim.sqp import Solution, Status
@@ -35,21 +36,19 @@ class Minima:
 
     Attributes
     ----------
-    rate : of the starts
-    ends : minima of different values
+    tries, gains : numbers of starts, and of those that gained
+    ends : minima of different values; what ended at the limit of iterations has met none
     counts : number of starts that led to each
-    cut : whether some start ended at the limit of iterations
     """
 
-    rate: Rate = field(default_factory=Rate)
+    tries: int = 0
+    gains: int = 0
     ends: list[Solution] = field(default_factory=list)
     counts: list[int] = field(default_factory=list)
-    cut: bool = False
 
     def note(self, place: Place, solution: Solution, tolerance: float) -> None:
         """Count the end of a start."""
-        if solution.status is Status.EXHAUSTED:
-            self.cut = True
+        if not solution.feasible or solution.status is Status.EXHAUSTED:
             return
         for k, end in enumerate(self.ends):
             if _equal(place, solution, end, tolerance):
@@ -66,16 +65,14 @@ class Minima:
     @property
     def unseen(self) -> float:
         """Part of the box from which unseen minima are reached."""
-        return unseen(self.rate.tries, len(self.ends) + self.cut)
+        w, N = len(self.ends), sum(self.counts)
+        return min(w * (w + 1) / (N * (N - 1)), 1.0) if N > 1 else 1.0
 
-    @property
-    def chance(self) -> float:
-        """Chance that a start gains."""
-        return min(self.unseen, self.rate.chance)
-
-    def doubt(self, place: Place, tolerance: float) -> float:
-        """Return the part of the box from which a better minimum than the best may be reached."""
-        return self.unseen if self.hits(place, tolerance) < SURE else self.chance
+    def chance(self, place: Place, tolerance: float) -> float:
+        """Return the chance that a start gains at most; see the module."""
+        is_sure = self.hits(place, tolerance) >= SURE
+        rate = (self.gains + 1) / (self.tries + 2)  # the posterior mean of a uniform prior
+        return min(self.unseen, rate) if is_sure else self.unseen
 
 
 def _equal(place: Place, x: Solution, y: Solution, tolerance: float) -> bool:
@@ -98,41 +95,35 @@ class Starts:
 
     rng: np.random.Generator
     again: Mapping[Key, Sequence[Solution]] | None = None
-    name: str = "starts"
     minima: dict[Key, Minima] = field(default_factory=dict)
     _queue: list[Floats] = field(default_factory=list)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
-        """Yield random starts of each of them."""
+        """Yield random starts of each of them, until points between the edges are searched."""
+        if any(is_along(x.subproblem) for x in state.places):
+            return
         for k, place in enumerate(state.places):
-            if is_along(place.subproblem):
-                continue
             known = self.of(place)
-            doubt, tries = known.doubt(place, state.tolerance), known.rate.tries
+            chance, tries = known.chance(place, state.tolerance), known.tries
             if self.again is not None:
                 left = self.again.get(place.subproblem.key, ())[tries : tries + most]
                 yield from (solve_from(k, place, at(x.theta), 1.0) for x in left)
                 continue
             for number in range(tries, tries + most):
                 theta = state.problem.start if number == 0 else self._next(state)
-                offer = solve_from(k, place, at(theta), known.chance)
-                yield replace(offer, unseen=doubt)
+                yield solve_from(k, place, at(theta), chance)
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
         """Count the start, and keep its minimum if it is new."""
-        place, solution = state.places[offer.place], outcome.result
-        self.of(place).rate.note(gain > state.tolerance)
-        if solution.feasible:
-            self.of(place).note(place, solution, state.tolerance)
+        place = state.places[offer.place]
+        known = self.of(place)
+        known.tries += 1
+        known.gains += gain > state.tolerance
+        known.note(place, outcome.result, state.tolerance)
 
     def of(self, place: Place) -> Minima:
         """Return the minima of a subproblem."""
         return self.minima.setdefault(place.subproblem.key, Minima())
-
-    @property
-    def unseen(self) -> float:
-        """Greatest part of the box from which unseen minima of a subproblem are reached."""
-        return max((x.unseen for x in self.minima.values()), default=1.0)
 
     def _next(self, state: State) -> Floats:
         """Return random parameters, spread evenly over each range block by block."""
@@ -142,12 +133,3 @@ class Starts:
             u = (cells + self.rng.uniform(size=cells.shape)) / USUAL
             self._queue = list(state.problem.lower + state.span * u)
         return self._queue.pop()
-
-
-def unseen(N: int, w: int) -> float:
-    """Return the part of the box from which unseen minima are reached, at w minima after N starts.
-
-    >>> unseen(10, 2) < 0.07 < unseen(10, 3)
-    True
-    """
-    return min(w * (w + 1) / (N * (N - 1)), 1.0) if N > 1 else 1.0

@@ -1,8 +1,6 @@
-"""Whether a model is solved in a reduced basis, and how exactly.
+"""Whether a model is solved in a reduced basis, and how exactly (``docs/reduced.md``).
 
-The time of a study is estimated from operation counts alone (``docs/reduced.md``, whose symbols are
-used), so that its digits do not depend on a clock. The constants are seconds on one core of the
-machine on which ``benchmarks/choice.py`` has calibrated them; only their ratios count.
+Operation counts decide, so that digits do not depend on a clock.
 """
 
 from __future__ import annotations
@@ -14,7 +12,6 @@ from typing import Annotated, Literal
 import numpy as np
 
 from modefront.data.modal import ModalData
-from modefront.linalg.affine import SparseAffine
 from modefront.models.base import Model, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter
@@ -36,69 +33,22 @@ REDUCTION = Requirement(
 
 GIB = number("GiB for a reduced basis, above 0", above=0)
 
-EVALUATIONS = 300.0, 130.0
-"""E without parameters, and for each of them."""
-
-SOLVER = 1e-3
-"""o."""
-
-DENSE = 3e-4, 4e-10, 6e-10
-"""Of a dense solution: at least, times N^3, and times N^2 for each derivative of a mode."""
-
-SPARSE = 1.5e-2, 1e-5, 4.7e-7
-"""Of a sparse one: at least, times N, and times the entries of a factor."""
-
-SETUP = 0.03, 4e-3, 2.5e-8
-"""Of S: at least, times the n columns, and times n and the entries of a factor."""
+DENSE = 3e4
+"""Cube of the unknowns of a dense eigenproblem over those of a sparse one that takes as long: times
+that ``benchmarks/choice.py`` measures, from 1000 to 100,000 degrees of freedom."""
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """Estimated times.
+def columns(model: MatrixModel, count: int) -> float:
+    """Return how many columns a basis is expected to have that has ``count`` modes.
 
-    Attributes
-    ----------
-    full : F
-    reduced : R
-    setup : S
-    evaluations : E
+    For each mode and parameter: its derivative and the modes at both bounds, if not yet spanned.
     """
-
-    full: float
-    reduced: float
-    setup: float
-    evaluations: float
-
-    @property
-    def share(self) -> float:
-        """The time of an evaluation in a basis, over that of a full one."""
-        return (self.reduced + SOLVER) / (self.full + SOLVER)
-
-    @property
-    def gain(self) -> float:
-        """The time of a study with full solutions, over that in a basis."""
-        alone = self.evaluations * (self.full + SOLVER)
-        return alone / (self.setup + self.evaluations * (self.reduced + SOLVER))
+    return count * (1 + 1.5 * len(model.parameters))
 
 
-def estimate(model: MatrixModel, count: int) -> Estimate:
-    """Return the estimated times of a study that needs ``count`` modes."""
-    N, p = model.size, len(model.parameters)
-    # For each mode and parameter: its derivative and the modes at both bounds, if not yet spanned.
-    columns = min(N, count * (1 + 1.5 * p))
-    if isinstance(model.stiffness, SparseAffine):
-        # Factors of plates; those of solids fill in more, which a basis saves.
-        entries = 0.2 * (model.stiffness.indices.size + N) / 2 * np.log2(N)
-        full = SPARSE[0] + SPARSE[1] * N + SPARSE[2] * entries
-    else:
-        entries, full = N**2 / 2, _dense(N, count * p)
-    setup = SETUP[0] + SETUP[1] * columns + SETUP[2] * columns * entries
-    evaluations = EVALUATIONS[0] + EVALUATIONS[1] * p
-    return Estimate(full, _dense(columns, count * p), setup, evaluations)
-
-
-def _dense(size: float, derivatives: int) -> float:
-    return DENSE[0] + DENSE[1] * size**3 + DENSE[2] * size**2 * derivatives
+def share(model: MatrixModel, count: int) -> float:
+    """Return the expected time of a solution in a basis over that of a sparse one in full."""
+    return columns(model, count) ** 3 / (DENSE * model.size)
 
 
 @dataclass(frozen=True)
@@ -127,7 +77,8 @@ class Reduction(Checked):
         if self.reduction == "off" or not isinstance(model, MatrixModel) or model.size < SMALLEST:
             return model
         count = modes_needed(pairing, data, model.size)
-        if self.reduction == "auto" and estimate(model, count).gain < 1:
+        pays = share(model, count) <= 1 and columns(model, count) <= model.size / 2
+        if self.reduction == "auto" and not pays:
             return model
         return ReducedModel(
             model.sparse(),
