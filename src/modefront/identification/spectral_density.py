@@ -180,7 +180,7 @@ class Density:
         return replace(self, coherent=R, middle=float(ends.mean()), precision=precision)
 
     def without(self, mode: int, band: Band) -> Density:
-        """Return the model without one of its modes, whose power becomes background, and R."""
+        """Return the model without one of its modes, whose power becomes background."""
         kept, phi = np.delete(np.arange(len(self.omega)), mode), self.phi[:, mode]
         h = self.response(band.omega, band.order)[mode]
         power = self.force[mode, mode].real * np.average(np.abs(h) ** 2, weights=band.count)
@@ -188,6 +188,7 @@ class Density:
         scale = np.sqrt(np.maximum(S.diagonal().real, TINY))
         unit = S / np.outer(scale, scale) + 1e-9 * np.eye(len(S))  # S may be singular
         root = la.cholesky(unit, lower=True) if len(S) else unit
+        terms = np.arange(self.coherent.shape[1]) % max(self.free, 1) != mode
         return replace(
             self,
             omega=self.omega[kept],
@@ -196,8 +197,8 @@ class Density:
             root=scale[:, None] * root,
             background=self.background + power * np.outer(phi, phi),
             free=self.free - (mode < self.free),
-            coherent=self.coherent[:, :0],
-            precision=self.precision[:0],
+            coherent=self.coherent[:, terms],
+            precision=self.precision[terms],
         )
 
 

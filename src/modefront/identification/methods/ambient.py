@@ -289,6 +289,8 @@ def _of_group(
     lines, band, fit, held = _without_sines(setup.lines, limits, start, [x.held for x in modes])
     if lines is not setup.lines and not last:
         return lines, []  # poles are looked for again
+    if last:
+        fit = spectral_density.maximise(band, fit.model.with_coherent(band))
     while fit.model.free:
         models = [fit.model.without(r, band) for r in range(fit.model.free)]
         without = [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
@@ -317,8 +319,6 @@ def _of_group(
         fit = spectral_density.maximise(band, model, TRIAL_STEPS)
     else:
         return lines, []
-    if last:
-        fit = spectral_density.maximise(band, fit.model.with_coherent(band))
     model, visible = fit.model, _shares(band, fit.model)
     return lines, [
         Local(
