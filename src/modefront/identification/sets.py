@@ -34,7 +34,9 @@ MOST_STEPS = 50
 """Steps of Gauss and Newton, at most."""
 
 TOLERANCE = 1e-10
-"""Change of a shape of unit norm from which on it is found."""
+"""Change of the norm of a setup's part of a shape below which the shape is found."""
+
+TINY = 1e-100
 
 
 @dataclass(frozen=True)
@@ -140,17 +142,21 @@ ModesOfSet = tuple[Sequence[str], Sequence[ModeEstimate]]
 """Sensors and modes of one set."""
 
 
-def mode_groups(sets: Sequence[ModesOfSet], sensors: Sequence[str]) -> list[dict[int, int]]:
+def mode_groups(
+    sets: Sequence[ModesOfSet], sensors: Sequence[str], least: float = LEAST_MAC
+) -> list[dict[int, int]]:
     """Return, for every mode of the structure, which mode of each set it is.
 
     All modes of a set are assigned at once, to as many modes of the sets before as agree, and by
-    the greatest sum of their squared correlations.
+    the greatest sum of their squared correlations. Shapes have a MAC of ``least`` or more.
     """
     groups: list[dict[int, int]] = []
     for k, own in enumerate(sets):
         score = np.zeros((len(own[1]), len(groups)))
         for r, g in np.ndindex(score.shape):
-            score[r, g] = max(_agreement(own, r, sets[j], s, sensors) for j, s in groups[g].items())
+            score[r, g] = max(
+                _agreement(own, r, sets[j], s, sensors, least) for j, s in groups[g].items()
+            )
         rows, columns = linear_sum_assignment(score, maximize=True)
         known = {int(r): int(g) for r, g in zip(rows, columns, strict=True) if score[r, g] > 0}
         groups += [{} for _ in range(len(own[1]) - len(known))]
@@ -160,7 +166,9 @@ def mode_groups(sets: Sequence[ModesOfSet], sensors: Sequence[str]) -> list[dict
     return sorted(groups, key=lambda x: np.mean([sets[k][1][r].frequency for k, r in x.items()]))
 
 
-def _agreement(of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, sensors: Sequence[str]) -> float:
+def _agreement(
+    of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, sensors: Sequence[str], least: float
+) -> float:
     """Return one more than the squared correlation of modes, 0 where they cannot be the same.
 
     It is that of shapes at common sensors, the MAC, times that of poles: close modes differ in
@@ -190,7 +198,7 @@ def _agreement(of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, sensors: Sequ
         return float(np.linalg.norm(first.T @ second, 2) ** 2) if first.size * second.size else 0.0
 
     near = max(mac(own_a, plane_b), mac(plane_a, own_b))
-    if near <= LEAST_MAC:
+    if near <= least:
         return 0.0
     return 1 + mac(own_a, own_b) * float(alike(x.pole, np.array(y.pole)))
 
@@ -214,48 +222,30 @@ def merged_shape(
 ) -> tuple[Floats, Floats]:
     """Return the shape of unit norm at all sensors and its covariance; NaN where none measured.
 
-    ``places`` are the numbers of the sensors of each setup, ``count`` is that of all of them. Each
-    setup has to share sensors with another one.
+    Its parts are along the shapes of all setups, by weighted least squares (Au, Mech. Syst. Signal
+    Process. 25 (2011) 163-179). Where these differ by more than their covariances say, that of the
+    shape is as much greater. ``places`` are the numbers of the sensors of each setup, ``count`` is
+    that of all of them. Each setup has to share sensors with another one.
     """
-    weights = [la.inv(C + np.outer(u, u)) for C, u in zip(covariances, shapes, strict=True)]
-    phi = _chained(places, shapes, count)
-    known = np.isfinite(phi)
-    phi = np.where(known, phi, 0.0)
+    parts = [
+        (i, u, T @ la.inv(C + np.outer(u, u)) @ T)
+        for i, u, C in zip(places, shapes, covariances, strict=True)
+        for T in [np.eye(len(u)) - np.outer(u, u)]
+    ]
+    known, along, phi = np.unique(np.concatenate(places)), np.ones(len(parts)), np.zeros(count)
     for _ in range(MOST_STEPS):
-        A = np.outer(phi, phi) / (phi @ phi)
-        A[~known, ~known] = 1.0
-        A *= sum(float(np.trace(W)) for W in weights)
-        b = np.zeros(count)
-        for i, u, W in zip(places, shapes, weights, strict=True):
-            along = float(u @ phi[i])
-            r = phi[i] / along - u
-            J = (np.eye(len(i)) - np.outer(phi[i], u) / along) / along
-            A[np.ix_(i, i)] += J.T @ W @ J
-            b[i] += J.T @ W @ r
-        step = la.solve(A, b, assume_a="sym")
-        phi = phi - step
-        phi /= np.linalg.norm(phi)
-        if np.abs(step).max() < TOLERANCE:
+        A = np.zeros((count, count))
+        for (i, _, W), scale in zip(parts, along, strict=True):
+            A[np.ix_(i, i)] += W / scale**2
+        value, vector = la.eigh(A[np.ix_(known, known)])
+        phi[known], before = vector[:, 0], along
+        along = np.array([max(abs(float(u @ phi[i])), TOLERANCE) for i, u, _ in parts])
+        if np.abs(along - before).max() < TOLERANCE:
             break
-    covariance = la.inv(A)
-    tangent = np.eye(count) - np.outer(phi, phi)
-    covariance = tangent @ covariance @ tangent
-    phi[~known] = np.nan
-    covariance[~known] = covariance[:, ~known] = np.nan
+    freedom = sum(len(u) - 1 for u in shapes) - len(known) + 1
+    widening = max(value[0] / max(freedom, 1), 1.0)
+    half = vector[:, 1:] * np.sqrt(widening / np.maximum(value[1:], TINY))
+    covariance = np.full((count, count), np.nan)
+    covariance[np.ix_(known, known)] = half @ half.T
+    phi[np.setdiff1d(np.arange(count), known)] = np.nan
     return phi, covariance
-
-
-def _chained(places: Sequence[Ints], shapes: Sequence[Floats], count: int) -> Floats:
-    """Return a shape to start from: setups one after another, scaled at sensors known so far."""
-    phi = np.full(count, np.nan)
-    left = list(range(len(places)))
-    while left:
-        common = [np.linalg.norm(shapes[k][np.isfinite(phi[places[k]])]) for k in left]
-        k = left.pop(int(np.argmax(common)))
-        i, u = places[k], shapes[k]
-        both = np.isfinite(phi[i])
-        power = float(u[both] @ u[both])
-        scale = float(phi[i][both] @ u[both]) / power if power else 1.0
-        phi[i] = np.where(both, phi[i], scale * u)
-    out: Floats = phi / np.sqrt(np.nansum(phi**2))
-    return out

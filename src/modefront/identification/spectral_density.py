@@ -248,6 +248,32 @@ class Fit:
         return out
 
 
+def standing_out(band: Band, model: Density) -> tuple[float, float, Floats, float]:
+    r"""Return omega, zeta and shape of the mode that would gain most, and its 2 Delta J.
+
+    Without force, the slope of the likelihood is :math:`\varphi^T G \varphi`, :math:`G = \sum_k
+    |h_k|^2 E_k^{-1} (F_k F_k^* - E_k) E_k^{-1}`; the gain is that of as many lines of equal weight.
+    Half bandwidths go up by factors of two.
+    """
+    moved = model.columns @ model.lifted(band.omega, band.order) @ model.root
+    E = moved @ moved.conj().swapaxes(1, 2) + model.background
+    inverse, c = np.linalg.inv(E), band.count[:, None, None]
+    low, high = band.omega[[0, -1]]
+    halves = (high - low) / len(E) * 2.0 ** np.arange(max(int(np.log2(len(E) / 8)), 1))
+    omega, half = np.array([(x, half) for half in halves for x in np.arange(low, high, half)]).T
+    h2 = 1 / (1 + ((band.omega - omega[:, None]) / half[:, None]) ** 2)
+    G = np.tensordot(h2, (c * (inverse @ (band.power - E) @ inverse)).real, 1)
+    C = np.linalg.inv(np.linalg.cholesky(np.tensordot(h2, (c * inverse).real, 1)))
+    value, vector = np.linalg.eigh(C @ G @ C.swapaxes(1, 2))
+    excess = np.maximum(value[:, -1], 0.0)
+    lines = (h2 @ band.count) ** 2 / (h2**2 @ band.count)
+    gain = 2 * lines * (excess - np.log1p(excess))
+    best = int(gain.argmax())
+    phi = C[best].T @ vector[best, :, -1]
+    zeta = float(half[best] / omega[best])
+    return float(omega[best]), zeta, phi / np.linalg.norm(phi), float(gain[best])
+
+
 @dataclass(frozen=True)
 class _Matrices:
     """The matrices of the module's text in all blocks, (blocks, columns, columns), and the cost.

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 from scipy.stats import chi2, norm
 
 from modefront._typing import Bools, Complexes, Floats
@@ -29,10 +30,10 @@ from modefront.identification.record import (
 )
 from modefront.identification.scan import alike
 from modefront.identification.selection import FALSE
-from modefront.identification.sets import between, merged_shape, mode_groups
+from modefront.identification.sets import LEAST_MAC, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
 from modefront.identification.spectra import Transforms
-from modefront.identification.spectral_density import Band, Density, Fit
+from modefront.identification.spectral_density import MOST_STEPS, Band, Density, Fit
 from modefront.identification.stabilisation import (
     StabilisationDiagram,
     diagram_of,
@@ -123,12 +124,13 @@ class Local:
 
 @dataclass(frozen=True)
 class _Setup:
-    """A setup with its transforms, diagram and modes."""
+    """A setup with its transforms, diagram and modes, and those that stand out of its residuals."""
 
     records: Records
     lines: Transforms
     diagram: StabilisationDiagram
     modes: tuple[Local, ...]
+    more: tuple[Local, ...] = ()
 
     @property
     def spacing(self) -> float:
@@ -154,16 +156,9 @@ def identify(
         if count < LEAST_LINES:
             raise ValueError(f"expected {LEAST_LINES} lines in the band, found {max(count, 0)}")
     identified = [_of_setup(records, low, high, seeds) for records in setups]
-    local = [
-        (
-            each.records.sensors,
-            [_estimate(x.omega, x.zeta, x.stds, x.phi, np.zeros(0)) for x in each.modes],
-        )
-        for each in identified
-    ]
-    sensors = tuple(dict.fromkeys(name for records in setups for name in records.sensors))
-    groups = mode_groups(local, sensors)
-    return _combined(_completed(identified, groups), (low, high), sensors, modes)
+    groups = _groups(identified, LEAST_MAC)
+    identified = [_completed(k, identified, groups) for k in range(len(setups))]
+    return _combined(identified, _groups(identified), (low, high), modes)
 
 
 def default_band(setups: Sequence[Records]) -> tuple[float, float]:
@@ -172,31 +167,31 @@ def default_band(setups: Sequence[Records]) -> tuple[float, float]:
     return low, min(HIGHEST * records.rate / 2 for records in setups)
 
 
-def needed(lines: int, sensors: int) -> float:
-    """Return the gain 2 Delta J that noise makes by one mode in `FALSE` bands of so many lines.
+def needed(chance: float, sensors: int, others: int = 0) -> float:
+    """Return the gain 2 Delta J of one mode beside others that noise exceeds by a chance.
 
-    A mode has as many parameters as sensors, and two for its pole; the poles that lines tell apart
-    are as many as lines.
+    A mode has as many parameters as sensors, two for its pole, and two for the density of its
+    force with that of each other mode.
     """
-    return float(chi2.isf(FALSE / lines, sensors + 2))
+    return float(chi2.isf(chance, sensors + 2 + 2 * others))
 
 
 def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float]) -> _Setup:
-    """Return the setup; poles are looked for again where machines may have hidden some."""
-    all_lines = lines = spectra.transforms(records, low, high)
-    least = needed(len(lines.omega), len(records.sensors))
-    while True:
-        data = spectra.with_lines(records, all_lines.omega, lines.F - all_lines.F)
-        diagram, modes = _starts(data, low, high)
-        for omega in 2 * np.pi * np.array(seeds):
-            apart = np.array([abs(mode.omega - omega) for mode in modes])
-            if not (apart < [max(mode.half, DAMPING[0] * omega) for mode in modes]).any():
-                modes, apart = [*modes, _seeded(lines, omega)], np.append(apart, 0.0)
-            modes[apart.argmin()] = replace(modes[apart.argmin()], held=True)
-        setup = _fitted(_Setup(records, lines, diagram, ()), modes, least)
-        if setup.lines.sines == lines.sines:
-            return _fitted(setup, setup.modes, least, last=True)
-        lines = setup.lines
+    """Return the setup with its modes, to which those are added that stand out of the residuals."""
+    lines = spectra.transforms(records, low, high)
+    diagram, modes = _starts(records, low, high)
+    for omega in 2 * np.pi * np.array(seeds):
+        apart = np.array([abs(mode.omega - omega) for mode in modes])
+        if not (apart < [max(mode.half, DAMPING[0] * omega) for mode in modes]).any():
+            modes, apart = [*modes, _seeded(lines, omega)], np.append(apart, 0.0)
+        modes[apart.argmin()] = replace(modes[apart.argmin()], held=True)
+    chance = FALSE / len(lines.omega)  # the poles that lines tell apart are as many as lines
+    setup = _fitted(_Setup(records, lines, diagram, ()), modes, chance)
+    setup, tried = _fitted(setup, setup.modes, chance, last=True), np.zeros(0, complex)
+    while new := [x for x in setup.more if (alike(x.pole, tried) < selection.ALONE).all()]:
+        tried, known = np.append(tried, [mode.pole for mode in new]), setup.modes
+        setup = _fitted(setup, [*known, *new], chance, last=True, first=len(known))
+    return setup
 
 
 def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDiagram, list[Local]]:
@@ -229,18 +224,20 @@ def _seeded(lines: Transforms, omega: float, phi: Floats | None = None) -> Local
 
 
 def _fitted(
-    setup: _Setup, modes: Sequence[Local], least: float, *, last: bool = False, first: int = 0
+    setup: _Setup, modes: Sequence[Local], chance: float, *, last: bool = False, first: int = 0
 ) -> _Setup:
     """Return the setup with the modes that data need, each fitted with those that it overlaps.
 
-    The ``last`` fit has the background that their forces move; no mode is judged by it. Modes that
-    overlap none from number ``first`` on are left out.
+    The ``last`` fit has the background that their forces move. Modes that overlap none from number
+    ``first`` on stay as they are.
     """
     found: list[Local] = []
+    more: list[Local] = []
     for group in _overlapping(modes):
-        if max(group) < first:
-            continue
         chosen = [modes[k] for k in group]
+        if max(group) < first:
+            found += chosen
+            continue
         reach = [max(REACH * mode.half, LEAST_LINES / 2 * setup.spacing) for mode in chosen]
         low = min(mode.omega - x for mode, x in zip(chosen, reach, strict=True))
         high = max(mode.omega + x for mode, x in zip(chosen, reach, strict=True))
@@ -251,24 +248,23 @@ def _fitted(
         told = max((len(setup.records.sensors) - len(group)) // 2, 1)
         nearest = min(told, BESIDE) if last else 1
         beside = rest[max(start - nearest, 0) : end + nearest]
-        lines, of_group = _of_group(setup, limits, chosen, beside, least, last)
-        setup, found = replace(setup, lines=lines), found + of_group
-    return replace(setup, modes=tuple(found))
+        lines, of_group, new = _of_group(setup, limits, chosen, beside, chance, last)
+        setup, found, more = replace(setup, lines=lines), found + of_group, more + new
+    return replace(setup, modes=tuple(found), more=tuple(more))
 
 
 def _overlapping(modes: Sequence[Local]) -> list[list[int]]:
     """Return the numbers of modes that overlap, a list each, by frequency."""
+    omega, half = (np.array([[mode.omega, mode.half] for mode in modes]).reshape(-1, 2)).T
+    near = np.abs(omega[:, None] - omega) < OVERLAP * (half[:, None] + half)
+    count, label = connected_components(near)
     out: list[list[int]] = []
-    for k in np.argsort([mode.omega for mode in modes]).tolist():
-        mode = modes[k]
-        near = out and len(out[-1]) < MOST_TOGETHER
-        if near and any(
-            mode.omega - modes[j].omega < OVERLAP * (mode.half + modes[j].half) for j in out[-1]
-        ):
-            out[-1].append(k)
-        else:
-            out.append([k])
-    return out
+    for k in range(count):
+        members = np.flatnonzero(label == k)
+        members = members[omega[members].argsort()]
+        parts = np.array_split(members, -(-len(members) // MOST_TOGETHER))
+        out += [part.tolist() for part in parts]
+    return sorted(out, key=lambda group: float(omega[group[0]]))
 
 
 def _of_group(
@@ -276,19 +272,16 @@ def _of_group(
     limits: tuple[float, float, float],
     modes: Sequence[Local],
     beside: Sequence[Local],
-    least: float,
+    chance: float,
     last: bool,
-) -> tuple[Transforms, list[Local]]:
-    """Return the lines of a setup without sines in a band, and its modes.
+) -> tuple[Transforms, list[Local], list[Local]]:
+    """Return the lines of a setup without sines in a band, its modes, and what stands out besides.
 
-    Without those that gain less, the weakest first. A fit that explains less than one without a
-    mode has not reached its maximum.
+    Without those that gain less than noise makes by ``chance``, the weakest first.
     """
-    band, tried = setup.lines.part(*limits), False
+    band = setup.lines.part(*limits)
     start = _first(band, [*modes, *beside], len(modes))
     lines, band, fit, held = _without_sines(setup.lines, limits, start, [x.held for x in modes])
-    if lines is not setup.lines and not last:
-        return lines, []  # poles are looked for again
     if last:
         fit = spectral_density.maximise(band, fit.model.with_coherent(band))
     while fit.model.free:
@@ -299,28 +292,27 @@ def _of_group(
             x[..., : len(held)] for x in (fit.model.omega, fit.model.zeta, fit.model.phi)
         )
         low, high = band.omega[[0, -1]]
+        least = needed(chance, len(phi), len(fit.model.omega) - 1)
         # a mode that left the band, is as flat as it, narrower than a line, or doubles a stronger
         # one explains nothing
         astray = (omega < low) | (omega > high) | (4 * zeta * omega > high - low)
         astray |= 2 * zeta * omega < setup.spacing
         astray |= selection.doubles(omega * (1j - zeta), phi.T.astype(complex), gain)
         worth = np.where(held, np.inf, np.where(astray, 0.0, gain))
-        enough = worth.min() >= least
-        if not tried and not fit.converged and (gain.min() < 0 or (enough and last)):
-            fit, tried = spectral_density.maximise(band, fit.model), True
-            continue
-        if enough:
+        if worth.min() >= least:
             break
         none = np.zeros(len(held), bool)
         gone = selection.with_weak(none, worth, least, omega * (1j - zeta))
         model, held = fit.model, held[~gone]
         for r in np.flatnonzero(gone)[::-1].tolist():
             model = model.without(r, band)
-        fit = spectral_density.maximise(band, model, TRIAL_STEPS)
+        fit = spectral_density.maximise(band, model, MOST_STEPS if last else TRIAL_STEPS)
     else:
-        return lines, []
+        return lines, [], []
     model, visible = fit.model, _shares(band, fit.model)
-    return lines, [
+    likely = needed(selection.EVEN / len(lines.omega), len(model.phi))
+    more = [Local(*spectral_density.standing_out(band, model))] if last else []
+    found = [
         Local(
             float(model.omega[r]),
             float(model.zeta[r]),
@@ -333,6 +325,7 @@ def _of_group(
         )
         for r in range(model.free)
     ]
+    return lines, found, [mode for mode in more if mode.gain > likely]
 
 
 def _without_sines(
@@ -399,34 +392,30 @@ def _estimate(
     )
 
 
-def _completed(
-    setups: Sequence[_Setup], groups: Sequence[dict[int, int]]
-) -> list[tuple[_Setup, list[Local | None]]]:
-    """Return the setups with a mode, or None, for every mode of the structure.
+def _groups(setups: Sequence[_Setup], least: float = 0.0) -> list[dict[int, int]]:
+    """Return which mode of each setup every mode of the structure is."""
+    local = [
+        (
+            each.records.sensors,
+            [_estimate(x.omega, x.zeta, x.stds, x.phi, np.zeros(0)) for x in each.modes],
+        )
+        for each in setups
+    ]
+    return mode_groups(local, _sensors(setups), least)
 
-    Where a setup does not have a mode that others have, it is tried there: with the pole known, it
-    needs less. Neighbours that were fitted without it are fitted again.
+
+def _sensors(setups: Sequence[_Setup]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name for each in setups for name in each.records.sensors))
+
+
+def _completed(k: int, setups: Sequence[_Setup], groups: Sequence[dict[int, int]]) -> _Setup:
+    """Return a setup in which all modes of the structure were tried.
+
+    With the pole known, chance is less. Neighbours that were fitted without it are fitted again.
     """
-    out = []
-    for k, setup in enumerate(setups):
-        rows: list[Local | None] = [
-            setup.modes[group[k]] if k in group else None for group in groups
-        ]
-        lacking = [r for r, row in enumerate(rows) if row is None]
-        if lacking:
-            tried = [_tried(setup, setups, groups[r]) for r in lacking]
-            known = [r for r, row in enumerate(rows) if row is not None]
-            starts = [*(setup.modes[groups[r][k]] for r in known), *tried]
-            least = float(chi2.isf(FALSE, len(setup.records.sensors)))
-            setup = _fitted(setup, starts, least, last=True, first=len(known))
-            poles, phi = np.array([x.pole for x in starts]), np.array([x.phi for x in starts])
-            for mode in setup.modes:
-                near = alike(mode.pole, poles)
-                nearest = int((near * (phi @ mode.phi) ** 2).argmax())
-                if near[nearest] > selection.ALONE:
-                    rows[(*known, *lacking)[nearest]] = mode
-        out.append((setup, rows))
-    return out
+    own, tried = setups[k], [_tried(setups[k], setups, group) for group in groups if k not in group]
+    modes = [*own.modes, *tried]
+    return _fitted(own, modes, FALSE, last=True, first=len(own.modes)) if tried else own
 
 
 def _tried(setup: _Setup, setups: Sequence[_Setup], group: dict[int, int]) -> Local:
@@ -442,20 +431,26 @@ def _tried(setup: _Setup, setups: Sequence[_Setup], group: dict[int, int]) -> Lo
 
 
 def _combined(
-    setups: Sequence[tuple[_Setup, list[Local | None]]],
+    setups: Sequence[_Setup],
+    groups: Sequence[dict[int, int]],
     band: tuple[float, float],
-    sensors: tuple[str, ...],
     count: int | None,
 ) -> Identification:
     """Return the modes of the structure, and what is none."""
-    modes = []
-    sines = np.sort([omega for x, _ in setups for omega in x.lines.sines]) / (2 * np.pi)
-    apart = np.diff(sines, prepend=-np.inf) > max(1 / x.records.duration for x, _ in setups)
+    modes, sensors = [], _sensors(setups)
+    sines = np.sort([omega for x in setups for omega in x.lines.sines]) / (2 * np.pi)
+    apart = np.diff(sines, prepend=-np.inf) > max(1 / x.records.duration for x in setups)
     text = "a harmonic: its lines are those of a sine"
     rejected = [Rejected(f, 0.0, text) for f in sines[apart].tolist()]
-    for r in range(len(setups[0][1])):
-        having = [(setup, row) for setup, rows in setups if (row := rows[r]) is not None]
-        mode, why = _of_structure(having, sensors, len(setups)), _harmonic(having)
+    lines = max(len(each.lines.omega) for each in setups)
+    freedom = sum(len(each.records.sensors) + 2 for each in setups)
+    least = float(chi2.isf(FALSE / lines, freedom))
+    for group in groups:
+        having = [(setups[k], setups[k].modes[r]) for k, r in group.items()]
+        mode, why = _of_structure(having, sensors), _harmonic(having)
+        mode = replace(mode, evidence=_evidence(having, mode, len(setups), least))
+        if mode.evidence.gain < 1 and not any(local.held for _, local in having):
+            why = "noise alone may explain as much in all setups"
         if why:
             rejected.append(Rejected(mode.frequency, mode.damping, why))
         else:
@@ -467,22 +462,20 @@ def _combined(
             for mode in order[count:]
         ]
         modes = order[:count]
-    first = max((setup for setup, _ in setups), key=lambda setup: len(setup.records.sensors))
+    first = max(setups, key=lambda setup: len(setup.records.sensors))
     return Identification(
         sensors,
         band,
         tuple(sorted(modes, key=lambda mode: mode.frequency)),
         tuple(sorted(rejected, key=lambda pole: pole.frequency)),
         first.diagram,
-        _functions([setup for setup, _ in setups], sensors),
+        _functions(setups, sensors),
         0,
         converged=True,
     )
 
 
-def _of_structure(
-    having: Sequence[tuple[_Setup, Local]], sensors: Sequence[str], setups: int
-) -> ModeEstimate:
+def _of_structure(having: Sequence[tuple[_Setup, Local]], sensors: tuple[str, ...]) -> ModeEstimate:
     """Return one mode from the setups that have it.
 
     Variances of ln zeta go as 1 / zeta, those of ln omega as zeta (Au, Mech. Syst. Signal Process.
@@ -494,21 +487,21 @@ def _of_structure(
     of_unit = np.array([mode.stds[:2] ** 2 for _, mode in having]) * np.exp(logs[:, 1:] * power)
     common = np.average(logs[:, 1], weights=1 / of_unit[:, 1])
     variance = of_unit * np.exp(-common * power)
-    variance += [between(*x) ** 2 for x in zip(logs.T, np.sqrt(variance).T, strict=True)]
     means = np.average(logs, axis=0, weights=1 / variance)
-    deviations = 1 / np.sqrt(np.sum(1 / variance, axis=0))
+    misfit = np.sum((logs - means) ** 2 / variance, axis=0) / max(len(logs) - 1, 1)
+    deviations = np.sqrt(np.maximum(misfit, 1.0) / np.sum(1 / variance, axis=0))
     places = [np.array([sensors.index(x) for x in setup.records.sensors]) for setup, _ in having]
     covariances = [mode.covariance[2:, 2:] for _, mode in having]
     phi, C = merged_shape(places, [mode.phi for _, mode in having], covariances, len(sensors))
     omega, zeta = np.exp(means).tolist()
     mode = _estimate(omega, zeta, deviations, phi, np.sqrt(np.diag(C)))
-    return replace(mode, evidence=_evidence(having, mode, setups), shape_covariance=C)
+    return replace(mode, shape_covariance=C)
 
 
-def _evidence(having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int) -> Evidence:
-    gain = max(
-        local.gain / needed(len(setup.lines.omega), len(local.phi)) for setup, local in having
-    )
+def _evidence(
+    having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int, least: float
+) -> Evidence:
+    gain = sum(local.gain for _, local in having) / least
     share = max(
         float(support(setup.diagram, np.array([mode.pole]), np.ones(1))[0]) for setup, _ in having
     )
