@@ -143,21 +143,6 @@ def test_bending_is_the_second_change_of_the_cost_where_forces_vanish() -> None:
         assert (sum(costs) - 2 * fit.cost) / step**2 == pytest.approx(expected, rel=1e-3)
 
 
-def test_a_mode_that_the_model_lacks_stands_out() -> None:
-    rng = np.random.default_rng(9)
-    model = replace(_model(rng), omega=np.array([9.6, 10.4, 12.0]), free=1)
-    band = _band(rng)
-    root = np.linalg.cholesky(_density(band, replace(model, coherent=np.zeros((SENSORS, 0)))))
-    F = np.einsum("kij,kbj->kbi", root, _circular(rng, LINES, 40, SENSORS))
-    power = np.einsum("kbi,kbj->kij", F, F.conj()) / 80
-    band = replace(band, power=power, count=np.full(LINES, 40.0))
-    omega, zeta, phi, gain = spectral_density.standing_out(band, model.without(1, band))
-    assert omega == pytest.approx(10.4, abs=0.2)
-    assert 0.005 < zeta < 0.08
-    assert (phi @ model.phi[:, 1]) ** 2 > 0.9
-    assert gain > 10 * spectral_density.standing_out(band, model)[3]
-
-
 def test_shapes_of_setups_that_differ_have_greater_deviations() -> None:
     shapes = [np.array([0.6, 0.64, 0.48]), np.array([0.48, 0.6, 0.64])]
     covariances = [1e-6 * (np.eye(3) - np.outer(u, u)) for u in shapes]

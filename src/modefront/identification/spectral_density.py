@@ -184,17 +184,14 @@ class Density:
         kept, phi = np.delete(np.arange(len(self.omega)), mode), self.phi[:, mode]
         h = self.response(band.omega, band.order)[mode]
         power = self.force[mode, mode].real * np.average(np.abs(h) ** 2, weights=band.count)
-        S = self.force[np.ix_(kept, kept)]
-        scale = np.sqrt(np.maximum(S.diagonal().real, TINY))
-        unit = S / np.outer(scale, scale) + 1e-9 * np.eye(len(S))  # S may be singular
-        root = la.cholesky(unit, lower=True) if len(S) else unit
+        root: Complexes = np.linalg.qr(self.root[kept].conj().T)[1].conj().T
         terms = np.arange(self.coherent.shape[1]) % max(self.free, 1) != mode
         return replace(
             self,
             omega=self.omega[kept],
             zeta=self.zeta[kept],
             phi=self.phi[:, kept],
-            root=scale[:, None] * root,
+            root=root,
             background=self.background + power * np.outer(phi, phi),
             free=self.free - (mode < self.free),
             coherent=self.coherent[:, terms],
@@ -246,32 +243,6 @@ class Fit:
         half = self.root[[first, first + m, *range(mode * n, (mode + 1) * n)]]
         out: Floats = half @ half.T
         return out
-
-
-def standing_out(band: Band, model: Density) -> tuple[float, float, Floats, float]:
-    r"""Return omega, zeta and shape of the mode that would gain most, and its 2 Delta J.
-
-    Without force, the slope of the likelihood is :math:`\varphi^T G \varphi`, :math:`G = \sum_k
-    |h_k|^2 E_k^{-1} (F_k F_k^* - E_k) E_k^{-1}`; the gain is that of as many lines of equal weight.
-    Half bandwidths go up by factors of two.
-    """
-    moved = model.columns @ model.lifted(band.omega, band.order) @ model.root
-    E = moved @ moved.conj().swapaxes(1, 2) + model.background
-    inverse, c = np.linalg.inv(E), band.count[:, None, None]
-    low, high = band.omega[[0, -1]]
-    halves = (high - low) / len(E) * 2.0 ** np.arange(max(int(np.log2(len(E) / 8)), 1))
-    omega, half = np.array([(x, half) for half in halves for x in np.arange(low, high, half)]).T
-    h2 = 1 / (1 + ((band.omega - omega[:, None]) / half[:, None]) ** 2)
-    G = np.tensordot(h2, (c * (inverse @ (band.power - E) @ inverse)).real, 1)
-    C = np.linalg.inv(np.linalg.cholesky(np.tensordot(h2, (c * inverse).real, 1)))
-    value, vector = np.linalg.eigh(C @ G @ C.swapaxes(1, 2))
-    excess = np.maximum(value[:, -1], 0.0)
-    lines = (h2 @ band.count) ** 2 / (h2**2 @ band.count)
-    gain = 2 * lines * (excess - np.log1p(excess))
-    best = int(gain.argmax())
-    phi = C[best].T @ vector[best, :, -1]
-    zeta = float(half[best] / omega[best])
-    return float(omega[best]), zeta, phi / np.linalg.norm(phi), float(gain[best])
 
 
 @dataclass(frozen=True)

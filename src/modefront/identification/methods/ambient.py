@@ -2,7 +2,8 @@ r"""Ambient tests: from the records of all setups to modes, by the likelihood of
 
 Half spectra of each setup give poles to start from; modes that overlap share a band, in which the
 likelihood is maximised (`spectral_density`). A mode is accepted where it gains more than noise
-makes somewhere in the band; in other setups, where the pole is known, than noise makes there.
+makes somewhere in the band; in other setups, where the pole is known, it needs less. What none of
+these has is no mode of the structure.
 Harmonics of machines are taken off as sines; those that drift are too steady (`harmonics`).
 """
 
@@ -28,7 +29,6 @@ from modefront.identification.record import (
     Rejected,
     Residuals,
 )
-from modefront.identification.scan import alike
 from modefront.identification.selection import FALSE
 from modefront.identification.sets import LEAST_MAC, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
@@ -124,13 +124,12 @@ class Local:
 
 @dataclass(frozen=True)
 class _Setup:
-    """A setup with its transforms, diagram and modes, and those that stand out of its residuals."""
+    """A setup with its transforms, diagram and modes."""
 
     records: Records
     lines: Transforms
     diagram: StabilisationDiagram
     modes: tuple[Local, ...]
-    more: tuple[Local, ...] = ()
 
     @property
     def spacing(self) -> float:
@@ -177,7 +176,7 @@ def needed(chance: float, sensors: int, others: int = 0) -> float:
 
 
 def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float]) -> _Setup:
-    """Return the setup with its modes, to which those are added that stand out of the residuals."""
+    """Return the setup with its modes."""
     lines = spectra.transforms(records, low, high)
     diagram, modes = _starts(records, low, high)
     for omega in 2 * np.pi * np.array(seeds):
@@ -187,11 +186,7 @@ def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float])
         modes[apart.argmin()] = replace(modes[apart.argmin()], held=True)
     chance = FALSE / len(lines.omega)  # the poles that lines tell apart are as many as lines
     setup = _fitted(_Setup(records, lines, diagram, ()), modes, chance)
-    setup, tried = _fitted(setup, setup.modes, chance, last=True), np.zeros(0, complex)
-    while new := [x for x in setup.more if (alike(x.pole, tried) < selection.ALONE).all()]:
-        tried, known = np.append(tried, [mode.pole for mode in new]), setup.modes
-        setup = _fitted(setup, [*known, *new], chance, last=True, first=len(known))
-    return setup
+    return _fitted(setup, setup.modes, chance, last=True)
 
 
 def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDiagram, list[Local]]:
@@ -211,15 +206,14 @@ def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDia
 def _seeded(lines: Transforms, omega: float, phi: Floats | None = None) -> Local:
     """Return a mode at a frequency, with the shape of what the records hold there.
 
-    ``phi`` has what is known of the shape, NaN elsewhere.
+    ``phi`` has what is known of the shape, 0 elsewhere.
     """
     half = max(DAMPING[0] * omega, 2 * (lines.omega[1] - lines.omega[0]))
     near = np.abs(lines.omega - omega) <= max(half, np.abs(lines.omega - omega).min())
     power = (lines.F[:, near] @ lines.F[:, near].conj().T).real
-    if phi is None or not np.isfinite(phi).any():
-        shape = np.linalg.eigh(power)[1][:, -1]
-    else:
-        shape = power @ np.nan_to_num(phi)
+    if phi is None or not phi.any():
+        phi = np.linalg.eigh(power)[1][:, -1]
+    shape = power @ phi
     return Local(omega, half / omega, shape / np.linalg.norm(shape))
 
 
@@ -232,7 +226,6 @@ def _fitted(
     ``first`` on stay as they are.
     """
     found: list[Local] = []
-    more: list[Local] = []
     for group in _overlapping(modes):
         chosen = [modes[k] for k in group]
         if max(group) < first:
@@ -248,9 +241,9 @@ def _fitted(
         told = max((len(setup.records.sensors) - len(group)) // 2, 1)
         nearest = min(told, BESIDE) if last else 1
         beside = rest[max(start - nearest, 0) : end + nearest]
-        lines, of_group, new = _of_group(setup, limits, chosen, beside, chance, last)
-        setup, found, more = replace(setup, lines=lines), found + of_group, more + new
-    return replace(setup, modes=tuple(found), more=tuple(more))
+        lines, of_group = _of_group(setup, limits, chosen, beside, chance, last)
+        setup, found = replace(setup, lines=lines), found + of_group
+    return replace(setup, modes=tuple(found))
 
 
 def _overlapping(modes: Sequence[Local]) -> list[list[int]]:
@@ -258,13 +251,11 @@ def _overlapping(modes: Sequence[Local]) -> list[list[int]]:
     omega, half = (np.array([[mode.omega, mode.half] for mode in modes]).reshape(-1, 2)).T
     near = np.abs(omega[:, None] - omega) < OVERLAP * (half[:, None] + half)
     count, label = connected_components(near)
-    out: list[list[int]] = []
+    order, out = omega.argsort(), []
     for k in range(count):
-        members = np.flatnonzero(label == k)
-        members = members[omega[members].argsort()]
-        parts = np.array_split(members, -(-len(members) // MOST_TOGETHER))
-        out += [part.tolist() for part in parts]
-    return sorted(out, key=lambda group: float(omega[group[0]]))
+        members = order[label[order] == k]
+        out += np.array_split(members, -(-len(members) // MOST_TOGETHER))
+    return sorted([part.tolist() for part in out], key=lambda group: float(omega[group[0]]))
 
 
 def _of_group(
@@ -274,8 +265,8 @@ def _of_group(
     beside: Sequence[Local],
     chance: float,
     last: bool,
-) -> tuple[Transforms, list[Local], list[Local]]:
-    """Return the lines of a setup without sines in a band, its modes, and what stands out besides.
+) -> tuple[Transforms, list[Local]]:
+    """Return the lines of a setup without sines in a band, and its modes.
 
     Without those that gain less than noise makes by ``chance``, the weakest first.
     """
@@ -288,9 +279,8 @@ def _of_group(
         models = [fit.model.without(r, band) for r in range(fit.model.free)]
         without = [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
         gain = 2 * (np.array([each.cost for each in without]) - fit.cost)
-        omega, zeta, phi = (
-            x[..., : len(held)] for x in (fit.model.omega, fit.model.zeta, fit.model.phi)
-        )
+        model = fit.model
+        omega, zeta, phi = (x[..., : len(held)] for x in (model.omega, model.zeta, model.phi))
         low, high = band.omega[[0, -1]]
         least = needed(chance, len(phi), len(fit.model.omega) - 1)
         # a mode that left the band, is as flat as it, narrower than a line, or doubles a stronger
@@ -303,16 +293,14 @@ def _of_group(
             break
         none = np.zeros(len(held), bool)
         gone = selection.with_weak(none, worth, least, omega * (1j - zeta))
-        model, held = fit.model, held[~gone]
+        held = held[~gone]
         for r in np.flatnonzero(gone)[::-1].tolist():
             model = model.without(r, band)
         fit = spectral_density.maximise(band, model, MOST_STEPS if last else TRIAL_STEPS)
     else:
-        return lines, [], []
+        return lines, []
     model, visible = fit.model, _shares(band, fit.model)
-    likely = needed(selection.EVEN / len(lines.omega), len(model.phi))
-    more = [Local(*spectral_density.standing_out(band, model))] if last else []
-    found = [
+    return lines, [
         Local(
             float(model.omega[r]),
             float(model.zeta[r]),
@@ -325,7 +313,6 @@ def _of_group(
         )
         for r in range(model.free)
     ]
-    return lines, found, [mode for mode in more if mode.gain > likely]
 
 
 def _without_sines(
@@ -411,7 +398,7 @@ def _sensors(setups: Sequence[_Setup]) -> tuple[str, ...]:
 def _completed(k: int, setups: Sequence[_Setup], groups: Sequence[dict[int, int]]) -> _Setup:
     """Return a setup in which all modes of the structure were tried.
 
-    With the pole known, chance is less. Neighbours that were fitted without it are fitted again.
+    With the pole known, a mode needs less. Neighbours that were fitted without it are fitted again.
     """
     own, tried = setups[k], [_tried(setups[k], setups, group) for group in groups if k not in group]
     modes = [*own.modes, *tried]
@@ -423,10 +410,8 @@ def _tried(setup: _Setup, setups: Sequence[_Setup], group: dict[int, int]) -> Lo
     known = [(setups[k], setups[k].modes[number]) for k, number in group.items()]
     omega = float(np.mean([mode.omega for _, mode in known]))
     first, mode = known[0]
-    phi = np.full(len(setup.records.sensors), np.nan)
-    for i, name in enumerate(setup.records.sensors):
-        if name in first.records.sensors:
-            phi[i] = mode.phi[first.records.sensors.index(name)]
+    shape = dict(zip(first.records.sensors, mode.phi, strict=True))
+    phi = np.array([shape.get(name, 0.0) for name in setup.records.sensors])
     return replace(_seeded(setup.lines, omega, phi), zeta=mode.zeta)
 
 
@@ -449,8 +434,11 @@ def _combined(
         having = [(setups[k], setups[k].modes[r]) for k, r in group.items()]
         mode, why = _of_structure(having, sensors), _harmonic(having)
         mode = replace(mode, evidence=_evidence(having, mode, len(setups), least))
-        if mode.evidence.gain < 1 and not any(local.held for _, local in having):
-            why = "noise alone may explain as much in all setups"
+        if not any(local.held for _, local in having):
+            if len(having) == 1 < len(setups):
+                why = "none of the other setups has it, where its pole was tried"
+            elif mode.evidence.gain < 1:
+                why = "noise alone may explain as much in all setups"
         if why:
             rejected.append(Rejected(mode.frequency, mode.damping, why))
         else:
