@@ -6,7 +6,7 @@ of the records.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.fft
@@ -89,6 +89,15 @@ def transforms(records: Records, low: float, high: float) -> Transforms:
     kept = (f >= low) & (f <= high) & (f > 0)
     F = scipy.fft.rfft(y, axis=1)[:, kept] / np.sqrt(samples * records.rate)
     return Transforms(2 * np.pi * f[kept], F, RECORDED[records.quantity], np.ones(F.shape[1]))
+
+
+def with_lines(records: Records, omega: Floats, change: Complexes) -> Records:
+    """Return records whose transforms at lines in rad/s are changed, (sensors, lines)."""
+    samples = records.values.shape[1]
+    F = np.zeros((len(change), samples // 2 + 1), complex)
+    F[:, np.rint(omega * records.duration / (2 * np.pi)).astype(int)] = change
+    y = scipy.fft.irfft(F * np.sqrt(samples * records.rate), samples, axis=1)
+    return replace(records, values=records.values + y)
 
 
 def half_spectra(records: Records, low: float, high: float) -> tuple[FrequencyResponses, Floats]:

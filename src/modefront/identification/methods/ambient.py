@@ -33,7 +33,7 @@ from modefront.identification.selection import FALSE
 from modefront.identification.sets import LEAST_MAC, merged_shape, mode_groups
 from modefront.identification.shapes import real_shape
 from modefront.identification.spectra import Transforms
-from modefront.identification.spectral_density import MOST_STEPS, Band, Density, Fit
+from modefront.identification.spectral_density import Band, Density, Fit
 from modefront.identification.stabilisation import (
     StabilisationDiagram,
     diagram_of,
@@ -166,27 +166,30 @@ def default_band(setups: Sequence[Records]) -> tuple[float, float]:
     return low, min(HIGHEST * records.rate / 2 for records in setups)
 
 
-def needed(chance: float, sensors: int, others: int = 0) -> float:
-    """Return the gain 2 Delta J of one mode beside others that noise exceeds by a chance.
+def needed(chance: float, sensors: int) -> float:
+    """Return the gain 2 Delta J of one mode that noise exceeds by a chance.
 
-    A mode has as many parameters as sensors, two for its pole, and two for the density of its
-    force with that of each other mode.
+    A mode has as many parameters as sensors, and two for its pole.
     """
-    return float(chi2.isf(chance, sensors + 2 + 2 * others))
+    return float(chi2.isf(chance, sensors + 2))
 
 
 def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float]) -> _Setup:
-    """Return the setup with its modes."""
-    lines = spectra.transforms(records, low, high)
-    diagram, modes = _starts(records, low, high)
-    for omega in 2 * np.pi * np.array(seeds):
-        apart = np.array([abs(mode.omega - omega) for mode in modes])
-        if not (apart < [max(mode.half, DAMPING[0] * omega) for mode in modes]).any():
-            modes, apart = [*modes, _seeded(lines, omega)], np.append(apart, 0.0)
-        modes[apart.argmin()] = replace(modes[apart.argmin()], held=True)
+    """Return the setup; poles are looked for again where machines may have hidden some."""
+    all_lines = lines = spectra.transforms(records, low, high)
     chance = FALSE / len(lines.omega)  # the poles that lines tell apart are as many as lines
-    setup = _fitted(_Setup(records, lines, diagram, ()), modes, chance)
-    return _fitted(setup, setup.modes, chance, last=True)
+    while True:
+        data = spectra.with_lines(records, all_lines.omega, lines.F - all_lines.F)
+        diagram, modes = _starts(data, low, high)
+        for omega in 2 * np.pi * np.array(seeds):
+            apart = np.array([abs(mode.omega - omega) for mode in modes])
+            if not (apart < [max(mode.half, DAMPING[0] * omega) for mode in modes]).any():
+                modes, apart = [*modes, _seeded(lines, omega)], np.append(apart, 0.0)
+            modes[apart.argmin()] = replace(modes[apart.argmin()], held=True)
+        setup = _fitted(_Setup(records, lines, diagram, ()), modes, chance)
+        if setup.lines.sines == lines.sines:
+            return _fitted(setup, setup.modes, chance, last=True)
+        lines = setup.lines
 
 
 def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDiagram, list[Local]]:
@@ -268,11 +271,14 @@ def _of_group(
 ) -> tuple[Transforms, list[Local]]:
     """Return the lines of a setup without sines in a band, and its modes.
 
-    Without those that gain less than noise makes by ``chance``, the weakest first.
+    Without those that gain less than noise makes by ``chance``, the weakest first. A fit that
+    explains less than one without a mode has not reached its maximum.
     """
-    band = setup.lines.part(*limits)
+    band, tried = setup.lines.part(*limits), False
     start = _first(band, [*modes, *beside], len(modes))
     lines, band, fit, held = _without_sines(setup.lines, limits, start, [x.held for x in modes])
+    if lines is not setup.lines and not last:
+        return lines, []  # poles are looked for again
     if last:
         fit = spectral_density.maximise(band, fit.model.with_coherent(band))
     while fit.model.free:
@@ -282,21 +288,25 @@ def _of_group(
         model = fit.model
         omega, zeta, phi = (x[..., : len(held)] for x in (model.omega, model.zeta, model.phi))
         low, high = band.omega[[0, -1]]
-        least = needed(chance, len(phi), len(fit.model.omega) - 1)
+        least = needed(chance, len(phi))
         # a mode that left the band, is as flat as it, narrower than a line, or doubles a stronger
         # one explains nothing
         astray = (omega < low) | (omega > high) | (4 * zeta * omega > high - low)
         astray |= 2 * zeta * omega < setup.spacing
         astray |= selection.doubles(omega * (1j - zeta), phi.T.astype(complex), gain)
         worth = np.where(held, np.inf, np.where(astray, 0.0, gain))
-        if worth.min() >= least:
+        enough = worth.min() >= least
+        if not tried and not fit.converged and (gain.min() < 0 or (enough and last)):
+            fit, tried = spectral_density.maximise(band, fit.model), True
+            continue
+        if enough:
             break
         none = np.zeros(len(held), bool)
         gone = selection.with_weak(none, worth, least, omega * (1j - zeta))
         held = held[~gone]
         for r in np.flatnonzero(gone)[::-1].tolist():
             model = model.without(r, band)
-        fit = spectral_density.maximise(band, model, MOST_STEPS if last else TRIAL_STEPS)
+        fit = spectral_density.maximise(band, model, TRIAL_STEPS)
     else:
         return lines, []
     model, visible = fit.model, _shares(band, fit.model)
