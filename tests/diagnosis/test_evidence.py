@@ -88,9 +88,19 @@ def test_a_fit_finds_the_structure_from_which_the_data_come() -> None:
     np.testing.assert_allclose(fits.plain.theta(result.x), theta, rtol=0.03)
     rows = fits.plain.rows.copy()
     rows[2] *= -1
-    right, reversed_ = fits.ahead([fits.plain, replace(fits.plain, rows=rows)], result.x)
+    right, reversed_ = fits.ahead(
+        [fits.plain, replace(fits.plain, rows=rows)], [result.x, result.x]
+    )
     assert right == pytest.approx(result.cost, abs=0.1)
     assert reversed_ > result.cost + 10
+
+
+def test_parameters_are_the_same_beside_other_nominal_values() -> None:
+    plain = replace(fits_of(np.ones(3)).plain, unit=np.array([0.0, 2.0, 0.0]))
+    x = np.array([0.3, -0.5, 0.1])
+    off = replace(plain, start=np.array([10.0, 0.0, 0.1]))
+    np.testing.assert_allclose(plain.x(plain.theta(x)), x)
+    np.testing.assert_allclose(off.theta(off.x(plain.theta(x))), plain.theta(x))
 
 
 def test_the_cost_ahead_is_between_those_before_and_after_a_step() -> None:

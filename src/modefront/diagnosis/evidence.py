@@ -2,7 +2,8 @@ r"""The cost of explanations, many at once: how improbable data and parameters a
 
 Data sets differ from what they have in common by noise (`modefront.diagnosis.state`), and that
 differs from the model by what no parameter describes: frequencies by their logarithms, shapes of
-mean square 1. Mode r of the data and mode q of a model are as far apart as
+mean square 1, c of the data and beta chi of the model. Mode r of the data and mode q of a model are
+as far apart as
 
 .. math:: c_{rq} = 1 - \mathrm{MAC}_{rq} + \kappa \min(|\ln f_q - \ln \hat f_r|, d).
 
@@ -10,14 +11,6 @@ Shapes alone cannot tell a mode with a reversed sensor from another mode, nor fr
 which of two close modes is which. The parameters are expected near their nominal values, by their
 logarithms where their bounds are positive. They are fitted by Gauss-Newton steps with weights
 :math:`(\nu + 1) / (\nu + r_k^2 / \sigma^2)`, the pairs taken anew at every step.
-
-========  ==============================================================================
-symbol    meaning
-========  ==============================================================================
-c         (modes, sensors) shapes that the data sets have in common, of mean square 1
-beta      (modes,) factors that make model shapes of them
-x         (parameters,) logarithms of their factors, or their changes in units
-========  ==============================================================================
 """
 
 from __future__ import annotations
@@ -262,10 +255,9 @@ class Fits:
                 out[k] = many.at(i)
         return out
 
-    def ahead(self, states: Sequence[State], x: Floats) -> Floats:
-        """Return the costs of states a step from parameters x; infinite where no modes are."""
-        at = self.at(states, [x] * len(states))
-        return np.array([float(each.ahead) if each else np.inf for each in at])
+    def ahead(self, states: Sequence[State], xs: Sequence[Floats]) -> Floats:
+        """Return the costs of states a step from x of each; infinite where no modes are."""
+        return np.array([float(x.ahead) if x else np.inf for x in self.at(states, xs)])
 
     def fitted(self, states: Sequence[State], xs: Sequence[Floats]) -> list[Points | None]:
         """Return the points at the end of fits from parameters x; None where there are no modes."""

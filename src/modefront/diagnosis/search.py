@@ -113,17 +113,24 @@ class Search:
         self.comparison, self.fits = comparison, Fits(comparison)
         self.known: dict[object, Explanation] = {}
 
-    def fit(self, several: Sequence[tuple[Mistake, ...]], *starts: Floats) -> None:
-        """Fit the explanations by some mistakes each, from the best of some parameters."""
+    def fit(self, several: Sequence[tuple[Mistake, ...]], near: Explanation | None = None) -> None:
+        """Fit explanations by some mistakes each, from the best of nominal and near parameters."""
         states = [undone(self.fits.plain, mistakes) for mistakes in several]
-        xs = [np.zeros(len(self.fits.plain.start)), *starts]
+        xs = [[np.zeros(len(self.fits.plain.start))] * len(states)]
+        if near:
+            xs += [[near.point.x] * len(states), self._same(states, near)]
         best = np.argmin([self.fits.ahead(states, x) for x in xs], axis=0)
-        ends = self.fits.fitted(states, [xs[i] for i in best])
+        ends = self.fits.fitted(states, [xs[i][k] for k, i in enumerate(best)])
         for mistakes, state, at in zip(several, states, ends, strict=True):
             if at is not None:
                 cost, key = float(at.cost) + MIXED * is_mixed(mistakes), key_of(mistakes)
                 new = Explanation(mistakes, state, at, cost + sum(x.price for x in mistakes))
                 self.known[key] = min(self.known.get(key, new), new, key=COST)
+
+    def _same(self, states: Iterable[State], near: Explanation) -> list[Floats]:
+        """Return x of the same parameters in other states, within the bounds."""
+        theta = near.state.theta(near.point.x)
+        return [np.clip(state.x(theta), *self.fits.ends) for state in states]
 
     def extend(self, old: Explanation) -> None:
         """Fit the most promising explanations with a mistake more."""
@@ -137,13 +144,12 @@ class Search:
         found = [one for some in kinds.values() for one in self._alike(some, setting)]
         states = [one.change(old.state) for one in found]
         # Parameters have made up for mistakes: what one costs where these are says little.
-        costs = self.fits.ahead(states, old.point.x) + [one.price for one in found]
+        costs = self.fits.ahead(states, [old.point.x] * len(states)) + [x.price for x in found]
         claims: dict[tuple[str, ...], list[Mistake]] = {}
         for k in np.argsort(costs, kind="stable").tolist():
             claims.setdefault(found[k].claim, []).append(found[k])
-        some = list(claims.values())[:FITTED]
-        added = [one for variants in some for one in variants[:VARIANTS]]
-        self.fit([(*old.mistakes, one) for one in added], old.point.x)
+        added = [one for some in list(claims.values())[:FITTED] for one in some[:VARIANTS]]
+        self.fit([(*old.mistakes, one) for one in added], old)
 
     def _alike(self, some: list[Mistake], setting: Setting) -> list[Mistake]:
         """Return mistakes; of many, those without which modes are most like those of the model."""
@@ -166,7 +172,7 @@ class Search:
         while True:
             best = min(self.known.values(), key=COST)
             fewer = list(combinations(best.mistakes, max(len(best.mistakes) - 1, 0)))
-            self.fit([some for some in fewer if key_of(some) not in self.known], best.point.x)
+            self.fit([some for some in fewer if key_of(some) not in self.known], best)
             # What one explains may be hidden by another one, so that it is not worth its price.
             alone = [x for x in self.bests().values() if len(x.mistakes) == 1]
             alone = [x for x in alone if x.point.cost < plain.point.cost - LEFT][:BEAM]
@@ -179,9 +185,10 @@ class Search:
                 continue
             # A rival may only have been fitted from where its way is barred.
             rivals = list(self.known.values())
-            costs = self.fits.ahead([each.state for each in rivals], best.point.x)
+            states = [each.state for each in rivals]
+            costs = self.fits.ahead(states, self._same(states, best))
             nearer = costs < np.array([x.point.cost for x in rivals]) - ENOUGH
-            self.fit([rivals[k].mistakes for k in np.flatnonzero(nearer)], best.point.x)
+            self.fit([rivals[k].mistakes for k in np.flatnonzero(nearer)], best)
             if min(self.known.values(), key=COST) is best:
                 return best
 
@@ -254,11 +261,9 @@ def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]
     foreign = {one.subject[0] for one in named if one.kind in FOREIGN}
     # The covariance is of other shapes.
     data = replace(data, frequency=state.frequency, shape=state.shape, shape_covariance=None)
-    f, phi = modes.frequency, (state.rows @ modes.phi)[:, : state.candidates]
-    pairs, mended = (
-        match(each, data, f[: state.candidates], phi)
-        for each in (rule, replace(rule, window=WINDOW))
-    )
+    low, rules = int(state.candidates), (rule, replace(rule, window=WINDOW))
+    f, phi = modes.frequency[:low], (state.rows @ modes.phi)[:, :low]
+    pairs, mended = (match(each, data, f, phi) for each in rules)
     cost, least = (point(state, 0 * state.start, modes, x.index).cost for x in (pairs, mended))
     changed = (pairs.index != mended.index) & (cost > least + CLEAR)
     for r in np.flatnonzero(changed).tolist():

@@ -70,7 +70,7 @@ POWERS = (1, -1, 2, -2, 3, -3, 6, -6, 9, -9)
 
 def frequency_factor(setting: Setting) -> Iterator[Mistake]:
     """Yield known factors on all frequencies, and others that pairs, or modes in order, show."""
-    price, known = one_of(1, len(UNITS)), np.log([factor for factor, _, _ in UNITS])
+    known, price = np.log([factor for factor, _, _ in UNITS]), one_of(OFTEN, len(UNITS))
     found, logs, shown = [(price, *unit) for unit in UNITS], setting.state.logs, set()
     measured, f = np.flatnonzero(np.isfinite(logs)), setting.modes.frequency
     elastic, ascending = np.log(f[f > RIGID * f.max()]), np.sort(logs[measured])
@@ -82,12 +82,11 @@ def frequency_factor(setting: Setting) -> Iterator[Mistake]:
         if np.abs(known - log).min() >= REACH:
             looks = f"stiffness over mass is off by {np.exp(2 * log):.3g}"
             mend = "check units, sections and masses, or the nominal values of the parameters"
-            found.append((3 * price, float(np.exp(log)), looks, mend))
+            found.append((one_of(OFTEN, len(UNITS) ** 3), float(np.exp(log)), looks, mend))
     for price, factor, looks, mend in found:
         numbers = {"factor": factor, "looks": looks, "mend": mend}
         change = changed("frequency", partial(np.multiply, 1 / factor))
-        total = price + one_of(OFTEN, 1)
-        yield Mistake("frequency-factor", ("frequencies",), change, total, numbers)
+        yield Mistake("frequency-factor", ("frequencies",), change, price, numbers)
 
 
 QUANTITIES: Sequence[tuple[str, Callable[[Floats], Floats]]] = (
