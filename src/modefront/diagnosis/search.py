@@ -189,7 +189,7 @@ class Search:
             costs = self.fits.ahead(states, self._same(states, best))
             nearer = costs < np.array([x.point.cost for x in rivals]) - ENOUGH
             self.fit([rivals[k].mistakes for k in np.flatnonzero(nearer)], best)
-            if min(self.known.values(), key=COST) is best:
+            if min(map(COST, self.known.values())) > best.cost - ENOUGH:
                 return best
 
     def bests(self) -> dict[Claims, Explanation]:
