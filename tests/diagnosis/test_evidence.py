@@ -7,14 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.optimize
-import scipy.sparse
 import scipy.stats
 
 from modefront._typing import Floats
-from modefront.data.modal import modal_data
-from modefront.diagnosis.evidence import State, point, quick
-from modefront.diagnosis.measured import SPREAD, Measured, measured, median, scaled
+from modefront.data.modal import ModalData, modal_data
+from modefront.diagnosis.comparison import compare
+from modefront.diagnosis.evidence import Fits, step
+from modefront.diagnosis.state import SPREAD, State, median, scaled
 from modefront.models.chain import chain
+from modefront.residuals.groups import Group
+from modefront.residuals.problem import UpdatingProblem
 
 
 def test_the_cost_of_residuals_is_that_of_students_distribution() -> None:
@@ -39,16 +41,20 @@ def test_medians_pass_over_what_is_not_measured() -> None:
     np.testing.assert_array_equal(median(values), [2.0, 6.0, np.nan, 4.0])
 
 
-def data_of(shapes: Floats) -> Measured:
-    f = np.tile([1.0, 2.0], (len(shapes), 1))
-    return measured(modal_data(f, shapes, ("a", "b", "c")))
+def state_of(shapes: Floats) -> State:
+    f, one = np.tile([1.0, 2.0], (len(shapes), 1)), np.ones(1)
+    data = modal_data(f, shapes, ("a", "b", "c"))
+    places = {"a": 0, "b": 1, "c": 2}
+    model = chain(["k"], [1.0] * 3, [1.0] * 3, stiffness_parameters=["k"] * 3, sensors=places)
+    problem = UpdatingProblem(model, data, (Group("f", frequency="all"),), one / 5, 5 * one, one)
+    return Fits(compare(problem)).plain
 
 
 def test_sets_that_differ_in_scale_and_gaps_have_the_same_shape() -> None:
     shape = np.array([[1.0, 2.0, 3.0], [2.0, 1.0, -2.0]])
     sets = np.array([shape, -3.0 * shape, 0.1 * shape])
     sets[0, 0, 0] = sets[1, 1, 2] = np.nan
-    mean = data_of(sets).mean
+    mean = state_of(sets).mean
     size = np.sqrt((shape**2).mean(axis=1, keepdims=True))
     np.testing.assert_allclose(np.abs(mean), np.abs(shape / size), rtol=1e-3)
 
@@ -57,29 +63,83 @@ def test_noise_between_sets_does_not_depend_on_their_order_or_sign() -> None:
     rng = np.random.default_rng(1)
     shape = np.array([[1.0, 2.0, 3.0], [2.0, 1.0, -2.0]])
     sets = shape + 0.03 * rng.standard_normal((3, 2, 3))
-    noise = data_of(sets).noise
-    assert data_of(-2 * sets[::-1]).noise == pytest.approx(noise, abs=1e-3)
+    noise = state_of(sets).noise
+    assert state_of(-2 * sets[::-1]).noise == pytest.approx(noise, abs=1e-3)
     wrong = sets.copy()
     wrong[1, :, 2] *= -1
-    assert data_of(wrong).noise > noise + 10
+    assert state_of(wrong).noise > noise + 10
+
+
+def fits_of(theta: Floats, scatter: float = 0.0) -> Fits:
+    """Return fits of a chain of six masses to four modes at three parameters."""
+    names = [f"k{1 + i // 2}" for i in range(6)]
+    model = chain(["k1", "k2", "k3"], [1.0] * 6, [100.0] * 6, stiffness_parameters=names)
+    modes, unit = model.modes(theta, 4, derivatives=False), np.ones(3)
+    shape = modes.phi.T + scatter * np.random.default_rng(5).standard_normal((4, 6))
+    data, groups = modal_data(modes.frequency, shape, model.sensors), (Group("f", frequency="all"),)
+    return Fits(compare(UpdatingProblem(model, data, groups, 0.2 * unit, 5 * unit, unit)))
 
 
 def test_a_fit_finds_the_structure_from_which_the_data_come() -> None:
-    names = ("k1", "k2", "k3")
-    model = chain(
-        names, [1.0] * 6, [100.0] * 6, stiffness_parameters=[names[i // 2] for i in range(6)]
-    )
-    theta, unit = np.array([1.2, 0.8, 1.1]), np.ones(3)
-    modes = model.modes(theta, 4, derivatives=False)
-    data = measured(modal_data(modes.frequency, modes.phi.T, model.sensors))
-    state = State(
-        data, np.zeros(4, dtype=bool), 4, model.selection, None, unit, 0.2 * unit, 5 * unit
-    )
-    result = quick(model, model, 4, state).fit(state, unit)
+    theta = np.array([1.2, 0.8, 1.1])
+    fits = fits_of(theta)
+    (result,) = fits.fitted([fits.plain], [np.zeros(3)])
     assert result is not None
-    np.testing.assert_allclose(result.theta, theta, rtol=0.03)
-    selection = model.selection.toarray()
-    selection[2] *= -1
-    reversed_ = replace(state, selection=scipy.sparse.csr_array(selection))
-    whole = model.full_modes(theta, 4).Phi
-    assert point(reversed_, theta, modes.frequency, selection @ whole).cost > result.cost + 10
+    np.testing.assert_allclose(fits.plain.theta(result.x), theta, rtol=0.03)
+    rows = fits.plain.rows.copy()
+    rows[2] *= -1
+    right, reversed_ = fits.ahead(
+        [fits.plain, replace(fits.plain, rows=rows)], [result.x, result.x]
+    )
+    assert right == pytest.approx(result.cost, abs=0.1)
+    assert reversed_ > result.cost + 10
+
+
+def test_parameters_are_the_same_beside_other_nominal_values() -> None:
+    plain = replace(fits_of(np.ones(3)).plain, unit=np.array([0.0, 2.0, 0.0]))
+    x = np.array([0.3, -0.5, 0.1])
+    off = replace(plain, start=np.array([10.0, 0.0, 0.1]))
+    np.testing.assert_allclose(plain.x(plain.theta(x)), x)
+    np.testing.assert_allclose(off.theta(off.x(plain.theta(x))), plain.theta(x))
+
+
+def test_the_cost_ahead_is_between_those_before_and_after_a_step() -> None:
+    """The parabola lies above the cost, as its weights are those of Student's distribution."""
+    fits = fits_of(np.array([1.2, 0.8, 1.1]), 0.05)
+    (best,) = fits.fitted([fits.plain], [np.zeros(3)])
+    assert best is not None
+    (near,) = fits.at([fits.plain], [best.x + np.array([0.1, -0.1, 0.1])])
+    assert near is not None
+    (after,) = fits.at([fits.plain], [near.x + step(near.g, near.H, 0.0)])
+    assert after is not None
+    assert near.cost > after.cost + 0.5
+    assert after.cost < near.ahead < (after.cost + near.cost) / 2
+
+
+def test_explanations_cost_the_same_together_and_alone() -> None:
+    """Several data sets with gaps, and modes without a shape, in one batch."""
+    model = chain(["k"], [1.0] * 6, [100.0] * 6, stiffness_parameters=["k"] * 6)
+    modes, rng = model.modes(np.ones(1), 4, derivatives=False), np.random.default_rng(4)
+    shape = modes.phi.T + 0.03 * rng.standard_normal((3, 4, 6))
+    shape[0, 1, 2] = shape[2, 3, 5] = np.nan
+    f = modes.frequency * np.exp(0.01 * rng.standard_normal((3, 4)))
+    nothing = np.full(f.shape, np.nan)
+    sets = ("1", "2", "3"), (1, 2, 3, 4), model.sensors
+    data = ModalData(*sets, f, nothing, shape, nothing, np.full(shape.shape, np.nan))
+    one, groups = np.ones(1), (Group("f", frequency="all"),)
+    fits = Fits(compare(UpdatingProblem(model, data, groups, 0.2 * one, 5 * one, one)))
+    turned, without = shape * np.array([1.0, 1, 1, -1, 1, 1]), shape.copy()
+    without[:, 1] = np.nan
+    states = [
+        fits.plain,
+        replace(fits.plain, shape=turned),
+        replace(fits.plain, shape=without),
+        replace(fits.plain, start=3 * one),
+    ]
+    xs = [np.full(1, 0.1 * k) for k in range(4)]
+    together = fits.at(states, xs)
+    alone = [fits.at([state], [x])[0] for state, x in zip(states, xs, strict=True)]
+    for name in ("cost", "ahead", "H"):
+        some, others = ([getattr(x, name) for x in many] for many in (together, alone))
+        np.testing.assert_allclose(some, others, rtol=1e-12)
+    assert np.unique([round(float(x.cost), 3) for x in alone if x]).size == 4

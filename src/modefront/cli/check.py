@@ -6,7 +6,6 @@ import numpy as np
 
 from modefront.cli.layout import Screen, number, plural
 from modefront.diagnosis.comparison import Comparison
-from modefront.diagnosis.measured import comac
 from modefront.diagnosis.sensitivity import Sensitivities
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import found
@@ -73,9 +72,9 @@ def _print_modes(screen: Screen, beside: Comparison) -> None:
 
 def _print_sensors(screen: Screen, beside: Comparison, most: int | None) -> None:
     """Print the COMAC of the sensors, of many those of the worst ones."""
-    if not (beside.view.seen.sum(axis=2) > 1).any():
+    if not (np.isfinite(beside.data.shape).sum(axis=2) > 1).any():
         return
-    values = comac(beside.view, beside.phi[:, beside.pairs.index])
+    values = beside.comac
     order = np.argsort(np.where(np.isnan(values), 2.0, values), kind="stable").tolist()
     parts = [f"{beside.data.sensors[s]} {number(values[s], '.4f', 'unknown')}" for s in order]
     rest = [f"{len(parts[most:])} more with --all"] * (most is not None and len(parts) > most)

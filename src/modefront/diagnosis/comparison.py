@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.diagnosis.measured import Measured, measured
+from modefront.diagnosis.state import ratio
 from modefront.errors import ModelError
 from modefront.models.base import full_of, matrices_at
 from modefront.models.matrices import MatrixModel
@@ -50,10 +48,21 @@ class Comparison:
         """The measured modes."""
         return self.problem.data
 
-    @cached_property
-    def view(self) -> Measured:
-        """The measured modes as arrays."""
-        return measured(self.data)
+    @property
+    def comac(self) -> Floats:
+        r"""COMAC of each sensor over the pairs, (sensors,); NaN where not measured.
+
+        .. math::
+            \frac{(\sum_r |\psi_{rs} \varphi_{rs}|)^2}{\sum_r \psi_{rs}^2 \sum_r \varphi_{rs}^2}
+
+        (Lieven & Ewins, 6th International Modal Analysis Conference, 1988).
+        """
+        shape, known, *_ = self.data.measured_shapes
+        both = shape, known * self.phi[:, self.pairs.index].T
+        psi, phi = (ratio(x, np.linalg.norm(x, axis=2, keepdims=True)) for x in both)
+        norm = (psi**2).sum(axis=(0, 1)) * (phi**2).sum(axis=(0, 1))
+        cross = np.abs(psi * phi).sum(axis=(0, 1)) ** 2
+        return np.where(norm > 0, ratio(cross, norm), np.nan)
 
 
 def compare(problem: UpdatingProblem) -> Comparison:
@@ -62,13 +71,13 @@ def compare(problem: UpdatingProblem) -> Comparison:
     Raises ModelError where the model has no modes at its nominal parameters.
     """
     least = modes_needed(problem.pairing, problem.data, problem.model.size)
-    full = full_of(problem.model)
-    matrices = matrices_at(full, problem.start)
-    modes = None
-    with suppress(ModelError):  # there may not be so many
-        count = min(full.size, least + MORE)
-        modes = (matrices or full).modes(problem.start, count, derivatives=False)
-    modes = modes or (matrices or full).modes(problem.start, least, derivatives=False)
+    matrices = matrices_at(problem.model, problem.start)
+    model = matrices or full_of(problem.model)
+    try:
+        count = min(model.size, least + MORE)
+        modes = model.modes(problem.start, count, derivatives=False)
+    except ModelError:  # there are not so many
+        modes = model.modes(problem.start, least, derivatives=False)
     pairs = match(problem.pairing, problem.data, modes.frequency[:least], modes.phi[:, :least])
     return Comparison(problem, modes.frequency, modes.phi, least, pairs, matrices)
 

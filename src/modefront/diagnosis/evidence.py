@@ -1,48 +1,47 @@
-r"""The cost of an explanation: how improbable data and parameters are under it.
+r"""The cost of explanations, many at once: how improbable data and parameters are under each.
 
-Data sets differ from what they have in common by noise (`modefront.diagnosis.measured`), and that
+Data sets differ from what they have in common by noise (`modefront.diagnosis.state`), and that
 differs from the model by what no parameter describes: frequencies by their logarithms, shapes of
-mean square 1, both after `modefront.diagnosis.measured`. The parameters are expected near their
-nominal values, by their logarithms where their bounds are positive. They are fitted by Gauss-Newton
-steps with weights :math:`(\nu + 1) / (\nu + r_k^2 / \sigma^2)`, the pairs taken anew at every step.
+mean square 1, c of the data and beta chi of the model. Mode r of the data and mode q of a model are
+as far apart as
 
-========  ==============================================================================
-symbol    meaning
-========  ==============================================================================
-c         (modes, sensors) shapes that the data sets have in common, of mean square 1
-beta      (modes,) factors that make model shapes of them
-x         (parameters,) logarithms of the parameters, or parameters over their unit
-========  ==============================================================================
+.. math:: c_{rq} = 1 - \mathrm{MAC}_{rq} + \kappa \min(|\ln f_q - \ln \hat f_r|, d).
+
+Shapes alone cannot tell a mode with a reversed sensor from another mode, nor frequencies alone
+which of two close modes is which. The parameters are expected near their nominal values, by their
+logarithms where their bounds are positive. They are fitted by Gauss-Newton steps with weights
+:math:`(\nu + 1) / (\nu + r_k^2 / \sigma^2)`, the pairs taken anew at every step.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import NamedTuple
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse
 
-from modefront._typing import Bools, Floats, Ints
-from modefront.diagnosis.measured import (
-    NOTHING,
-    RIGID,
-    Measured,
-    log_frequencies,
-    loss,
-    mac_values,
-    pair_costs,
-    scaled,
-)
+from modefront._typing import Floats, Ints
+from modefront.diagnosis.comparison import Comparison
+from modefront.diagnosis.state import State, loss, ratio, scaled, stacked
 from modefront.errors import ModelError
-from modefront.linalg.affine import DenseAffine, SparseAffine
+from modefront.linalg.affine import DenseAffine, SparseAffine, first_axis
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
+from modefront.modes.result import Modes
 from modefront.pairing.match import assigned
-from modefront.rounding import ACCUMULATED
+from modefront.residuals.problem import UpdatingProblem
+from modefront.rounding import ACCUMULATED, TINY
+
+RIGID = 1e-6
+"""Share of the greatest frequency below which a mode is a rigid body's: rounding leaves 3e-7."""
+
+KAPPA, FARTHEST = 0.4, 2.5
+"""Cost of a factor e between frequencies, in units of a MAC value, up to the logarithm d."""
 
 OF_PARAMETERS, OF_MODEL = 8.0, 4.0
 """Degrees of freedom nu of parameters, and of what no parameter describes."""
@@ -53,58 +52,137 @@ FREQUENCY, SHAPE = 0.03, 0.08
 OFF = 0.4
 """Scale of the parameters: of their logarithms, or over their unit."""
 
-STEPS, LONGEST, ENOUGH = 10, 0.7, 0.05
-"""Steps of a fit, their longest component, and the decrease of the cost that ends them."""
+WIDER = 4.0
+"""Factor beyond positive bounds up to which fits go, so that no mistake stands for a bound."""
+
+STEPS, LONGEST, ENOUGH, DAMPING = 10, 0.7, 0.05, 1e-3
+"""Steps of a fit, their longest component, the decrease of the cost that ends them, and the share
+of the diagonal of H that is added to it in the first."""
 
 LARGE, SAMPLES = 80, 4
 """Degrees of freedom from which on a model is reduced, and models of its basis beside the nominal
 one."""
 
+KEPT, NUMBERS = 64, 2**22
+"""Models that are kept, as many explanations are compared at the same parameters, and numbers of
+an array of those that are compared at once, which bounds the memory."""
 
-@dataclass(frozen=True, eq=False)
-class State:
-    """Data and model under an explanation.
 
-    Attributes
-    ----------
-    data : the measured modes
-    foreign : (modes,) modes that the model does not have
-    candidates : number of the lowest model modes among which pairs are sought
-    selection : (sensors, N) weights of the degrees of freedom; None for a model without matrices
-    geometry : places and directions of the sensors; None for a model without matrices
-    start, lower, upper : (parameters,) nominal values and bounds
+class Points(NamedTuple):
+    """States at parameters, or one without the axis in front.
+
+    These are x of the parameters, cost C without the price of the explanation, this cost ahead,
+    after a step of a fit with residuals to first order, model mode of each measured one, the MAC of
+    these pairs (NaN without a shape), factors that make model shapes of the measured ones (modes,),
+    scale of the residuals of shapes, gradient (p,) and Gauss-Newton matrix (p, p) of the cost in x.
     """
 
-    data: Measured
-    foreign: Bools
-    candidates: int
-    selection: scipy.sparse.csr_array | None
-    geometry: Geometry | None
-    start: Floats
-    lower: Floats
-    upper: Floats
+    x: Floats
+    cost: Floats
+    ahead: Floats
+    pairs: Ints
+    mac: Floats
+    beta: Floats
+    sigma: Floats
+    g: Floats
+    H: Floats
 
-    @cached_property
-    def is_positive(self) -> Bools:
-        """Which parameters are changed by factors."""
-        return (self.lower > 0) & (self.start > 0)
+    def at(self, k: int) -> Points:
+        """Return one of several states."""
+        return Points(*(each[k] for each in self))
 
-    @cached_property
-    def unit(self) -> Floats:
-        """Units of the other parameters: nominal values, or the ranges where these are 0."""
-        return np.where(self.start != 0, np.abs(self.start), self.upper - self.lower)
 
-    def x(self, theta: Floats) -> Floats:
-        """Return the distance of parameters from the nominal ones in x."""
-        ratio = np.where(self.is_positive, theta / np.where(self.start != 0, self.start, 1.0), 1.0)
-        return np.where(self.is_positive, np.log(ratio), (theta - self.start) / self.unit)
+def step(g: Floats, H: Floats, damping: float) -> Floats:
+    """Return the step of a fit (..., p): that of Gauss and Newton with more of H's diagonal."""
+    diagonal = np.einsum("...ii->...i", H)[..., None] + ACCUMULATED
+    H = H + damping * diagonal * np.eye(g.shape[-1])
+    return np.clip(np.linalg.solve(H, -g[..., None])[..., 0], -LONGEST, LONGEST)
 
-    def theta(self, x: Floats) -> Floats:
-        """Return the parameters at a distance from the nominal ones, within the bounds."""
-        with np.errstate(over="ignore"):
-            factors = np.exp(np.where(self.is_positive, x, 0.0))
-        values = np.where(self.is_positive, self.start * factors, self.start + x * self.unit)
-        return np.clip(values, self.lower, self.upper)
+
+def mac_values(psi: Floats, known: Any, phi: Floats) -> Floats:
+    """Return the MAC of shapes (..., modes, sensors) and a model's, (..., modes, model modes).
+
+    ``phi`` is (..., sensors, model modes). It is NaN with fewer than two known components.
+    """
+    psi = psi * known
+    norm = (psi**2).sum(axis=-1, keepdims=True) * (known @ phi**2)
+    values = ratio((psi @ phi) ** 2, norm)
+    return np.where(known.sum(axis=-1, keepdims=True) < 2, np.nan, values)
+
+
+def pair_costs(mac: Floats, logs: Floats, of_model: Floats) -> Floats:
+    """Return c, (..., modes, model modes), of a MAC and logarithms of frequencies; see above."""
+    distance = np.abs(of_model[..., None, :] - logs[..., None])
+    return np.nan_to_num(1 - mac) + KAPPA * np.nan_to_num(np.minimum(distance, FARTHEST))
+
+
+def log_frequencies(frequency: Floats) -> Floats:
+    """Return logarithms of a model's frequencies; those of rigid-body modes are far below all."""
+    least = RIGID * frequency.max(axis=-1, keepdims=True, initial=0.0)
+    return np.log(np.maximum(frequency, np.maximum(least, TINY)))
+
+
+# More than 60 lines: the cost and its slopes share all residuals.
+def points(state: State, xs: Sequence[Floats], modes: Sequence[Modes], pairs: Any = None) -> Points:
+    """Return states, with an axis in front, each beside modes, with the best or given pairs."""
+    x, frequency = np.stack(xs), np.stack([each.frequency for each in modes])
+    logs, phi = log_frequencies(frequency), state.rows @ np.stack([each.phi for each in modes])
+    known, c, scale = state.known, state.mean, state.motion[:, None]
+    mac = mac_values(c, known, phi)
+    if pairs is None:
+        some = zip(pair_costs(mac, state.logs, logs), state.candidates.tolist(), strict=True)
+        pairs = np.array([assigned(each[:, :count]) for each, count in some])
+    (n, p), k = x.shape, np.arange(len(x))[:, None]
+    f, logs, mac = frequency[k, pairs], logs[k, pairs], mac[k, np.arange(pairs.shape[1]), pairs]
+    used = known & (known.sum(axis=-1, keepdims=True) > 1)
+    chi, weight = used * phi.swapaxes(1, 2)[k, pairs], used / scale**2
+    flat = used.reshape(len(used), -1)
+    for _ in range(3):
+        square = (weight * chi**2).sum(axis=-1, keepdims=True)
+        beta = ratio((weight * chi * c).sum(axis=-1, keepdims=True), square)
+        r_s = used * (beta * chi - c) / scale
+        of_shapes, sigma = scaled(r_s.reshape(flat.shape), SHAPE, OF_MODEL, flat)
+        weight = used / (1 + (r_s / sigma[:, None, None]) ** 2 / OF_MODEL) / scale**2
+    elastic = np.isfinite(state.logs) & (f > RIGID * frequency.max(axis=1)[:, None])
+    r_f = np.where(elastic, logs - state.logs, 0.0)
+    of_frequencies, sigma_f = scaled(r_f, FREQUENCY, OF_MODEL, elastic)
+    prior = loss(x / OFF, OF_PARAMETERS).sum(axis=-1)
+    total = of_shapes + of_frequencies + prior + state.noise
+    unit = np.where(state.unit == 0, state.theta(x), state.unit)[:, None]
+    of_each = list(zip(state.rows, modes, pairs, strict=True))
+    df = np.stack([each.dfrequency[i] for _, each, i in of_each]) * unit
+    dchi = np.stack([first_axis(R, each.dphi[:, i]) for R, each, i in of_each])
+    dr = beta[..., None] * dchi.swapaxes(1, 2) * unit[:, None]
+    square = (weight * chi**2).sum(axis=-1, keepdims=True)
+    along = ratio(np.einsum("brs,brsp->brp", weight * chi, dr), square)
+    dr = used[..., None] * (dr - chi[..., None] * along[:, :, None]) / scale[..., None]
+    of_f, of_s = sigma_f[:, None], sigma[:, None]
+    r = np.concatenate([r_f / of_f, x / OFF, r_s.reshape(flat.shape) / of_s], axis=1)
+    J = [elastic[..., None] * ratio(df, f[..., None]) / of_f[..., None]]
+    J += [np.broadcast_to(np.eye(p) / OFF, (n, p, p)), dr.reshape(n, -1, p) / of_s[..., None]]
+    nu = np.repeat([OF_MODEL, OF_PARAMETERS, OF_MODEL], [each.shape[1] for each in J])
+    w, slopes = (nu + 1) / (nu + r**2), np.concatenate(J, axis=1)
+    g = np.einsum("bmp,bm->bp", slopes, w * r)
+    H = slopes.swapaxes(1, 2) @ (w[..., None] * slopes)
+    dx = step(g, H, DAMPING)[..., None]
+    ahead = total + ((g[..., None] + H @ dx / 2) * dx).sum(axis=(1, 2))
+    return Points(x, total, ahead, pairs, mac, beta[..., 0], sigma, g, H)
+
+
+def point(state: State, x: Floats, modes: Modes, pairs: Ints | None = None) -> Points:
+    """Return one state beside modes, with the best or given pairs."""
+    return points(stacked([state]), [x], [modes], None if pairs is None else pairs[None]).at(0)
+
+
+def unlikeness(states: Sequence[State], modes: Modes) -> Floats:
+    """Return how unlike a model the modes of all data sets are in each of several states.
+
+    Each is compared with the model mode that is nearest to it by c, whatever it was before.
+    """
+    state = stacked(states)
+    mac = mac_values(state.psi, state.seen, state.rows[:, None] @ modes.phi)
+    cost = pair_costs(mac, np.log(state.frequency), log_frequencies(modes.frequency))
+    return np.asarray(cost.min(axis=-1).sum(axis=(-2, -1)))
 
 
 def places(model: MatrixModel) -> Geometry:
@@ -118,178 +196,109 @@ def places(model: MatrixModel) -> Geometry:
     return Geometry(np.zeros((N, 3)), (), motion, greatest, directions)
 
 
-@dataclass(frozen=True, eq=False)
-class Point:
-    """A state at parameters.
+class Fits:
+    """Costs and fits of explanations of a comparison, of which ``plain`` is without mistakes.
 
-    Attributes
-    ----------
-    theta : (parameters,) parameters
-    cost : C, without the price of the explanation
-    index : (modes,) model mode of each measured one
-    beta : (modes,) factors that make model shapes of the measured ones
-    chi : (modes, sensors) shapes of the model at the sensors, 0 where not measured
-    sigma, sigma_f : scales of the residuals of shapes and frequencies
+    A model with matrices is solved at all degrees of freedom, a large one in the space of its modes
+    at some parameters.
     """
 
-    theta: Floats
-    cost: float
-    index: Ints
-    beta: Floats
-    chi: Floats
-    sigma: float
-    sigma_f: float
-
-    def mac(self, data: Measured) -> Floats:
-        """Return the MAC of the pairs, (modes,); NaN without a shape."""
-        values = mac_values(data.mean, data.known, self.chi.T)
-        return np.asarray(np.diag(values))
-
-
-class Whole(NamedTuple):
-    """Frequencies (modes,) in Hz and shapes at all degrees of freedom (N, modes) at parameters.
-
-    Of a model without matrices, shapes at the sensors.
-    """
-
-    theta: Floats
-    frequency: Floats
-    Phi: Floats
-
-
-def point_of(state: State, whole: Whole) -> Point:
-    """Return the state beside a model, with the best pairs."""
-    phi = whole.Phi if state.selection is None else state.selection @ whole.Phi
-    return point(state, whole.theta, whole.frequency, phi)
-
-
-def point(
-    state: State, theta: Floats, frequency: Floats, phi: Floats, index: Ints | None = None
-) -> Point:
-    """Return the state beside a model's frequencies (model modes,) and shapes at the sensors."""
-    data = state.data
-    known = data.known & ~state.foreign[:, None]
-    logs = log_frequencies(frequency)
-    cost = pair_costs(mac_values(data.mean, known, phi), data.logs, logs)
-    cost[state.foreign] = 0.0
-    index = assigned(cost[:, : state.candidates]) if index is None else index
-    used = known & (known.sum(axis=1) > 1)[:, None]
-    chi = np.where(data.known, phi[:, index].T, 0.0)
-    c, weight = data.mean, used / data.motion**2
-    for _ in range(3):
-        square = (weight * chi**2).sum(axis=1)
-        beta = np.divide((weight * chi * c).sum(axis=1), square, where=square > 0, out=0 * square)
-        r = (beta[:, None] * chi - c) / data.motion
-        size = np.abs(r[used])
-        middle = float(np.partition(size, size.size // 2)[size.size // 2]) if size.size else 0.0
-        typical = max(1.5 * middle, SHAPE / 4)
-        weight = used / (1 + (r / typical) ** 2 / OF_MODEL) / data.motion**2
-    of_shapes, sigma = scaled(r[used], SHAPE, OF_MODEL)
-    elastic = ~state.foreign & np.isfinite(data.logs) & (frequency[index] > RIGID * frequency.max())
-    of_frequencies, sigma_f = scaled((logs[index] - data.logs)[elastic], FREQUENCY, OF_MODEL)
-    alone = NOTHING * float(data.known[state.foreign].sum() + state.foreign.sum())
-    prior = loss(state.x(theta) / OFF, OF_PARAMETERS).sum()
-    total = of_shapes + of_frequencies + alone + prior + data.noise
-    return Point(theta, float(total), index, beta, chi, sigma, sigma_f)
-
-
-@dataclass(frozen=True, eq=False)
-class Quick:
-    """A model of which ``count`` modes are quickly solved for, if in a basis (N, n) of modes."""
-
-    model: Model
-    basis: Floats | None
-    count: int
-
-    def everywhere(self, theta: Floats) -> Whole | None:
-        """Return the modes at all degrees of freedom; None where there are none."""
-        with suppress(ModelError):
-            if not isinstance(self.model, MatrixModel):
-                modes = self.model.modes(theta, self.count, derivatives=False)
-                return Whole(theta, modes.frequency, modes.phi)
-            full = self.model.full_modes(theta, self.count)
-            f = np.sqrt(np.maximum(full.lam, 0.0)) / (2 * np.pi)
-            return Whole(theta, f, full.Phi if self.basis is None else self.basis @ full.Phi)
-        return None
-
-    def fit(self, state: State, theta: Floats, steps: int = STEPS) -> Point | None:
-        """Return the point at the end of a fit from ``theta``; None where there are no modes."""
-        ahead = self._linear(state, theta)
-        if ahead is None:
-            return None
-        here, damping = ahead, 1e-3
-        for _ in range(steps):
-            best, g, H = here
-            step = np.linalg.solve(H + damping * np.diag(np.diag(H) + ACCUMULATED), -g)
-            step = np.clip(step, -LONGEST, LONGEST)
-            ahead = self._linear(state, state.theta(state.x(best.theta) + step))
-            if ahead is None or ahead[0].cost > best.cost:
-                damping = max(10 * damping, 0.1)
-                continue
-            here, damping = ahead, damping / 5
-            if best.cost - here[0].cost < ENOUGH:
-                break
-        return here[0]
-
-    def _linear(self, state: State, theta: Floats) -> tuple[Point, Floats, Floats] | None:
-        """Return the point at ``theta`` with gradient and Gauss-Newton matrix of its cost in x."""
-        modes, model = None, self.model
-        if isinstance(model, MatrixModel) and state.selection is not None:
-            rows = state.selection if self.basis is None else state.selection @ self.basis
-            model = replace(model, selection=scipy.sparse.csr_array(rows))
-        with suppress(ModelError):
-            modes = model.modes(theta, self.count)
-        if modes is None or not (np.isfinite(modes.dlam).all() and np.isfinite(modes.dphi).all()):
-            return None
-        at, data = point(state, theta, modes.frequency, modes.phi), state.data
-        unit = np.where(state.is_positive, theta, state.unit)
-        f = modes.frequency[at.index]
-        known = ~state.foreign & np.isfinite(data.logs) & (f > RIGID * modes.frequency.max())
-        used = data.known & ~state.foreign[:, None] & (data.known.sum(axis=1) > 1)[:, None]
-        chi, beta = np.where(used, at.chi, 0.0), at.beta[:, None]
-        dchi = np.where(used.T[..., None], modes.dphi[:, at.index] * unit, 0.0).transpose(1, 0, 2)
-        b = (chi**2).sum(axis=1)[:, None]
-        dbeta = np.einsum("rs,rsj->rj", data.mean - 2 * beta * chi, dchi)
-        dbeta = np.divide(dbeta, b, out=np.zeros(dbeta.shape), where=b > 0)
-        dr = chi[..., None] * dbeta[:, None] + beta[..., None] * dchi
-        sigma = at.sigma * data.motion
-        parts = (
-            (np.log(f[known]) - data.logs[known]) / at.sigma_f,
-            state.x(theta) / OFF,
-            ((beta * chi - data.mean) / sigma)[used],
+    def __init__(self, comparison: Comparison) -> None:
+        problem, matrices, data = comparison.problem, comparison.matrices, comparison.data
+        count = min(problem.model.size, comparison.frequency.size)
+        model: Model = problem.model
+        geometry, rows = None, np.eye(len(data.sensors))
+        basis = rows
+        if matrices is not None:
+            model, basis = in_space_of_modes(matrices, count, problem)
+            geometry, rows = places(matrices), matrices.selection @ basis
+        std = ratio(data.frequency_std, data.frequency)
+        start, ends = problem.start, np.stack([problem.lower, problem.upper])
+        positive, size = ends[0] > 0, np.where(start == 0, ends[1] - ends[0], np.abs(start))
+        logs = np.log(np.where(positive, ends / size, 1.0)) + np.log([[1 / WIDER], [WIDER]])
+        self.ends = np.where(positive, logs, (ends - start) / size)
+        self.plain = State(
+            frequency=data.frequency,
+            damping=data.damping,
+            shape=data.shape,
+            std=np.where(std > 0, std, np.nan),
+            left_out=np.zeros(()),
+            candidates=np.array(comparison.candidates),
+            rows=rows,
+            start=start,
+            unit=np.where(positive, 0.0, size),
+            basis=basis,
+            geometry=geometry,
         )
-        slopes = (
-            modes.dfrequency[at.index[known]] / f[known, None] * unit / at.sigma_f,
-            np.eye(theta.size) / OFF,
-            (dr / sigma[:, None])[used],
-        )
-        nus = OF_MODEL, OF_PARAMETERS, OF_MODEL
-        weights = [(nu + 1) / (nu + r**2) for r, nu in zip(parts, nus, strict=True)]
-        r, J, w = np.concatenate(parts), np.concatenate(slopes), np.concatenate(weights)
-        return at, J.T @ (w * r), J.T @ (w[:, None] * J)
+        self.together = max(1, NUMBERS // (data.shape.size * (1 + len(start))))
+
+        @lru_cache(KEPT)
+        def solved(theta: bytes) -> Modes | None:
+            """Return the modes at parameters; None where there are none."""
+            with suppress(ModelError):
+                modes = model.modes(np.frombuffer(theta), count)
+                known = np.isfinite(modes.dlam).all() and np.isfinite(modes.dphi).all()
+                return modes if known else None
+            return None
+
+        self.modes = solved
+
+    def at(self, states: Sequence[State], xs: Sequence[Floats]) -> list[Points | None]:
+        """Return states at parameters x of each; None where the model has no modes."""
+        out: list[Points | None] = [None] * len(states)
+        tried = (self.modes(each.theta(x).tobytes()) for each, x in zip(states, xs, strict=True))
+        known = [(k, modes) for k, modes in enumerate(tried) if modes]
+        for first in range(0, len(known), self.together):
+            some, modes = zip(*known[first : first + self.together], strict=True)
+            many = points(stacked([states[k] for k in some]), [xs[k] for k in some], modes)
+            for i, k in enumerate(some):
+                out[k] = many.at(i)
+        return out
+
+    def ahead(self, states: Sequence[State], xs: Sequence[Floats]) -> Floats:
+        """Return the costs of states a step from x of each; infinite where no modes are."""
+        return np.array([float(x.ahead) if x else np.inf for x in self.at(states, xs)])
+
+    def fitted(self, states: Sequence[State], xs: Sequence[Floats]) -> list[Points | None]:
+        """Return the points at the end of fits from parameters x; None where there are no modes."""
+        here = self.at(states, xs)
+        damping = {k: DAMPING for k, each in enumerate(here) if each}
+        for _ in range(STEPS):
+            before = [(k, each) for k, each in enumerate(here) if each and k in damping]
+            ahead = [np.clip(x.x + step(x.g, x.H, damping[k]), *self.ends) for k, x in before]
+            ends = self.at([states[k] for k, _ in before], ahead)
+            for (k, old), new in zip(before, ends, strict=True):
+                if new is None or new.cost > old.cost:
+                    damping[k] = max(10 * damping[k], 0.1)
+                    continue
+                here[k] = new
+                damping[k] /= 5
+                if old.cost - new.cost < ENOUGH:
+                    del damping[k]
+        return here
 
 
-def quick(model: Model, matrices: MatrixModel | None, count: int, state: State) -> Quick:
-    """Return a model that is quickly solved: a large one in the space of modes at some parameters.
+def in_space_of_modes(
+    matrices: MatrixModel, count: int, problem: UpdatingProblem
+) -> tuple[MatrixModel, Floats]:
+    """Return a model with all of its coordinates as sensors, and its basis V (N, n).
 
-    ``matrices`` are those that the model has at the nominal parameters of ``state``.
+    A large one is reduced to modes at the nominal parameters and at others by chance.
     """
-    if matrices is None or matrices.size <= max(LARGE, 4 * count):
-        return Quick(model if matrices is None else matrices, None, count)
-    rng = np.random.default_rng(0)
-    factors = np.exp(rng.uniform(-OFF, OFF, (SAMPLES, state.start.size)) * 2)
-    shapes = [matrices.full_modes(state.start, count).Phi]
-    for factor in factors:
-        with suppress(ModelError):
-            theta = np.clip(state.start * factor, state.lower, state.upper)
-            shapes.append(matrices.full_modes(theta, count).Phi)
-    V, size, _ = np.linalg.svd(np.hstack(shapes), full_matrices=False)
-    V = V[:, size > 1e-7 * size[0]]
-    K, M = (_projected(A, V) for A in (matrices.stiffness, matrices.mass))
-    rows = scipy.sparse.csr_array(matrices.selection @ V)
-    return Quick(
-        replace(matrices, selection=rows, stiffness=K, mass=M, outputs={}, base={}), V, count
-    )
+    V, K, M = np.eye(matrices.size), matrices.stiffness, matrices.mass
+    if matrices.size > max(LARGE, 4 * count):
+        logs = np.random.default_rng(0).uniform(-OFF, OFF, (SAMPLES, len(problem.start)))
+        shapes = []
+        for factors in (1.0, *np.exp(2 * logs)):
+            with suppress(ModelError):
+                theta = np.clip(problem.start * factors, problem.lower, problem.upper)
+                shapes.append(matrices.full_modes(theta, count).Phi)
+        V, size, _ = np.linalg.svd(np.hstack(shapes), full_matrices=False)
+        V = V[:, size > 1e-7 * size[0]]
+        K, M = _projected(K, V), _projected(M, V)
+    every = scipy.sparse.eye_array(V.shape[1], format="csr")
+    parts: dict[str, Any] = {"sensors": (), "outputs": {}, "base": {}, "geometry": None}
+    return replace(matrices, selection=every, stiffness=K, mass=M, **parts), V
 
 
 def _projected(A: DenseAffine | SparseAffine, V: Floats) -> DenseAffine:

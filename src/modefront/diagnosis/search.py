@@ -2,33 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
+from operator import attrgetter
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.diagnosis.comparison import Comparison, compare, of_few_sets
-from modefront.diagnosis.evidence import Point, State, Whole, places, point, point_of, quick
+from modefront.diagnosis.comparison import Comparison, of_few_sets
+from modefront.diagnosis.evidence import ENOUGH, Fits, Points, point, unlikeness
 from modefront.diagnosis.mistakes import sensors, values
-from modefront.diagnosis.mistakes.record import TRIED, Mistake, Setting
+from modefront.diagnosis.mistakes.record import Mistake, Setting
+from modefront.diagnosis.state import State
 from modefront.findings.record import Finding, found
 from modefront.pairing.match import match
 
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
-BEAM, FITTED, VARIANTS, MOST = 6, 10, 2, 8
-"""Single mistakes to which others are added, claims by which each explanation is extended, mistakes
-of a claim that are fitted, and most mistakes."""
+PROMISING, FITTED, VARIANTS = 100, 10, 2
+"""Mistakes of each kind of which costs are looked at, claims by which an explanation is extended,
+and mistakes of a claim that are fitted."""
 
-FOLLOWED = 2
-"""Steps of a fit after which mistakes that move the parameters are compared with others."""
-
-KEPT = 16
-"""Models that are kept, as many explanations are compared at the same parameters."""
+BEAM, MOST = 6, 6
+"""Single mistakes to which others are added, before the best explanation is, and most mistakes."""
 
 EITHER = 3
 """Explanations that the data cannot tell apart and that are named nevertheless, at most."""
@@ -38,6 +37,9 @@ WINDOW = 1.5
 
 LEFT = 1.0
 """Difference of costs that fits leave."""
+
+MIXED = CLEAR + LEFT
+"""Price of an explanation in which mistakes are said of values that are moved later."""
 
 SEEN = 0.02
 """Increase of a MAC value that is worth its name."""
@@ -55,15 +57,16 @@ MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
     sensors.wrong_direction,
     sensors.wrong_place,
     values.wrong_nominal_value,
-    values.excluding_bound,
-    values.odd_frequency,
-    values.odd_shape,
+    values.odd_value,
     values.wrong_frequency,
     values.damping_in_percent,
     values.foreign_mode,
     values.later_mode,
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
+
+FOREIGN = ("foreign-mode", "outside-model")
+"""Kinds that leave out all of a mode."""
 
 Claims = frozenset[tuple[str, ...]]
 
@@ -74,7 +77,7 @@ class Explanation:
 
     mistakes: tuple[Mistake, ...]
     state: State
-    point: Point
+    point: Points
     cost: float
 
     @property
@@ -82,152 +85,117 @@ class Explanation:
         """What is claimed."""
         return frozenset(each.claim for each in self.mistakes)
 
-    @property
-    def is_ordered(self) -> bool:
-        """Whether values are moved back to their sensors first, so that others name these."""
-        return not any(b.moves > a.moves for a, b in pairwise(self.mistakes))
 
-    @property
-    def key(self) -> tuple[frozenset[tuple[str, ...]], bool]:
-        """What tells the explanation from others."""
-        return frozenset(each.variant for each in self.mistakes), self.is_ordered
+COST = attrgetter("cost")
 
 
-@dataclass(eq=False)
+def is_mixed(mistakes: Sequence[Mistake]) -> bool:
+    """Return whether values are moved to their sensors after others were said of these."""
+    return any(b.moves > a.moves for a, b in pairwise(mistakes))
+
+
+def key_of(mistakes: Sequence[Mistake]) -> object:
+    """Return what tells an explanation from others."""
+    return frozenset((*each.claim, str(each.numbers)) for each in mistakes), is_mixed(mistakes)
+
+
+def undone(state: State, mistakes: Iterable[Mistake]) -> State:
+    """Return the state without some mistakes."""
+    for each in mistakes:
+        state = each.change(state)
+    return state
+
+
 class Search:
-    """Explanations of a comparison: those ``known`` were fitted, those ``extended`` also added to.
+    """Explanations of a comparison that were fitted, each with its best fit, as ``known``."""
 
-    Each is kept with its best fit; ``plain`` are data and model as they are.
-    """
+    def __init__(self, comparison: Comparison) -> None:
+        self.comparison, self.fits = comparison, Fits(comparison)
+        self.known: dict[object, Explanation] = {}
 
-    comparison: Comparison
-    known: dict[object, Explanation] = field(default_factory=dict)
-    extended: set[object] = field(default_factory=set)
+    def fit(self, several: Sequence[tuple[Mistake, ...]], near: Explanation | None = None) -> None:
+        """Fit explanations by some mistakes each, from the best of nominal and near parameters."""
+        states = [undone(self.fits.plain, mistakes) for mistakes in several]
+        xs = [[np.zeros(len(self.fits.plain.start))] * len(states)]
+        if near:
+            xs += [[near.point.x] * len(states), self._same(states, near)]
+        best = np.argmin([self.fits.ahead(states, x) for x in xs], axis=0)
+        ends = self.fits.fitted(states, [xs[i][k] for k, i in enumerate(best)])
+        for mistakes, state, at in zip(several, states, ends, strict=True):
+            if at is not None:
+                cost, key = float(at.cost) + MIXED * is_mixed(mistakes), key_of(mistakes)
+                new = Explanation(mistakes, state, at, cost + sum(x.price for x in mistakes))
+                self.known[key] = min(self.known.get(key, new), new, key=COST)
 
-    def __post_init__(self) -> None:
-        problem, matrices = self.comparison.problem, self.comparison.matrices
-        count = min(problem.model.size, self.comparison.frequency.size)
-        self.plain = State(
-            self.comparison.view,
-            np.zeros(len(problem.data.modes), dtype=bool),
-            self.comparison.candidates,
-            None if matrices is None else matrices.selection,
-            None if matrices is None else places(matrices),
-            *(problem.start, problem.lower, problem.upper),
-        )
-        self.model = quick(problem.model, matrices, count, self.plain)
-        solve = self.model.everywhere
-        self.whole = lru_cache(KEPT)(lambda theta: solve(np.frombuffer(theta)))
-
-    def fitted(self, mistakes: Sequence[Mistake], starts: Sequence[Floats]) -> Explanation | None:
-        """Return the explanation by some mistakes, after a fit from the best of some parameters."""
-        state = self.plain
-        for each in mistakes:
-            state = each.change(state)
-        starts = [np.clip(theta, state.lower, state.upper) for theta in (state.start, *starts)]
-        costs = [self._cost(state, theta) for theta in starts]
-        at = self.model.fit(state, starts[int(np.argmin(costs))]) if min(costs) < np.inf else None
-        if at is None:
-            return None
-        cost = at.cost + sum(each.price for each in mistakes)
-        new = Explanation(tuple(mistakes), state, at, cost)
-        known = self.known.setdefault(new.key, new)
-        if new.cost < known.cost:
-            self.known[new.key] = new
-        return self.known[new.key]
-
-    def _cost(self, state: State, theta: Floats) -> float:
-        """Return the cost of a state at parameters; infinite where the model has no modes."""
-        whole = self.whole(theta.tobytes())
-        return np.inf if whole is None else point_of(state, whole).cost
+    def _same(self, states: Iterable[State], near: Explanation) -> list[Floats]:
+        """Return x of the same parameters in other states, within the bounds."""
+        theta = near.state.theta(near.point.x)
+        return [np.clip(state.x(theta), *self.fits.ends) for state in states]
 
     def extend(self, old: Explanation) -> None:
         """Fit the most promising explanations with a mistake more."""
-        if old.key in self.extended:
-            return
-        self.extended.add(old.key)
-        thetas = [old.point.theta] if old.mistakes else [old.state.start, old.point.theta]
-        wholes = [x for theta in thetas if (x := self.whole(theta.tobytes())) is not None]
-        points = [point_of(old.state, whole) for whole in wholes]
-        names, parameters = self.comparison.data, self.comparison.problem.model.parameters
-        setting = Setting(old.state, wholes, points, names, parameters)
-        found = [one for find in MISTAKES for one in find(setting) if one.claim not in old.claims]
-        screened = [self._screened((one,), old.state, wholes) for one in found]
-        # Others have made up for a wrong parameter: what it costs where they are says little.
-        order = np.argsort(screened, kind="stable").tolist()
-        moved = [k for k in order if found[k].change(old.state).start is not old.state.start]
-        for k in moved[:TRIED]:
-            screened[k] = self._screened((found[k],), old.state, wholes, FOLLOWED)
+        modes = self.fits.modes(old.state.theta(old.point.x).tobytes())
+        assert modes is not None
+        of, parameters = self.comparison, self.comparison.problem.model.parameters
+        setting = Setting(old.state, old.point, modes, of.frequency, of.data, parameters)
+        kinds = defaultdict(list)
+        for one in (x for find in MISTAKES for x in find(setting) if x.claim not in old.claims):
+            kinds[one.kind].append(one)
+        found = [one for some in kinds.values() for one in self._alike(some, setting)]
+        states = [one.change(old.state) for one in found]
+        # Parameters have made up for mistakes: what one costs where these are says little.
+        costs = self.fits.ahead(states, [old.point.x] * len(states)) + [x.price for x in found]
         claims: dict[tuple[str, ...], list[Mistake]] = {}
-        for k in np.argsort(screened, kind="stable").tolist():
+        for k in np.argsort(costs, kind="stable").tolist():
             claims.setdefault(found[k].claim, []).append(found[k])
-        some = list(claims.values())
-        added: list[tuple[Mistake, ...]] = [
-            (one,) for variants in some[:FITTED] for one in variants[:VARIANTS]
-        ]
-        if not old.mistakes:
-            pairs = list(combinations([variants[0] for variants in some[:TRIED]], 2))
-            costs = [self._screened(pair, old.state, wholes) for pair in pairs]
-            added += [pairs[k] for k in np.argsort(costs, kind="stable")[:FITTED]]
-        for new in added:
-            self.fitted((*old.mistakes, *new), [old.point.theta])
+        added = [one for some in list(claims.values())[:FITTED] for one in some[:VARIANTS]]
+        self.fit([(*old.mistakes, one) for one in added], old)
 
-    def _screened(
-        self, mistakes: Sequence[Mistake], old: State, wholes: Sequence[Whole], steps: int = 0
-    ) -> float:
-        """Return the least cost without more mistakes, at parameters at hand or some steps away."""
-        new = old
-        for each in mistakes:
-            new = each.change(new)
-        price = sum(each.price for each in mistakes)
-        if new.start is old.start:
-            return min(point_of(new, whole).cost for whole in wholes) + price
-        thetas = [new.theta(old.x(whole.theta)) for whole in wholes]
-        costs = [self._cost(new, theta) for theta in thetas]
-        k = int(np.argmin(costs))
-        at = self.model.fit(new, thetas[k], steps) if steps else None
-        return (costs[k] if at is None else at.cost) + price
+    def _alike(self, some: list[Mistake], setting: Setting) -> list[Mistake]:
+        """Return mistakes; of many, those without which modes are most like those of the model."""
+        together = self.fits.together
+        if len(some) <= PROMISING:
+            return some
+        unlike = [
+            unlikeness([x.change(setting.state) for x in some[k : k + together]], setting.modes)
+            for k in range(0, len(some), together)
+        ]
+        costs = np.concatenate(unlike)
+        return [some[k] for k in np.flatnonzero(costs <= np.sort(costs)[PROMISING - 1])]
 
     def best(self) -> Explanation | None:
-        """Return the best explanation, by extending the best ones, and by leaving mistakes out."""
-        plain = self.fitted((), [])
-        if plain is None:
+        """Return the best explanation; the best ones are extended, the first one first."""
+        self.fit([()])
+        if not self.known:
             return None
-        self.extend(plain)
-        least = plain.cost
-        for size in range(1, MOST + 1):
-            of_size = [x for x in self.bests().values() if len(x.mistakes) == size]
-            level = [x for x in of_size if x.point.cost < plain.point.cost - LEFT]
-            if size > 1 and not (level and level[0].cost <= least):
-                break
-            least = min([least, *(each.cost for each in level[:1])])
-            for each in level[: BEAM if size == 1 else 1]:
-                self.extend(each)
+        (plain,), extended = self.known.values(), set[object]()
         while True:
-            best = min(self.known.values(), key=lambda each: each.cost)
-            theta = [best.point.theta]
-            for one in best.mistakes:
-                rest = self.fitted([each for each in best.mistakes if each is not one], theta)
-                if rest is not None:
-                    self.extend(rest)
+            best = min(self.known.values(), key=COST)
+            fewer = list(combinations(best.mistakes, max(len(best.mistakes) - 1, 0)))
+            self.fit([some for some in fewer if key_of(some) not in self.known], best)
+            # What one explains may be hidden by another one, so that it is not worth its price.
+            alone = [x for x in self.bests().values() if len(x.mistakes) == 1]
+            alone = [x for x in alone if x.point.cost < plain.point.cost - LEFT][:BEAM]
+            level = [*(each.mistakes for each in alone), best.mistakes, *fewer]
+            keys = [key_of(some) for some in level if len(some) < MOST]
+            new = [key for key in keys if key in self.known and key not in extended]
+            if new:
+                extended.add(new[0])
+                self.extend(self.known[new[0]])
+                continue
             # A rival may only have been fitted from where its way is barred.
-            for each in list(self.known.values()):
-                inside = np.clip(theta[0], each.state.lower, each.state.upper)
-                if self._cost(each.state, inside) < each.point.cost:
-                    self.fitted(each.mistakes, theta)
-            if min(each.cost for each in self.known.values()) >= best.cost:
-                break
-        ordered = {key: each for key, each in self.known.items() if each.is_ordered}
-        first = min(ordered.values(), key=lambda each: each.cost)
-        if first.cost > best.cost + LEFT:
-            return best
-        self.known = ordered
-        return first
+            rivals = list(self.known.values())
+            states = [each.state for each in rivals]
+            costs = self.fits.ahead(states, self._same(states, best))
+            nearer = costs < np.array([x.point.cost for x in rivals]) - ENOUGH
+            self.fit([rivals[k].mistakes for k in np.flatnonzero(nearer)], best)
+            if min(map(COST, self.known.values())) > best.cost - ENOUGH:
+                return best
 
     def bests(self) -> dict[Claims, Explanation]:
         """Return the best explanation of each set of claims, the best one first."""
         out: dict[Claims, Explanation] = {}
-        for each in sorted(self.known.values(), key=lambda each: each.cost):
+        for each in sorted(self.known.values(), key=COST):
             out.setdefault(each.claims, each)
         return out
 
@@ -235,93 +203,79 @@ class Search:
         """Return the mistakes of the best explanation without which no other one comes near it.
 
         Another one is no rival that has more mistakes and fits no better: all sensors but one
-        reversed are the same as that one, as a mode shape has no sign. Bounds only explain here:
-        whether one is to blame is judged as in a run.
+        reversed are the same as that one, as a mode shape has no sign.
         """
         out, bests, most = {}, self.bests(), best.point.cost - LEFT
-        serious = [
-            each
-            for each in bests.values()
-            if len(each.mistakes) <= len(best.mistakes) or each.point.cost <= most
-        ]
-        for one in [each for each in best.mistakes if each.kind != "bound"]:
-            rivals = [each for each in serious if one.claim not in each.claims]
-            near = [each for each in rivals if each.cost - best.cost < CLEAR]
+        for one in best.mistakes:
             rest = best.claims - {one.claim}
-            swaps = [
-                other
-                for each in near
-                if each.claims > rest and len(each.claims) == len(best.claims)
-                for other in each.mistakes
-                if other.claim not in rest and other.kind != "bound"
+            rivals = [
+                each
+                for each in bests.values()
+                if one.claim not in each.claims
+                and (len(each.mistakes) <= len(best.mistakes) or each.point.cost <= most)
             ]
-            alike = {other.claim for other in swaps}
-            if len(swaps) >= EITHER or not all(each.claims & alike for each in near):
-                continue
-            gain = min((each.cost for each in rivals if not each.claims & alike), default=np.inf)
-            out[one] = replace(
-                one.finding,
-                others=tuple(other.finding for other in swaps),
-                evidence=self._evidence(bests.get(rest, bests[frozenset()]), best),
-                gain=float(gain - best.cost),
-            )
+            swaps = {
+                other.claim: other.finding
+                for each in rivals
+                if each.cost - best.cost < CLEAR
+                and each.claims > rest
+                and len(each.claims) == len(best.claims)
+                for other in each.mistakes
+                if other.claim not in rest
+            }
+            costs = [each.cost for each in rivals if not each.claims & swaps.keys()]
+            gain = min(costs, default=np.inf) - best.cost
+            if len(swaps) < EITHER and gain >= CLEAR:
+                evidence = self._evidence(bests.get(rest, bests[frozenset()]), best)
+                others = tuple(swaps.values())
+                out[one] = replace(one.finding, others=others, evidence=evidence, gain=float(gain))
         return out
 
     def _evidence(self, without: Explanation, best: Explanation) -> str:
         """Return how the MAC value changes that gains most by a mistake, where one does."""
-        before, after = (each.point.mac(each.state.data) for each in (without, best))
-        rise = np.where(best.state.foreign, 0.0, np.nan_to_num(after - before))
-        r = int(np.argmax(rise))
-        if rise[r] < SEEN:
+        before, after = without.point.mac, best.point.mac
+        r = int(np.argmax(np.nan_to_num(after - before)))
+        if not after[r] - before[r] >= SEEN:
             return ""
         mode = self.comparison.data.modes[r]
         return f" (without, MAC {mode} is {after[r]:.2f} after a fit, and not {before[r]:.2f})"
 
 
 def diagnose(comparison: Comparison) -> list[Finding]:
-    """Return the mistakes of a model or its data; of many data sets, some are looked at.
-
-    Pairs are looked at without these mistakes.
-    """
-    comparison = of_few_sets(comparison)
-    search = Search(comparison)
+    """Return the mistakes of a model or its data; of many data sets, some are looked at."""
+    search = Search(of_few_sets(comparison))
     best = search.best()
     if best is None:
         return []
-    named, state = search.named(best), search.plain
-    for one in named:
-        state = one.change(state)
-    if named:
-        problem, model = comparison.problem, comparison.matrices
-        data = replace(comparison.data, frequency=state.data.frequency, shape=state.data.shape)
-        data = replace(data, shape_covariance=None)  # it is of other shapes
-        if model is not None and state.selection is not None:
-            problem = replace(problem, model=replace(model, selection=state.selection))
-        comparison = compare(replace(problem, data=data, start=state.start))
-    return [*named.values(), *distant_pairs(comparison, state)]
+    named = search.named(best)
+    return [*named.values(), *distant_pairs(search, named)]
 
 
-def distant_pairs(comparison: Comparison, state: State) -> Iterator[Finding]:
-    """Yield the pairs of a study that a window mends, where they are clearly better with it."""
-    problem, low = comparison.problem, state.candidates
-    f, phi, rule = comparison.frequency, comparison.phi, problem.pairing
-    if rule.method == "order":
+def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]:
+    """Yield the pairs without some mistakes that a window mends, if they are clearly better."""
+    rule, data, fits = search.comparison.problem.pairing, search.comparison.data, search.fits
+    state = undone(fits.plain, [one for one in named if one.kind not in FOREIGN])
+    modes = fits.modes(state.start.tobytes())
+    if rule.method == "order" or modes is None:
         return
-    pairs, mended = (
-        match(each, problem.data, f[:low], phi[:, :low])
-        for each in (rule, replace(rule, window=WINDOW))
-    )
-    cost, least = (point(state, problem.start, f, phi, x.index).cost for x in (pairs, mended))
-    changed = (pairs.index != mended.index) & ~state.foreign & (cost > least + CLEAR)
+    foreign = {one.subject[0] for one in named if one.kind in FOREIGN}
+    # The covariance is of other shapes.
+    data = replace(data, frequency=state.frequency, shape=state.shape, shape_covariance=None)
+    low, rules = int(state.candidates), (rule, replace(rule, window=WINDOW))
+    f, phi = modes.frequency[:low], (state.rows @ modes.phi)[:, :low]
+    pairs, mended = (match(each, data, f, phi) for each in rules)
+    cost, least = (point(state, 0 * state.start, modes, x.index).cost for x in (pairs, mended))
+    changed = (pairs.index != mended.index) & (cost > least + CLEAR)
     for r in np.flatnonzero(changed).tolist():
         q, near, value = int(pairs.index[r]), int(mended.index[r]), pairs.mac[r]
-        yield found(
-            "distant-pair",
-            str(problem.data.modes[r]),
-            measured=float(np.exp(state.data.logs[r])),
-            model=q + 1,
-            f=float(f[q]),
-            alike="" if np.isnan(value) else f" (MAC {value:.2f})",
-            near=near + 1,
-            there=float(f[near]),
-        )
+        if str(data.modes[r]) not in foreign:
+            yield found(
+                "distant-pair",
+                str(data.modes[r]),
+                measured=float(np.exp(state.logs[r])),
+                model=q + 1,
+                f=float(f[q]),
+                alike="" if np.isnan(value) else f" (MAC {value:.2f})",
+                near=near + 1,
+                there=float(f[near]),
+            )

@@ -171,10 +171,8 @@ def _search(study: Study) -> tuple[float, float] | None:
     ends: list[Solution] = []
     for k in range(TIMED if seconds < WITHIN else 0):
         if sum(spent for spent, _ in found) < WITHIN:
-            edge, theta = (
-                Least(Lexicographic(k % n, sizes), ""),
-                rng.uniform(problem.lower, problem.upper),
-            )
+            edge = Least(Lexicographic(k % n, sizes), "")
+            theta = rng.uniform(problem.lower, problem.upper)
             began = time.process_time()
             start = begin(problem.evaluate(theta, second=True))
             if start.feasible:
