@@ -288,6 +288,7 @@ def test_where_no_start_leads_to_an_edge_the_best_known_models_are_its_place(
         return replace(start, evaluation=replace(start.evaluation, J=np.full(2, np.nan)))
 
     monkeypatch.setattr(Least, "solve", failed)
+    study.write_text(study.read_text().replace("[search]\n", "[search]\nevaluations = 1000\n"))
     status, out, err = modefront_("run", study)
     results = read_dataset(study.with_name("study-results"))
     J, edges = results["objective"].values, results["kind"].values == "edge"

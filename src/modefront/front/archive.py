@@ -63,11 +63,10 @@ class Outcome:
     @property
     def models(self) -> list[Solution]:
         """The models, with the result if it is one of them."""
-        result = self.result if isinstance(self.result, Solution) else None
-        pairs = zip(self.theta, self.J, strict=True)
+        found = self.result if isinstance(self.result, Solution) and self.result.feasible else None
         return [
-            result if result and np.array_equal(result.theta, x) else begin(Evaluation(x, J))
-            for x, J in pairs
+            found if found and np.array_equal(found.theta, x) else begin(Evaluation(x, J))
+            for x, J in zip(self.theta, self.J, strict=True)
         ]
 
 

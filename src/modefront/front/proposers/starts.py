@@ -102,6 +102,11 @@ class Starts:
         """Yield random starts of each of them, until points between the edges are searched."""
         if any(is_along(x.subproblem) for x in state.places):
             return
+        offers = list(self._of_places(state, most))
+        # Of equal chance, the places that have had fewer come first: one without minima waits.
+        yield from sorted(offers, key=lambda offer: self.of(state.places[offer.place]).tries)
+
+    def _of_places(self, state: State, most: int) -> Iterator[Offer]:
         for k, place in enumerate(state.places):
             known = self.of(place)
             chance, tries = known.chance(place, state.tolerance), known.tries
