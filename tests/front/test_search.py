@@ -446,6 +446,16 @@ def test_starts_begin_at_the_problem_s_own_and_cover_each_range_evenly() -> None
     assert (np.sort(cells, axis=0) == np.arange(USUAL)[:, None]).all()
 
 
+def test_a_place_without_minima_does_not_take_the_starts_of_others() -> None:
+    problem = box(many_minima, [-4, -4], [4, 4])
+    state = state_of(problem, anchors(problem), [[0.0, 0.0]])
+    starts = Starts(np.random.default_rng(0))
+    starts.of(state.places[0]).tries = 8
+    places = [offer.place for offer in starts.offers(state, 3)]
+    assert places[-3:] == [0, 0, 0]
+    assert 0 not in places[:-3]
+
+
 def test_starts_find_all_minima_and_then_stop() -> None:
     """The least of two unequal wells, and of a third one, are told apart by their values."""
 
@@ -595,6 +605,20 @@ def test_models_that_cannot_be_evaluated_do_not_compete() -> None:
     assert state.tell(0, before[0], outcome) == 0.0
     assert all(x is place.incumbent for x, place in zip(before, state.places, strict=True))
     assert len(state.archive.models) == 1
+
+
+def test_a_solution_that_failed_is_no_model_of_the_archive() -> None:
+    problem = box(bowls, [-2, -2], [2, 2], 3)
+    theta = np.array([0.3, 0.2])
+
+    def broken(of: Problem) -> Solution:
+        found = of.evaluate(theta)
+        return begin(replace(found, J=np.full(3, np.nan)))
+
+    outcome = recorded(broken, None, problem)
+    assert not outcome.result.feasible
+    (model,) = outcome.models
+    assert model.J == pytest.approx(problem.evaluate(theta).J)
 
 
 @pytest.mark.parametrize(("status", "closed"), [("EXHAUSTED", False), ("CONVERGED", True)])
