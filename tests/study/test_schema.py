@@ -46,12 +46,12 @@ VALUES: list[Any] = [
 """What takes the place of a value."""
 
 UNSAID = {
-    "names of other tables": "the name of (a|what)|names of parameters|a weight above 0, found nothing",
+    "names of other tables": "the name of (a|what)|names of parameters|weight above 0, found nothing",
     "names that repeat": "name once|used once|other members than",
     "files and what is in them": "this column|a quantity|node set of the mesh|nodes from 0",
     "numbers that depend on each other": "as many as|as there are|one a |its bounds|rising|step",
     "numbers in order": "lower <|lowest <",
-    "what the model makes of it": "degrees of freedom from|it follows|structure that|the model uses",
+    "what the model makes of it": "of freedom from|it follows|structure that|the model uses",
     "the rest of the study": "directions of the base|or a parameter|or 'base'",
     "no number": "found nan|nan]",
     "a whole number with a decimal point": r"from .*\.0$|counted from|freedom from 0",
