@@ -46,7 +46,7 @@ VALUES: list[Any] = [
 """What takes the place of a value."""
 
 UNSAID = {
-    "names of other tables": "the name of (a|what)|names of parameters|weight above 0, found nothing",
+    "names of other tables": "the name of (a|what)|names of parameters|above 0, found nothing",
     "names that repeat": "name once|used once|other members than",
     "files and what is in them": "this column|a quantity|node set of the mesh|nodes from 0",
     "numbers that depend on each other": "as many as|as there are|one a |its bounds|rising|step",
