@@ -170,7 +170,10 @@ def run(
             tasks.mkdir(exist_ok=True)
         remove_unfinished(folder, FILE)
         remove_unfinished(tasks)
-        data = done(Store(tasks))
+        try:
+            data = done(Store(tasks))
+        finally:  # an interrupt may come when a file is there and nobody knows of it yet
+            remove_unfinished(tasks)
         if (folder / FILE).is_file() and written_for(folder / FILE) != study.digest:
             _set_aside(folder / FILE)
         write(data, folder / FILE)
