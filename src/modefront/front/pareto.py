@@ -123,7 +123,10 @@ class _Run:
         self.loop.run("edges", EDGES)
         for place in self.places:
             if not place.incumbent.feasible:
-                raise UnfinishedError(f"no minimum of {place.subproblem.key} was found")
+                name = " ".join(str(part) for part in place.subproblem.key if part)
+                raise UnfinishedError(
+                    f"no model was found for {name}: is the model defined between the bounds?"
+                )
         target = self._between(sizes)
         self._complete()
         edges = self._edges()
