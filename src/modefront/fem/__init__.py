@@ -31,6 +31,13 @@ if TYPE_CHECKING:
     from modefront.fem.dofs import Dofs as Dofs
     from modefront.fem.mesh import Mesh as Mesh
     from modefront.fem.mesh import read_mesh as read_mesh
+    from modefront.fem.section import Material as Material
+    from modefront.fem.section import Orthotropic as Orthotropic
+    from modefront.fem.section import Section as Section
+    from modefront.fem.section import circle as circle
+    from modefront.fem.section import hollow_rectangle as hollow_rectangle
+    from modefront.fem.section import rectangle as rectangle
+    from modefront.fem.section import tube as tube
     from modefront.fem.structure import ALL as ALL
     from modefront.fem.structure import DIRECTIONS as DIRECTIONS
     from modefront.fem.structure import Beams as Beams
@@ -39,10 +46,7 @@ if TYPE_CHECKING:
     from modefront.fem.structure import Link as Link
     from modefront.fem.structure import Load as Load
     from modefront.fem.structure import Mass as Mass
-    from modefront.fem.structure import Material as Material
-    from modefront.fem.structure import Orthotropic as Orthotropic
     from modefront.fem.structure import Parameter as Parameter
-    from modefront.fem.structure import Section as Section
     from modefront.fem.structure import Sensor as Sensor
     from modefront.fem.structure import Shells as Shells
     from modefront.fem.structure import Solids as Solids
@@ -50,9 +54,5 @@ if TYPE_CHECKING:
     from modefront.fem.structure import Structure as Structure
     from modefront.fem.structure import Support as Support
     from modefront.fem.structure import Trusses as Trusses
-    from modefront.fem.structure import circle as circle
-    from modefront.fem.structure import hollow_rectangle as hollow_rectangle
-    from modefront.fem.structure import rectangle as rectangle
-    from modefront.fem.structure import tube as tube
 
 __getattr__, __dir__, __all__ = lazy(__name__, __file__)

@@ -22,11 +22,11 @@ from modefront.fem.elements.shell import (
     shell_stresses,
 )
 from modefront.fem.elements.solid import SOLIDS, solid, solid_stresses
+from modefront.fem.section import Material
 from modefront.fem.structure import (
     ALONG,
     Beams,
     Mass,
-    Material,
     Shells,
     Solids,
     Spring,

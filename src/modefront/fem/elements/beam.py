@@ -32,7 +32,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.errors import wrong
 from modefront.fem.elements.common import ElementMatrices, attachment, congruence, symmetric
-from modefront.fem.structure import Material, Section
+from modefront.fem.section import Material, Section
 
 U, V, W, TWIST, PSI_Y, PSI_Z = range(6)
 """Directions of an end in local axes, of which the last two are rotations about y and z."""

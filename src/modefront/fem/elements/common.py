@@ -13,7 +13,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.fem.elements.shapes import Cell, Rule, gradients
-from modefront.fem.structure import Material, Orthotropic
+from modefront.fem.section import Material, Orthotropic
 
 ByPower = dict[int, Floats]
 """Element matrices (elements, dof, dof), symmetric, in global axes, DOFs node by node, by the power

@@ -26,7 +26,7 @@ from modefront.fem.elements import common
 from modefront.fem.elements.membrane import membrane
 from modefront.fem.elements.plate import Elements, Rows, mass, shear_and_bending
 from modefront.fem.elements.shapes import SQUARE_4, TRIANGLE_3, gauss_box
-from modefront.fem.structure import Material, Orthotropic
+from modefront.fem.section import Material, Orthotropic
 
 FOLD = 20.0
 """Angle in degrees between elements from which on they meet in a fold."""
