@@ -1,6 +1,7 @@
 """The commands: what they print, leave behind and return."""
 
 import errno
+import io
 import json
 import os
 import re
@@ -9,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -408,6 +410,21 @@ def test_what_goes_wrong_on_the_way_is_one_message(
     result, out, err = modefront_("run", study)
     assert (result, out) == (status, "")
     assert says in err
+
+
+def test_an_interrupt_that_a_file_turns_into_an_error_is_one(
+    modefront_: Run, study: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def run(*_: object, **__: object) -> None:
+        # Closing the archive raises ValueError, as a file in it is open.
+        with zipfile.ZipFile(io.BytesIO(), "w") as archive:
+            archive.open("theta.npy", "w")
+            signal.raise_signal(signal.SIGTERM)
+
+    monkeypatch.setattr(session, "run", run)
+    status, out, err = modefront_("run", study)
+    assert (status, out) == (130, "")
+    assert err.strip() == "modefront: interrupted; what was done is kept, run again to continue"
 
 
 def test_the_traceback_is_there_for_those_who_ask(

@@ -420,27 +420,29 @@ def export(
 
 
 @contextmanager
-def _signals() -> Iterator[None]:
-    """Let the end of a terminal or of a job interrupt as Ctrl-C does, once.
+def _signals() -> Iterator[list[int]]:
+    """Let the end of a terminal or of a job interrupt as Ctrl-C does, once; yield what came.
 
     What is ignored, as in the background of a shell or under ``nohup``, stays ignored.
     """
+    heard: list[int] = []
     if threading.current_thread() is not threading.main_thread():
-        yield
+        yield heard
         return
     names = ("SIGINT", "SIGTERM", "SIGHUP")
     numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
     before = {x: signal.getsignal(x) for x in numbers if signal.getsignal(x) != signal.SIG_IGN}
 
-    def interrupt(_: int, __: object) -> None:
-        for number in before:
-            signal.signal(number, lambda *_: os._exit(INTERRUPTED))
+    def interrupt(number: int, _: object) -> None:
+        heard.append(number)
+        for each in before:
+            signal.signal(each, lambda *_: os._exit(INTERRUPTED))
         raise KeyboardInterrupt
 
     for number in before:
         signal.signal(number, interrupt)
     try:
-        yield
+        yield heard
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
@@ -455,15 +457,20 @@ def _abandon_output() -> None:
 def main() -> None:
     """Run the command and leave with its exit status; no input produces a traceback."""
     prepare()
-    with _signals():
-        status = _status()
+    with _signals() as heard:
+        status = _status(heard)
     sys.exit(status)
 
 
-def _status() -> int:
+def _status(heard: list[int]) -> int:
     """Run the command and return its exit status."""
     try:
-        cli.main(standalone_mode=False)
+        try:
+            cli.main(standalone_mode=False)
+        except Exception:
+            if heard:  # what an interrupt leaves half open may raise an error of its own
+                raise KeyboardInterrupt from None
+            raise
         if sys.stdout is not None:
             sys.stdout.flush()
         return OK
