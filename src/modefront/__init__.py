@@ -3,8 +3,6 @@
 The public names are imported when they are first used, so that ``import modefront`` is quick.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 from modefront._lazy import lazy

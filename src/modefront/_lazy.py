@@ -1,7 +1,5 @@
 """Names of a package that are imported when they are first used, so that importing it is quick."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from importlib import import_module

@@ -4,8 +4,6 @@ A member is of the package, is added by a call of `modefront.register`, or is br
 installed package as an entry point.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache

@@ -5,8 +5,6 @@ that has no variable of its own name is a scale without values
 (https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html).
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import IO, Any
 

@@ -1,7 +1,5 @@
 """Files that are read: regular ones, whole, of a size that their kind can have."""
 
-from __future__ import annotations
-
 import os
 import re
 import stat

@@ -4,8 +4,6 @@ It imports what readers need once, and reads one file after another; where one e
 another process. Nothing that comes back is unpickled.
 """
 
-from __future__ import annotations
-
 import atexit
 import importlib
 import json

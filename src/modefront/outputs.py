@@ -1,7 +1,5 @@
 """Files that are written: whole or not at all, under another name first, never through a link."""
 
-from __future__ import annotations
-
 import csv
 import io
 import os

@@ -1,7 +1,5 @@
 """Sizes of rounding in double precision that several packages use."""
 
-from __future__ import annotations
-
 TINY = 1e-300
 """Least divisor, in place of zero: below the sizes of all quantities, and no quotient overflows."""
 

@@ -1,7 +1,5 @@
 """Text from files, other programs and users, made fit for terminals and file names, and records."""
 
-from __future__ import annotations
-
 import codecs
 import html
 import re

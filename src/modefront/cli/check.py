@@ -1,7 +1,5 @@
 """Findings of a check as tables and sentences."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from modefront.cli.layout import Screen, number, plural

@@ -1,7 +1,5 @@
 """``modefront identify``: the table of modes, what to look at, and the next command."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path

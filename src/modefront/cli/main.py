@@ -1,7 +1,5 @@
 """The command ``modefront``; what takes long to import is imported where a command needs it."""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys

@@ -1,7 +1,5 @@
 """Progress of a run on standard error: two lines in a terminal, one line a stage in a log."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping

@@ -1,7 +1,5 @@
 """Results and comparisons in the terminal, an overview or full lists, and as JSON."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace

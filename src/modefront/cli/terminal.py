@@ -1,7 +1,5 @@
 """Output to the terminal: in characters that it has, and without control sequences."""
 
-from __future__ import annotations
-
 import io
 import sys
 

@@ -6,8 +6,6 @@ they are no commas, numbers may have decimal commas, as spreadsheets write them.
 without names at the end are left out.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 import re
@@ -25,13 +23,7 @@ from modefront.data.impact import TIME, Blow, Contents
 from modefront.data.modal import ModalData, Pairs
 from modefront.data.responses import Channel
 from modefront.errors import Fault, InputError, reason, refuse, suggestion
-from modefront.inputs import (
-    MOST_DATA,
-    available_memory,
-    ended_column,
-    file_size,
-    wrong,
-)
+from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, wrong
 from modefront.options import mapping, text
 from modefront.outputs import write_table
 from modefront.rounding import LARGEST

@@ -6,8 +6,6 @@ than the resolution of its numbers, is overloaded. A second hit is a push beyond
 peak after the first impact has ended.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal

@@ -10,14 +10,13 @@ to version 7); of the last two, a two-dimensional array whose longer side is tim
 names from the test file.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
+from modefront import options as opt
 from modefront._typing import Floats
 from modefront.data.csv import COLUMNS, read_numbers, read_test_csv, renamed
 from modefront.data.impact import EVEN, TIME, Contents, Functions, Windows, averaged_blows
@@ -27,25 +26,6 @@ from modefront.data.uff import is_universal, read_functions, read_uff
 from modefront.errors import Fault, InputError, noted, refuse, suggestion
 from modefront.inputs import MOST_DATA, file_size, wrong
 from modefront.isolated import Read, isolated
-from modefront.options import (
-    NAME,
-    NOT_NEGATIVE,
-    Requirement,
-    Table,
-    any_of,
-    array,
-    is_name,
-    keys,
-    mapping,
-    number,
-    numbers,
-    one_of,
-    read_toml,
-    repeated,
-    rising,
-    text,
-    whole,
-)
 from modefront.rounding import LARGEST
 
 RECORDED = {"displacement": 0, "velocity": 1, "acceleration": 2}
@@ -222,33 +202,41 @@ MOST_MODES = 200
 """Modes that a test file may ask for."""
 
 FILES, SENSORS, REFERENCES = (
-    Requirement(words, array(NAME, 1), further=lambda names: all(map(is_name, names)))
+    opt.Requirement(
+        words, opt.array(opt.NAME, 1), further=lambda names: all(map(opt.is_name, names))
+    )
     for words in ("a list of files", "a list of names", "one reference a file")
 )
-RATE = number("samples per s, above zero", above=0)
-TAU = number("a time constant in s above zero", above=0)
-CHANNELS = mapping("a table, name = channel", text("node and direction of a channel, such as '1Z'"))
-PLACES = mapping(
+RATE = opt.number("samples per s, above zero", above=0)
+TAU = opt.number("a time constant in s above zero", above=0)
+CHANNELS = opt.mapping(
+    "a table, name = channel", opt.text("node and direction of a channel, such as '1Z'")
+)
+PLACES = opt.mapping(
     "a table, sensor = place",
-    numbers(
+    opt.numbers(
         "x, y, z and a direction that is not zero, six numbers",
-        array({"type": "number"}, 6, 6),
+        opt.array({"type": "number"}, 6, 6),
         lambda six: any(six[3:]),
     ),
 )
-MODES = Requirement("a list of numbers of modes, from 1", array(whole(1, 10**9).schema), tuple)
+MODES = opt.Requirement(
+    "a list of numbers of modes, from 1", opt.array(opt.whole(1, 10**9).schema), tuple
+)
 
-IDENTIFY = keys(
+IDENTIFY = opt.keys(
     (),
-    band=numbers("a band [low, high] in Hz, 0 <= low < high", array(NOT_NEGATIVE, 2, 2), rising),
-    modes=Requirement(
+    band=opt.numbers(
+        "a band [low, high] in Hz, 0 <= low < high", opt.array(opt.NOT_NEGATIVE, 2, 2), opt.rising
+    ),
+    modes=opt.Requirement(
         f"'auto' or a number of modes from 1 to {MOST_MODES}",
-        any_of({"enum": ["auto"]}, whole(1, MOST_MODES).schema),
+        opt.any_of({"enum": ["auto"]}, opt.whole(1, MOST_MODES).schema),
         lambda value: None if value == "auto" else value,
     ),
     keep=MODES,
     drop=MODES,
-    seed=numbers("a list of frequencies in Hz", array(NOT_NEGATIVE)),
+    seed=opt.numbers("a list of frequencies in Hz", opt.array(opt.NOT_NEGATIVE)),
 )
 
 
@@ -306,18 +294,18 @@ def read_test(path: Path) -> ModalTest:
         expected = "a universal file (.uff), a CSV file (.csv) or a test file (.toml)"
         found = "no such file" if not path.exists() else "none of these"
         raise wrong(path, expected, found)
-    data_set = _assembled([contents], known, Table(str(path), "", {}, []))
+    data_set = _assembled([contents], known, opt.Table(str(path), "", {}, []))
     data_set = replace(data_set, warnings=(*notes, *data_set.warnings))
     return ModalTest(path.stem, None, None, (data_set,))
 
 
 def _from_toml(path: Path) -> ModalTest:
-    root, _ = read_toml(path, "a test file")
+    root, _ = opt.read_toml(path, "a test file")
     name, quantity, ambient = path.stem, "", False
     if table := root.table("test", "a table [test]"):
         name = table.text("name", default=None) or name
-        ambient = table.value("kind", one_of("hammer", "ambient"), "hammer") == "ambient"
-        quantity = table.value("quantity", one_of(*RECORDED if ambient else ORDERS), "")
+        ambient = table.value("kind", opt.one_of("hammer", "ambient"), "hammer") == "ambient"
+        quantity = table.value("quantity", opt.one_of(*RECORDED if ambient else ORDERS), "")
         table.close()
     named: dict[str, str] = root.value("sensors", CHANNELS, {})
     channels = {channel.upper().replace("+", ""): sensor for sensor, channel in named.items()}
@@ -350,7 +338,7 @@ def _from_toml(path: Path) -> ModalTest:
     return ModalTest(name, band, modes, data_sets, setups, chosen, places)
 
 
-def _set_tables(root: Table, ambient: bool) -> list[SetFiles]:
+def _set_tables(root: opt.Table, ambient: bool) -> list[SetFiles]:
     out = []
     for position, table in enumerate(root.tables("set", required=True), start=1):
         name = table.text("name", default=str(position)) or str(position)
@@ -360,7 +348,7 @@ def _set_tables(root: Table, ambient: bool) -> list[SetFiles]:
         if ambient:
             rate = table.value("rate", RATE, None)
             sensors = tuple(table.value("sensors", SENSORS, []))
-            for sensor in repeated(sensors):
+            for sensor in opt.repeated(sensors):
                 table.fault("sensors", "each sensor once", f"{sensor!r} twice")
             known = replace(known, rate=rate, sensors=sensors)
         else:
@@ -380,12 +368,12 @@ def _set_tables(root: Table, ambient: bool) -> list[SetFiles]:
             known = replace(known, references=given, decay=1 / tau if tau else 0.0)
         table.close()
         out.append(known)
-    for name in repeated(known.name for known in out):
+    for name in opt.repeated(known.name for known in out):
         root.fault("[[set]]", "a name for each data set", f"{name!r} twice")
     return out
 
 
-def _setups(root: Table, sets: Sequence[SetFiles]) -> tuple[Records, ...]:
+def _setups(root: opt.Table, sets: Sequence[SetFiles]) -> tuple[Records, ...]:
     """Return the records of an ambient test, of which every set is a setup."""
     out = tuple(map(read_records, sets))
     joined_to = set(out[0].sensors)
@@ -398,7 +386,7 @@ def _setups(root: Table, sets: Sequence[SetFiles]) -> tuple[Records, ...]:
     return out
 
 
-def _data_set(root: Table, known: SetFiles) -> DataSet:
+def _data_set(root: opt.Table, known: SetFiles) -> DataSet:
     contents = []
     for file, reference in zip(known.files, known.references, strict=True):
         with noted(root.faults):
@@ -423,7 +411,7 @@ def _contents(path: Path, reference: str, columns: Mapping[str, str]) -> Content
     )
 
 
-def _assembled(contents: Sequence[Contents], known: SetFiles, root: Table) -> DataSet:
+def _assembled(contents: Sequence[Contents], known: SetFiles, root: opt.Table) -> DataSet:
     """Return one data set with the names of the test file, at the side that has the sensors."""
     channels, warnings, decay, force_noise = _functions(contents, known, root)
     responses = {channel.response for channel in channels}
@@ -452,7 +440,7 @@ def _assembled(contents: Sequence[Contents], known: SetFiles, root: Table) -> Da
     return DataSet(known.name, data, (*warnings, *out.warnings))
 
 
-def _functions(contents: Sequence[Contents], known: SetFiles, root: Table) -> Functions:
+def _functions(contents: Sequence[Contents], known: SetFiles, root: opt.Table) -> Functions:
     channels = [channel for content in contents for channel in content.channels]
     blows = [blow for content in contents for blow in content.blows]
     wrong = None

@@ -13,8 +13,6 @@ Format: Structural Dynamics Research Laboratory, University of Cincinnati, *Univ
 Formats*, datasets 15, 55, 58, 58b, 2411 and 2420.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -37,9 +35,6 @@ from modefront.rounding import LARGEST
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
 
-FORCES = (9, 13)
-"""Ordinates of the record of a hammer: a reaction force, and an excitation force."""
-
 CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 
 QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
@@ -57,8 +52,6 @@ OPENING = re.compile(
 )
 HEADER, RECORD_7 = 11, 6
 """Lines of dataset 58 before its numbers; the one with their kind and number, from 0."""
-
-WHAT = "a universal file with frequency response functions or records of blows (dataset 58)"
 
 
 @dataclass(frozen=True)
@@ -128,7 +121,8 @@ class Function:
 
 def read_functions(path: Path) -> list[Function]:
     """Return all datasets 58 of a universal file; raises InputError where it has none."""
-    return _decoded(path, WHAT, 58, {58: _function})[0]
+    what = "a universal file with frequency response functions or records of blows (dataset 58)"
+    return _decoded(path, what, 58, {58: _function})[0]
 
 
 def read_uff(path: Path) -> Contents:
@@ -148,7 +142,8 @@ def read_uff(path: Path) -> Contents:
     # A blow ends where one of its channels comes again, or another force.
     groups: list[dict[str, Function]] = [{}]
     for record in (each for each in functions if each.kind == TIME):
-        key = "" if record.ordinate in FORCES else record.channel.response
+        is_force = record.ordinate in (9, 13)  # a reaction force, an excitation force
+        key = "" if is_force else record.channel.response
         groups += [{}] if key in groups[-1] else []
         groups[-1][key] = record
     if blows := [_blow(group) for group in groups if "" in group and len(group) > 1]:
@@ -366,16 +361,8 @@ def dataset_55(
 SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")
 """Ends of names of universal files."""
 
-CARTESIAN, CYLINDRICAL = 0, 1
-"""Types of coordinate systems."""
-
-MODES = "a universal file with modes (dataset 55)"
-
 REAL = {2: 1, 5: 2}
 """Numbers of a value by the type of data."""
-
-HEAD = 8
-"""Lines of dataset 55 before those of its nodes."""
 
 NAMES = tuple(AXES.values())
 """Directions in the order of the components."""
@@ -410,13 +397,12 @@ class NodalModes:
 
     def local(self, node: int, direction: Floats) -> Floats:
         """Return a direction (6,) of space along the axes of a node, by position."""
-        out = np.concatenate([self.axes[node] @ half for half in (direction[:3], direction[3:])])
-        return np.asarray(np.where(np.abs(out) > 1e-6, out, 0.0))  # less is rounding in the file
+        out = (direction.reshape(2, 3) @ self.axes[node].T).ravel()
+        return np.where(np.abs(out) > 1e-6, out, 0.0)  # less is rounding in the file
 
     def in_space(self, node: int, direction: Floats) -> Floats:
         """Return a direction (6,) along the axes of a node, by position, in space."""
-        halves = (direction[:3], direction[3:])
-        return np.concatenate([half @ self.axes[node] for half in halves])
+        return (direction.reshape(2, 3) @ self.axes[node]).ravel()
 
     @property
     def measured(self) -> tuple[str, ...]:
@@ -434,8 +420,7 @@ class NodalModes:
 
     def at(self, sensors: Mapping[str, tuple[int, Floats]]) -> ModalData:
         """Return the modal data of sensors, each a position among the nodes and a vector (6,)."""
-        columns = [self.along(node, direction) for node, direction in sensors.values()]
-        shape = np.stack(columns, axis=-1)
+        shape = np.stack([self.along(*place) for place in sensors.values()], axis=-1)
         nothing = np.full(shape.shape, np.nan)
         return ModalData(
             *(self.sets, self.modes, tuple(sensors), self.frequency, self.damping, shape),
@@ -475,7 +460,8 @@ def read_uff55(path: Path) -> NodalModes:
     """
     known: dict[int, Callable[[Block], Sequence[Any]]]
     known = {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode}
-    old, new, systems, modes = _decoded(path, MODES, 55, known)
+    what = "a universal file with modes (dataset 55)"
+    old, new, systems, modes = _decoded(path, what, 55, known)
     once(path, "nodes", "each node", (node for node, *_ in old + new))
     return _assembled(path, modes, old + new, dict(systems))
 
@@ -527,7 +513,7 @@ def _mode(block: Block) -> list[_Mode]:
     nodes, values = list[int](), list[list[float]]()
     count = size * REAL[data]
     step = 1 + -(-count // 6)
-    for k in range(HEAD, len(lines), step):
+    for k in range(8, len(lines), step):  # behind the head
         nodes += _integers(lines[k], 1)
         values.append(reals(" ".join(lines[k + 1 : k + step])))
         of_node = f"line {block.line + 2 + k}, dataset 55, node {nodes[-1]}"
@@ -586,10 +572,10 @@ def _systems(block: Block) -> list[tuple[int, System]]:
 def _axes_at(point: Floats, system: System | None) -> Floats:
     """Return the axes (3, 3) of a coordinate system at a point; NaN where they are not known."""
     kind, (*given, origin) = system or (None, np.zeros((4, 3)))
-    if kind not in (CARTESIAN, CYLINDRICAL):
+    if kind not in (0, 1):  # Cartesian and cylindrical ones
         return np.full((3, 3), np.nan)
     axes = np.array(given) / np.linalg.norm(given, axis=1, keepdims=True)
-    if kind == CARTESIAN:
+    if kind == 0:
         return np.asarray(axes)
     x, y, _ = axes @ (point - origin)
     radius = float(np.hypot(x, y))
@@ -641,8 +627,6 @@ def _assembled(
 
 
 def _check_nodes(file: Path, row: _Mode, nodes: Ints) -> None:
-    odd = np.setxor1d(row.nodes, nodes)
-    if odd.size:
+    if (odd := np.setxor1d(row.nodes, nodes)).size:
         expected = "the same nodes in the geometry and in all modes of a data set"
-        found = f"node {odd[0]} in one of them, and not in another"
-        raise wrong(file, expected, found, row.place)
+        raise wrong(file, expected, f"node {odd[0]} in one of them, and not in another", row.place)

@@ -4,8 +4,6 @@ Values along a front have a panel a quantity, as figures 5 to 7 of Christodoulou
 doi:10.1016/j.cma.2008.04.010); neighbours on a front of two objectives are joined.
 """
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Literal

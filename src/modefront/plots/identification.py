@@ -1,7 +1,5 @@
 """Pictures of an identification: poles, mode indicators, synthesised functions, auto-MAC."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Mode shapes of a model: a chain from the side, a mesh in space, components at sensors alone."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any, TypeAlias
 

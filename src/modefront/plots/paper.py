@@ -1,7 +1,5 @@
 """Figures 2 to 7 of Christodoulou et al. (2008, doi:10.1016/j.cma.2008.04.010)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
@@ -13,18 +11,7 @@ from modefront._typing import Floats
 from modefront.datasets import Dataset
 from modefront.errors import Fault, refuse
 from modefront.front.point import front_points
-from modefront.plots.canvas import (
-    COLOURS,
-    COLUMNS,
-    Picture,
-    branches,
-    legend,
-    names_of,
-    panels,
-    plain,
-    single,
-    titled,
-)
+from modefront.plots import canvas
 from modefront.predictions.base import predictions_in
 
 Studies = Sequence[tuple[str, Dataset]]
@@ -40,7 +27,7 @@ EQUAL, OPTIMAL = "P", "*"
 """Marks of the models with equal and with optimal weights."""
 
 
-def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
+def figures(studies: Studies) -> Iterator[tuple[str, canvas.Picture]]:
     """Yield name and figure of each that can be drawn.
 
     Figures 6 and 7 need predictions and are left out without them. Parameters go by their names in
@@ -59,7 +46,7 @@ def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
     refuse(faults)
     yield "figure-2", _fronts(studies)
     yield "figure-3", _planes(studies)
-    names = names_of(studies[0][1], "parameter")
+    names = canvas.names_of(studies[0][1], "parameter")
     curves = [
         [(k, x["theta"].values[:, j]) for k, (_, x) in enumerate(studies)] for j in range(count)
     ]
@@ -102,46 +89,46 @@ def _errors(data: Dataset) -> Floats:
     return error
 
 
-def _fronts(studies: Studies) -> Picture:
+def _fronts(studies: Studies) -> canvas.Picture:
     """Return figure 2: the fronts in the space of errors, with numbers at their points."""
-    figure, axes = single(5.6, 4.2)
+    figure, axes = canvas.single(5.6, 4.2)
     for k, (name, data) in enumerate(studies):
         error = data["error"].values
-        for branch in branches(data):
+        for branch in canvas.branches(data):
             axes.plot(*error[branch].T, "-", color=_colour(k), lw=0.8, alpha=0.6)
         _points(axes, data, error, k, name)
         for number, i in enumerate(front_points(data).tolist(), start=1):
             if number == 1 or number % 5 == 0:
                 marks: dict[str, Any] = {"color": _colour(k), "textcoords": "offset points"}
                 axes.annotate(str(number), error[i].tolist(), (4, 3), fontsize=6.5, **marks)
-    first, second = names_of(studies[0][1], "group")
+    first, second = canvas.names_of(studies[0][1], "group")
     axes.set(xlabel=f"error of {first}, $e_1$", ylabel=f"error of {second}, $e_2$")
     for sign, size, name in ((EQUAL, 8, "equal weights"), (OPTIMAL, 12, "optimal weights")):
         axes.plot([], [], sign, color="0.7", mec="k", mew=0.6, ms=size, ls="", label=name)
-    legend(figure, axes, "outside lower center", min(len(studies) + 2, 4))
+    canvas.legend(figure, axes, "outside lower center", min(len(studies) + 2, 4))
     return figure
 
 
-def _planes(studies: Studies) -> Picture:
+def _planes(studies: Studies) -> canvas.Picture:
     """Return figure 3: the models in the planes of each two parameters."""
-    names = names_of(studies[0][1], "parameter")
+    names = canvas.names_of(studies[0][1], "parameter")
     pairs = list(combinations(range(len(names)), 2)) or [(0, 0)]
-    figure, grid = panels(len(pairs))
+    figure, grid = canvas.panels(len(pairs))
     for axes, (i, j) in zip(grid, pairs, strict=True):
         for k, (name, data) in enumerate(studies):
             _points(axes, data, data["theta"].values[:, [i, j]], k, name)
         axes.set(xlabel=names[i], ylabel=names[j])
-    legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
+    canvas.legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
     return figure
 
 
 def _along(
-    studies: Studies, titles: Sequence[str], curves: Sequence[Curves], columns: int = COLUMNS
-) -> Picture:
+    studies: Studies, titles: Sequence[str], curves: Sequence[Curves], columns: int = canvas.COLUMNS
+) -> canvas.Picture:
     """Return a figure with a panel for each title, of values along the front of some studies."""
-    figure, grid = panels(len(titles), columns)
+    figure, grid = canvas.panels(len(titles), columns)
     for axes, title, chosen in zip(grid, titles, curves, strict=True):
-        titled(axes, title)
+        canvas.titled(axes, title)
         for k, values in chosen:
             name, data = studies[k]
             front, pareto = front_points(data), data["pareto"].values.astype(bool)
@@ -152,12 +139,12 @@ def _along(
             axes.set_xticks([1, *range(5, front.size + 1, 5)])
     for axes in grid[-columns:]:
         axes.set_xlabel("point of the front")
-    legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
+    canvas.legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
     return figure
 
 
 def _colour(k: int) -> str:
-    return COLOURS[k % len(COLOURS)]
+    return canvas.COLOURS[k % len(canvas.COLOURS)]
 
 
 def _points(axes: Axes, data: Dataset, values: Floats, k: int, name: str) -> None:
@@ -174,5 +161,5 @@ def _front(axes: Axes, data: Dataset, values: Floats, k: int, name: str, size: f
     front, pareto = front_points(data), data["pareto"].values.astype(bool)
     marker, colour = MARKERS[k % len(MARKERS)], _colour(k)
     best, others = values[front[pareto[front]]], values[front[~pareto[front]]]
-    axes.plot(*best.T, marker, color=colour, ms=size, ls="", label=plain(name))
+    axes.plot(*best.T, marker, color=colour, ms=size, ls="", label=canvas.plain(name))
     axes.plot(*others.T, marker, mfc="w", mec=colour, ms=size, ls="")

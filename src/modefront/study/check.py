@@ -12,8 +12,6 @@ bounds, or the length of many residuals together, would drown in rounding, and t
 wide ones see no tangent.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -37,12 +35,7 @@ from modefront.findings.knowledge import (
     summaries,
 )
 from modefront.findings.record import Finding, found
-from modefront.identifiability.combinations import (
-    NONE,
-    WEAK,
-    determination,
-    unchanged_groups,
-)
+from modefront.identifiability.combinations import NONE, WEAK, determination, unchanged_groups
 from modefront.inputs import available_memory
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel

@@ -8,8 +8,6 @@ has as many as starts cover together. All else takes searches from known models,
 within the range.
 """
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """A model of results as files, with the study of the results."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

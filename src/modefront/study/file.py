@@ -6,8 +6,6 @@ numbers that depend on each other, names that repeat, and whether a whole number
 decimal point.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,6 +13,7 @@ from dataclasses import MISSING, fields, replace
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
+from modefront import options as opt
 from modefront.data.modal import ModalData
 from modefront.data.uff import SUFFIXES
 from modefront.errors import Fault, InputError, ModelError, refuse, wrong
@@ -28,27 +27,6 @@ from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.model import MEMORY
 from modefront.models.reduced.options import REDUCTION, Reduction
-from modefront.options import (
-    NAME,
-    OPEN,
-    TABLE,
-    Option,
-    Schema,
-    Table,
-    array,
-    chosen,
-    closed,
-    each_once,
-    file_name,
-    names_of,
-    of_options,
-    one_of,
-    options,
-    read_toml,
-    schema_of,
-    table_of,
-    text,
-)
 from modefront.outputs import write_text
 from modefront.pairing.match import Pairing
 from modefront.predictions import CLASSES, Prediction
@@ -64,15 +42,15 @@ from modefront.study.measured import COVARIANCE, FILE, PLACE, READERS, read_data
 from modefront.text import NAME as LENGTH
 from modefront.text import clean
 
-GROUP_NAME = text("the name of the group")
-SCALE = one_of(*get_args(Scale))
+GROUP_NAME = opt.text("the name of the group")
+SCALE = opt.one_of(*get_args(Scale))
 
 OF_OPTIONS: Mapping[str, Any] = {"pairing": Pairing} | {
     each.name: each.default_factory for each in fields(Study) if each.default_factory is not MISSING
 }
 """Tables that are records of options, all of which have defaults."""
 
-Drafts = Sequence[tuple[Table, Prediction]]
+Drafts = Sequence[tuple[opt.Table, Prediction]]
 """Predictions as in their tables, without the defaults that follow from the nominal model."""
 
 
@@ -96,7 +74,7 @@ def load(path: Path | str) -> Study:
     InputError
         With everything that is wrong with the file and the files that it names.
     """
-    root, content = read_toml(Path(path), "a study file")
+    root, content = opt.read_toml(Path(path), "a study file")
     header = root.table("study", "a table [study]")
     of_study = (header and header.read(of_header())) or {}
     names, parameters = read_parameters(root)
@@ -140,7 +118,7 @@ def load(path: Path | str) -> Study:
     return Study(problem, predictions=predictions, origin=origin, **options)
 
 
-def _try_model(root: Table, problem: UpdatingProblem) -> None:
+def _try_model(root: opt.Table, problem: UpdatingProblem) -> None:
     """Note what only an evaluation shows: an indefinite matrix, a parameter without effect."""
     for name in problem.model.unused:
         root.fault(f"[[parameter]] '{name}'", "a parameter that the model uses", "no use of it")
@@ -171,13 +149,13 @@ def _digest(content: bytes, files: Sequence[Path]) -> str:
     return total.hexdigest()
 
 
-def of_header() -> tuple[Option, ...]:
+def of_header() -> tuple[opt.Option, ...]:
     """Return the keys of ``[study]``."""
-    known = {each.name: each for each in (*options(Study), *options(Reduction))}
+    known = {each.name: each for each in (*opt.options(Study), *opt.options(Reduction))}
     return replace(known["name"], required=True, default=None), known["seed"], known["memory"]
 
 
-def read_parameters(root: Table) -> tuple[list[str], tuple[Parameter, ...]]:
+def read_parameters(root: opt.Table) -> tuple[list[str], tuple[Parameter, ...]]:
     """Return the names that tables give to parameters, and the parameters in which all is right."""
     tables = root.tables("parameter", required=True)
     out = []
@@ -185,8 +163,8 @@ def read_parameters(root: Table) -> tuple[list[str], tuple[Parameter, ...]]:
         if table.values.get("name") == "base":
             table.fault("name", "another name: 'base' is the constant term", "'base'")
         out.append(table.record(Parameter))
-    names = names_of(tables)
-    root.note(each_once("[[parameter]]", names))
+    names = opt.names_of(tables)
+    root.note(opt.each_once("[[parameter]]", names))
     read = tuple(parameter for parameter in out if parameter is not None)
     free = {parameter.name for parameter in read if parameter.free}
     for parameter in read:
@@ -198,10 +176,10 @@ def read_parameters(root: Table) -> tuple[list[str], tuple[Parameter, ...]]:
     return names, read
 
 
-def read_model(root: Table, parameters: Sequence[str]) -> tuple[Model | None, Any]:
+def read_model(root: opt.Table, parameters: Sequence[str]) -> tuple[Model | None, Any]:
     """Return the model of a study, None where it has faults, and how far it is reduced."""
     table = root.table("model", "a table [model]")
-    name = table and table.value("kind", one_of(*KINDS))
+    name = table and table.value("kind", opt.one_of(*KINDS))
     if table is None or not name:
         return None, "auto"
     kind = KINDS[name]
@@ -211,17 +189,17 @@ def read_model(root: Table, parameters: Sequence[str]) -> tuple[Model | None, An
     return model, reduction
 
 
-def of_group() -> Iterator[Option]:
+def of_group() -> Iterator[opt.Option]:
     """Yield the keys of ``[[group]]``."""
     meaning = "name of the objective in results"
-    yield Option("name", GROUP_NAME, required=True, meaning=meaning)
+    yield opt.Option("name", GROUP_NAME, required=True, meaning=meaning)
     for name, kind in RESIDUALS.items():
         meaning = f"measured modes whose {kind.plural} count"
-        yield Option(name, MODE_NUMBERS, optional=True, meaning=meaning)
-    yield Option("scale", SCALE, default="measured", meaning="unit of the residuals")
+        yield opt.Option(name, MODE_NUMBERS, optional=True, meaning=meaning)
+    yield opt.Option("scale", SCALE, default="measured", meaning="unit of the residuals")
 
 
-def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
+def read_groups(root: opt.Table, data: ModalData | None) -> tuple[Group, ...]:
     """Return the groups that a study names, those without fault with members that the data have."""
     out: list[Group] = []
     tables = root.tables("group", required=True)
@@ -257,11 +235,11 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
             nouns = " and ".join(kind.plural for kind in RESIDUALS.values())
             expected = f"at most {count} groups, as many as measured {nouns}"
             root.fault("[[group]]", expected, str(len(tables)))
-    root.note([*equal, *each_once("[[group]]", names_of(tables))])
+    root.note([*equal, *opt.each_once("[[group]]", opt.names_of(tables))])
     return tuple(out)
 
 
-def read_weights(root: Table, groups: Sequence[str]) -> tuple[Weighted, ...]:
+def read_weights(root: opt.Table, groups: Sequence[str]) -> tuple[Weighted, ...]:
     """Return the weights that a study gives; no name may be one of the labels of other models."""
     tables = root.tables("weighted", required=False)
     out = []
@@ -270,14 +248,14 @@ def read_weights(root: Table, groups: Sequence[str]) -> tuple[Weighted, ...]:
         if weighted is not None:
             table.note(weighted.faults(groups))
             out.append(weighted)
-        for name in names_of([table]):
+        for name in opt.names_of([table]):
             table.note(label_faults(name, groups))
-    root.note(each_once("[[weighted]]", names_of(tables)))
+    root.note(opt.each_once("[[weighted]]", opt.names_of(tables)))
     return tuple(out)
 
 
 def read_predictions(
-    root: Table, model: Model | None, data: ModalData | None
+    root: opt.Table, model: Model | None, data: ModalData | None
 ) -> tuple[Drafts, float]:
     """Return the predictions that a study asks for, as far as they are right, and their slack."""
     if "predict" not in root.values:
@@ -288,16 +266,16 @@ def read_predictions(
     if table is None:
         return [], 0.0
     slack, names = table.value("slack", SLACK, 0.0), []
-    out: list[tuple[Table, Prediction]] = []
+    out: list[tuple[opt.Table, Prediction]] = []
     for key, prediction_class in CLASSES.items():
         for each in table.tables(key, required=False):
-            names += names_of([each])
+            names += opt.names_of([each])
             prediction = each.record(prediction_class)
             if prediction is not None and model is not None and data is not None:
                 each.note(prediction.faults(model, data))
             out += [] if prediction is None else [(each, prediction)]
     table.close()
-    table.note(each_once("", names))
+    table.note(opt.each_once("", names))
     return out, float(slack or 0.0)
 
 
@@ -313,24 +291,25 @@ DIRECTIVE = f"#:schema {FILE_NAME}\n"
 def study_schema() -> dict[str, Any]:
     """Return the schema, draft 7, with the kinds, methods and predictions that are registered."""
     has_modes = [
-        {"required": [kind], "properties": {kind: {"minItems": 1}}, **OPEN} for kind in RESIDUALS
+        {"required": [kind], "properties": {kind: {"minItems": 1}}, **opt.OPEN}
+        for kind in RESIDUALS
     ]
     meaning = "share by which objectives of models may be greater that count in ranges"
-    slack = Option("slack", SLACK, default=0, meaning=meaning).schema
-    predict = {key: array(schema_of(each), 1) for key, each in CLASSES.items()}
+    slack = opt.Option("slack", SLACK, default=0, meaning=meaning).schema
+    predict = {key: opt.array(opt.schema_of(each), 1) for key, each in CLASSES.items()}
     tables = {
-        "study": of_options(of_header()),
+        "study": opt.of_options(of_header()),
         "data": _data(),
-        "model": chosen("kind", {name: _model(kind) for name, kind in KINDS.items()}),
-        "parameter": array(schema_of(Parameter), 1),
-        "group": array({**of_options(of_group()), "anyOf": has_modes}, 1),
-        "weighted": array(schema_of(Weighted), 1),
-        **{name: schema_of(record) for name, record in OF_OPTIONS.items()},
-        "predict": closed({"slack": slack, **predict}, []),
+        "model": opt.chosen("kind", {name: _model(kind) for name, kind in KINDS.items()}),
+        "parameter": opt.array(opt.schema_of(Parameter), 1),
+        "group": opt.array({**opt.of_options(of_group()), "anyOf": has_modes}, 1),
+        "weighted": opt.array(opt.schema_of(Weighted), 1),
+        **{name: opt.schema_of(record) for name, record in OF_OPTIONS.items()},
+        "predict": opt.closed({"slack": slack, **predict}, []),
     }
     required = ["study", "data", "model", "parameter", "group"]
     head = {"$schema": "http://json-schema.org/draft-07/schema#", "title": "modefront study"}
-    return {**head, **closed(tables, required), **_drawn_to_predict()}
+    return {**head, **opt.closed(tables, required), **_drawn_to_predict()}
 
 
 def as_text() -> str:
@@ -350,42 +329,45 @@ def add_schema(studies: Sequence[Path]) -> Path:
     return path
 
 
-def _data() -> Schema:
+def _data() -> opt.Schema:
     """Return the schema of ``[data]``: only universal files have sensors, only others columns."""
     columns = "name of a column in the file = name of a column of modal data, or of a sensor"
     places = "sensor = node and direction in the file"
-    table = closed(
+    table = opt.closed(
         {
-            "file": {**FILE.described, **file_name([".csv", *SUFFIXES, *READERS], any_case=True)},
+            "file": {
+                **FILE.described,
+                **opt.file_name([".csv", *SUFFIXES, *READERS], any_case=True),
+            },
             "covariance": COVARIANCE.described,
-            "sensors": {"description": places, **table_of(PLACE)},
-            "columns": {"description": columns, **table_of(NAME)},
+            "sensors": {"description": places, **opt.table_of(PLACE)},
+            "columns": {"description": columns, **opt.table_of(opt.NAME)},
         },
         ["file"],
     )
-    universal = {"properties": {"file": file_name(SUFFIXES, any_case=True)}, **OPEN}
-    without: dict[str, Schema] = {
-        "then": {"properties": {"columns": False}, **OPEN},
-        "else": {"properties": {"sensors": False}, **OPEN},
+    universal = {"properties": {"file": opt.file_name(SUFFIXES, any_case=True)}, **opt.OPEN}
+    without: dict[str, opt.Schema] = {
+        "then": {"properties": {"columns": False}, **opt.OPEN},
+        "else": {"properties": {"sensors": False}, **opt.OPEN},
     }
     return {**table, "if": universal, **without}
 
 
-def _model(kind: ModelKind) -> Schema:
+def _model(kind: ModelKind) -> opt.Schema:
     """Return the schema of ``[model]`` of one kind, without the key ``kind``."""
     if kind.table is None:
-        return TABLE
-    known = [x for x in options(Reduction) if x.name == "reduction" and kind.is_reducible]
-    return of_options([*options(kind.table), *known])
+        return opt.TABLE
+    known = [x for x in opt.options(Reduction) if x.name == "reduction" and kind.is_reducible]
+    return opt.of_options([*opt.options(kind.table), *known])
 
 
-def _drawn_to_predict() -> Schema:
+def _drawn_to_predict() -> opt.Schema:
     """Return what a schema says in addition of a study: models are drawn for predictions only."""
-    draws = {"required": ["draws"], "properties": {"draws": {"minimum": 1}}, **OPEN}
+    draws = {"required": ["draws"], "properties": {"draws": {"minimum": 1}}, **opt.OPEN}
     some = {"anyOf": [{"required": [key]} for key in CLASSES]}
     return {
-        "if": {"required": ["uncertainty"], "properties": {"uncertainty": draws}, **OPEN},
-        "then": {"required": ["predict"], "properties": {"predict": some}, **OPEN},
+        "if": {"required": ["uncertainty"], "properties": {"uncertainty": draws}, **opt.OPEN},
+        "then": {"required": ["predict"], "properties": {"predict": some}, **opt.OPEN},
     }
 
 

@@ -19,8 +19,6 @@ at other values, with which the terms are compared. The program also prints freq
 with which those of the imported matrices are compared.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

@@ -1,7 +1,5 @@
 """``[data]``: the measured modes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

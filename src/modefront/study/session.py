@@ -1,7 +1,5 @@
 """A study from its problem to its results, in memory or in a folder."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 from collections.abc import Sequence

@@ -3,8 +3,6 @@
 Fields hold records, arrays, numbers, texts, None, and tuples, lists and dictionaries of these.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import is_dataclass
 from enum import Enum

@@ -5,8 +5,6 @@ stage takes, whatever the others take; a search takes as long as those of edges 
 and as planned before there are many.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping

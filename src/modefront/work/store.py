@@ -4,8 +4,6 @@ There is one small file a task in a folder. It ends with a checksum, which alone
 whole; arrays are stored exactly.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json

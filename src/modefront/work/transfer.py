@@ -4,8 +4,6 @@ An object of a class that is registered by `shared` is replaced by a name. A pro
 know the name says so; the tasks are sent again with all that any process has lacked.
 """
 
-from __future__ import annotations
-
 import io
 import pickle
 import threading

@@ -1,7 +1,5 @@
 """Examples that ``modefront init`` writes: one folder each."""
 
-from __future__ import annotations
-
 from importlib import resources
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Kinds of models that a study file can name, one a file; those of the package are named here."""
 
-from __future__ import annotations
-
 from modefront.families import Family
 from modefront.study.kinds.chain import CHAIN
 from modefront.study.kinds.matrices import MATRICES

@@ -1,7 +1,5 @@
 """``kind = "chain"``: lumped masses and springs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from modefront.models.base import Model

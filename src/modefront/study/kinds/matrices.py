@@ -1,7 +1,5 @@
 """``kind = "matrices"``: K(theta) = base + sum_j c_j(theta) K_j from files, M(theta) likewise."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
@@ -9,6 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 import scipy.sparse
 
+from modefront import options as opt
 from modefront.errors import suggestion
 from modefront.fem.structure import DIRECTIONS
 from modefront.models.base import Model
@@ -17,44 +16,34 @@ from modefront.models.files import READERS, read_matrix
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import DOF, WEIGHTED, common_size, matrices
 from modefront.models.parameters import BASE, exponents_of, form_of
-from modefront.options import (
-    TRUE_OR_FALSE,
-    Checked,
-    Option,
-    Table,
-    any_of,
-    array,
-    closed,
-    entries,
-    file_name,
-    table_of,
-    text,
-)
 from modefront.programs.base import ProgramMesh, read_mesh
 from modefront.study.kinds.sensors import BY_NODE, ModelKind, read_places
 
-FILE = text("the name of a file")
+FILE = opt.text("the name of a file")
 Terms = Mapping[str, dict[str, scipy.sparse.coo_array]]
 
 ALONE = "of the matrix in it; empty for the only one"
 OF_SEVERAL = (
-    Option("file", FILE, required=True),
-    Option("name", text("the name of a matrix in the file"), meaning=ALONE),
+    opt.Option("file", FILE, required=True),
+    opt.Option("name", opt.text("the name of a matrix in the file"), meaning=ALONE),
 )
 """Keys of one of the matrices in a file."""
 
-MATRIX = file_name(READERS)
-ONE_OF_SEVERAL = closed({"file": MATRIX, "name": OF_SEVERAL[1].schema}, ["file"])
-TERMS = entries("a table of files", table_of(any_of(MATRIX, ONE_OF_SEVERAL), 1))
-PLACES = entries("a table, name = place", table_of(any_of(WEIGHTED, BY_NODE), 1))
-OUTPUTS = entries("a table, name = place", table_of(any_of(WEIGHTED, BY_NODE)))
-MOVING = any_of(
-    WEIGHTED, array(DOF, 1), BY_NODE, closed({"direction": {"enum": [*DIRECTIONS]}}, ["direction"])
+MATRIX = opt.file_name(READERS)
+ONE_OF_SEVERAL = opt.closed({"file": MATRIX, "name": OF_SEVERAL[1].schema}, ["file"])
+TERMS = opt.entries("a table of files", opt.table_of(opt.any_of(MATRIX, ONE_OF_SEVERAL), 1))
+PLACES = opt.entries("a table, name = place", opt.table_of(opt.any_of(WEIGHTED, BY_NODE), 1))
+OUTPUTS = opt.entries("a table, name = place", opt.table_of(opt.any_of(WEIGHTED, BY_NODE)))
+MOVING = opt.any_of(
+    WEIGHTED,
+    opt.array(DOF, 1),
+    BY_NODE,
+    opt.closed({"direction": {"enum": [*DIRECTIONS]}}, ["direction"]),
 )
 
 
 @dataclass(frozen=True)
-class Matrices(Checked):
+class Matrices(opt.Checked):
     """Matrices from files: K = base + sum_j c_j K_j, M likewise; c_j is a parameter or a product.
 
     Attributes
@@ -77,16 +66,17 @@ class Matrices(Checked):
     stiffness: Annotated[Mapping[str, Any], TERMS]
     mass: Annotated[Mapping[str, Any], TERMS]
     sensors: Annotated[Mapping[str, Any], PLACES]
-    dofs: Annotated[str, text("the name of a table of degrees of freedom")] | None = None
-    mesh: Annotated[str, text("the name of a file of nodes and elements")] | None = None
-    floating: Annotated[bool, TRUE_OR_FALSE] = False
+    dofs: Annotated[str, opt.text("the name of a table of degrees of freedom")] | None = None
+    mesh: Annotated[str, opt.text("the name of a file of nodes and elements")] | None = None
+    floating: Annotated[bool, opt.TRUE_OR_FALSE] = False
     outputs: Annotated[Mapping[str, Any], OUTPUTS] | None = None
     base: (
-        Annotated[Mapping[str, Any], entries("a table of directions", table_of(MOVING))] | None
+        Annotated[Mapping[str, Any], opt.entries("a table of directions", opt.table_of(MOVING))]
+        | None
     ) = None
 
 
-def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
+def read_matrices(table: opt.Table, parameters: Sequence[str]) -> Model | None:
     """Return the model that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
     read = table.record(Matrices)
@@ -111,7 +101,9 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     return replace(model, geometry=_geometry(dofs, mesh, model.selection))
 
 
-def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy.sparse.coo_array]:
+def _terms(
+    model: opt.Table, key: str, parameters: Sequence[str]
+) -> dict[str, scipy.sparse.coo_array]:
     """Return the matrices of one table that can be read, by their names."""
     expected = f"a table of files, {BASE} = ... and one a parameter"
     table = model.table(key, expected)
@@ -158,7 +150,7 @@ def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_arr
     return Geometry(mesh.coordinates, cells, motion[translations.ravel()], nodes, directions)
 
 
-def _size(model: Table, terms: Terms, parameters: Sequence[str]) -> int | None:
+def _size(model: opt.Table, terms: Terms, parameters: Sequence[str]) -> int | None:
     """Return N, None without matrices; note where they, or degrees of freedom, are not right."""
     size, faults = common_size(parameters, {name: known for name, known in terms.items() if known})
     model.note(faults)

@@ -3,13 +3,12 @@
 Each key of a table of members is the argument of a class of `modefront.fem`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from modefront import fem
+from modefront import options as opt
 from modefront.data.csv import is_reserved
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
@@ -17,36 +16,7 @@ from modefront.fem.structure import NODES, VECTOR, Group
 from modefront.findings.record import Finding, found
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
-from modefront.options import (
-    TABLE,
-    TRUE_OR_FALSE,
-    Checked,
-    Option,
-    Requirement,
-    Table,
-    any_of,
-    array,
-    chosen,
-    closed,
-    entries,
-    is_name,
-    keys,
-    number,
-    numbers,
-    of_options,
-    one_of,
-    options,
-    schema_of,
-    table_of,
-    text,
-    whole,
-)
-from modefront.study.kinds.sensors import (
-    ORIENTED,
-    ModelKind,
-    from_zero,
-    read_directions,
-)
+from modefront.study.kinds.sensors import ORIENTED, ModelKind, from_zero, read_directions
 
 SHAPES: Mapping[str, Callable[..., fem.Section]] = {
     "rectangle": fem.rectangle,
@@ -58,16 +28,16 @@ SHAPES: Mapping[str, Callable[..., fem.Section]] = {
 """What makes a section of each shape."""
 
 
-def _section(group: Table, key: str) -> fem.Section | None:
+def _section(group: opt.Table, key: str) -> fem.Section | None:
     table = group.table(key)
-    shape = table and table.value("shape", one_of(*SHAPES))
+    shape = table and table.value("shape", opt.one_of(*SHAPES))
     return table.record(SHAPES[shape]) if table and shape else None
 
 
-SECTION = Requirement(
+SECTION = opt.Requirement(
     "a table with shape = " + ", ".join(SHAPES),
-    TABLE,
-    entries=chosen("shape", {shape: schema_of(make) for shape, make in SHAPES.items()}),
+    opt.TABLE,
+    entries=opt.chosen("shape", {shape: opt.schema_of(make) for shape, make in SHAPES.items()}),
     read=_section,
 )
 
@@ -96,41 +66,45 @@ NAMED_KINDS = ("group", "spring", "mass", "load")
 """Tables whose entries have names that parameters scale."""
 
 PLACED = {
-    "node": whole(0, 10**9),
-    "at": numbers("3 coordinates", VECTOR),
-    "tolerance": number("a distance above 0", above=0),
+    "node": opt.whole(0, 10**9),
+    "at": opt.numbers("3 coordinates", VECTOR),
+    "tolerance": opt.number("a distance above 0", above=0),
 }
 """Keys of a sensor besides its direction; one of the first two says where it is."""
 
-OF_GROUP = keys(
-    ["name", "material"], name=text("the name of a group of cells"), material=text("a material")
+OF_GROUP = opt.keys(
+    ["name", "material"],
+    name=opt.text("the name of a group of cells"),
+    material=opt.text("a material"),
 )
-OF_BEAMS = keys(["section"], section=SECTION)
+OF_BEAMS = opt.keys(["section"], section=SECTION)
 
 
-def _of_group(kind: Kind) -> list[Option]:
-    return [*OF_GROUP, *OF_BEAMS * (kind == "beam"), *options(ELEMENTS[kind])]
+def _of_group(kind: Kind) -> list[opt.Option]:
+    return [*OF_GROUP, *OF_BEAMS * (kind == "beam"), *opt.options(ELEMENTS[kind])]
 
 
-def _tables(kind: str) -> Requirement:
-    return entries(f"tables [[model.{kind}]]", array(schema_of(MEMBERS[kind]), 1))
+def _tables(kind: str) -> opt.Requirement:
+    return opt.entries(f"tables [[model.{kind}]]", opt.array(opt.schema_of(MEMBERS[kind]), 1))
 
 
-MATERIALS = entries(
+MATERIALS = opt.entries(
     "a table of materials, name = { E, nu, rho }",
-    table_of(any_of(schema_of(fem.Material), schema_of(fem.Orthotropic)), 1),
+    opt.table_of(opt.any_of(opt.schema_of(fem.Material), opt.schema_of(fem.Orthotropic)), 1),
 )
-GROUPS = {kind: of_options(_of_group(kind)) for kind in ELEMENTS}
+GROUPS = {kind: opt.of_options(_of_group(kind)) for kind in ELEMENTS}
 PLACES = {
-    **closed({key: each.described for key, each in PLACED.items()} | ORIENTED, ["direction"]),
+    **opt.closed({key: each.described for key, each in PLACED.items()} | ORIENTED, ["direction"]),
     "oneOf": [{"required": ["node"]}, {"required": ["at"]}],
 }
-SCALES = entries("a table, parameter = { quantity, of }", table_of(schema_of(fem.Parameter)))
+SCALES = opt.entries(
+    "a table, parameter = { quantity, of }", opt.table_of(opt.schema_of(fem.Parameter))
+)
 
 
 # 13 fields: the tables of a structure.
 @dataclass(frozen=True)
-class MeshModel(Checked):
+class MeshModel(opt.Checked):
     """Finite elements on a mesh from a file that meshio reads.
 
     Attributes
@@ -151,14 +125,17 @@ class MeshModel(Checked):
     scale : parameter = `{ quantity, of }`: what each parameter scales
     """
 
-    file: Annotated[str, text("the name of a mesh file")]
+    file: Annotated[str, opt.text("the name of a mesh file")]
     material: Annotated[Mapping[str, Any], MATERIALS]
     group: Annotated[
-        Sequence[Any], entries("tables [[model.group]]", array(chosen("elements", GROUPS), 1))
+        Sequence[Any],
+        opt.entries("tables [[model.group]]", opt.array(opt.chosen("elements", GROUPS), 1)),
     ]
-    sensors: Annotated[Mapping[str, Any], entries("a table of sensors", table_of(PLACES, 1))]
+    sensors: Annotated[
+        Mapping[str, Any], opt.entries("a table of sensors", opt.table_of(PLACES, 1))
+    ]
     scale: Annotated[Mapping[str, Any], SCALES]
-    floating: Annotated[bool, TRUE_OR_FALSE] = False
+    floating: Annotated[bool, opt.TRUE_OR_FALSE] = False
     support: Annotated[Sequence[Any], _tables("support")] = ()
     spring: Annotated[Sequence[Any], _tables("spring")] = ()
     mass: Annotated[Sequence[Any], _tables("mass")] = ()
@@ -166,7 +143,7 @@ class MeshModel(Checked):
     coupling: Annotated[Sequence[Any], _tables("coupling")] = ()
     load: Annotated[Sequence[Any], _tables("load")] = ()
     outputs: (
-        Annotated[Mapping[str, Any], entries("a table of outputs", table_of(PLACES))] | None
+        Annotated[Mapping[str, Any], opt.entries("a table of outputs", opt.table_of(PLACES))] | None
     ) = None
 
 
@@ -175,7 +152,7 @@ def listed(value: object) -> list[Any]:
     return value if isinstance(value, list) else [value]
 
 
-def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
+def read_mesh_model(table: opt.Table, parameters: Sequence[str]) -> Model | None:
     """Return the model that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
     read, mesh = table.record(MeshModel), table.content("file", read_mesh)
@@ -183,7 +160,7 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
         return None
     count, used = len(mesh.nodes), set[str]()
 
-    def nodes(member: Table, key: str) -> list[int] | int:
+    def nodes(member: opt.Table, key: str) -> list[int] | int:
         """Return nodes: one, or those of a list of nodes and of groups or node sets of the mesh."""
         out: dict[int, None] = {}
         before = len(table.faults)
@@ -204,7 +181,8 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
     members: dict[str, list[Any]] = {}
     for kind, make in MEMBERS.items():
         known = [
-            replace(x, requirement=on_mesh) if x.requirement is NODES else x for x in options(make)
+            replace(x, requirement=on_mesh) if x.requirement is NODES else x
+            for x in opt.options(make)
         ]
         found = [member.read(known) for member in table.tables(kind, required=False)]
         with table.noting(kind):
@@ -235,7 +213,7 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
     return None
 
 
-def _groups(model: Table, mesh: Mesh) -> list[Group]:
+def _groups(model: opt.Table, mesh: Mesh) -> list[Group]:
     """Return the blocks of all groups; one group may have cells of several types."""
     out: list[Group] = []
     materials = {
@@ -247,12 +225,12 @@ def _groups(model: Table, mesh: Mesh) -> list[Group]:
     declared = model.values.get("material")  # those with faults too, which are said there
     name_of, material_of = OF_GROUP
     if isinstance(declared, dict) and declared:
-        material_of = replace(material_of, requirement=one_of(*declared))
+        material_of = replace(material_of, requirement=opt.one_of(*declared))
     for group in model.tables("group", required=True):
-        kind: Kind | None = group.value("elements", one_of(*ELEMENTS))
+        kind: Kind | None = group.value("elements", opt.one_of(*ELEMENTS))
         own = _of_group(kind)[2:] if kind else ()
         values, name = group.read([name_of, material_of, *own]), group.values.get("name")
-        if kind is None or not is_name(name):
+        if kind is None or not opt.is_name(name):
             continue
         with group.noting("name"):
             blocks = mesh.cells_of(str(name), kind)
@@ -263,7 +241,7 @@ def _groups(model: Table, mesh: Mesh) -> list[Group]:
     return out
 
 
-def _places(model: Table, key: str) -> list[fem.Sensor]:
+def _places(model: opt.Table, key: str) -> list[fem.Sensor]:
     """Return sensors; one with a list of directions becomes as many, NAMEx, NAMEy and so on."""
     out: list[fem.Sensor] = []
     required = key == "sensors"
@@ -287,13 +265,13 @@ def _places(model: Table, key: str) -> list[fem.Sensor]:
     return out
 
 
-def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:
+def _scales(model: opt.Table, parameters: Sequence[str]) -> list[fem.Parameter]:
     out: list[fem.Parameter] = []
     for name, scale in model.entries("scale", "a table { quantity = ..., of = [...] }"):
         if name not in parameters:
             expected, found = "the name of a parameter", suggestion(name, parameters)
             model.fault(f"scale {name}", expected, found)
-        elif values := scale.read(options(fem.Parameter)):
+        elif values := scale.read(opt.options(fem.Parameter)):
             out.append(fem.Parameter(name, **values))
     return out
 

@@ -1,30 +1,18 @@
 """Sensors in a study file: degrees of freedom, weighted or not, or a node and a direction."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from operator import itemgetter
 from typing import Any
 
+from modefront import options as opt
 from modefront.data.csv import is_reserved
 from modefront.fem.check import axes_of, unit_vector
 from modefront.fem.structure import AXES, DIRECTION, DIRECTIONS, NAMED
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable
 from modefront.models.matrices import DOF, WEIGHTED, SensorSpec
-from modefront.options import (
-    Requirement,
-    Table,
-    any_of,
-    array,
-    closed,
-    fits,
-    is_name,
-    shown,
-    whole,
-)
 
 
 @dataclass(frozen=True)
@@ -42,21 +30,21 @@ class ModelKind:
     """
 
     name: str
-    read: Callable[[Table, Sequence[str]], Model | None]
+    read: Callable[[opt.Table, Sequence[str]], Model | None]
     is_reducible: bool = True
     table: Callable[..., Any] | None = None
 
 
-SEVERAL = Requirement(
+SEVERAL = opt.Requirement(
     "a list of different ones of " + ", ".join(NAMED),
-    array({"enum": NAMED}, 1, once=True),
+    opt.array({"enum": NAMED}, 1, once=True),
     further=lambda x: len({y.removeprefix("-") for y in x}) == len(x),
 )
-ORIENTED = {"direction": any_of(DIRECTION.schema, SEVERAL.schema), "axes": AXES.schema}
+ORIENTED = {"direction": opt.any_of(DIRECTION.schema, SEVERAL.schema), "axes": AXES.schema}
 """Keys that say along which directions sensors measure at a node."""
 
-NODE = whole(1, 2**62)
-BY_NODE = closed({"node": NODE.schema} | ORIENTED, ["node", "direction"])
+NODE = opt.whole(1, 2**62)
+BY_NODE = opt.closed({"node": NODE.schema} | ORIENTED, ["node", "direction"])
 
 
 def from_zero(what: str, count: int, found: int) -> str:
@@ -64,7 +52,7 @@ def from_zero(what: str, count: int, found: int) -> str:
     return f"{what} from 0 to {count - 1}" + " (they are counted from 0)" * (found == count)
 
 
-def read_directions(place: Table) -> list[tuple[str, Any]]:
+def read_directions(place: opt.Table) -> list[tuple[str, Any]]:
     """Return the directions of a sensor in the axes of the model, with what each adds to its name.
 
     A list of named directions makes as many sensors: NAMEx, NAMEy and so on. With ``axes`` they are
@@ -97,7 +85,7 @@ EXPECTED = {
 
 # 6 arguments: the table, the model's size and nodes, and what differs between the tables.
 def read_places(
-    model: Table,
+    model: opt.Table,
     key: str,
     size: int | None,
     dofs: DofTable | None = None,
@@ -120,7 +108,7 @@ def read_places(
 
     def is_right(name: str, place: str) -> bool:
         reserved = key == "sensors" and is_reserved(name, table.values)
-        if wrong := not is_name(name) or name != name.strip() or reserved:
+        if wrong := not opt.is_name(name) or name != name.strip() or reserved:
             table.fault(place, "a name that a column of the data can have", repr(name))
         return not wrong
 
@@ -128,33 +116,33 @@ def read_places(
     for name, value in table.values.items():
         if not is_right(name, repr(name)):
             continue
-        pairs = [[value, 1.0]] if fits(value, DOF) else value
-        if key == "base" and isinstance(value, list) and all(fits(dof, DOF) for dof in value):
+        pairs = [[value, 1.0]] if opt.fits(value, DOF) else value
+        if key == "base" and isinstance(value, list) and all(opt.fits(dof, DOF) for dof in value):
             pairs = [[dof, 1.0] for dof in value]
         elif key == "base" and dofs and value in [{"direction": each} for each in DIRECTIONS]:
             pairs = [list(pair) for pair in dofs.of_direction(value["direction"])]
         elif isinstance(value, dict) and {"node", "direction"} & value.keys():
             out |= {x: y for x, y in _by_node(table, name, dofs).items() if is_right(x, name)}
             continue
-        if not fits(pairs, WEIGHTED):
+        if not opt.fits(pairs, WEIGHTED):
             expected = "a degree of freedom from 0, or a list [[degree of freedom, weight], ...]"
-            table.fault(name, expected, shown(value))
+            table.fault(name, expected, opt.shown(value))
         elif beyond := [dof for dof, _ in pairs if size is not None and dof >= size]:
             expected = from_zero("degrees of freedom", size or 0, max(beyond))
             table.fault(name, expected, ", ".join(map(str, beyond)))
         elif not any(sum(w for _, w in of) for _, of in groupby(sorted(pairs), itemgetter(0))):
-            table.fault(name, "weights that do not cancel", shown(pairs))
+            table.fault(name, "weights that do not cancel", opt.shown(pairs))
         else:
             out[name] = [(int(dof), float(weight)) for dof, weight in pairs]
     return out
 
 
-def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, SensorSpec]:
+def _by_node(table: opt.Table, name: str, dofs: DofTable | None) -> dict[str, SensorSpec]:
     """Return the degrees of freedom of a place given by node and direction; of each direction."""
     place = table.table(name) if dofs else None
     if dofs is None or place is None:
         expected = 'a degree of freedom; nodes and directions need dofs = "dofs.csv"'
-        table.fault(name, expected, shown(table.values[name]))
+        table.fault(name, expected, opt.shown(table.values[name]))
         return {}
     out: dict[str, SensorSpec] = {}
     node, directions = place.value("node", NODE), read_directions(place)
