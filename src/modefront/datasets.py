@@ -3,8 +3,6 @@
 A run makes an `ArrayDataset`: importing `xarray`, which has more, takes as long as a small study.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -53,7 +51,7 @@ class ArrayDataset:
     def __contains__(self, name: object) -> bool:
         return name in self.variables
 
-    def isel(self, **chosen: Any) -> ArrayDataset:
+    def isel(self, **chosen: Any) -> "ArrayDataset":
         """Return what belongs to chosen places."""
 
         def of(variable: Array) -> Array:
@@ -66,15 +64,15 @@ class ArrayDataset:
 
         return replace(self, variables={name: of(x) for name, x in self.variables.items()})
 
-    def assign(self, variables: Mapping[Any, Array]) -> ArrayDataset:
+    def assign(self, variables: Mapping[Any, Array]) -> "ArrayDataset":
         """Return these with further variables, or others in their place."""
         return replace(self, variables={**self.variables, **variables})
 
-    def assign_coords(self, names: Mapping[str, Any]) -> ArrayDataset:
+    def assign_coords(self, names: Mapping[str, Any]) -> "ArrayDataset":
         """Return these with names of the places of some dimensions."""
         return self.assign({key: Array((key,), np.asarray(x)) for key, x in names.items()})
 
-    def assign_attrs(self, attributes: Mapping[str, Any]) -> ArrayDataset:
+    def assign_attrs(self, attributes: Mapping[str, Any]) -> "ArrayDataset":
         """Return these with further attributes of all, or others in their place."""
         return replace(self, attrs={**self.attrs, **attributes})
 

@@ -1,7 +1,5 @@
 """Faults of inputs, and the errors that carry them."""
 
-from __future__ import annotations
-
 import difflib
 import errno
 from collections.abc import Iterable, Iterator, Sequence
@@ -11,8 +9,7 @@ from pathlib import Path
 
 from modefront.text import NAME, clean, one_line, shortened
 
-MOST_LINES, MOST_CHARACTERS = 20, 2000
-"""Lines and characters of a message, at most."""
+MOST_LINES, MOST_CHARACTERS = 20, 2000  # lines and characters of a message, at most
 
 LONGEST = {"file": 300, "place": 240, "expected": 480, "found": 480}
 """Characters of each part of a fault that a message shows."""
@@ -67,7 +64,7 @@ class InputError(ValueError):
         self.faults = (faults,) if isinstance(faults, Fault) else tuple(faults)
         super().__init__(_message(self.faults))
 
-    def __reduce__(self) -> tuple[type[InputError], tuple[tuple[Fault, ...]]]:
+    def __reduce__(self) -> "tuple[type[InputError], tuple[tuple[Fault, ...]]]":
         """Return how the error is made again, in another process."""
         return type(self), (self.faults,)
 

@@ -34,8 +34,7 @@ readers that do not end, far above what whole files take."""
 TOO_MUCH = "a file that takes more than {:.2g} GB to be read: close other programs, or divide it"
 """What is said of a file that does not fit into the memory."""
 
-FAULTS = "faults"
-"""What is said of a file with which its reader finds faults."""
+FAULTS = "faults"  # what is said of a file with which its reader finds faults
 
 Read = tuple[dict[str, np.ndarray[Any, Any]], Any]
 """Arrays by name, and texts and numbers as JSON has them."""
@@ -83,8 +82,7 @@ def isolated(
     raise InputError(Fault(str(path), "file", expected, error))
 
 
-_INSIDE = False
-"""Whether this is a process that reads a file, so that no other one is needed."""
+_INSIDE = False  # whether this is a process that reads a file, so that no other one is needed
 
 
 def _called(function: str, path: Path, arguments: Sequence[str]) -> Read:

@@ -10,8 +10,6 @@ A `Table` of a TOML file reads its keys by the same requirements, and collects t
 requirement has a JSON Schema (draft 7).
 """
 
-from __future__ import annotations
-
 import inspect
 import math
 import operator
@@ -39,8 +37,7 @@ from modefront.text import clean
 
 Schema = Mapping[str, Any]
 
-WHOLE = 10**9
-"""Largest whole number that a count or a place is."""
+WHOLE = 10**9  # largest whole number that a count or a place is
 
 NUMBER: Schema = {"type": "number", "minimum": -LARGEST, "maximum": LARGEST}
 ABOVE_ZERO: Schema = {"type": "number", "exclusiveMinimum": 0, "maximum": LARGEST}
@@ -143,33 +140,26 @@ T = TypeVar("T")
 WITHOUT = "Without it: "
 """What a description says before the default of a key, where that is no single value."""
 
-SHORT = 6
-"""Longest list that a message shows item by item."""
+SHORT = 6  # longest list that a message shows item by item
 
 
 @dataclass(frozen=True, eq=False)
 class Requirement:
-    """Requirement on the value of an option.
+    """Requirement on the value of an option."""
 
-    Attributes
-    ----------
-    expected : the same in words
-    schema : of such a value; empty where `entries` are read by a reader of their own
-    convert : brings such a value into the form that is kept
-    further : whether a value of this schema meets what no schema says
-    record : the class of a nested record, read from a table within the table; None for a value
-    entries : schema of a table with its entries, where these are read one by one and what is wrong
-        is said of each; empty where ``schema`` says all
-    read : reads such a table, given the `Table` with it and its key
-    """
-
-    expected: str
-    schema: Schema
+    expected: str  # the same in words
+    schema: Schema  # of such a value; empty where `entries` are read by a reader of their own
+    # brings such a value into the form that is kept
     convert: Callable[[Any], Any] = lambda value: value
+    # whether a value of this schema meets what no schema says
     further: Callable[[Any], bool] = lambda _: True
+    # the class of a nested record, read from a table within the table; None for a value
     record: type | None = None
+    # schema of a table with its entries, where these are read one by one and what is wrong is said
+    # of each; empty where ``schema`` says all
     entries: Schema = field(default_factory=dict)
-    read: Callable[[Table, str], Any] | None = None
+    # reads such a table, given the `Table` with it and its key
+    read: "Callable[[Table, str], Any] | None" = None
 
     def holds(self, value: Any) -> bool:
         """Return whether a value in plain Python is so."""
@@ -244,8 +234,7 @@ def mapping(expected: str, each: Requirement) -> Requirement:
     return Requirement(expected, TABLE, entries=table_of(each.schema), read=read)
 
 
-PAIR = array(NUMBER, 2, 2)
-"""Schema of two numbers."""
+PAIR = array(NUMBER, 2, 2)  # schema of two numbers
 
 
 def rising(values: Sequence[float]) -> bool:
@@ -258,24 +247,15 @@ TRUE_OR_FALSE = Requirement("true or false", {"type": "boolean"})
 
 @dataclass(frozen=True)
 class Option:
-    """A key of a table, and the field of that name where a record of options is made of it.
+    """A key of a table, and the field of that name where a record of options is made of it."""
 
-    Attributes
-    ----------
-    name : of the field, and of the key of a table
-    requirement : what its value has to be
-    optional : whether None is right as well
-    required : whether it has no default
-    default : the default in plain Python; None where it has none, or follows from other values
-    meaning : of the field, from the docstring of the record
-    """
-
-    name: str
-    requirement: Requirement
-    optional: bool = False
-    required: bool = False
+    name: str  # of the field, and of the key of a table
+    requirement: Requirement  # what its value has to be
+    optional: bool = False  # whether None is right as well
+    required: bool = False  # whether it has no default
+    # the default in plain Python; None where it has none, or follows from other values
     default: Any = None
-    meaning: str = ""
+    meaning: str = ""  # of the field, from the docstring of the record
 
     @property
     def schema(self) -> Schema:
@@ -426,24 +406,16 @@ class Table:
 
     Readers of values return a default where there is no value, and note a fault and return None
     where there is none either (a default of ``...``); a value that is wrong is a fault, too.
-
-    Attributes
-    ----------
-    file : the TOML file
-    place : where the table is in it, for messages; empty for the top level
-    values : what the table holds
-    faults : all that is wrong with the file, shared by its tables
-    requested : keys that were read or are known
-    files : paths of the files that the tables name, shared by them; see `path`
-    notes : records of what was found beside faults, shared by the tables
     """
 
-    file: str
-    place: str
-    values: dict[str, Any]
-    faults: list[Fault]
-    requested: list[str] = field(default_factory=list)
+    file: str  # the TOML file
+    place: str  # where the table is in it, for messages; empty for the top level
+    values: dict[str, Any]  # what the table holds
+    faults: list[Fault]  # all that is wrong with the file, shared by its tables
+    requested: list[str] = field(default_factory=list)  # keys that were read or are known
+    # paths of the files that the tables name, shared by them; see `path`
     files: list[Path] = field(default_factory=list)
+    # records of what was found beside faults, shared by the tables
     notes: list[object] = field(default_factory=list)
 
     def fault(self, key: str, expected: str, found: str) -> None:
@@ -525,7 +497,7 @@ class Table:
             return None if values is None else record(**values)
         return None
 
-    def table(self, key: str, expected: str = "a table", default: Any = ...) -> Table | None:
+    def table(self, key: str, expected: str = "a table", default: Any = ...) -> "Table | None":
         """Return a table within this one."""
         value = self.value(key, Requirement(expected, TABLE), default)
         if value is None:
@@ -535,7 +507,7 @@ class Table:
 
     def entries(
         self, key: str, each: str, least: str = "", *, required: bool = True
-    ) -> Iterator[tuple[str, Table]]:
+    ) -> "Iterator[tuple[str, Table]]":
         """Yield the tables within a table by their names; ``each`` says in words what one holds.
 
         ``least`` is what one of them is called where there has to be one.
@@ -554,7 +526,7 @@ class Table:
             return read(self.path(name)) if is_name(name) else None
         return None
 
-    def tables(self, key: str, required: bool) -> list[Table]:
+    def tables(self, key: str, required: bool) -> "list[Table]":
         """Return the tables of a list, such as ``[[parameter]]``."""
         path = f"{self.place.strip('[]')}.{key}" if self.place else key
         expected = f"at least one table [[{path}]]" if required else f"tables [[{path}]]"

@@ -9,8 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-ENDING = ".tmp"
-"""Ending of files that are not yet written to the end."""
+ENDING = ".tmp"  # ending of files that are not yet written to the end
 
 MASK = os.umask(0o077)
 """Permissions that new files of this process do not have; read once, as reading changes it."""

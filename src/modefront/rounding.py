@@ -7,8 +7,7 @@ ACCUMULATED = 1e-12
 """Relative size of rounding that has added up: some thousand times that of one operation, 2.2e-16.
 Quotients and eigenvalues of well scaled matrices of a thousand rows have less."""
 
-LARGEST = 1e100
-"""Greatest number in a file: products of three such numbers do not overflow."""
+LARGEST = 1e100  # greatest number in a file: products of three such numbers do not overflow
 
 SYMMETRY = 1e-8
 """Greatest difference of a matrix and its transpose, over the greatest entry, that passes for

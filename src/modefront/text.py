@@ -103,8 +103,7 @@ def _spell(error: UnicodeError) -> tuple[str, int]:
 codecs.register_error(SPELL, _spell)
 
 
-LINE, MOST = 96, 18
-"""Characters of a line, and lines of fields."""
+LINE, MOST = 96, 18  # characters of a line, and lines of fields
 
 
 class Shown:

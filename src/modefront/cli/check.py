@@ -11,8 +11,7 @@ from modefront.results.remarks import MOST, digest
 from modefront.study.check import Findings
 from modefront.study.definition import Study
 
-ROWS = 12
-"""Sensors and parameters that are shown, at most, unless all are asked for."""
+ROWS = 12  # sensors and parameters that are shown, at most, unless all are asked for
 
 
 def print_findings(study: Study, findings: Findings, *, every: bool = False) -> None:

@@ -1,8 +1,7 @@
 """``modefront identify``: the table of modes, what to look at, and the next command."""
 
-from collections.abc import Sequence
-from itertools import chain
 from pathlib import Path
+from typing import Any
 
 from modefront.cli.layout import Screen
 from modefront.cli.terminal import say, say_next
@@ -10,28 +9,26 @@ from modefront.errors import UnfinishedError
 from modefront.identification.modal_test import IdentifiedTest, identify, writable
 from modefront.identification.sets import CombinedModes
 
-MOST_FINDINGS = 8
-"""Lines of what to look at; a file beside holds all."""
+MOST_FINDINGS = 8  # lines of what to look at; a file beside holds all
 
 
-# 8 arguments: the options of the command.
 def run_identify(
     path: Path,
     output: Path,
     band: tuple[float, float] | None,
     figures: Path | None,
-    *,
-    report: Path | None = None,
-    keep: Sequence[int] = (),
-    drop: Sequence[int] = (),
-    seeds: Sequence[float] = (),
+    report: Path | None,
+    **by_hand: Any,
 ) -> None:
     """Identify the modes of a test and write them; print what was found.
+
+    ``by_hand`` are the numbers to keep and to drop, and seeds.
 
     Raises InputError where the input is wrong, and UnfinishedError where no mode was found.
     """
     writable(output)
-    test = identify(path, band, keep=keep, drop=drop, seeds=seeds)
+    chosen = {key: by_hand[key] or () for key in ("keep", "drop", "seeds")}
+    test = identify(path, band, **chosen)
     screen = Screen.of_output()
     written = [] if test.modes is None else test.write(output)
     if figures is not None:
@@ -57,10 +54,11 @@ def run_identify(
     if test.modes is None:
         raise UnfinishedError("no mode was found in the band: is it right? --seed places modes")
     if report is None and figures is None:
-        by_hand = [["--band", *(f"{x:.15g}" for x in band)]] if band else []
-        for option, numbers in (("--keep", keep), ("--drop", drop), ("--seed", seeds)):
-            by_hand += [[option, ",".join(f"{x:.15g}" for x in numbers)]] if numbers else []
-        say_next("identify", path, *chain(*by_hand), "-o", output, "--report", "test.html")
+        said = ["--band", *(f"{x:.15g}" for x in band)] if band else []
+        for key, numbers in chosen.items():
+            option = f"--{key.removesuffix('s')}"
+            said += [option, ",".join(f"{x:.15g}" for x in numbers)] if numbers else []
+        say_next("identify", path, *said, "-o", output, "--report", "test.html")
     else:
         say(f'next: [data] file = "{output}" in study.toml, then modefront check study.toml')
 

@@ -1,7 +1,5 @@
 """Sentences and tables that fit the terminal: wrapped at words, split into blocks, never cut."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -23,8 +21,7 @@ PART = re.compile(r"[^\s_/.-]*[-_/.]|[^\s_/.-]+")
 
 Row = Sequence[str]
 
-Line = tuple[str, str]
-"""A line with its style."""
+Line = tuple[str, str]  # a line with its style
 
 BLANK: Line = ("", "")
 
@@ -58,7 +55,7 @@ class Screen:
     console: Console
 
     @classmethod
-    def of_output(cls) -> Screen:
+    def of_output(cls) -> "Screen":
         """Return the screen of standard output."""
         return cls(_Output(highlight=False))
 

@@ -295,7 +295,7 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
 
 
 @cli.command()
-@click.argument("test", type=PATH)
+@click.argument("path", metavar="TEST", type=PATH)
 @_output(help="Modal data: a CSV file, or .uff for dataset 55.", required=True)
 @click.option(
     "--band",
@@ -323,21 +323,13 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
     metavar="4.6,13.8",
     help="Frequencies in Hz at which there is to be a mode, whatever its evidence.",
 )
-def identify(
-    test: Path,
-    output: Path,
-    band: tuple[float, float] | None,
-    figures: Path | None,
-    report: Path | None,
-    **chosen: Any,
-) -> None:
+def identify(band: tuple[float, float] | None, **given: Any) -> None:
     """Turn the frequency response functions of TEST into modal data."""
     from modefront.cli.identify import run_identify
 
     if band and band[0] >= band[1]:
         raise click.UsageError(f"--band: expected LOW below HIGH, found {band[0]:g} {band[1]:g}")
-    by_hand = {k: v or () for k, v in chosen.items()}
-    run_identify(test, output, band, figures, report=report, **by_hand)
+    run_identify(band=band, **given)
 
 
 @cli.command("import")
@@ -403,13 +395,11 @@ def import_(program: str, base: Path, output: Path, **given: Any) -> None:
 )
 @_output(help="Folder for the files  [default: export-LABEL in DIRECTORY]")
 @click.option("--modes", type=click.IntRange(1), help="Mode shapes  [default: as many as measured]")
-def export(
-    directory: Path, point: str | None, study: Path | None, output: Path | None, modes: int | None
-) -> None:
+def export(directory: Path, **given: Any) -> None:
     """Write a model of results: parameters, matrices, mode shapes."""
     from modefront.study.export import export as write_model
 
-    exported = write_model(directory, output, point=point, study=study, modes=modes)
+    exported = write_model(directory, **given)
     for file in exported.files:
         say(f"wrote {file}")
     for what in exported.missing:

@@ -43,9 +43,6 @@ TITLES: Mapping[str, str] = {
 WIDTH, LEAST = 24, 8
 """Characters of a study's name, so that all fits into 80 columns, and of the bar, at least."""
 
-PER_SECOND = 4
-"""Drawings of the lines a second: clock and counts go on while a task takes long."""
-
 
 @contextmanager
 def progress_bar(title: str, plan: Plan | None) -> Iterator[Progress]:
@@ -57,7 +54,8 @@ def progress_bar(title: str, plan: Plan | None) -> Iterator[Progress]:
     with counted() as costs:
         lines = _Lines(clean(title, WIDTH), costs)
         progress = Progress(lines.take, plan=plan)
-        with Live(lines, console=screen, refresh_per_second=PER_SECOND), listening(lines.hear):
+        # Clock and counts go on while a task takes long.
+        with Live(lines, console=screen, refresh_per_second=4), listening(lines.hear):
             yield progress
             lines.is_done = True
 

@@ -23,15 +23,7 @@ from modefront.results.remarks import digest, findings_of, headlines, verdict
 from modefront.study.estimate import Estimate
 from modefront.work.task import Costs
 
-FEWEST = 3
-"""Parameters and modes that a table keeps, however long it is."""
-
-BOUND = {-1: " min", 1: " max"}
-
-
-def print_models(screen: Screen, data: Dataset) -> None:
-    """Print all parameters, modes and errors of the first models."""
-    screen.show([BLANK, *_table(screen, data.isel(point=_first_models(data)))])
+FEWEST = 3  # parameters and modes that a table keeps, however long it is
 
 
 def models_in(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]:
@@ -94,7 +86,7 @@ def _rows(data: Dataset, std: Floats, bound: Floats) -> Iterator[list[str]]:
     for j, name in enumerate(data["parameter"].values):
         row = [f"  {name}"]
         for i, value in enumerate(data["theta"].values[:, j]):
-            at = BOUND.get(int(bound[i, j]), "")
+            at = {-1: " min", 1: " max"}.get(int(bound[i, j]), "")
             scatter = f" ± {std[j]:.2g}" * (i == best and np.isfinite(std[j]) and not at)
             row.append(f"{number(value, '#.4g').removesuffix('.')}{scatter}{at}")
         yield row
@@ -129,8 +121,7 @@ def _rough(data: Dataset) -> str:
     return "" if data.attrs.get("settled", 1) else rough
 
 
-DRAWN = ("mean", "5 %", "95 %")
-"""Statistics of models drawn from the posterior that are shown."""
+DRAWN = ("mean", "5 %", "95 %")  # statistics of models drawn from the posterior that are shown
 
 
 def print_predictions(screen: Screen, data: Dataset) -> None:
@@ -212,10 +203,6 @@ def _deviation(of: Quantity) -> str:
     return "none" if np.isnan(of.std) else shown
 
 
-Columns = Sequence[tuple[str, str, str]]
-"""Titles with a place for a name, the variable (rows, names), and the format of its values."""
-
-
 def print_points(screen: Screen, data: Dataset) -> None:
     """Print objectives, errors, parameters, modes and weights of all models."""
     marks = [
@@ -239,13 +226,6 @@ def print_points(screen: Screen, data: Dataset) -> None:
         _print(screen, data, "estimated relative errors: ! above the tolerance", columns, marks)
     weighted = data.isel(point=np.flatnonzero(~np.isnan(data["weight"].values).all(axis=1)))
     _print(screen, weighted, "weights", (("{}", "weight", ".5g"),))
-
-
-def print_minima(screen: Screen, data: Dataset) -> None:
-    """Print the minima of each group and of the optimally weighted residuals."""
-    columns = (("J {}", "minimum_objective", ".5g"), ("{}", "minimum_theta", ".5g"))
-    title = "minima of the groups and of the weighted residuals"
-    _print(screen, data, title, columns, of="minimum_of")
 
 
 def print_uncertainty(screen: Screen, data: Dataset) -> None:
@@ -283,10 +263,16 @@ def print_findings_of(screen: Screen, data: Dataset) -> None:
             screen.say(text, start="    ")
 
 
+MINIMA = ("J {}", "minimum_objective", ".5g"), ("{}", "minimum_theta", ".5g")
+
 LISTS: Mapping[str, Callable[[Screen, Dataset], None]] = {
-    "models": print_models,
+    "models": lambda screen, data: screen.show(
+        [BLANK, *_table(screen, data.isel(point=_first_models(data)))]
+    ),
     "points": print_points,
-    "minima": print_minima,
+    "minima": lambda screen, data: _print(
+        screen, data, "minima of the groups and of the weighted residuals", MINIMA, of="minimum_of"
+    ),
     "uncertainty": print_uncertainty,
     "predictions": print_predictions,
     "findings": print_findings_of,
@@ -299,11 +285,14 @@ def _print(
     screen: Screen,
     data: Dataset,
     title: str,
-    columns: Columns,
+    columns: Sequence[tuple[str, str, str]],
     marks: Sequence[str] = (),
     of: str = "label",
 ) -> None:
-    """Print a table with a row for each of what ``of`` names, and ``marks`` beside these."""
+    """Print a table with a row for each of what ``of`` names, and ``marks`` beside these.
+
+    Columns have a title with a place for a name, the variable (rows, names), and the format.
+    """
     rows = []
     for i, name in enumerate(data[of].values):
         cells = [number(x, form) for _, values, form in columns for x in data[values].values[i]]
@@ -410,11 +399,7 @@ def as_plain(values: Any) -> Any:
     return json.loads(json.dumps(values), parse_constant=lambda _: None)
 
 
-SHOWN = 6
-"""Parameters, and predictions, that are printed unless all are asked for."""
-
-OF_MODES = ("frequency ", "mac ")
-"""Prefixes of the predictions of modes, which are listed after those of the studies."""
+SHOWN = 6  # parameters, and predictions, that are printed unless all are asked for
 
 
 def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
@@ -439,8 +424,9 @@ def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
         ("predictions", [x.predictions for x in fronts]),
     ):
         known = [{x.name: _cell(x) for x in row} for row in ranges]
-        order = list(dict.fromkeys(name for row in known for name in row))
-        order.sort(key=lambda name: name.startswith(OF_MODES))
+        # Predictions of modes come after those of the studies.
+        names_of = dict.fromkeys(name for row in known for name in row)
+        order = sorted(names_of, key=lambda name: name.startswith(("frequency ", "mac ")))
         cells = [[name, *(row.get(name, "") for row in known)] for name in order]
         screen.table(f"{title}: reference model, and least to greatest", columns, cells[:most])
         if cells[SHOWN:] and most:

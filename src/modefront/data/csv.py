@@ -46,12 +46,10 @@ DECIMAL_COMMA = re.compile(r"^(\s*[+-]?[0-9]*),([0-9]*(?:e[+-]?[0-9]+)?\s*)$", r
 COLUMNS = mapping("a table, name in the file = name here", text("a text"))
 """Names that columns of a file stand for."""
 
-MOST_FAULTS = 100
-"""Faults of rows after which the rest is not looked at."""
+MOST_FAULTS = 100  # faults of rows after which the rest is not looked at
 
 Key = tuple[str, int]
-Values = Mapping[Key, Mapping[str, float]]
-"""Data set and mode of a row; values by column of each."""
+Values = Mapping[Key, Mapping[str, float]]  # data set and mode of a row; values by column of each
 
 
 def is_reserved(name: str, sensors: Collection[str]) -> bool:
@@ -137,8 +135,7 @@ def read_csv(
     return _assembled(path, values, tuple(sensors), _pairs(path, values, lines) if paired else ())
 
 
-Rows = list[tuple[int, list[str]]]
-"""Lines of a file and their fields."""
+Rows = list[tuple[int, list[str]]]  # lines of a file and their fields
 
 
 def read_table(path: Path, what: str) -> tuple[int, list[str], Rows, list[Fault]]:
@@ -298,8 +295,7 @@ def opened(path: Path, what: str) -> Iterator[tuple[TextIO, str, int]]:
         raise wrong(path, "CSV in UTF-8", reason(error)) from None
 
 
-Said = tuple[str, str, str]
-"""A column, what is expected in it, and what was found."""
+Said = tuple[str, str, str]  # a column, what is expected in it, and what was found
 
 
 def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[Said]:
@@ -405,8 +401,7 @@ FREQUENCY, FORCE, COHERENCE = "frequency", "force", "_coherence"
 PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))
 """Endings of the two columns of a function, in each of its forms."""
 
-LISTED = 5
-"""Faults that are listed of one file."""
+LISTED = 5  # faults that are listed of one file
 
 
 def read_test_csv(path: Path, reference: str, columns: Mapping[str, str] | None = None) -> Contents:

@@ -33,14 +33,9 @@ EXPONENTIAL = Requirement(
     lambda value: np.inf if value == "none" else float(value),
 )
 
-SECOND = 0.1
-"""Force of a second hit over that of the first."""
-
-SAME = 1e-9
-"""Difference of two samples, over the greatest, that is none: converters have 24 bits."""
-
-TAPER = 0.1
-"""Share of the force window over which it falls to zero."""
+SECOND = 0.1  # force of a second hit over that of the first
+SAME = 1e-9  # difference of two samples, over the greatest, that is none: converters have 24 bits
+TAPER = 0.1  # share of the force window over which it falls to zero
 
 
 @dataclass(frozen=True)
@@ -62,20 +57,13 @@ class Windows(Checked):
 
 @dataclass(frozen=True)
 class ImpactResponses:
-    """Functions from impacts.
+    """Functions from impacts."""
 
-    Attributes
-    ----------
-    data : the functions, with the variance of their mean from the scatter of the blows
-    coherence : (responses, lines)
-    left_out : (blows,) why each blow is not in the mean; empty where it is
-    remaining : (responses,) rms at the end of the windowed records over the greatest
-    """
-
+    # the functions, with the variance of their mean from the scatter of the blows
     data: FrequencyResponses
-    coherence: Floats
-    left_out: tuple[str, ...]
-    remaining: Floats
+    coherence: Floats  # (responses, lines)
+    left_out: tuple[str, ...]  # (blows,) why each blow is not in the mean; empty where it is
+    remaining: Floats  # (responses,) rms at the end of the windowed records over the greatest
 
 
 def impact_responses(
@@ -226,48 +214,31 @@ def _clipped(x: Floats) -> bool:
     return bool(((end - start >= 3) & (leaps > 2 * least)).any())
 
 
-TIME = "time"
-"""Column of a CSV file with records."""
-
-EVEN = 1e-3
-"""Relative difference within which steps of time are even: files hold few digits."""
+TIME = "time"  # column of a CSV file with records
+EVEN = 1e-3  # relative difference within which steps of time are even: files hold few digits
 
 
 @dataclass(frozen=True)
 class Blow:
-    """The records of one impact.
+    """The records of one impact."""
 
-    Attributes
-    ----------
-    file, place : where they were read
-    reference : where the hammer hits; empty where the file does not say
-    time : (samples,) in s
-    force : (samples,)
-    responses : records by name, (samples,) each
-    quantity : of the functions that responses over force make; empty where the file does not say
-    """
-
-    file: str
+    file: str  # file, place: where they were read
     place: str
-    reference: str
-    time: Floats
-    force: Floats
-    responses: Mapping[str, Floats]
+    reference: str  # where the hammer hits; empty where the file does not say
+    time: Floats  # (samples,) in s
+    force: Floats  # (samples,)
+    responses: Mapping[str, Floats]  # records by name, (samples,) each
+    # of the functions that responses over force make; empty where the file does not say
     quantity: str = ""
 
 
 @dataclass(frozen=True)
 class Contents:
-    """Contents of a file: functions, or the records of blows where there are no functions.
+    """Contents of a file: functions, or the records of blows where there are no functions."""
 
-    Attributes
-    ----------
-    channels, blows : functions, and records
-    unused : what of the map of columns of a set names none of the file
-    """
-
-    channels: tuple[Channel, ...] = ()
+    channels: tuple[Channel, ...] = ()  # channels, blows: functions, and records
     blows: tuple[Blow, ...] = ()
+    # what of the map of columns of a set names none of the file
     unused: frozenset[str] = frozenset()
 
 

@@ -1,7 +1,5 @@
 """Measured modal data of one or several data sets."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,8 +16,7 @@ SAME, ROUNDED, LEAST = 0.05, 1e-5, 1e-8
 """Relative difference of standard deviations, and difference of covariances over these, up to which
 they are one, rounded; eigenvalue of correlations that is more than the rounding of nine digits."""
 
-Pairs = tuple[tuple[int, int], ...]
-"""Numbers of modes of one frequency, two by two."""
+Pairs = tuple[tuple[int, int], ...]  # numbers of modes of one frequency, two by two
 
 
 @dataclass(frozen=True, repr=False)
@@ -61,7 +58,7 @@ class ModalData(Shown):
         """Mean of the measured damping ratios of each mode, shape (modes,); NaN where none."""
         return _mean(self.damping)
 
-    def at(self, sensors: tuple[str, ...]) -> ModalData:
+    def at(self, sensors: tuple[str, ...]) -> "ModalData":
         """Return the data at all of these sensors: what is not among the present ones is NaN.
 
         Raises ValueError where a present sensor is not among them.
@@ -85,12 +82,12 @@ class ModalData(Shown):
             C = np.pad(C, [*more, (0, 1)], constant_values=np.nan)[..., places, :][..., places]
         return replace(self, sensors=sensors, shape=phi, shape_std=phi_std, shape_covariance=C)
 
-    def of_sets(self, chosen: Ints, names: tuple[str, ...]) -> ModalData:
+    def of_sets(self, chosen: Ints, names: tuple[str, ...]) -> "ModalData":
         """Return the data of some sets, by their positions, under new names."""
         parts = {name: x[chosen] for name in MEASURED if (x := getattr(self, name)) is not None}
         return replace(self, sets=names, **parts)
 
-    def with_covariance(self, covariance: Floats) -> ModalData:
+    def with_covariance(self, covariance: Floats) -> "ModalData":
         """Return the data with covariances of shapes, NaN where none is known.
 
         They are (sets, modes, sensors, sensors), and give the standard deviations that the data

@@ -36,24 +36,14 @@ WHAT = "a file with records in time"
 
 @dataclass(frozen=True)
 class Records:
-    """Records of one setup, measured at once.
+    """Records of one setup, measured at once."""
 
-    Attributes
-    ----------
-    name : of the setup
-    sensors : names
-    rate : samples per second
-    values : (sensors, samples)
-    quantity : ``"displacement"``, ``"velocity"`` or ``"acceleration"``
-    still : names of channels that do not move, which are left out
-    """
-
-    name: str
-    sensors: tuple[str, ...]
-    rate: float
-    values: Floats
-    quantity: str = "acceleration"
-    still: tuple[str, ...] = ()
+    name: str  # of the setup
+    sensors: tuple[str, ...]  # names
+    rate: float  # samples per second
+    values: Floats  # (sensors, samples)
+    quantity: str = "acceleration"  # ``"displacement"``, ``"velocity"`` or ``"acceleration"``
+    still: tuple[str, ...] = ()  # names of channels that do not move, which are left out
 
     def __post_init__(self) -> None:
         """Raise ValueError where the arrays do not fit."""
@@ -73,32 +63,20 @@ class Records:
 
 @dataclass(frozen=True)
 class SetFiles:
-    """The files of one data set, and what they do not say themselves.
+    """The files of one data set, and what they do not say themselves."""
 
-    Attributes
-    ----------
-    name : of the data set
-    files : paths
-    columns : names of columns in CSV files and what they are here
-    channels : names by node and direction in universal files, such as 1Z or 1-Z
-    rate : samples per second, for arrays
-    sensors : names of the channels of arrays
-    references : one a file of functions, empty where it says its own
-    decay : what an exponential window added to the decay of the functions, in 1/s
-    quantity : of functions or records; empty where the test file does not say
-    windows : of records of blows; None where the test file has none
-    """
-
-    name: str
-    files: tuple[Path, ...]
+    name: str  # of the data set
+    files: tuple[Path, ...]  # paths
+    # names of columns in CSV files and what they are here
     columns: Mapping[str, str] = field(default_factory=dict)
+    # names by node and direction in universal files, such as 1Z or 1-Z
     channels: Mapping[str, str] = field(default_factory=dict)
-    rate: float | None = None
-    sensors: tuple[str, ...] = ()
-    references: tuple[str, ...] = ()
-    decay: float = 0.0
-    quantity: str = ""
-    windows: Windows | None = None
+    rate: float | None = None  # samples per second, for arrays
+    sensors: tuple[str, ...] = ()  # names of the channels of arrays
+    references: tuple[str, ...] = ()  # one a file of functions, empty where it says its own
+    decay: float = 0.0  # what an exponential window added to the decay of the functions, in 1/s
+    quantity: str = ""  # of functions or records; empty where the test file does not say
+    windows: Windows | None = None  # of records of blows; None where the test file has none
 
 
 def channel_name(channel: str, names: Mapping[str, str]) -> tuple[str, int]:
@@ -198,8 +176,7 @@ def _rate(path: Path, time: Floats) -> float:
     return count / length
 
 
-MOST_MODES = 200
-"""Modes that a test file may ask for."""
+MOST_MODES = 200  # modes that a test file may ask for
 
 FILES, SENSORS, REFERENCES = (
     opt.Requirement(
@@ -242,40 +219,24 @@ IDENTIFY = opt.keys(
 
 @dataclass(frozen=True)
 class ByHand:
-    """Modes that are chosen by hand.
+    """Modes that are chosen by hand."""
 
-    Attributes
-    ----------
-    keep, drop : numbers of the modes that stay alone, and that do not
-    seeds : frequencies in Hz at which there is to be a mode
-    """
-
-    keep: tuple[int, ...] = ()
+    keep: tuple[int, ...] = ()  # keep, drop: numbers of the modes that stay alone, and that do not
     drop: tuple[int, ...] = ()
-    seeds: tuple[float, ...] = ()
+    seeds: tuple[float, ...] = ()  # frequencies in Hz at which there is to be a mode
 
 
 @dataclass(frozen=True)
 class ModalTest:
-    """A modal test.
+    """A modal test."""
 
-    Attributes
-    ----------
-    name : of the test
-    band : in Hz, or None for all lines
-    modes : their number, or None where it is to be found
-    sets : the data sets with functions
-    setups : the records of an ambient test, which has no functions
-    chosen : what is chosen by hand
-    places : (3,) positions of sensors and (3,) directions, by name; of sensors that are placed
-    """
-
-    name: str
-    band: tuple[float, float] | None
-    modes: int | None
-    sets: tuple[DataSet, ...]
-    setups: tuple[Records, ...] = ()
-    chosen: ByHand = ByHand()
+    name: str  # of the test
+    band: tuple[float, float] | None  # in Hz, or None for all lines
+    modes: int | None  # their number, or None where it is to be found
+    sets: tuple[DataSet, ...]  # the data sets with functions
+    setups: tuple[Records, ...] = ()  # the records of an ambient test, which has no functions
+    chosen: ByHand = ByHand()  # what is chosen by hand
+    # (3,) positions of sensors and (3,) directions, by name; of sensors that are placed
     places: Mapping[str, tuple[Floats, Floats]] = field(default_factory=dict)
 
 

@@ -6,8 +6,6 @@ roves; by Maxwell's reciprocity, :math:`H_{ji} = H_{ij}`, either side can be cal
 responses: mode shapes are identified at the side called so. What was not measured is NaN.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -33,17 +31,11 @@ class ForceNoise:
               \sum_m p_{jm} e^{-2\pi\mathrm{i}(f - f') t_{jm}},\qquad \sum_m p_{jm} = 1:
 
     where a force window is short, the errors are smooth over frequency.
-
-    Attributes
-    ----------
-    deviation : (references, lines) sigma
-    times : (samples,) of each reference, t in s from the impact
-    share : (samples,) of each reference, p
     """
 
-    deviation: Floats
-    times: tuple[Floats, ...]
-    share: tuple[Floats, ...]
+    deviation: Floats  # (references, lines) sigma
+    times: tuple[Floats, ...]  # (samples,) of each reference, t in s from the impact
+    share: tuple[Floats, ...]  # (samples,) of each reference, p
 
 
 def joined(parts: Sequence[ForceNoise | None]) -> ForceNoise | None:
@@ -58,30 +50,19 @@ def joined(parts: Sequence[ForceNoise | None]) -> ForceNoise | None:
 
 @dataclass(frozen=True)
 class FrequencyResponses:
-    """Frequency response functions of one data set.
+    """Frequency response functions of one data set."""
 
-    Attributes
-    ----------
-    frequency : (lines,) in Hz, ascending
-    H : (references, responses, lines) complex, NaN where not measured
-    quantity : ``"receptance"``, ``"mobility"`` or ``"accelerance"``
-    references, responses : names
-    variance : (references, responses, lines), E|H - E H|², or None
-    scaled : whether ``variance`` is known up to a factor for each function only, as it is from
-        coherence where the number of blows is not known
-    decay : what an exponential window added to the decay rate of every pole, in 1/s
-    force_noise : noise of the force channel, where it is known
-    """
-
-    frequency: Floats
-    H: Complexes
-    quantity: str
-    references: tuple[str, ...]
+    frequency: Floats  # (lines,) in Hz, ascending
+    H: Complexes  # (references, responses, lines) complex, NaN where not measured
+    quantity: str  # ``"receptance"``, ``"mobility"`` or ``"accelerance"``
+    references: tuple[str, ...]  # references, responses: names
     responses: tuple[str, ...]
-    variance: Floats | None = None
+    variance: Floats | None = None  # (references, responses, lines), E|H - E H|², or None
+    # whether ``variance`` is known up to a factor for each function only, as it is from coherence
+    # where the number of blows is not known
     scaled: bool = False
-    decay: float = 0.0
-    force_noise: ForceNoise | None = None
+    decay: float = 0.0  # what an exponential window added to the decay rate of every pole, in 1/s
+    force_noise: ForceNoise | None = None  # noise of the force channel, where it is known
 
     def __post_init__(self) -> None:
         """Raise ValueError where the arrays do not fit."""
@@ -99,12 +80,12 @@ class FrequencyResponses:
         """Which lines of which functions were measured, of the shape of ``H``."""
         return np.isfinite(self.H)
 
-    def within(self, low: float, high: float) -> FrequencyResponses:
+    def within(self, low: float, high: float) -> "FrequencyResponses":
         """Return the lines of a band in Hz, its limits included, without the line at zero."""
         f = self.frequency
         return self.lines((f >= low) & (f <= high) & (f > 0))
 
-    def lines(self, kept: Bools) -> FrequencyResponses:
+    def lines(self, kept: Bools) -> "FrequencyResponses":
         """Return the lines that are kept, (lines,)."""
         noise, variance = self.force_noise, self.variance
         noise = noise and replace(noise, deviation=noise.deviation[:, kept])
@@ -168,11 +149,8 @@ def frequency_responses(
     )
 
 
-EXPECTED = f"finite numbers up to {LARGEST:g}"
-"""What values of functions and records are."""
-
-STRAY = 300.0
-"""Ratio of sizes from which on two channels seem to have different units."""
+EXPECTED = f"finite numbers up to {LARGEST:g}"  # what values of functions and records are
+STRAY = 300.0  # ratio of sizes from which on two channels seem to have different units
 
 UNEQUAL = 1.3
 """Ratio of reciprocal functions from which on their sensors have different units: more than
@@ -181,28 +159,17 @@ calibrations and mounted masses leave."""
 
 @dataclass(frozen=True)
 class Channel:
-    """One measured function.
+    """One measured function."""
 
-    Attributes
-    ----------
-    file, place : where it was read
-    reference, response : names; the reference is empty where the file does not say
-    frequency : (lines,) in Hz
-    H : (lines,) complex
-    quantity : what it is; empty where the file does not say
-    coherence : (lines,), or None
-    variance : (lines,) of the mean, where it is known, or None
-    """
-
-    file: str
+    file: str  # file, place: where it was read
     place: str
-    reference: str
+    reference: str  # reference, response: names; the reference is empty where the file does not say
     response: str
-    frequency: Floats
-    H: Complexes
-    quantity: str = ""
-    coherence: Floats | None = None
-    variance: Floats | None = None
+    frequency: Floats  # (lines,) in Hz
+    H: Complexes  # (lines,) complex
+    quantity: str = ""  # what it is; empty where the file does not say
+    coherence: Floats | None = None  # (lines,), or None
+    variance: Floats | None = None  # (lines,) of the mean, where it is known, or None
 
     def fault(self, expected: str, found: str) -> Fault:
         """Return the fault of the function."""

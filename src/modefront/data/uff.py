@@ -32,8 +32,7 @@ from modefront.inputs import MOST_DATA, counted, fortran, once, read_text_bytes,
 from modefront.outputs import write_text
 from modefront.rounding import LARGEST
 
-FRF, COHERENCE, TIME = 4, 6, 1
-"""Types of functions in dataset 58."""
+FRF, COHERENCE, TIME = 4, 6, 1  # types of functions in dataset 58
 
 CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 
@@ -56,19 +55,13 @@ HEADER, RECORD_7 = 11, 6
 
 @dataclass(frozen=True)
 class Block:
-    """One dataset of a universal file.
+    """One dataset of a universal file."""
 
-    Attributes
-    ----------
-    file, number, line : its file, its number, and the line where it begins
-    body : what it holds, behind its number
-    binary : the words behind the number of a binary dataset; None for one of text
-    """
-
-    file: Path
+    file: Path  # file, number, line: its file, its number, and the line where it begins
     number: int
     line: int
-    body: bytes
+    body: bytes  # what it holds, behind its number
+    # the words behind the number of a binary dataset; None for one of text
     binary: list[str] | None
 
     @property
@@ -358,42 +351,27 @@ def dataset_55(
     return "\n".join(lines) + "\n"
 
 
-SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")
-"""Ends of names of universal files."""
-
-REAL = {2: 1, 5: 2}
-"""Numbers of a value by the type of data."""
-
-NAMES = tuple(AXES.values())
-"""Directions in the order of the components."""
+SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")  # ends of names of universal files
+REAL = {2: 1, 5: 2}  # numbers of a value by the type of data
+NAMES = tuple(AXES.values())  # directions in the order of the components
 
 
 @dataclass(frozen=True, eq=False)
 class NodalModes:
-    """Modes at the nodes of a test.
+    """Modes at the nodes of a test."""
 
-    Attributes
-    ----------
-    file : where they were read
-    sets, modes : names of the data sets, numbers of the modes
-    nodes : (nodes,) their numbers
-    position : (nodes, 3) coordinates; NaN where the file has none
-    axes : (nodes, 3, 3) axes of the components, in rows; NaN where the file does not tell them
-    frequency, damping : (sets, modes) in Hz, and ratios; NaN where none
-    shape : (sets, modes, nodes, 6) components along X, Y, Z, RX, RY and RZ; NaN if not measured
-    pairs : numbers of modes of one frequency
-    """
-
-    file: str
-    sets: tuple[str, ...]
+    file: str  # where they were read
+    sets: tuple[str, ...]  # sets, modes: names of the data sets, numbers of the modes
     modes: tuple[int, ...]
-    nodes: Ints
-    position: Floats
+    nodes: Ints  # (nodes,) their numbers
+    position: Floats  # (nodes, 3) coordinates; NaN where the file has none
+    # (nodes, 3, 3) axes of the components, in rows; NaN where the file does not tell them
     axes: Floats
-    frequency: Floats
+    frequency: Floats  # frequency, damping: (sets, modes) in Hz, and ratios; NaN where none
     damping: Floats
+    # (sets, modes, nodes, 6) components along X, Y, Z, RX, RY and RZ; NaN if not measured
     shape: Floats
-    pairs: tuple[tuple[int, int], ...] = ()
+    pairs: tuple[tuple[int, int], ...] = ()  # numbers of modes of one frequency
 
     def local(self, node: int, direction: Floats) -> Floats:
         """Return a direction (6,) of space along the axes of a node, by position."""

@@ -30,8 +30,7 @@ from modefront.text import NAME, clean
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 """Told apart by the colour-blind (Okabe and Ito)."""
 
-PANEL, COLUMNS = (2.6, 2.1), 3
-"""Width and height of a panel in inches; panels side by side."""
+PANEL, COLUMNS = (2.6, 2.1), 3  # width and height of a panel in inches; panels side by side
 
 STYLE: Mapping[Any, Any] = {
     "font.size": 8.5,
@@ -85,11 +84,6 @@ def panels(count: int, columns: int = COLUMNS) -> tuple[Picture, list[Axes]]:
     for axes in grid[count:]:
         axes.remove()
     return figure, grid[:count]
-
-
-def titled(axes: Axes, title: object) -> None:
-    """Put a title above a panel."""
-    axes.set_title(plain(title), loc="left")
 
 
 def legend(figure: Figure, axes: Axes, loc: Place, most: int) -> None:
@@ -262,7 +256,7 @@ def panels_along(
         if bars is not None:
             along.bars(axes, bars[0][:, k], bars[1][:, k])
         mark(axes, k)
-        titled(axes, name)
+        axes.set_title(plain(name), loc="left")
         if k % COLUMNS == 0:
             axes.set_ylabel(label)
     along.finish(figure, grid, min(COLUMNS, len(grid)))

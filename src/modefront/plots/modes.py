@@ -37,8 +37,7 @@ def modes(data: Dataset, *, point: str | int | None = None) -> Picture:
             else:
                 _at_sensors(axes, data, computed, measured)
             axes.set_title(title, loc="left")
-        handles, labels = grid[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=3)
+        figure.legend(*grid[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     figure.suptitle(plain(data["label"].values[i]), x=0.01, ha="left")
     return figure
 
@@ -115,8 +114,7 @@ def _in_space(data: Dataset, shapes: list[_Shape]) -> Picture:
         axes.set_axis_off()
     for colour, name in ((COLOURS[0], "model"), (COLOURS[1], "measured, at the sensors")):
         figure.axes[0].plot([], [], "-", color=colour, label=name)
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=2)
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
 
 

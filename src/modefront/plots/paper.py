@@ -14,17 +14,12 @@ from modefront.front.point import front_points
 from modefront.plots import canvas
 from modefront.predictions.base import predictions_in
 
-Studies = Sequence[tuple[str, Dataset]]
-"""Results with a name each."""
+Studies = Sequence[tuple[str, Dataset]]  # results with a name each
+Curves = list[tuple[int, Floats]]  # values (points,) of some studies, by their numbers
+MARKERS = "os^Dv"  # marks of the studies, beside their colours
 
-Curves = list[tuple[int, Floats]]
-"""Values (points,) of some studies, by their numbers."""
-
-MARKERS = "os^Dv"
-"""Marks of the studies, beside their colours."""
-
-EQUAL, OPTIMAL = "P", "*"
-"""Marks of the models with equal and with optimal weights."""
+WEIGHTED = ("equal-weights", "P", 8), ("optimal-weights", "*", 12)
+"""Kinds of weighted models with their marks and the sizes of these."""
 
 
 def figures(studies: Studies) -> Iterator[tuple[str, canvas.Picture]]:
@@ -52,9 +47,13 @@ def figures(studies: Studies) -> Iterator[tuple[str, canvas.Picture]]:
     ]
     yield "figure-4", _along(studies, names, curves)
     numbers = studies[0][1]["mode"].values
+
+    def error(data: Dataset) -> Floats:
+        return 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
+
     curves = [
         [(k, of(x)[:, r]) for k, (_, x) in enumerate(studies) if r < x.sizes["mode"]]
-        for of in (_errors, lambda data: data["mac"].values)
+        for of in (error, lambda data: data["mac"].values)
         for r in range(len(numbers))
     ]
     titles = [*(f"mode {number}" for number in numbers), *([""] * len(numbers))]
@@ -84,11 +83,6 @@ def figures(studies: Studies) -> Iterator[tuple[str, canvas.Picture]]:
             yield f"figure-{number}", figure
 
 
-def _errors(data: Dataset) -> Floats:
-    error: Floats = 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
-    return error
-
-
 def _fronts(studies: Studies) -> canvas.Picture:
     """Return figure 2: the fronts in the space of errors, with numbers at their points."""
     figure, axes = canvas.single(5.6, 4.2)
@@ -103,8 +97,9 @@ def _fronts(studies: Studies) -> canvas.Picture:
                 axes.annotate(str(number), error[i].tolist(), (4, 3), fontsize=6.5, **marks)
     first, second = canvas.names_of(studies[0][1], "group")
     axes.set(xlabel=f"error of {first}, $e_1$", ylabel=f"error of {second}, $e_2$")
-    for sign, size, name in ((EQUAL, 8, "equal weights"), (OPTIMAL, 12, "optimal weights")):
-        axes.plot([], [], sign, color="0.7", mec="k", mew=0.6, ms=size, ls="", label=name)
+    for kind, sign, size in WEIGHTED:
+        marks = {"color": "0.7", "mec": "k", "mew": 0.6, "label": kind.replace("-", " ")}
+        axes.plot([], [], sign, ms=size, ls="", **marks)
     canvas.legend(figure, axes, "outside lower center", min(len(studies) + 2, 4))
     return figure
 
@@ -128,7 +123,7 @@ def _along(
     """Return a figure with a panel for each title, of values along the front of some studies."""
     figure, grid = canvas.panels(len(titles), columns)
     for axes, title, chosen in zip(grid, titles, curves, strict=True):
-        canvas.titled(axes, title)
+        axes.set_title(canvas.plain(title), loc="left")
         for k, values in chosen:
             name, data = studies[k]
             front, pareto = front_points(data), data["pareto"].values.astype(bool)
@@ -150,7 +145,7 @@ def _colour(k: int) -> str:
 def _points(axes: Axes, data: Dataset, values: Floats, k: int, name: str) -> None:
     """Draw pairs of values (points, 2) of the front, and larger those of weighted models."""
     _front(axes, data, values, k, name, 4)
-    for kind, sign, size in (("equal-weights", EQUAL, 8), ("optimal-weights", OPTIMAL, 12)):
+    for kind, sign, size in WEIGHTED:
         chosen = values[data["kind"].values == kind]
         axes.plot(*chosen.T, sign, color=_colour(k), mec="k", mew=0.6, ms=size, ls="")
 

@@ -189,10 +189,6 @@ def minima(data: Dataset) -> canvas.Picture:
     return figure
 
 
-HOW_MANY = 10
-"""Parameters up to which the correlations are written as numbers."""
-
-
 def uncertainty(data: Dataset) -> canvas.Picture:
     """Return parameters with deviations, their correlation, and the front with its scatter."""
     covariance = None  # of the parameters at the reference
@@ -245,7 +241,7 @@ def _correlation(axes: Axes, data: Dataset, covariance: Floats) -> None:
     axes.grid(False)
     axes.set_xticks(range(len(names)), names, rotation=90)
     axes.set_yticks(range(len(names)), names)
-    for (i, j), value in np.ndenumerate(r) if len(names) <= HOW_MANY else ():
+    for (i, j), value in np.ndenumerate(r) if len(names) <= 10 else ():  # more are illegible
         shade = "w" if abs(value) > 0.6 else "k"
         axes.text(j, i, f"{value:.2f}", ha="center", va="center", fontsize=6.5, color=shade)
     axes.set_title(f"correlation at {canvas.plain(preferred(data.attrs))}", loc="left")

@@ -49,23 +49,13 @@ from modefront.text import Shown
 from modefront.uncertainty.inference import freed
 from modefront.uncertainty.most_probable import maximum
 
-AGREEMENT = 1e-5
-"""Greatest relative error of derivatives that finite differences explain."""
+AGREEMENT = 1e-5  # greatest relative error of derivatives that finite differences explain
 
-STEP = 2e-3
-"""Change of a residual in its own unit, root mean square, that a finite difference makes."""
+STEP, SHARE, MOST = 2e-3, 0.02, 60
+"""Change of a residual in its own unit, root mean square, that a finite difference makes; share of
+a parameter, or of its range where it is zero, that it takes at most; directions at most."""
 
-SHARE = 0.02
-"""Share of a parameter, or of its range where it is zero, that a step takes at most."""
-
-MOST = 60
-"""Directions in which derivatives are compared, at most."""
-
-MANY = 100
-"""Parameters from which on a run is said to take long."""
-
-KEPT = 500
-"""Models that a search keeps with their second derivatives, some."""
+KEPT = 500  # models that a search keeps with their second derivatives, some
 
 HARMLESS = {
     "damping",
@@ -204,7 +194,7 @@ def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[Finding
         yield found("elements", text)
     if len(problem.data.sets) > COMPARED:
         yield found("many-sets", str(len(problem.data.sets)), searched=COMPARED)
-    if len(names) > MANY:
+    if len(names) > 100:  # a run takes long
         yield found("many-parameters", str(len(names)), size=memory_of(problem) / 1e9)
 
 
@@ -328,20 +318,13 @@ def _slopes(
     NaN where the model is not defined with the shortest.
     """
     for h in (STEP, STEP / 8, STEP / 64):
+        points = [theta + x * direction for x in (h / 2, -h / 2, h, -h)]
         try:
-            half, whole = (
-                [
-                    problem.vectors(
-                        problem.modes(theta + x * direction, derivatives=False)[0], pairs
-                    )
-                    for x in (k, -k)
-                ]
-                for k in (h / 2, h)
-            )
+            modes = [problem.modes(x, derivatives=False)[0] for x in points]
         except ModelError:
             continue
-        differences = zip(*half, *whole, strict=True)
-        return [(4 * (a - b) / h - (c - d) / (2 * h)) / 3 for a, b, c, d in differences]
+        vectors = zip(*(problem.vectors(each, pairs) for each in modes), strict=True)
+        return [(4 * (a - b) / h - (c - d) / (2 * h)) / 3 for a, b, c, d in vectors]
     return [np.full(1, np.nan) for _ in problem.groups]
 
 

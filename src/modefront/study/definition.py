@@ -1,7 +1,5 @@
 """A study: an updating problem and the options of its solution, analysis and predictions."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -25,30 +23,18 @@ from modefront.results.schema import variables_of
 from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 
-NAME = text("a text of printable characters")
-SEED = whole(0, 2**63 - 1)
-
 
 @dataclass(frozen=True)
 class Origin:
-    """Files from which a study was read.
+    """Files from which a study was read."""
 
-    Attributes
-    ----------
-    file : the study file
-    digest : hash of this file and of all files that it names
-    work : hash of the inputs of the problem
-    problem : the problem that was read; a study of another problem has another origin
-    remark : reason why a requested option is not in use
-    notes : mistakes that were found when it was read
-    """
-
-    file: Path
-    digest: str
-    work: str
+    file: Path  # the study file
+    digest: str  # hash of this file and of all files that it names
+    work: str  # hash of the inputs of the problem
+    # the problem that was read; a study of another problem has another origin
     problem: UpdatingProblem
-    remark: str = ""
-    notes: tuple[Finding, ...] = ()
+    remark: str = ""  # reason why a requested option is not in use
+    notes: tuple[Finding, ...] = ()  # mistakes that were found when it was read
 
 
 # 12 fields: the problem, where it was read, and each table of options.
@@ -75,8 +61,8 @@ class Study:
     """
 
     problem: UpdatingProblem
-    name: Annotated[str, NAME] = "study"
-    seed: Annotated[int, SEED] = 0
+    name: Annotated[str, text("a text of printable characters")] = "study"
+    seed: Annotated[int, whole(0, 2**63 - 1)] = 0
     pareto: Pareto = field(default_factory=Pareto)
     weighted: Sequence[Weighted] = ()
     search: Search = field(default_factory=Search)
@@ -149,7 +135,7 @@ class Study:
         options = self.name, self.uncertainty.draws, self.predictions, self.slack
         return _hash(self.origin.digest, self.work, *options)
 
-    def completed(self) -> Study:
+    def completed(self) -> "Study":
         """Return the study with what its predictions take from the nominal model.
 
         Raises InputError with what this model cannot predict.

@@ -32,14 +32,9 @@ from modefront.uncertainty.sampling import DRAWS, extent
 from modefront.work.progress import Plan, Span, together
 from modefront.work.task import seed_sequence, uncounted
 
-NEAR = 0.4, 2.0
-"""Time of a search from a known model over that of one from anywhere, from and to."""
-
-SHORT = 30.0
-"""Seconds up to which no advice on a shorter run is given."""
-
-STEP = 2.0, 6.0
-"""Evaluations of a step from one draw of the posterior to the next, from and to."""
+NEAR = 0.4, 2.0  # time of a search from a known model over that of one from anywhere, from and to
+SHORT = 30.0  # seconds up to which no advice on a shorter run is given
+STEP = 2.0, 6.0  # evaluations of a step from one draw of the posterior to the next, from and to
 
 ENDS = 20
 """Steps to the end of a range at a model, with a slack: each takes derivatives by differences."""
@@ -48,23 +43,17 @@ TIMED, WITHIN = 8, 0.4
 """Searches that are timed, where an evaluation tells that there is time for them; seconds within
 which another one is begun."""
 
-SAMPLES = 100
-"""Samples with which a prediction is timed, and three times as many."""
+SAMPLES = 100  # samples with which a prediction is timed, and three times as many
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """The time that a study will probably take.
+    """The time that a study will probably take."""
 
-    Attributes
-    ----------
-    plan : what each stage of the run takes
-    start : seconds of the program itself, which starts, reads the study and writes results
-    advice : what would make the run shorter, that of the longest part first; none for short runs
-    """
-
-    plan: Plan
+    plan: Plan  # what each stage of the run takes
+    # seconds of the program itself, which starts, reads the study and writes results
     start: Span = (0.0, 0.0)
+    # what would make the run shorter, that of the longest part first; none for short runs
     advice: tuple[str, ...] = ()
 
     @property

@@ -50,9 +50,6 @@ OF_OPTIONS: Mapping[str, Any] = {"pairing": Pairing} | {
 }
 """Tables that are records of options, all of which have defaults."""
 
-Drafts = Sequence[tuple[opt.Table, Prediction]]
-"""Predictions as in their tables, without the defaults that follow from the nominal model."""
-
 
 def as_study(given: Study | UpdatingProblem | Path | str) -> Study:
     """Return a study: itself, that of a file, or that of a problem with the options as usual."""
@@ -256,8 +253,11 @@ def read_weights(root: opt.Table, groups: Sequence[str]) -> tuple[Weighted, ...]
 
 def read_predictions(
     root: opt.Table, model: Model | None, data: ModalData | None
-) -> tuple[Drafts, float]:
-    """Return the predictions that a study asks for, as far as they are right, and their slack."""
+) -> tuple[list[tuple[opt.Table, Prediction]], float]:
+    """Return the predictions that a study asks for, as far as they are right, and their slack.
+
+    They are as in their tables, without the defaults that follow from the nominal model.
+    """
     if "predict" not in root.values:
         root.requested.append("predict")
         return [], 0.0
@@ -284,9 +284,6 @@ T = TypeVar("T")
 FILE_NAME = "study.schema.json"
 """File that is written beside a study file: no network is needed to read it."""
 
-DIRECTIVE = f"#:schema {FILE_NAME}\n"
-"""First line of a study file, by which editors with Taplo find the schema."""
-
 
 def study_schema() -> dict[str, Any]:
     """Return the schema, draft 7, with the kinds, methods and predictions that are registered."""
@@ -309,7 +306,14 @@ def study_schema() -> dict[str, Any]:
     }
     required = ["study", "data", "model", "parameter", "group"]
     head = {"$schema": "http://json-schema.org/draft-07/schema#", "title": "modefront study"}
-    return {**head, **opt.closed(tables, required), **_drawn_to_predict()}
+    # Models are drawn for predictions only.
+    draws = {"required": ["draws"], "properties": {"draws": {"minimum": 1}}, **opt.OPEN}
+    some = {"anyOf": [{"required": [key]} for key in CLASSES]}
+    drawn = {
+        "if": {"required": ["uncertainty"], "properties": {"uncertainty": draws}, **opt.OPEN},
+        "then": {"required": ["predict"], "properties": {"predict": some}, **opt.OPEN},
+    }
+    return {**head, **opt.closed(tables, required), **drawn}
 
 
 def as_text() -> str:
@@ -323,7 +327,8 @@ def add_schema(studies: Sequence[Path]) -> Path:
     Returns its path; an earlier schema is replaced.
     """
     for study in studies:
-        write_text(study, DIRECTIVE + study.read_text("utf-8"))
+        # By this line editors with Taplo find the schema.
+        write_text(study, f"#:schema {FILE_NAME}\n" + study.read_text("utf-8"))
     path = studies[0].parent / FILE_NAME
     write_text(path, as_text())
     return path
@@ -359,16 +364,6 @@ def _model(kind: ModelKind) -> opt.Schema:
         return opt.TABLE
     known = [x for x in opt.options(Reduction) if x.name == "reduction" and kind.is_reducible]
     return opt.of_options([*opt.options(kind.table), *known])
-
-
-def _drawn_to_predict() -> opt.Schema:
-    """Return what a schema says in addition of a study: models are drawn for predictions only."""
-    draws = {"required": ["draws"], "properties": {"draws": {"minimum": 1}}, **opt.OPEN}
-    some = {"anyOf": [{"required": [key]} for key in CLASSES]}
-    return {
-        "if": {"required": ["uncertainty"], "properties": {"uncertainty": draws}, **opt.OPEN},
-        "then": {"required": ["predict"], "properties": {"predict": some}, **opt.OPEN},
-    }
 
 
 FAMILIES: tuple[Family[Any], ...] = (CLASSES, KINDS, RESIDUALS, METHODS, READERS)

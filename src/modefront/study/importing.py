@@ -65,8 +65,7 @@ LARGE, SHOWN = 100_000, 6
 """Degrees of freedom from which on no frequencies are computed unless asked for, and how many
 frequencies otherwise."""
 
-JobFiles = Path | str | Sequence[Path | str]
-"""The job of a parameter, or several."""
+JobFiles = Path | str | Sequence[Path | str]  # the job of a parameter, or several
 
 
 @dataclass(frozen=True, eq=False, repr=False)

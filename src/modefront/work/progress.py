@@ -16,14 +16,12 @@ import numpy as np
 
 from modefront.work.task import Costs
 
-Span = tuple[float, float]
-"""From and to."""
+Span = tuple[float, float]  # from and to
 
 COUNTED = frozenset(("sample-posterior", "bootstrap", "predict", "second-derivatives"))
 """Stages whose number of tasks is known when they begin."""
 
-SEARCHES = ("edges", "front")
-"""Stages of which a task is a search."""
+SEARCHES = ("edges", "front")  # stages of which a task is a search
 
 MANY, SIMILAR = 8, (0.6, 1.6)
 """Searches whose time counts as much as the planned one; time of a task that is left over the mean
@@ -158,8 +156,7 @@ class Progress:
         return least / self.workers, most / self.workers
 
 
-ITERATION = "iteration "
-"""What a note begins with that is a detail of the one before it."""
+ITERATION = "iteration "  # what a note begins with that is a detail of the one before it
 
 Listener = Callable[[str], object]
 

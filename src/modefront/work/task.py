@@ -4,8 +4,6 @@ Tasks of one call of `Executor.run` are independent, and their results come back
 Costs are counted where an eigenproblem is solved, by all counts that are open there.
 """
 
-from __future__ import annotations
-
 import time
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -40,7 +38,7 @@ class Costs:
         """Eigenproblems solved in full or in a reduced basis."""
         return self.eigenproblems + self.reduced
 
-    def add(self, other: Costs) -> None:
+    def add(self, other: "Costs") -> None:
         """Add other costs to these."""
         for name, spent in vars(other).items():
             if spent:
@@ -79,34 +77,25 @@ def uncounted() -> Iterator[None]:
 
 Part = str | int | tuple[int, ...]
 
-Key = tuple[Part, ...]
-"""Parts that name a task; the first one names its stage."""
+Key = tuple[Part, ...]  # parts that name a task; the first one names its stage
 
 R = TypeVar("R")
 
 
 @dataclass(frozen=True)
 class Task(Generic[R]):
-    """A function with its arguments.
+    """A function with its arguments."""
 
-    Attributes
-    ----------
-    key : names the task within its turn; the first part is the stage of the run
-    function : at module level; its result is a record (`modefront.work.codec`) or a list of these
-    arguments : picklable
-    seed : of the generator that the function is passed as ``rng``; None where it takes none
-    turn : which repetition of the stage the task belongs to
-    in_process : whether it changes its arguments, and is computed in the process that has them
-    memory : bytes that it takes besides its arguments, where these are many
-    """
-
-    key: Key
+    key: Key  # names the task within its turn; the first part is the stage of the run
+    # at module level; its result is a record (`modefront.work.codec`) or a list of these
     function: Callable[..., R]
-    arguments: tuple[Any, ...] = ()
+    arguments: tuple[Any, ...] = ()  # picklable
+    # of the generator that the function is passed as ``rng``; None where it takes none
     seed: np.random.SeedSequence | None = None
-    turn: Key = ()
+    turn: Key = ()  # which repetition of the stage the task belongs to
+    # whether it changes its arguments, and is computed in the process that has them
     in_process: bool = False
-    memory: float = 0.0
+    memory: float = 0.0  # bytes that it takes besides its arguments, where these are many
 
     @property
     def stage(self) -> str:

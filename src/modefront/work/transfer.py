@@ -16,8 +16,7 @@ from weakref import ref
 
 from modefront.work.task import Done, Task, computed
 
-KNOWN = 3
-"""Shared objects that a process keeps at most: those used last."""
+KNOWN = 3  # shared objects that a process keeps at most: those used last
 
 
 class Shared(Protocol):

@@ -5,8 +5,6 @@ given up the second time: the others are computed to the end, and an error names
 this machine ends with the one that has started it, and leaves interrupts of the terminal to it.
 """
 
-from __future__ import annotations
-
 import importlib
 import logging
 import math
@@ -43,8 +41,7 @@ QUEUED, SHARE = 2, 0.6
 WARM = "modefront.front.pareto", "modefront.analysis.front"
 """What processes import when they start: nearly all that the tasks of a run need."""
 
-MOST = 61
-"""Processes of this machine at most; Windows waits for no more."""
+MOST = 61  # processes of this machine at most; Windows waits for no more
 
 GONE = "the Dask scheduler is gone; what was done is kept"
 
@@ -272,7 +269,7 @@ class Workers:
         """Number of processes."""
         return self.pool.count if self.pool else 1
 
-    def __enter__(self) -> Workers:
+    def __enter__(self) -> "Workers":
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -59,11 +59,7 @@ MEMBERS: Mapping[str, Callable[..., Any]] = {
 }
 """Classes of members at nodes by their tables."""
 
-SINGLE = ("master", "node")
-"""Keys of members that name one node."""
-
-NAMED_KINDS = ("group", "spring", "mass", "load")
-"""Tables whose entries have names that parameters scale."""
+SINGLE = ("master", "node")  # keys of members that name one node
 
 PLACED = {
     "node": opt.whole(0, 10**9),
@@ -204,7 +200,9 @@ def read_mesh_model(table: opt.Table, parameters: Sequence[str]) -> Model | None
     for sensor in structure.sensors:
         if isinstance(sensor.at, int) and sensor.at >= count:
             table.fault(f"sensors {sensor.name}", from_zero("nodes", count, -1), str(sensor.at))
-    tables = [x for kind in NAMED_KINDS for x in listed(table.values.get(kind))]
+    tables = [
+        x for kind in ("group", "spring", "mass", "load") for x in listed(table.values.get(kind))
+    ]
     names = [x["name"] for x in tables if isinstance(x, dict) and isinstance(x.get("name"), str)]
     expected = "the name of a group, spring, mass or load"
     for parameter in structure.parameters:
