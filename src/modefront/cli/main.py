@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager, nullco
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -18,9 +18,6 @@ from modefront._version import __version__
 from modefront.cli.terminal import complain, prepare, say, say_next, usage
 from modefront.errors import InputError, UnfinishedError, reason
 from modefront.text import one_line
-
-if TYPE_CHECKING:
-    from modefront.work.workers import Workers
 
 PATH = click.Path(path_type=Path)
 
@@ -168,7 +165,7 @@ def run(
     from modefront.work.workers import backend
 
     directory = directory or study.with_name(f"{study.stem}-results")
-    carrier: AbstractContextManager[Workers] = backend(workers, scheduler)
+    carrier: AbstractContextManager[Any] = backend(workers, scheduler)
     with ExitStack() as early:
         if scheduler is None:  # they start while the study is read
             carrier = nullcontext(early.enter_context(carrier))

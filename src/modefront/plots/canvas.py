@@ -6,7 +6,7 @@ doi:10.1016/j.cma.2008.04.010); neighbours on a front of two objectives are join
 
 import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -48,11 +48,6 @@ STYLE: Mapping[Any, Any] = {
     "svg.fonttype": "path",
 }
 
-Place = Literal[
-    "outside lower left", "outside lower center", "outside upper left", "outside upper center"
-]
-"""Places of legends."""
-
 
 class Picture(Figure):
     """A figure of matplotlib that a notebook shows as a vector graphic."""
@@ -86,8 +81,11 @@ def panels(count: int, columns: int = COLUMNS) -> tuple[Picture, list[Axes]]:
     return figure, grid[:count]
 
 
-def legend(figure: Figure, axes: Axes, loc: Place, most: int) -> None:
-    """Put the legend of axes beside them, in ``most`` columns or as many as the figure has room."""
+def legend(figure: Figure, axes: Axes, loc: Any, most: int) -> None:
+    """Put the legend of axes beside them, in ``most`` columns or as many as the figure has room.
+
+    ``loc`` is what `Figure.legend` takes, such as "outside lower left".
+    """
     handles, labels = axes.get_legend_handles_labels()
     for columns in range(most, 0, -1):
         shown = figure.legend(handles, labels, loc=loc, ncols=columns)
