@@ -1,13 +1,7 @@
 """The test file: the files of a modal test with their references, and the options.
 
-TOML with the tables ``[test]``, ``[identify]``, ``[impact]``, ``[sensors]`` and a table ``[[set]]``
-for every data set, which is a setup of an ambient test. A universal file or a CSV file alone is a
-test of one set.
-
-Records of an ambient test are files in CSV with a column ``time`` in s and one for every sensor,
-universal files with functions of type 1 in dataset 58, NumPy's ``.npy``, or MATLAB's ``.mat`` (up
-to version 7); of the last two, a two-dimensional array whose longer side is time, with rate and
-names from the test file.
+``docs/identification.md`` describes it, and the records of ambient tests. A universal file or a CSV
+file alone is a test of one set; a data set of an ambient test is a setup.
 """
 
 from collections.abc import Mapping, Sequence

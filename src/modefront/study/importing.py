@@ -1,22 +1,8 @@
-r"""Import of jobs of a program as a study.
+"""Import of jobs of a program as a study; the jobs of a CalculiX deck are made from it, and run.
 
-The jobs of a CalculiX deck are made from it, and run. A parameter multiplies what the deck says of
-a name:
-
-===================  ==========================================================  ================
-what                 numbers                                                     matrices
-===================  ==========================================================  ================
-``material:NAME``    moduli in ``*ELASTIC`` of the material                      :math:`\theta`
-``density:NAME``     ``*DENSITY`` of the material                                :math:`\theta`
-``spring:ELSET``     constants of ``*SPRING``                                    :math:`\theta`
-``mass:ELSET``       ``*MASS``                                                   :math:`\theta`
-``section:ELSET``    thickness of ``*SHELL SECTION``, of which the program       :math:`\theta`,
-                     makes solids                                                1/θ, θ², θ³
-===================  ==========================================================  ================
-
-There is a job at the nominal values, one for each term of a parameter, and one with all parameters
-at other values, with which the terms are compared. The program also prints frequencies of the deck,
-with which those of the imported matrices are compared.
+What a parameter of a deck multiplies, and which jobs there are, is in ``docs/import.md``. The
+matrices are linear in moduli, densities, springs and masses. Of a shell the program makes solids:
+they have the thickness t in the terms t, 1/t, t² and t³.
 """
 
 import json
