@@ -50,11 +50,9 @@ from modefront.uncertainty.inference import freed
 from modefront.uncertainty.most_probable import maximum
 
 AGREEMENT = 1e-5  # greatest relative error of derivatives that finite differences explain
-
-STEP, SHARE, MOST = 2e-3, 0.02, 60
-"""Change of a residual in its own unit, root mean square, that a finite difference makes; share of
-a parameter, or of its range where it is zero, that it takes at most; directions at most."""
-
+STEP = 2e-3  # change of a residual in its own unit, root mean square, by a finite difference
+SHARE = 0.02  # share of a parameter, or of its range where it is zero, that a step takes at most
+MOST = 60  # directions in which derivatives are compared, at most
 KEPT = 500  # models that a search keeps with their second derivatives, some
 
 HARMLESS = {
@@ -321,10 +319,11 @@ def _slopes(
         points = [theta + x * direction for x in (h / 2, -h / 2, h, -h)]
         try:
             modes = [problem.modes(x, derivatives=False)[0] for x in points]
+            vectors = [problem.vectors(each, pairs) for each in modes]
         except ModelError:
             continue
-        vectors = zip(*(problem.vectors(each, pairs) for each in modes), strict=True)
-        return [(4 * (a - b) / h - (c - d) / (2 * h)) / 3 for a, b, c, d in vectors]
+        each_group = zip(*vectors, strict=True)
+        return [(4 * (a - b) / h - (c - d) / (2 * h)) / 3 for a, b, c, d in each_group]
     return [np.full(1, np.nan) for _ in problem.groups]
 
 
