@@ -156,15 +156,13 @@ def test_a_common_basis_keeps_shapes_of_many_models_small() -> None:
     t = np.linspace(0, 1, 12)
     thetas = np.column_stack([0.8 + 0.4 * t, 1.2 - 0.4 * t])
     result = mode_shapes(problem, thetas, np.tile([1.0, 2.0, 3.0], (len(t), 1)))
-    assert result.basis is not None
-    assert result.coefficient is not None
-    assert len(result.basis) <= 12
+    assert len(result["shape_basis"]) <= 12
     geometry = geometry_of(model)
     assert geometry is not None
     Phi = model.full_modes(thetas[5], 3).Phi
     u = geometry.displacement(Phi)[:, drawing(geometry)[0]]
     u /= np.sqrt((u**2).sum(axis=2)).max(axis=1)[:, None, None]
-    drawn = np.tensordot(result.coefficient[5], result.basis, 1)
+    drawn = np.tensordot(result["shape_coefficient"][5], result["shape_basis"], 1)
     drawn *= np.sign((drawn * u).sum(axis=(1, 2)))[:, None, None]
     np.testing.assert_allclose(drawn, u, atol=5e-3)
 

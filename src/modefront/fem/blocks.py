@@ -12,27 +12,11 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.errors import Fault, noted, wrong
 from modefront.fem import check
-from modefront.fem.elements import common
+from modefront.fem import structure as members
+from modefront.fem.elements import common, shell
 from modefront.fem.elements.beam import Axial, beam, truss
-from modefront.fem.elements.shell import (
-    centre_axes,
-    directors,
-    narrowness,
-    shell,
-    shell_stresses,
-)
 from modefront.fem.elements.solid import SOLIDS, solid, solid_stresses
 from modefront.fem.section import Material
-from modefront.fem.structure import (
-    ALONG,
-    Beams,
-    Mass,
-    Shells,
-    Solids,
-    Spring,
-    Structure,
-    Trusses,
-)
 from modefront.rounding import TINY
 
 SYMMETRIC = 1e-9
@@ -72,20 +56,22 @@ class Block:
         return np.asarray(dofs.reshape(len(dofs), -1))
 
 
-def blocks_of(X: Floats, structure: Structure, faults: list[Fault]) -> list[Block]:
+def blocks_of(X: Floats, structure: members.Structure, faults: list[Fault]) -> list[Block]:
     """Return a block for each group, and set of springs or masses, in which nothing is wrong.
 
     Its faults are noted.
     """
-    shells: list[tuple[Shells, Ints]] = []
+    shells: list[tuple[members.Shells, Ints]] = []
     for group in structure.groups:
-        if isinstance(group, Shells):
+        if isinstance(group, members.Shells):
             with noted(faults, f"group {group.name!r}"):
                 cells = check.cell_array(group.cells, (3, 4), len(X))
                 check.check_sizes(check.shell_sizes(X[cells]), cells, "area")
                 shells.append((group, cells))
     every = [cells for _, cells in shells]
-    shared = zip(directors(X, every), narrowness(X, every), strict=True) if shells else ()
+    shared = (
+        zip(shell.directors(X, every), shell.narrowness(X, every), strict=True) if shells else ()
+    )
     blocks: list[Block] = []
     for (group, cells), of_nodes in zip(shells, shared, strict=True):
         with noted(faults, f"group {group.name!r}"):
@@ -97,7 +83,7 @@ def blocks_of(X: Floats, structure: Structure, faults: list[Fault]) -> list[Bloc
     return blocks
 
 
-def _beams(X: Floats, group: Beams) -> Block:
+def _beams(X: Floats, group: members.Beams) -> Block:
     r = np.asarray(group.offsets, dtype=float)
     cells, axis = _lines(X, group, r)
     section = group.section
@@ -111,7 +97,7 @@ def _beams(X: Floats, group: Beams) -> Block:
     else:
         v = check.unit_vector(group.orientation)[:3]
         orientation = np.broadcast_to(v, axis.shape)
-        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < ALONG)
+        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < members.ALONG)
         if len(parallel):
             nodes = ", ".join(map(str, cells[parallel[0]].tolist()))
             expected = f"a vector not parallel to the axis of element {parallel[0]} (nodes {nodes})"
@@ -121,14 +107,14 @@ def _beams(X: Floats, group: Beams) -> Block:
     return Block(group.name, cells, SIX, made, not group.released, given, lambda: axial)
 
 
-def _trusses(X: Floats, group: Trusses) -> Block:
+def _trusses(X: Floats, group: members.Trusses) -> Block:
     cells, _ = _lines(X, group, np.zeros((2, 3)))
     made, axial = truss(X[cells], group.material, group.area)
     given = group.force * axial.unit if group.force else None
     return Block(group.name, cells, TRANSLATIONS, made, False, given, lambda: axial)
 
 
-def _lines(X: Floats, group: Beams | Trusses, r: Floats) -> tuple[Ints, Floats]:
+def _lines(X: Floats, group: members.Beams | members.Trusses, r: Floats) -> tuple[Ints, Floats]:
     """Return cells (elements, 2) and the unit vectors along them, with offsets r of the ends."""
     if not isinstance(group.material, Material):
         raise wrong("material", "an isotropic one", repr(group.material))
@@ -142,32 +128,32 @@ def _lines(X: Floats, group: Beams | Trusses, r: Floats) -> tuple[Ints, Floats]:
 
 # 6 arguments: those of a group, and what its elements share with others.
 def _shells(
-    X: Floats, group: Shells, cells: Ints, d: Floats, narrow: Floats, varied: Set[str]
+    X: Floats, group: members.Shells, cells: Ints, d: Floats, narrow: Floats, varied: Set[str]
 ) -> Block:
     x, r, t = X[cells], group.offset * d, group.thickness
     m = _grain(x, group)
-    made = shell(x, d, narrow, m, group.material, t, group.offset, group.name in varied)
-    internal = partial(shell_stresses, x, r, m, common.ply(group.material), t)
+    made = shell.shell(x, d, narrow, m, group.material, t, group.offset, group.name in varied)
+    internal = partial(shell.shell_stresses, x, r, m, common.ply(group.material), t)
     return Block(group.name, cells, SIX, made, rigid=True, internal=internal)
 
 
-def _grain(x: Floats, group: Shells) -> Floats:
+def _grain(x: Floats, group: members.Shells) -> Floats:
     """Return vectors (elements, 3) in the planes of shells along axis 1 of the material."""
     if isinstance(group.material, Material):
         return x[:, 1] - x[:, 0]
     if group.direction is None:
         raise wrong("direction", "that along which axis 1 of the material is", "nothing")
     v = check.unit_vector(group.direction)[:3]
-    R = centre_axes(x)[:, :2]
+    R = shell.centre_axes(x)[:, :2]
     m = (R @ v)[:, None] @ R
-    across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < ALONG)
+    across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < members.ALONG)
     if len(across):
         expected = f"a vector not normal to the shell at element {across[0]}"
         raise wrong("direction", expected, tuple(group.direction))
     return np.asarray(m[:, 0])
 
 
-def _solids(X: Floats, group: Solids) -> Block:
+def _solids(X: Floats, group: members.Solids) -> Block:
     if np.ndim(group.cells) == 2 and np.shape(group.cells)[1] == 4:
         found = "tetrahedra of 4 nodes, which are far too stiff in bending"
         raise wrong("", "second-order elements (10 nodes)", found)
@@ -178,7 +164,7 @@ def _solids(X: Floats, group: Solids) -> Block:
     return Block(group.name, cells, TRANSLATIONS, made, rigid=True, internal=internal)
 
 
-def _springs(X: Floats, member: Spring) -> Block:
+def _springs(X: Floats, member: members.Spring) -> Block:
     """Return springs of stiffness k that store 1/2 k (s q)^2: K = sum k s^T s.
 
     With a unit vector a on displacements or rotations of the nodes, s is (a, -a), or (a) to the
@@ -207,7 +193,7 @@ def _springs(X: Floats, member: Spring) -> Block:
     return Block(member.name, nodes, SIX, common.ElementMatrices({0: K}, {}))
 
 
-def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats) -> Floats:
+def _spring_axis(X: Floats, member: members.Spring, nodes: Ints, gap: Floats) -> Floats:
     """Return the unit vectors (springs, 6) along which springs of one stiffness act."""
     length = np.linalg.norm(gap, axis=1, keepdims=True)
     size = np.ptp(X, axis=0).max()
@@ -219,7 +205,7 @@ def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats) -> Floats:
         return np.pad(gap / length, ((0, 0), (0, 3)))
     axis = np.tile(check.unit_vector(member.direction), (len(nodes), 1))
     slant = np.linalg.norm(np.cross(gap, axis[:, :3]), axis=1)
-    skew = np.flatnonzero(slant > ALONG * length[:, 0] + check.COINCIDENT * size)
+    skew = np.flatnonzero(slant > members.ALONG * length[:, 0] + check.COINCIDENT * size)
     if axis[0, :3].any() and len(skew):
         expected = "one along their line between distant nodes, else it resists a rotation of the "
         expected += "whole (or six stiffnesses, which act by rigid arms)"
@@ -228,7 +214,7 @@ def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats) -> Floats:
     return axis
 
 
-def _masses(X: Floats, member: Mass) -> Block:
+def _masses(X: Floats, member: members.Mass) -> Block:
     """Return masses m of inertia I about their centres, at offset c from the nodes.
 
     Their energy is 1/2 m |u + omega x c|^2 + 1/2 omega^T I omega, with an m for each direction.
@@ -250,11 +236,11 @@ def _masses(X: Floats, member: Mass) -> Block:
 
 
 MADE: Mapping[type, tuple[str, Callable[[Floats, Any], Block]]] = {
-    Beams: ("group", _beams),
-    Trusses: ("group", _trusses),
-    Solids: ("group", _solids),
-    Spring: ("spring", _springs),
-    Mass: ("mass", _masses),
+    members.Beams: ("group", _beams),
+    members.Trusses: ("group", _trusses),
+    members.Solids: ("group", _solids),
+    members.Spring: ("spring", _springs),
+    members.Mass: ("mass", _masses),
 }
 """What messages call the members of each class, and what makes blocks of them; shells, of which
 neighbours share directors, are made before these."""

@@ -14,36 +14,30 @@ from typing import Annotated
 import numpy as np
 import scipy.sparse
 
+from modefront import options
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, suggestion, wrong
 from modefront.models.geometry import chain_geometry
 from modefront.models.matrices import WEIGHTED, MatrixModel, SensorSpec, matrices
 from modefront.models.parameters import BASE
-from modefront.options import (
-    ABOVE_ZERO,
-    NOT_NEGATIVE,
-    Requirement,
-    array,
-    entries,
-    numbers,
-    table_of,
-)
 
-MASSES = numbers("a list of masses above 0", array(ABOVE_ZERO, 1))
-STIFFNESSES = numbers(
+MASSES = options.numbers("a list of masses above 0", options.array(options.ABOVE_ZERO, 1))
+STIFFNESSES = options.numbers(
     "a list of spring stiffnesses of 0 or more, as many as masses, or one more for a spring from "
     "the top to the ground",
-    array(NOT_NEGATIVE, 1),
+    options.array(options.NOT_NEGATIVE, 1),
 )
-ADDED = numbers("a list of masses of 0 or more, as many as masses", array(NOT_NEGATIVE))
-_NAMES = array({"type": "string"})
-OF_SPRINGS = Requirement(
+ADDED = options.numbers(
+    "a list of masses of 0 or more, as many as masses", options.array(options.NOT_NEGATIVE)
+)
+_NAMES = options.array({"type": "string"})
+OF_SPRINGS = options.Requirement(
     "a list of names of parameters, as many as springs, '' where none scales", _NAMES, tuple
 )
-OF_MASSES = Requirement(
+OF_MASSES = options.Requirement(
     "a list of names of parameters, as many as masses, '' where none scales", _NAMES, tuple
 )
-PLACES = entries("a table, name = degree of freedom", table_of(WEIGHTED))
+PLACES = options.entries("a table, name = degree of freedom", options.table_of(WEIGHTED))
 
 Numbers = Sequence[float] | Floats
 Names = Sequence[str | None]

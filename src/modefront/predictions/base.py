@@ -199,57 +199,43 @@ class PredictionKind:
     @property
     def schema(self) -> Iterator[Variable]:
         """All variables that results have of predictions of this kind."""
-        yield from self._of_points()
-        for ranged in self.ranged:
-            yield from self._linearised(ranged)
-            yield from self._drawn(ranged)
-
-    def _of_points(self) -> Iterator[Variable]:
-        dimension = (self.dimension,)
+        own, both = (self.dimension,), (self.dimension, f"{self.dimension}_other")
         for x in self.variables:
-            yield Variable(x.name, ("point", *dimension), x.meaning, unit=x.unit)
+            yield Variable(x.name, ("point", *own), x.meaning, unit=x.unit)
         for x in self.ranged:
             over = f"of {x.name} over the Pareto-optimal models"
-            yield Variable(f"{x.name}_range", ("range", *dimension), over, unit=x.unit)
-        yield Variable(f"{self.dimension}_name", dimension, "name of the prediction", "text")
-        heading = "its options in a sentence"
-        yield Variable(f"{self.dimension}_heading", dimension, heading, "text")
-        for setting in self.settings:
-            dimensions = (*dimension, *setting.dimensions)
-            yield Variable(
-                setting.name, dimensions, setting.meaning, setting.values, unit=setting.unit
-            )
+            yield Variable(f"{x.name}_range", ("range", *own), over, unit=x.unit)
+        yield Variable(f"{self.dimension}_name", own, "name of the prediction", "text")
+        yield Variable(f"{self.dimension}_heading", own, "its options in a sentence", "text")
+        for each in self.settings:
+            dimensions = (*own, *each.dimensions)
+            yield Variable(each.name, dimensions, each.meaning, each.values, each.unit)
         if self.check:
             for x in self.check.variables:
-                yield Variable(x.name, dimension, x.meaning, unit=x.unit)
-            yield Variable(self.check.label.name, dimension, self.check.label.meaning, "text")
-
-    def _linearised(self, variable: ResultVariable) -> Iterator[Variable]:
-        dimension, both = (self.dimension,), (self.dimension, f"{self.dimension}_other")
-        name, unit, by = variable.name, variable.unit, "by the posterior, to first order"
-        if variable.logarithmic:
-            P, start = variable.symbol, f"posterior_{self.dimension}_log"
-            yield Variable(f"{start}_std", dimension, f"standard deviation of ln {P} {by}")
-            yield Variable(f"{start}_covariance", both, f"covariance of ln {P} {by}")
-            meaning = (
-                f"standard deviation of {name} that follows where ln {P} is Gaussian, of standard "
-                f"deviation s: {P} sqrt(e^(s^2) (e^(s^2) - 1)), {P} that of the reference"
-            )
-            yield Variable(f"posterior_{name}_std", dimension, meaning)
-        else:
-            meaning = f"standard deviation of {name} {by}"
-            yield Variable(f"posterior_{name}_std", dimension, meaning, unit=unit)
-            squared = f"{unit}2" if unit else ""
-            meaning = f"covariance of {name} {by}"
-            yield Variable(f"posterior_{name}_covariance", both, meaning, unit=squared)
-
-    def _drawn(self, variable: ResultVariable) -> Iterator[Variable]:
-        dimension, name, unit = (self.dimension,), variable.name, variable.unit
-        drawn = f"{name} of each model drawn from the posterior; NaN where there is none"
-        yield Variable(f"draw_{name}", ("draw", *dimension), drawn, unit=unit)
-        over = f"{name} over the models drawn from the posterior"
-        over += f"; its mean is {variable.mean}" if variable.mean else ""
-        yield Variable(f"posterior_{name}", ("statistic", *dimension), over, unit=unit)
+                yield Variable(x.name, own, x.meaning, unit=x.unit)
+            yield Variable(self.check.label.name, own, self.check.label.meaning, "text")
+        by, start = "by the posterior, to first order", f"posterior_{self.dimension}_log"
+        for x in self.ranged:
+            name, of, squared = f"posterior_{x.name}", x.name, f"{x.unit}2" if x.unit else ""
+            if P := x.symbol:
+                yield Variable(f"{start}_std", own, f"standard deviation of ln {P} {by}")
+                yield Variable(f"{start}_covariance", both, f"covariance of ln {P} {by}")
+                meaning = (
+                    f"standard deviation of {of} that follows where ln {P} is Gaussian, of "
+                    f"standard deviation s: {P} sqrt(e^(s^2) (e^(s^2) - 1)), {P} that of the "
+                    "reference"
+                )
+                yield Variable(f"{name}_std", own, meaning)
+            else:
+                meaning = f"standard deviation of {of} {by}"
+                yield Variable(f"{name}_std", own, meaning, unit=x.unit)
+                meaning = f"covariance of {of} {by}"
+                yield Variable(f"{name}_covariance", both, meaning, unit=squared)
+            drawn = f"{of} of each model drawn from the posterior; NaN where there is none"
+            yield Variable(f"draw_{of}", ("draw", *own), drawn, unit=x.unit)
+            over = f"{of} over the models drawn from the posterior"
+            over += f"; its mean is {x.mean}" if x.mean else ""
+            yield Variable(name, ("statistic", *own), over, unit=x.unit)
 
 
 class Prediction(Protocol):
@@ -344,27 +330,23 @@ def as_text(kinds: Iterable[PredictionKind]) -> str:
     return json.dumps([asdict(kind) for kind in kinds])
 
 
-@cache
-def kinds_from(text: str) -> tuple[PredictionKind, ...]:
-    """Return kinds from JSON, as `as_text` makes it."""
-    return tuple(_kind(**values) for values in json.loads(text)) if text else ()
-
-
-def _kind(variables: Any, settings: Any, check: Any, **values: Any) -> PredictionKind:
-    if check is not None:
-        compared = tuple(ResultVariable(**each) for each in check["variables"])
-        check = NumericalCheck(check["name"], compared, ResultVariable(**check["label"]))
-    return PredictionKind(
-        variables=tuple(ResultVariable(**each) for each in variables),
-        settings=tuple(Setting(**each) for each in settings),
-        check=check,
-        **values,
-    )
-
-
 def kinds_in(data: Dataset) -> tuple[PredictionKind, ...]:
     """Return the kinds of which sound results have predictions."""
-    return kinds_from(str(data.attrs.get(ATTRIBUTE, "")))
+    return _kinds(str(data.attrs.get(ATTRIBUTE, "[]")))
+
+
+@cache
+def _kinds(text: str) -> tuple[PredictionKind, ...]:
+    """Return kinds from JSON, as `as_text` makes it."""
+    kinds = json.loads(text)
+    for values in kinds:
+        checks = [values, *filter(None, [values["check"]])]
+        for each in checks:
+            each["variables"] = tuple(ResultVariable(**x) for x in each["variables"])
+        values["settings"] = tuple(Setting(**x) for x in values["settings"])
+        for check in checks[1:]:
+            values["check"] = NumericalCheck(**check | {"label": ResultVariable(**check["label"])})
+    return tuple(PredictionKind(**values) for values in kinds)
 
 
 @dataclass(frozen=True)

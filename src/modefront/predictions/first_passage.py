@@ -9,48 +9,14 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 
+from modefront import options
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
 from modefront.models.base import Model
-from modefront.options import (
-    ABOVE_ZERO,
-    NOT_NEGATIVE,
-    NUMBER,
-    Checked,
-    Requirement,
-    array,
-    check_fields,
-    nested,
-    number,
-    numbers,
-    one_of,
-    rising,
-    whole,
-)
+from modefront.predictions import reliability
+from modefront.predictions import system as modal
 from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVariable, Setting
-from modefront.predictions.reliability import (
-    LARGEST_ANGLE,
-    METHODS,
-    FirstPassage,
-    estimate,
-    step_effect,
-)
-from modefront.predictions.system import (
-    ABOVE,
-    EITHER,
-    MEASURED,
-    Base,
-    Damping,
-    Forces,
-    ModalLoadModel,
-    ModalSystem,
-    ModeCount,
-    Name,
-    Response,
-    filled,
-    highest_frequency,
-)
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import ACCUMULATED
 
@@ -64,21 +30,23 @@ WHOLE = 1e-6
 """Difference from a whole number of time steps that passes for the digits of their length."""
 
 
-LEVELS = numbers("a list of different levels above 0", array(ABOVE_ZERO, 1, once=True))
+LEVELS = options.numbers(
+    "a list of different levels above 0", options.array(options.ABOVE_ZERO, 1, once=True)
+)
 
-MODULATION = Requirement(
+MODULATION = options.Requirement(
     "a list of [time in s, factor], times rising from 0 or more, one factor not zero",
     {
-        **array(array([NOT_NEGATIVE, NUMBER], 2, 2), 1),
+        **options.array(options.array([options.NOT_NEGATIVE, options.NUMBER], 2, 2), 1),
         "contains": {"items": [{}, {"not": {"const": 0}}]},
     },
     lambda value: tuple((float(t), float(q)) for t, q in value),
-    lambda value: rising([t for t, _ in value]) and any(factor for _, factor in value),
+    lambda value: options.rising([t for t, _ in value]) and any(factor for _, factor in value),
 )
 
 
 @dataclass(frozen=True)
-class SoilFilter(Checked):
+class SoilFilter(options.Checked):
     """A filter of white noise by a layer of soil, after Kanai and Tajimi.
 
     Raises InputError for values that are not possible.
@@ -89,8 +57,8 @@ class SoilFilter(Checked):
     damping : damping ratio of the soil, above 0
     """
 
-    frequency: Annotated[float, number("a frequency of the soil above 0 Hz", above=0)]
-    damping: Annotated[float, number("a damping ratio of the soil above 0", above=0)]
+    frequency: Annotated[float, options.number("a frequency of the soil above 0 Hz", above=0)]
+    damping: Annotated[float, options.number("a damping ratio of the soil above 0", above=0)]
 
     @property
     def omega(self) -> float:
@@ -98,7 +66,7 @@ class SoilFilter(Checked):
         return 2 * math.pi * self.frequency
 
 
-FILTER = nested("a table { frequency, damping }, a Kanai-Tajimi filter", SoilFilter)
+FILTER = options.nested("a table { frequency, damping }, a Kanai-Tajimi filter", SoilFilter)
 
 
 # 15 fields: the keys of a table of a study file.
@@ -129,23 +97,23 @@ class Passage:
     damping : a ratio, a list of ratios, one a mode, or ``"measured"``
     """
 
-    name: Name
-    response: Response
-    density: Annotated[float, number("a spectral density above 0", above=0)]
+    name: modal.Name
+    response: modal.Response
+    density: Annotated[float, options.number("a spectral density above 0", above=0)]
     sided: Literal["one", "two"]
     levels: Annotated[Sequence[float], LEVELS]
-    duration: Annotated[float, number("a duration above 0 s", above=0)]
-    force: Forces | None = None
-    base: Base | None = None
-    step: Annotated[float, number("a time step above 0 s", above=0)] | None = None
+    duration: Annotated[float, options.number("a duration above 0 s", above=0)]
+    force: modal.Forces | None = None
+    base: modal.Base | None = None
+    step: Annotated[float, options.number("a time step above 0 s", above=0)] | None = None
     filter: Annotated[SoilFilter, FILTER] | None = None
     modulation: Annotated[Sequence[tuple[float, float]], MODULATION] | None = None
-    samples: Annotated[int, whole(2, 10**8)] = 2000
-    method: Annotated[str, one_of(*METHODS)] = "importance"
-    modes: ModeCount | None = None
-    damping: Damping = MEASURED
+    samples: Annotated[int, options.whole(2, 10**8)] = 2000
+    method: Annotated[str, options.one_of(*reliability.METHODS)] = "importance"
+    modes: modal.ModeCount | None = None
+    damping: modal.Damping = modal.MEASURED
 
-    either: ClassVar = EITHER
+    either: ClassVar = modal.EITHER
     kind: ClassVar = PredictionKind(
         "first_passage",
         "failure",
@@ -197,7 +165,7 @@ class Passage:
     )
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        options.check_fields(self)
         faults = list(self.loads.contradictions())
         steps = 1.0 if self.step is None else self.duration / self.step
         if steps > MOST_STEPS:
@@ -208,10 +176,10 @@ class Passage:
         refuse(faults)
 
     @property
-    def loads(self) -> ModalLoadModel:
+    def loads(self) -> modal.ModalLoadModel:
         """Load case, outputs, modes and damping."""
         forces: Any = self.force or ()
-        return ModalLoadModel.of(self, forces, static=False)
+        return modal.ModalLoadModel.of(self, forces, static=False)
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -226,7 +194,7 @@ class Passage:
             f"{self.name}: {loads.load}; probability that any response leaves [-level, level] "
             f"(two-sided barrier) within {self.duration:g} s, at rest at first; "
             f"{self.sided}-sided spectral density {self.density:g}, time step "
-            f"{filled(self.step, 'step'):g} s, {self.samples} samples ({self.method}), "
+            f"{modal.filled(self.step, 'step'):g} s, {self.samples} samples ({self.method}), "
             f"{self.modes} modes, damping {loads.damped}"
         )
 
@@ -252,7 +220,7 @@ class Passage:
         """Yield the requirements that the model or the data do not meet."""
         yield from self.loads.faults(model, data)
         number_known = self.modes is not None or isinstance(self.damping, tuple)
-        if highest_frequency(data) is None and not number_known:
+        if modal.highest_frequency(data) is None and not number_known:
             yield Fault("", "modes", "how many modes, as no frequency was measured", "nothing")
 
     def complete(self, problem: UpdatingProblem) -> Self:
@@ -261,11 +229,11 @@ class Passage:
         Raises InputError with what this model cannot predict.
         """
         refuse(self.faults(problem.model, problem.data))
-        top = ABOVE * (highest_frequency(problem.data) or 0.0)
+        top = modal.ABOVE * (modal.highest_frequency(problem.data) or 0.0)
         out = replace(self, modes=self.loads.complete_modes(problem, top))
         return replace(out, step=out._step(out.loads.nominal(problem)))
 
-    def _step(self, system: ModalSystem) -> float:
+    def _step(self, system: modal.ModalSystem) -> float:
         """Return the time step.
 
         Raises InputError where it is too long for a structure, or there are too many.
@@ -273,7 +241,7 @@ class Passage:
         soil = 0.0 if self.filter is None else self.filter.omega
         highest = max(float(system.omega.max()), soil, np.finfo(float).tiny)
         if self.step is not None:
-            limit = LARGEST_ANGLE / highest
+            limit = reliability.LARGEST_ANGLE / highest
             if self.step > limit * (1 + ACCUMULATED):
                 period = f"a quarter of the shortest period ({highest / (2 * np.pi):.4g} Hz)"
                 expected = f"at most {limit:.4g} s, {period}"
@@ -284,15 +252,15 @@ class Passage:
             raise wrong("step", f"at most {MOST_STEPS} time steps", steps)
         return self.duration / steps
 
-    def problem(self, problem: UpdatingProblem, theta: Floats) -> FirstPassage:
+    def problem(self, problem: UpdatingProblem, theta: Floats) -> reliability.FirstPassage:
         """Return the first-passage problem at ``theta``.
 
         Raises InputError where the time step is too long for the highest mode there.
         """
-        filled(self.step, "step")
+        modal.filled(self.step, "step")
         system, soil = self.loads.system(problem, theta), self.filter
         times, factors = zip(*self.modulation or [(0.0, 1.0)], strict=True)
-        return FirstPassage(
+        return reliability.FirstPassage(
             system,
             2 * np.pi * (self.density if self.sided == "two" else self.density / 2),
             self.duration,
@@ -309,14 +277,18 @@ class Passage:
         Raises ModelError where the model cannot be evaluated at ``theta``, InputError where the
         time step is too long there.
         """
-        method, passage = METHODS[self.method], self.problem(problem, theta)
-        P, variation = estimate(method, passage, np.array(self.levels), self.samples, seed)
+        method, passage = reliability.METHODS[self.method], self.problem(problem, theta)
+        P, variation = reliability.estimate(
+            method, passage, np.array(self.levels), self.samples, seed
+        )
         return {"probability": P, "variation": variation}
 
     def check(
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
     ) -> Mapping[str, Floats]:
         """Return P with half the time step over P, and its standard error, (levels,)."""
-        method, passage = METHODS[self.method], self.problem(problem, theta)
-        ratio, error = step_effect(method, passage, np.array(self.levels), self.samples, seed)
+        method, passage = reliability.METHODS[self.method], self.problem(problem, theta)
+        ratio, error = reliability.step_effect(
+            method, passage, np.array(self.levels), self.samples, seed
+        )
         return {"ratio": ratio, "error": error}

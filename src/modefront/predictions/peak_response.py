@@ -31,36 +31,13 @@ from typing import Annotated, Any, ClassVar, Self
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from modefront import options
 from modefront._typing import Complexes, Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse, wrong
 from modefront.models.base import Model
-from modefront.options import (
-    NOT_NEGATIVE,
-    TRUE_OR_FALSE,
-    array,
-    check_fields,
-    numbers,
-    one_of,
-    rising,
-)
+from modefront.predictions import system as modal
 from modefront.predictions.base import PredictionKind, ResultVariable, Setting
-from modefront.predictions.system import (
-    ABOVE,
-    EITHER,
-    MEASURED,
-    Base,
-    Damping,
-    Force,
-    ModalLoadModel,
-    ModalSystem,
-    ModeCount,
-    Name,
-    Response,
-    filled,
-    highest_frequency,
-    modes_reaching,
-)
 from modefront.residuals.problem import UpdatingProblem
 
 ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2, "absolute accelerance": 2}
@@ -68,7 +45,7 @@ ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2, "absolute acceleranc
 
 
 def derivatives(
-    system: ModalSystem, omega: Complexes, quantity: str
+    system: modal.ModalSystem, omega: Complexes, quantity: str
 ) -> tuple[Complexes, Complexes, Complexes]:
     """Return T, dT/dω and d²T/dω², each (n, n_outputs, n_inputs), at (n,) frequencies.
 
@@ -84,9 +61,9 @@ def derivatives(
         found = f"{omega[line].real} rad/s with zeta[{mode}] = {system.zeta[mode]}"
         raise wrong("omega", expected, found)
     d1 = -2 * w + 2j * system.zeta * system.omega
-    modal = (1 / d, -d1 / d**2, 2 * d1**2 / d**3 + 2 / d**2)
+    terms = (1 / d, -d1 / d**2, 2 * d1**2 / d**3 + 2 / d**2)
     alpha, alpha1, alpha2 = (
-        np.einsum("or,nr,ri->noi", system.output, term, system.input) for term in modal
+        np.einsum("or,nr,ri->noi", system.output, term, system.input) for term in terms
     )
     alpha = alpha + system.residual_flexibility()
 
@@ -108,7 +85,7 @@ def derivatives(
 class Slope:
     """g between the one output and the one input of `pair`, and the error by rounding."""
 
-    pair: ModalSystem
+    pair: modal.ModalSystem
     quantity: str
 
     def both(self, omega: Floats) -> tuple[Floats, Floats]:
@@ -159,7 +136,7 @@ NEWTON_STEPS = 6
 
 
 def peaks(
-    system: ModalSystem, quantity: str, output: int, band: tuple[float, float]
+    system: modal.ModalSystem, quantity: str, output: int, band: tuple[float, float]
 ) -> tuple[Floats, Floats]:
     """Return where |T| has its local maxima, by rising frequency, and |T| there.
 
@@ -191,7 +168,17 @@ def peaks(
     inside = pair.omega[(pair.omega > low) & (pair.omega < high)]
     breaks = np.unique(np.concatenate([[low], inside, [high]]))
     roots = np.concatenate([_zeros(slope, a, b) for a, b in pairwise(breaks.tolist())])
-    zeros = _polish(slope, roots, low, high)
+    # A pair of complex zeros next to the axis passes for real ones until here. Newton's method
+    # finds no rest there, or at another zero, which is found a second time.
+    zeros, step = roots, np.zeros_like(roots)
+    for _ in range(NEWTON_STEPS):
+        g, g1 = slope.both(zeros)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            moved = np.clip(zeros - g / g1, low, high)
+        zeros, step = moved, moved - zeros
+    settled = (zeros > low) & (zeros < high) & (abs(step) < SETTLED * zeros)
+    zeros = np.sort(zeros[settled])
+    zeros = zeros[np.diff(zeros, prepend=-np.inf) > TWICE * zeros]
     at_peak = zeros[slope.both(zeros)[1] < 0]
     values = derivatives(pair, at_peak.astype(np.complex128), quantity)[0][:, 0, 0]
     return at_peak, np.abs(values)
@@ -218,25 +205,10 @@ def _zeros(slope: Slope, a: float, b: float) -> Floats:
     return zeros
 
 
-def _polish(slope: Slope, omega: Floats, low: float, high: float) -> Floats:
-    """Return the zeros of g between `low` and `high` by rising frequency, each once."""
-    # A pair of complex zeros next to the axis passes for real ones until here. Newton's method
-    # finds no rest there, or at another zero, which is found a second time.
-    step = np.zeros_like(omega)
-    for _ in range(NEWTON_STEPS):
-        g, g1 = slope.both(omega)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            moved = np.clip(omega - g / g1, low, high)
-        omega, step = moved, moved - omega
-    inside = (omega > low) & (omega < high) & (abs(step) < SETTLED * omega)
-    omega = np.sort(omega[inside])
-    return omega[np.diff(omega, prepend=-np.inf) > TWICE * omega]
-
-
-BAND = numbers(
+BAND = options.numbers(
     "[lowest, highest] frequency in Hz, 0 <= lowest < highest",
-    array(NOT_NEGATIVE, 2, 2),
-    rising,
+    options.array(options.NOT_NEGATIVE, 2, 2),
+    options.rising,
 )
 
 
@@ -260,17 +232,17 @@ class PeakResponse:
     damping : a ratio, a list of ratios, one a mode, or ``"measured"``
     """
 
-    name: Name
-    response: Response
-    force: Force | None = None
-    base: Base | None = None
-    quantity: Annotated[str, one_of(*ORDERS)] = "receptance"
+    name: modal.Name
+    response: modal.Response
+    force: modal.Force | None = None
+    base: modal.Base | None = None
+    quantity: Annotated[str, options.one_of(*ORDERS)] = "receptance"
     band: Annotated[tuple[float, float], BAND] | None = None
-    static: Annotated[bool, TRUE_OR_FALSE] = True
-    modes: ModeCount | None = None
-    damping: Damping = MEASURED
+    static: Annotated[bool, options.TRUE_OR_FALSE] = True
+    modes: modal.ModeCount | None = None
+    damping: modal.Damping = modal.MEASURED
 
-    either: ClassVar = EITHER
+    either: ClassVar = modal.EITHER
     kind: ClassVar = PredictionKind(
         "frf",
         "frf",
@@ -290,7 +262,7 @@ class PeakResponse:
     )
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        options.check_fields(self)
         faults = list(self.loads.contradictions())
         if self.quantity == "absolute accelerance" and self.base is None:
             faults.append(
@@ -299,10 +271,10 @@ class PeakResponse:
         refuse(faults)
 
     @property
-    def loads(self) -> ModalLoadModel:
+    def loads(self) -> modal.ModalLoadModel:
         """Load case, outputs, modes and damping."""
         forces: Any = () if self.force is None else (self.force,)
-        return ModalLoadModel.of(self, forces, static=self.static)
+        return modal.ModalLoadModel.of(self, forces, static=self.static)
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -312,7 +284,7 @@ class PeakResponse:
     @property
     def heading(self) -> str:
         """Name, load case and options in a sentence."""
-        loads, (low, high) = self.loads, filled(self.band, "band")
+        loads, (low, high) = self.loads, modal.filled(self.band, "band")
         return (
             f"{self.name}: {loads.load}; {self.quantity}, greatest peak from {low:g} to {high:g} "
             f"Hz, {self.modes} modes, damping {loads.damped}"
@@ -334,7 +306,7 @@ class PeakResponse:
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""
         yield from self.loads.faults(model, data)
-        if self.band is None and highest_frequency(data) is None:
+        if self.band is None and modal.highest_frequency(data) is None:
             yield Fault("", "band", BAND.expected, "nothing")
 
     def complete(self, problem: UpdatingProblem) -> Self:
@@ -343,13 +315,16 @@ class PeakResponse:
         Raises InputError with what this model cannot predict.
         """
         refuse(self.faults(problem.model, problem.data))
-        low, top = self.band or (0.0, ABOVE * filled(highest_frequency(problem.data), "band"))
+        low, top = self.band or (
+            0.0,
+            modal.ABOVE * modal.filled(modal.highest_frequency(problem.data), "band"),
+        )
         out = replace(self, band=(low, top), modes=self.loads.complete_modes(problem, top))
         omega, faults = out.loads.nominal(problem).omega, []
         last, count = float(omega[-1]) / (2 * math.pi), omega.size
         if (
             last < top
-            and (more := modes_reaching(problem.model, problem.start, top, count)) > count
+            and (more := modal.modes_reaching(problem.model, problem.start, top, count)) > count
         ):
             expected = f"modes that reach the end of the band, {top:g} Hz: {more}"
             faults.append(Fault("", "modes", expected, f"{count}, up to {last:.4g} Hz"))
@@ -371,7 +346,7 @@ class PeakResponse:
         cannot be evaluated at ``theta``.
         """
         system = self.loads.system(problem, theta)
-        low, high = (2 * np.pi * f for f in filled(self.band, "band"))
+        low, high = (2 * np.pi * f for f in modal.filled(self.band, "band"))
         out = np.full((2, len(self.response)), np.nan)
         for o in range(len(self.response)):
             omega, height = peaks(system, self.quantity, o, (low, high))

@@ -267,36 +267,6 @@ def elementary_failures(response: GaussianResponse, level: float) -> Floats:
     return np.cumsum(2 * ndtr(-beta))
 
 
-def given_failure(
-    response: GaussianResponse,
-    level: float,
-    cumulative: Floats,
-    z: Floats,
-    uniform: Floats,
-) -> Failed:
-    """Make samples given failure of standard normal ones.
-
-    Parameters
-    ----------
-    response, level : the map from z to x, and the barrier
-    cumulative : `elementary_failures` there, of which one at least has a probability above zero
-    z : (samples, n_inputs, n) standard normal numbers
-    uniform : (2, samples) uniform numbers in [0, 1): the choice of the elementary failure, and 1 -
-        v
-    """
-    # The last failure of non-zero probability is meant by a number that rounding brings to ΣP.
-    last = int(np.searchsorted(cumulative, cumulative[-1], "left"))
-    drawn = np.minimum(np.searchsorted(cumulative, uniform[0] * cumulative[-1], "right"), last)
-    output, step = np.unravel_index(drawn, response.deviation.shape)
-    a, sigma = response.design_excitation(output, step), response.deviation[output, step]
-    # In logarithms, as far out in the tail 1 - Φ(β) is zero in floating point.
-    r = -ndtri_exp(np.log1p(-uniform[1]) + log_ndtr(-level / sigma))
-    u = np.einsum("sik,sik->s", z, a) / sigma
-    a *= ((r - u) / sigma)[:, None, None]
-    a += z
-    return Failed(a, output, step)
-
-
 Share = Callable[[Failed, float, Iterator[Floats]], Floats]
 """(samples, level, |x| by output) → the part of ΣP that each sample stands for, (samples,)."""
 
@@ -311,14 +281,24 @@ def _given_failures(
     rng: np.random.Generator,
 ) -> Floats:
     """Return the weights ΣP · share (n_levels, samples), of the same numbers z at every level."""
-    uniform = rng.random((2, len(z)))
+    response, uniform = convolution.response, rng.random((2, len(z)))
     weights = np.zeros((levels.size, len(z)))
     for row, level, cumulative in zip(weights, levels.tolist(), sums, strict=True):
         # At a barrier so high that P is below the smallest float, the estimate is zero;
         # its coefficient of variation, infinite, says that there were no samples.
-        if cumulative[-1] > 0:
-            failed = given_failure(convolution.response, level, cumulative, z, uniform)
-            row[:] = cumulative[-1] * share(failed, level, convolution.magnitudes(failed.z))
+        if cumulative[-1] == 0:
+            continue
+        # The last failure of non-zero probability is meant by a number that rounding brings to ΣP.
+        last = int(np.searchsorted(cumulative, cumulative[-1], "left"))
+        drawn = np.minimum(np.searchsorted(cumulative, uniform[0] * cumulative[-1], "right"), last)
+        output, step = np.unravel_index(drawn, response.deviation.shape)
+        a, sigma = response.design_excitation(output, step), response.deviation[output, step]
+        # In logarithms, as far out in the tail 1 - Φ(β) is zero in floating point.
+        r = -ndtri_exp(np.log1p(-uniform[1]) + log_ndtr(-level / sigma))
+        u = np.einsum("sik,sik->s", z, a) / sigma
+        a *= ((r - u) / sigma)[:, None, None]
+        a += z
+        row[:] = cumulative[-1] * share(Failed(a, output, step), level, convolution.magnitudes(a))
     return weights
 
 

@@ -31,23 +31,11 @@ from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
+from modefront import options
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, ModelError, suggestion, wrong
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
-from modefront.options import (
-    ABOVE_ZERO,
-    BELOW_ZERO,
-    NAME,
-    Requirement,
-    Schema,
-    any_of,
-    array,
-    is_name,
-    table_of,
-    text,
-    whole,
-)
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 
@@ -106,11 +94,13 @@ ABOVE = 1.1
 NAMED = "the name of a sensor or output, or a table of them with weights that are not zero"
 
 
-WEIGHTS = any_of(NAME, table_of(any_of(ABOVE_ZERO, BELOW_ZERO), 1))
-EITHER: Schema = {"oneOf": [{"required": [key]} for key in ("force", "base")]}
+WEIGHTS = options.any_of(
+    options.NAME, options.table_of(options.any_of(options.ABOVE_ZERO, options.BELOW_ZERO), 1)
+)
+EITHER: options.Schema = {"oneOf": [{"required": [key]} for key in ("force", "base")]}
 """What the schema of a prediction says of its loads."""
 
-RATIO: Schema = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+RATIO: options.Schema = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
 
 
 def _is_printable(value: Any) -> bool:
@@ -119,7 +109,7 @@ def _is_printable(value: Any) -> bool:
         return all(map(_is_printable, value.values()))
     if isinstance(value, list):
         return all(map(_is_printable, value))
-    return is_name(value) if isinstance(value, str) else True
+    return options.is_name(value) if isinstance(value, str) else True
 
 
 def _named_weights(value: Any) -> dict[str, float]:
@@ -138,44 +128,46 @@ def _damping(value: Any) -> str | float | tuple[float, ...]:
     return value if isinstance(value, str) else float(value)
 
 
-Name = Annotated[str, text("what the prediction is called")]
+Name = Annotated[str, options.text("what the prediction is called")]
 
 Force = Annotated[
-    str | Mapping[str, float], Requirement(NAMED, WEIGHTS, _named_weights, _is_printable)
+    str | Mapping[str, float], options.Requirement(NAMED, WEIGHTS, _named_weights, _is_printable)
 ]
 """One force; kept as weights by the name of a sensor or output."""
 
 Forces = Annotated[
     str | Mapping[str, float] | Sequence[str | Mapping[str, float]],
-    Requirement(
+    options.Requirement(
         f"{NAMED}; or a list of these",
-        any_of(WEIGHTS, array(WEIGHTS, 1)),
+        options.any_of(WEIGHTS, options.array(WEIGHTS, 1)),
         lambda value: tuple(map(_named_weights, value if isinstance(value, list) else [value])),
         _is_printable,
     ),
 ]
 """Forces that are independent of one another; kept as such weights of each."""
 
-Base = Annotated[str, text("a direction in which the base moves")]
+Base = Annotated[str, options.text("a direction in which the base moves")]
 
 Response = Annotated[
     str | Sequence[str] | Mapping[str, str | Mapping[str, float]],
-    Requirement(
+    options.Requirement(
         f"a list of sensors or outputs, or a table, name = {NAMED}",
-        any_of(NAME, array(NAME, 1, once=True), table_of(WEIGHTS, 1)),
+        options.any_of(
+            options.NAME, options.array(options.NAME, 1, once=True), options.table_of(WEIGHTS, 1)
+        ),
         _responses,
-        lambda value: _is_printable(value) and all(map(is_name, value)),
+        lambda value: _is_printable(value) and all(map(options.is_name, value)),
     ),
 ]
 """Responses; kept as weights of sensors and outputs by the name of each."""
 
-ModeCount = Annotated[int, whole(1, 10**9)]
+ModeCount = Annotated[int, options.whole(1, 10**9)]
 
 Damping = Annotated[
     str | float | Sequence[float],
-    Requirement(
+    options.Requirement(
         f"'{MEASURED}', or a ratio above 0 and below 1, or a list of them, one a mode",
-        any_of({"enum": [MEASURED]}, RATIO, array(RATIO, 1)),
+        options.any_of({"enum": [MEASURED]}, RATIO, options.array(RATIO, 1)),
         _damping,
     ),
 ]
@@ -209,7 +201,11 @@ class ModalLoadModel:
         """Load case in words."""
         if self.load_case.base is not None:
             return f"base along {self.load_case.base}"
-        return "force at " + ", and at ".join(map(_in_words, self.load_case.forces))
+        forces = (
+            " + ".join(name if w == 1 else f"{w:g} {name}" for name, w in weights.items())
+            for weights in self.load_case.forces
+        )
+        return "force at " + ", and at ".join(forces)
 
     @property
     def damped(self) -> str:
@@ -333,25 +329,12 @@ def modes_reaching(model: Model, theta: Floats, frequency: float, count: int) ->
     """
     f = model.modes(theta, count, derivatives=False).frequency
     while not (f >= frequency).any():
-        more = _more(model, theta, f)
-        if more.size == f.size:
-            return f.size
-        f = more
+        known, upper = f.size, min(2 * f.size, model.size)
+        while upper > f.size:  # twice as many, as far as there are finite ones
+            try:
+                f = model.modes(theta, upper, derivatives=False).frequency
+            except ModelError:
+                upper = (known + upper) // 2
+        if f.size == known:
+            return known
     return int(np.argmax(f >= frequency)) + 1
-
-
-def _more(model: Model, theta: Floats, known: Floats) -> Floats:
-    """Return the frequencies of up to twice as many modes, as far as there are finite ones."""
-    upper = min(2 * known.size, model.size)
-    while upper > known.size:
-        try:
-            return model.modes(theta, upper, derivatives=False).frequency
-        except ModelError:
-            upper = (known.size + upper) // 2
-    return known
-
-
-def _in_words(weights: NamedWeights) -> str:
-    return " + ".join(
-        name if weight == 1 else f"{weight:g} {name}" for name, weight in weights.items()
-    )

@@ -17,34 +17,27 @@ from modefront.errors import reason
 from modefront.inputs import ended, once, wrong
 from modefront.models.dofs import read_dofs
 from modefront.models.files import read_entries
-from modefront.programs.base import (
-    JobOptions,
-    Listed,
-    ProgramMesh,
-    existing,
-    mesh_of,
-    refuse_unknown_nodes,
-)
+from modefront.programs import base
 
 ADVICE = "the snippet in docs/import.md writes it"
 
 
-def read(path: Path, options: JobOptions) -> Listed:
+def read(path: Path, options: base.JobOptions) -> base.Listed:
     """Return the matrices of a job, given by the beginning of the names of its files."""
     table = options.dofs or path.with_name(path.name + "_dofs.csv")
-    dofs = read_dofs(existing(table, "nodes and directions of OpenSees", ADVICE))
+    dofs = read_dofs(base.existing(table, "nodes and directions of OpenSees", ADVICE))
     files, entries = [], []
     for letter in "KM":
         names = [path.with_name(f"{path.name}_{letter}{ending}") for ending in (".npz", ".mtx")]
         file = names[0] if names[0].is_file() else names[1]
-        matrix = read_entries(existing(file, "a matrix of OpenSees", ADVICE))
+        matrix = read_entries(base.existing(file, "a matrix of OpenSees", ADVICE))
         matrix.sum_duplicates()  # what a sum of elements is kept as
         files.append(file)
         entries.append(matrix)
-    return Listed((files[0], files[1]), entries, dofs, mesh=_mesh(path))
+    return base.Listed((files[0], files[1]), entries, dofs, mesh=_mesh(path))
 
 
-def _mesh(path: Path) -> ProgramMesh | None:
+def _mesh(path: Path) -> base.ProgramMesh | None:
     nodes = path.with_name(path.name + "_nodes.csv")
     if not nodes.is_file():
         return None
@@ -55,9 +48,9 @@ def _mesh(path: Path) -> ProgramMesh | None:
     except ValueError as error:
         expected = "rows node,x,y,z (and element,node,… of elements)"
         raise wrong(nodes, expected, reason(error)) from None
-    refuse_unknown_nodes(elements, points, (n for row in rows for n in row[1:]))
+    base.refuse_unknown_nodes(elements, points, (n for row in rows for n in row[1:]))
     kinds = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
-    return mesh_of(points, ((kinds[len(x)], x) for _, *x in rows if len(x) in kinds))
+    return base.mesh_of(points, ((kinds[len(x)], x) for _, *x in rows if len(x) in kinds))
 
 
 def _rows(path: Path, number: type) -> list[list[Any]]:

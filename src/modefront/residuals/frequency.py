@@ -26,15 +26,7 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.data.modal import ModalData
 from modefront.modes.result import Modes
 from modefront.pairing.match import Pairs
-from modefront.residuals.base import (
-    NEGLIGIBLE,
-    Curvature,
-    Member,
-    ModeErrors,
-    Scale,
-    Sensitivity,
-    value_numbers,
-)
+from modefront.residuals import base
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +38,7 @@ class FrequencyResiduals:
 
     data: ModalData
     modes: Sequence[int]
-    scale: Scale
+    scale: base.Scale
     remark: str = ""
 
     @cached_property
@@ -71,13 +63,13 @@ class FrequencyResiduals:
         """Number of frequencies."""
         return float(len(self.modes))
 
-    def margin(self, errors: ModeErrors) -> float:
+    def margin(self, errors: base.ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
         _, _, measured, _, weight = self.rows
         size = weight * measured
         return float((errors.eigenvalue[self.modes[0]] / 2) ** 2 * (size @ size))
 
-    def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
+    def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[base.Sensitivity]:
         """Yield the change of J by one standard deviation of each measured frequency."""
         q, (sets, mode, measured, unit, _) = pairs.index[self.modes[0]], self.rows
         f, df = modes.frequency[q], modes.dfrequency[q]
@@ -87,8 +79,8 @@ class FrequencyResiduals:
             ratio = f / y if self.scale == "measured" else 1.0
             J = -2 * (f - y) / u**2 * ratio
             dJ = -2 * df / u**2 * (2 * ratio - 1)
-            number = value_numbers(self.data, k, self.modes[0])[:1]
-            yield Sensitivity(number, np.array([J * h]), (dJ * h)[None])
+            number = base.value_numbers(self.data, k, self.modes[0])[:1]
+            yield base.Sensitivity(number, np.array([J * h]), (dJ * h)[None])
 
     def independent(self) -> tuple[float, float, float]:
         """Return counts and scatter: all sets have one frequency, at best their weighted mean."""
@@ -114,12 +106,12 @@ class FrequencyResiduals:
         _, mode, _, _, weight = self.rows
         return self.r(modes, pairs), weight[:, None] * modes.dfrequency[pairs.index[mode]]
 
-    def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
+    def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, base.Curvature]:
         """Return these and what is needed of second derivatives; d2f/dlam2 is -f' f' / f."""
         (r, dr), f, df = self.with_slopes(modes, pairs), modes.frequency, modes.dfrequency
         slope = np.bincount(pairs.index[self.rows[1]], 2 * self.rows[4] * r, f.size)
         own = df.T @ (-np.divide(slope, f, out=np.zeros(f.size), where=f > 0)[:, None] * df)
-        return r, dr, Curvature(slope * modes.frequency_by_lam, np.zeros(modes.phi.shape), own)
+        return r, dr, base.Curvature(slope * modes.frequency_by_lam, np.zeros(modes.phi.shape), own)
 
 
 class FrequencyKind:
@@ -127,7 +119,7 @@ class FrequencyKind:
 
     name = "frequency"
     plural = "frequencies"
-    usable_std = f"standard deviations above {NEGLIGIBLE:g} of all measured frequencies"
+    usable_std = f"standard deviations above {base.NEGLIGIBLE:g} of all measured frequencies"
 
     def measured(self, data: ModalData) -> Bools:
         """Return which modes have a frequency in any data set."""
@@ -136,12 +128,14 @@ class FrequencyKind:
     def has_usable_std(self, data: ModalData, r: int) -> bool:
         """Return whether all frequencies of a mode have standard deviations above rounding."""
         k = np.isfinite(data.frequency[:, r])
-        return bool((data.frequency_std[k, r] > NEGLIGIBLE * data.frequency[k, r]).all())
+        return bool((data.frequency_std[k, r] > base.NEGLIGIBLE * data.frequency[k, r]).all())
 
-    def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
+    def members(
+        self, data: ModalData, modes: Sequence[int], scale: base.Scale
+    ) -> list[base.Member]:
         """Return the residuals of the frequency of each mode."""
         return [FrequencyResiduals(data, [r], scale) for r in modes]
 
-    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> FrequencyResiduals:
+    def stack(self, data: ModalData, modes: Sequence[int], scale: base.Scale) -> FrequencyResiduals:
         """Return the residuals of the frequencies of some modes."""
         return FrequencyResiduals(data, modes, scale)

@@ -48,15 +48,7 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.data.modal import ModalData
 from modefront.modes.result import Modes
 from modefront.pairing.match import Pairs
-from modefront.residuals.base import (
-    NEGLIGIBLE,
-    Curvature,
-    Member,
-    ModeErrors,
-    Scale,
-    Sensitivity,
-    value_numbers,
-)
+from modefront.residuals import base
 
 
 class _Shape(NamedTuple):
@@ -95,7 +87,7 @@ class ShapeResiduals:
 
     data: ModalData
     modes: Sequence[int]
-    scale: Scale
+    scale: base.Scale
     cluster: tuple[int, ...] = ()
 
     @cached_property
@@ -147,7 +139,7 @@ class ShapeResiduals:
         sensors = "a single sensor" if m == 1 else f"{m} sensors for as many modes"
         return f"a shape that is measured at {sensors} fits any model"
 
-    def margin(self, errors: ModeErrors) -> float:
+    def margin(self, errors: base.ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
         squares = []
         for x in self.shapes:
@@ -159,7 +151,7 @@ class ShapeResiduals:
                 squares.append(size**2 * (values @ values))
         return float(errors.shape[self.modes[0]] ** 2 * sum(squares))
 
-    def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
+    def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[base.Sensitivity]:
         """Yield the change of J by one standard deviation of each measured component."""
         q, K = pairs.index[list(self.cluster or self.modes)], len(self.shapes)
         relative = self.scale == "measured"
@@ -182,8 +174,8 @@ class ShapeResiduals:
             if inverse is not None:
                 J, dJ = inverse.T @ J, inverse.T @ dJ
             root = np.diag(np.where(std > 0, std, 0.0)) if C is None else np.linalg.cholesky(C)
-            root, number = root.T / K, value_numbers(self.data, k, r)[1:][sensors]
-            yield Sensitivity(number, root @ (J / unit), root @ (dJ / unit[:, None]))
+            root, number = root.T / K, base.value_numbers(self.data, k, r)[1:][sensors]
+            yield base.Sensitivity(number, root @ (J / unit), root @ (dJ / unit[:, None]))
 
     def independent(self) -> tuple[float, float, float]:
         """Return counts and scatter: each set has a factor of its own, fitted.
@@ -198,7 +190,7 @@ class ShapeResiduals:
         )
         if len(shapes) > 1 and m == 1 and alike:
             share = np.array([x.weight / x.weight[0] for x in shapes])
-            if np.ptp(share / share[0]) <= NEGLIGIBLE:
+            if np.ptp(share / share[0]) <= base.NEGLIGIBLE:
                 psi, own = np.array([x.psi for x in shapes]), shapes[0].sensors.size - 1.0
                 S = float((np.linalg.svd(psi, compute_uv=False)[1:] ** 2).sum())
                 return own, S, total - own
@@ -242,7 +234,7 @@ class ShapeResiduals:
         fit, _ = self._fit(modes, pairs)
         return fit.r[self.rows.there], fit.dr[self.rows.there]
 
-    def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
+    def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, base.Curvature]:
         """Return these and what is needed of second derivatives."""
         fit, dX = self._fit(modes, pairs)
         of_dX = (fit.r[:, None] @ dX.reshape(*fit.r.shape, -1)).reshape(-1, dX.shape[3])
@@ -251,7 +243,7 @@ class ShapeResiduals:
         if rows.inverse is not None:
             r = np.einsum("rab,ra->rb", rows.inverse, r)
         np.add.at(v, self._places(pairs), 2 * (rows.weight * r)[:, :, None] * fit.c[:, None])
-        curvature = Curvature(np.zeros(modes.lam.size), v, own + own.T)
+        curvature = base.Curvature(np.zeros(modes.lam.size), v, own + own.T)
         return fit.r[rows.there], fit.dr[rows.there], curvature
 
     def _places(self, pairs: Pairs) -> tuple[Ints, Ints]:
@@ -323,17 +315,19 @@ class ShapeKind:
         known = (np.isfinite(std) | ~measured).all(axis=1) & ((std > 0) & measured).any(axis=1)
         return bool((known | ~measured.any(axis=1)).all())
 
-    def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
+    def members(
+        self, data: ModalData, modes: Sequence[int], scale: base.Scale
+    ) -> list[base.Member]:
         """Return the residuals of the shape of each mode."""
         cluster = tuple(modes) if self.joint else ()
         return [ShapeResiduals(data, [r], scale, cluster) for r in modes]
 
-    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> ShapeResiduals:
+    def stack(self, data: ModalData, modes: Sequence[int], scale: base.Scale) -> ShapeResiduals:
         """Return the residuals of the shapes of some modes."""
         return ShapeResiduals(data, modes, scale, tuple(modes) if self.joint else ())
 
 
 def without_negligible(std: Floats) -> Floats:
     """Return standard deviations with negligible ones replaced by the median of the others."""
-    real = std > NEGLIGIBLE * std.max()
+    real = std > base.NEGLIGIBLE * std.max()
     return np.where(real, std, np.median(std[real]))

@@ -47,10 +47,19 @@ TRUST = ("determined", "partly", "not determined")
 def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> ArrayDataset:
     """Return a front and its analysis as a dataset with names, units and meanings."""
     front = replace(front, points=[*front.points, *analysis.points])
-    determined = determinations(problem, front)
+    reported = [front.reference, *of_kind(front.points, Kind.EDGE)]
+    determined = [(x.label, determination(problem, x.solution.evaluation)) for x in reported]
+    boundary = METHODS[front.method].programme == "boundary"
+    parts = {Kind.FRONT: "whole" if boundary else ""}
+    parts |= dict.fromkeys((Kind.IDENTIFIABLE, Kind.IDENTIFIABLE_EDGE), "identifiable")
+    part = analysis.identifiable
     values = _points(problem, front, analysis) | _minima(problem, front)
     values |= _branches(problem, front) | lattice_values(front)
-    values |= analysis_values(problem, front, analysis, determined)
+    values["front_part"] = [parts.get(point.kind, "") for point in front.points]
+    values["flat"] = part.flat if part else np.zeros(len(problem.objectives), dtype=int)
+    values |= _identifiability(determined) | _equivalent(analysis)
+    values |= _scatter(problem, front, analysis) | _posterior(front, analysis)
+    values |= _replicates(problem, front, analysis)
     values |= as_values(findings(problem, front, analysis, determined))
     values["measured_frequency"] = problem.data.mean_frequency
     values["properties"], values["exact"] = problem.properties, list(front.exact)
@@ -172,34 +181,6 @@ def _weights(front: Front, J: Floats, a: Floats) -> Floats:
         elif point.kind in WEIGHTED or (point.kind is Kind.FRONT and swept):
             out[i] = point.solution.weights
     return out
-
-
-def determinations(problem: UpdatingProblem, front: Front) -> Determinations:
-    """Return the determined combinations of parameters."""
-    points = [front.reference, *of_kind(front.points, Kind.EDGE)]
-    return [(x.label, determination(problem, x.solution.evaluation)) for x in points]
-
-
-def analysis_values(
-    problem: UpdatingProblem,
-    front: Front,
-    analysis: FrontAnalysis,
-    determined: Determinations,
-) -> Values:
-    """Return the values; ``front`` holds all points, those of ``analysis`` too."""
-    boundary = METHODS[front.method].programme == "boundary"
-    parts = {Kind.FRONT: "whole" if boundary else ""}
-    parts |= dict.fromkeys((Kind.IDENTIFIABLE, Kind.IDENTIFIABLE_EDGE), "identifiable")
-    part = analysis.identifiable
-    return {
-        "front_part": [parts.get(point.kind, "") for point in front.points],
-        "flat": part.flat if part else np.zeros(len(problem.objectives), dtype=int),
-        **_identifiability(determined),
-        **_equivalent(analysis),
-        **_scatter(problem, front, analysis),
-        **_posterior(front, analysis),
-        **_replicates(problem, front, analysis),
-    }
 
 
 def _identifiability(determined: Determinations) -> Values:

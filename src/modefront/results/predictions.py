@@ -31,15 +31,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.assemble import left_open
 from modefront.results.findings import as_values
 from modefront.results.schema import Values, described
-from modefront.uncertainty.prediction import (
-    SUMMARY,
-    Stencil,
-    TruncationError,
-    draw,
-    lognormal_std,
-    stencil,
-    summary,
-)
+from modefront.uncertainty import prediction as spread
 from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
 from modefront.work.store import hash_text
@@ -196,37 +188,27 @@ def _ends(
 ) -> Floats:
     """Return the ends of ranges over a front of which the predictions are known."""
     known: dict[bytes, Arrays] = {}
+    # The same work, whatever was done before in this process.
+    front, out = replace(front, between={}), list[float]()
 
-    def at(theta: Floats) -> Arrays:
-        key = theta.tobytes()
-        if key not in known:
-            known[key] = _predicted(problem, prediction, numbers, theta).values
-        return known[key]
-
-    own = replace(front, between={})  # the same work, whatever was done before in this process
-    return np.array([_end(problem, own, values, at, end) for end in ends])
-
-
-def _end(
-    problem: UpdatingProblem,
-    front: Sampled,
-    values: Arrays,
-    at: Callable[[Floats], Arrays],
-    end: End,
-) -> float:
-    variable, place, sign = end
-
-    def scaled(values: Arrays) -> Floats:
+    def scaled(values: Arrays, variable: ResultVariable, place: int) -> Floats:
         own = values[variable.key][..., place]
         if not variable.logarithmic:
             return own
         return np.log(own, out=np.full(own.shape, np.nan), where=own > 0)
 
-    step = ROUGH if variable.logarithmic else STEP
-    found = extreme(
-        problem, front, scaled(values), lambda theta: float(scaled(at(theta))), sign, step
-    )
-    return float(np.exp(found)) if variable.logarithmic else found
+    for variable, place, sign in ends:
+
+        def at(theta: Floats, variable: ResultVariable = variable, place: int = place) -> float:
+            key = theta.tobytes()
+            if key not in known:
+                known[key] = _predicted(problem, prediction, numbers, theta).values
+            return float(scaled(known[key], variable, place))
+
+        step = ROUGH if variable.logarithmic else STEP
+        found = extreme(problem, front, scaled(values, variable, place), at, sign, step)
+        out.append(float(np.exp(found)) if variable.logarithmic else found)
+    return np.array(out)
 
 
 RANGE = ("minimum", "maximum", "spread")
@@ -257,8 +239,25 @@ def with_predictions(
     """
     if not runner.predictions:
         return data
-    samples = np.empty((0, runner.problem.start.size)) if drawn is None else drawn[:draws]
-    differences, samples, limits = _around(data, runner, posterior, draws, samples)
+    problem, limits = runner.problem, list[Finding]()
+    samples = np.empty((0, problem.start.size)) if drawn is None else drawn[:draws]
+    differences = None
+    if posterior is None:
+        limits += [found("no-posterior")] if draws and not len(samples) else []
+    else:
+        theta, best = data["theta"].values[position(data)], preferred(data.attrs)
+        if names := list(compress(problem.model.parameters, left_open(posterior.free))):
+            limits.append(found("open-in-posterior", enumeration(names), reference=best))
+        bounds = problem.lower, problem.upper
+        differences = spread.stencil(theta, posterior.axes, *bounds)
+        if differences is None:
+            limits.append(found("no-room", str(best)))
+        if draws and not len(samples):
+            rng = np.random.default_rng(seed_sequence(runner.seed, "posterior"))
+            try:
+                samples = spread.draw(theta, posterior.axes, rng, draws, bounds)
+            except spread.TruncationError as error:
+                limits.append(found("no-draws", str(error)))
     models = data.sizes["point"] + 2 * len(differences.theta if differences else ()) + len(samples)
     count = sum(models + 1 + (each.kind.check is not None) for each in runner.predictions)
     runner.work.expect({"predict": count})
@@ -273,7 +272,7 @@ def with_predictions(
             values |= _of_samples(data, runner, samples, predictions, limits)
     if len(samples):
         values["draw_theta"] = samples
-        coordinates["statistic"] = np.array(SUMMARY)
+        coordinates["statistic"] = np.array(spread.SUMMARY)
     kept = zip(data["finding"].values.tolist(), data["finding_record"].values, strict=True)
     values |= as_values([*(from_text(str(text), each) for each, text in kept), *limits])
     return data.assign(described(values, kinds_in(data))).assign_coords(coordinates)
@@ -286,7 +285,12 @@ def _at_points(data: ArrayDataset, runner: PredictionRunner, slack: float) -> Ar
     labels, thetas = list(map(str, data["label"].values)), data["theta"].values
     reference = [preferred(data.attrs)]
     theta, J = (data[name].values[optimal] for name in ("theta", "objective"))
-    front = Sampled(theta, J, slack > 0 or _leaves_open(data), slack)
+    together = ALL if data.sizes["group"] > 1 else data["group"].values[0]
+    of = data["combination_of"].values == together
+    here = of & (data["combination_at"].values == reference[0])
+    is_open = (data["combination_share"].values[here] <= RANK).any()
+    is_open |= (np.diag(data["collinearity"].values) == 0).any()
+    front = Sampled(theta, J, slack > 0 or bool(is_open), slack)
     kinds = []
     for kind, predictions in _by_kind(runner.predictions):
         rows = [
@@ -327,14 +331,6 @@ def _at_points(data: ArrayDataset, runner: PredictionRunner, slack: float) -> Ar
     return out.assign_attrs({ATTRIBUTE: as_text(kinds)})
 
 
-def _leaves_open(data: Dataset) -> bool:
-    together = ALL if data.sizes["group"] > 1 else data["group"].values[0]
-    of = data["combination_of"].values == together
-    here = of & (data["combination_at"].values == preferred(data.attrs))
-    idle = np.diag(data["collinearity"].values) == 0
-    return bool(idle.any() or (data["combination_share"].values[here] <= RANK).any())
-
-
 def _range(values: Floats, optimal: Bools) -> Floats:
     """Return least, greatest and their ratio over the optimal rows, (3, columns); NaN for none."""
     known = optimal[:, None] & np.isfinite(values)
@@ -344,38 +340,6 @@ def _range(values: Floats, optimal: Bools) -> Floats:
     least[none] = greatest[none] = np.nan
     ratio = np.divide(greatest, least, out=np.full(least.shape, np.nan), where=least > 0)
     return np.array([least, greatest, ratio])
-
-
-def _around(
-    data: Dataset,
-    runner: PredictionRunner,
-    posterior: Posterior | None,
-    draws: int,
-    samples: Floats,
-) -> tuple[Stencil | None, Floats, list[Finding]]:
-    """Return models around the reference: differences along the axes of the posterior, and draws.
-
-    Beside them is what limits them.
-    """
-    problem = runner.problem
-    if posterior is None:
-        return None, samples, [found("no-posterior")] if draws and not len(samples) else []
-    limits = []
-    theta, best = data["theta"].values[position(data)], preferred(data.attrs)
-    names = list(compress(problem.model.parameters, left_open(posterior.free)))
-    if names:
-        limits.append(found("open-in-posterior", enumeration(names), reference=best))
-    differences = stencil(theta, posterior.axes, problem.lower, problem.upper)
-    if differences is None:
-        limits.append(found("no-room", str(best)))
-    if draws and not len(samples):
-        rng = np.random.default_rng(seed_sequence(runner.seed, "posterior"))
-        bounds = problem.lower, problem.upper
-        try:
-            samples = draw(theta, posterior.axes, rng, draws, bounds)
-        except TruncationError as error:
-            limits.append(found("no-draws", str(error)))
-    return differences, samples, limits
 
 
 def _stacked(
@@ -391,7 +355,7 @@ def _stacked(
 def _to_first_order(
     data: Dataset,
     runner: PredictionRunner,
-    differences: Stencil,
+    differences: spread.Stencil,
     predictions: Sequence[Prediction],
     limits: list[Finding],
 ) -> Values:
@@ -419,7 +383,7 @@ def _to_first_order(
         if variable.logarithmic:
             start = f"posterior_{kind.dimension}_log"
             out |= {f"{start}_std": std, f"{start}_covariance": C}
-            out[f"{name}_std"] = lognormal_std(middle, std)
+            out[f"{name}_std"] = spread.lognormal_std(middle, std)
         else:
             out |= {f"{name}_std": std, f"{name}_covariance": C}
     best = preferred(data.attrs)
@@ -444,7 +408,7 @@ def _of_samples(
     out: Values = {}
     for variable in kind.ranged:
         out[f"draw_{variable.name}"] = values[variable.key]
-        out[f"posterior_{variable.name}"] = summary(values[variable.key])
+        out[f"posterior_{variable.name}"] = spread.summary(values[variable.key])
     failed = [sum(not x.solved for x in row) for row in rows]
     limits += [
         found("unsolved-draws", each.name, count=count, drawn=n, what="cannot be solved")

@@ -32,7 +32,6 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.schema import Values, described
 from modefront.rounding import TINY
 from modefront.text import Shown
-from modefront.work.codec import record
 
 TOLERANCE = 1e-3
 """Error of a shape in the basis, over its length, at most."""
@@ -172,27 +171,6 @@ def write_grid(
         meshio.write(copy, mesh, file_format="vtu")
 
 
-@record
-@dataclass(frozen=True, eq=False)
-class ModeShapes:
-    """Modes of all points.
-
-    Attributes
-    ----------
-    frequency : (points, model modes) in Hz; NaN where a point has no modes
-    mac : (points, modes, model modes) MAC of each measured with each model mode
-    sensed : (points, modes, sensors) paired model modes at the sensors
-    basis : (n, drawn nodes, 3) columns of the common basis; None for a model without geometry
-    coefficient : (points, modes, n) of the paired model modes; None likewise
-    """
-
-    frequency: Floats
-    mac: Floats
-    sensed: Floats
-    basis: Floats | None
-    coefficient: Floats | None
-
-
 def drawing(geometry: Geometry) -> tuple[Ints, Ints, Ints]:
     """Return the nodes of a geometry that pictures show, lines (n, 2) and faces (n, 4) of these.
 
@@ -222,8 +200,8 @@ def drawing(geometry: Geometry) -> tuple[Ints, Ints, Ints]:
     return nodes, number[all_lines], number[all_faces]
 
 
-def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> ModeShapes:
-    """Return the modes of models with parameters (points, p).
+def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> dict[str, Floats]:
+    """Return the modes of models with parameters (points, p), as variables of results.
 
     ``paired`` (points, modes) are numbers of the model modes, from 1; NaN where there are none.
     """
@@ -252,8 +230,9 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> Mod
         U = np.zeros((0, modes)) if u is None else u.reshape(modes, -1).T
         Q = _extended(Q, U)
         rows[i] = Q.T @ U
+    out = {"model_frequency": frequency, "mac_matrix": mac, "shape": sensed}
     if geometry is None or not rows:
-        return ModeShapes(frequency, mac, sensed, None, None)
+        return out
     n = Q.shape[1]
     C = np.hstack([np.pad(row, ((0, n - len(row)), (0, 0))) for row in rows.values()])
     W, sigma, V = np.linalg.svd(C, full_matrices=False)
@@ -265,7 +244,8 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> Mod
     B = (Q @ W[:, :kept]) * most
     coefficient = np.full((points, modes, kept), np.nan)
     coefficient[list(rows)] = (c / most[:, None]).T.reshape(len(rows), modes, kept)
-    return ModeShapes(frequency, mac, sensed, B.T.reshape(-1, len(drawn), 3), coefficient)
+    basis = B.T.reshape(-1, len(drawn), 3)
+    return out | {"shape_basis": basis, "shape_coefficient": coefficient}
 
 
 def _extended(Q: Floats, U: Floats) -> Floats:
@@ -282,21 +262,19 @@ def _extended(Q: Floats, U: Floats) -> Floats:
 
 
 def with_mode_shapes(
-    data: ArrayDataset, problem: UpdatingProblem, shapes: ModeShapes
+    data: ArrayDataset, problem: UpdatingProblem, shapes: Mapping[str, Floats]
 ) -> ArrayDataset:
-    """Return results with the measured modes, and the modes of all points."""
+    """Return results with the measured modes, and ``shapes``, the modes of all points."""
     measured = problem.data
     values: Values = {
         "set_frequency": measured.frequency,
         "set_frequency_std": measured.frequency_std,
         "measured_shape": measured.shape,
-        "model_frequency": shapes.frequency,
-        "mac_matrix": shapes.mac,
-        "shape": shapes.sensed,
+        **shapes,
     }
     coordinates: dict[str, object] = {"set": list(measured.sets), "sensor": list(measured.sensors)}
     geometry = geometry_of(problem.model)
-    if geometry is not None and shapes.basis is not None:
+    if geometry is not None and "shape_basis" in shapes:
         nodes, lines, faces = drawing(geometry)
         values |= {
             "node": geometry.nodes[nodes],
@@ -304,8 +282,7 @@ def with_mode_shapes(
             "face_nodes": faces,
             "sensor_node": np.searchsorted(nodes, geometry.sensor_nodes),
             "sensor_direction": geometry.sensor_directions,
-            "shape_basis": shapes.basis.astype(np.float32),
-            "shape_coefficient": shapes.coefficient,
+            "shape_basis": shapes["shape_basis"].astype(np.float32),
         }
         coordinates["axis"] = list(AXES)
     out = data.assign(described(values)).assign_coords(coordinates)
