@@ -24,13 +24,14 @@ from scipy import sparse
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import Fault, noted, refuse, wrong
 from modefront.fem.blocks import Block, blocks_of
-from modefront.fem.check import SAME_PLACE, check_names, check_points, node_list, unit_vector
+from modefront.fem.check import check_names, check_points, node_list, unit_vector
 from modefront.fem.dofs import Dofs, Followers, following_rows, hold, number_dofs
 from modefront.fem.elements.common import ByPower
 from modefront.fem.mechanism import check_mechanisms
 from modefront.fem.structure import DIRECTIONS, Load, Parameter, Sensor, Structure
 from modefront.linalg.affine import Monomials, SparseAffine, sparse_affine, sparse_rows
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError, factorise
+from modefront.rounding import WRITTEN
 
 SensorPlaces = tuple[Ints, Floats]
 """Nodes (sensors,) of sensors, and their directions (sensors, 6), weights of the DOFs of a node."""
@@ -115,9 +116,8 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     if prestressed and not floating and _stable(K.total()) is None:
         expected = "loads and forces below the critical ones"
         raise wrong("load", expected, "those under which the structure buckles")
-    parameters, sensors = (
-        tuple(each.name for each in named) for named in (structure.parameters, structure.sensors)
-    )
+    parameters = tuple(each.name for each in structure.parameters)
+    sensors = tuple(each.name for each in structure.sensors)
     return StructureMatrices(K.affine(), M.affine(), parameters, sensors, selection, places, dofs)
 
 
@@ -187,7 +187,20 @@ def sensor_places(
     for n, sensor in enumerate(sensors):
         rows[n] = unit_vector(sensor.direction)
         with noted(faults, f"sensor {sensor.name!r}"):
-            nodes[n] = _node(X, sensor, used, tree)
+            if isinstance(sensor.at, int):
+                nodes[n] = node_list(sensor.at, len(X))[0]
+                continue
+            if tree is None:
+                raise wrong("", "a node of an element", "none at all")
+            point = np.asarray(sensor.at, dtype=float)
+            distance, nearest = tree.query(point)
+            node = nodes[n] = used[nearest]
+            diagonal = float(np.linalg.norm(tree.maxes - tree.mins))
+            tolerance = WRITTEN * diagonal if sensor.tolerance is None else sensor.tolerance
+            if distance > tolerance:
+                expected = f"a node within {tolerance:.3g} of {tuple(point.tolist())}"
+                near = f"node {node} at {tuple(X[node].tolist())}, {distance:.3g} away"
+                raise wrong("", expected, f"none; the nearest is {near}")
     return nodes, rows
 
 
@@ -204,33 +217,13 @@ def selection_matrix(
     nodes, directions = places
     columns = 6 * nodes[:, None] + np.arange(6)
     selection = sparse_rows(directions, columns, dofs.T.shape[0]) @ dofs.T
-    refuse(
-        Fault(
-            "",
-            f"sensor {sensors[n].name!r}",
-            "a direction that can move",
-            f"{sensors[n].direction!r} at node {nodes[n]}, which is held or has no stiffness",
-        )
-        for n in np.flatnonzero(abs(selection).sum(1) == 0).tolist()
-    )
+    faults = list[Fault]()
+    for n in np.flatnonzero(abs(selection).sum(1) == 0).tolist():
+        found = f"{sensors[n].direction!r} at node {nodes[n]}, which is held or has no stiffness"
+        place = f"sensor {sensors[n].name!r}"
+        faults.append(Fault("", place, "a direction that can move", found))
+    refuse(faults)
     return selection
-
-
-def _node(X: Floats, sensor: Sensor, used: Ints, tree: scipy.spatial.KDTree | None) -> int:
-    if isinstance(sensor.at, int):
-        return int(node_list(sensor.at, len(X))[0])
-    if tree is None:
-        raise wrong("", "a node of an element", "none at all")
-    point = np.asarray(sensor.at, dtype=float)
-    distance, nearest = tree.query(point)
-    node = int(used[nearest])
-    diagonal = float(np.linalg.norm(tree.maxes - tree.mins))
-    tolerance = SAME_PLACE * diagonal if sensor.tolerance is None else sensor.tolerance
-    if distance > tolerance:
-        expected = f"a node within {tolerance:.3g} of {tuple(point.tolist())}"
-        near = f"node {node} at {tuple(X[node].tolist())}, {distance:.3g} away"
-        raise wrong("", expected, f"none; the nearest is {near}")
-    return node
 
 
 def _forces(load: Load, blocks: Sequence[Block], exists: Bools) -> Floats:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -17,10 +17,7 @@ from modefront.fem.elements import common, shell
 from modefront.fem.elements.beam import Axial, beam, truss
 from modefront.fem.elements.solid import SOLIDS, solid, solid_stresses
 from modefront.fem.section import Material
-from modefront.rounding import TINY
-
-SYMMETRIC = 1e-9
-"""Relative error of an inertia matrix that passes for the digits it is given with."""
+from modefront.rounding import COMPUTED, TINY, WRITTEN
 
 TRANSLATIONS = (0, 1, 2)
 SIX = (0, 1, 2, 3, 4, 5)
@@ -69,13 +66,17 @@ def blocks_of(X: Floats, structure: members.Structure, faults: list[Fault]) -> l
                 check.check_sizes(check.shell_sizes(X[cells]), cells, "area")
                 shells.append((group, cells))
     every = [cells for _, cells in shells]
-    shared = (
-        zip(shell.directors(X, every), shell.narrowness(X, every), strict=True) if shells else ()
-    )
+    shared = (shell.directors(X, every), shell.narrowness(X, every)) if shells else ((), ())
     blocks: list[Block] = []
-    for (group, cells), of_nodes in zip(shells, shared, strict=True):
+    for (group, cells), d, narrow in zip(shells, *shared, strict=True):
         with noted(faults, f"group {group.name!r}"):
-            blocks.append(_shells(X, group, cells, *of_nodes, structure.varied_thickness))
+            x, t = X[cells], group.thickness
+            m, r, varied = _grain(x, group), group.offset * d, structure.varied_thickness
+            given = m, group.material, t, group.offset, group.name in varied
+            ply = common.ply(group.material)
+            internal = partial(shell.shell_stresses, x, r, m, ply, t)
+            made = shell.shell(x, d, narrow, *given)
+            blocks.append(Block(group.name, cells, SIX, made, rigid=True, internal=internal))
     for member in (*structure.groups, *structure.springs, *structure.masses):
         kind, make = MADE.get(type(member), ("", None))
         with noted(faults, f"{kind} {member.name!r}"):
@@ -97,7 +98,7 @@ def _beams(X: Floats, group: members.Beams) -> Block:
     else:
         v = check.unit_vector(group.orientation)[:3]
         orientation = np.broadcast_to(v, axis.shape)
-        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < members.ALONG)
+        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < WRITTEN)
         if len(parallel):
             nodes = ", ".join(map(str, cells[parallel[0]].tolist()))
             expected = f"a vector not parallel to the axis of element {parallel[0]} (nodes {nodes})"
@@ -126,17 +127,6 @@ def _lines(X: Floats, group: members.Beams | members.Trusses, r: Floats) -> tupl
     return cells, axis / length[:, None]
 
 
-# 6 arguments: those of a group, and what its elements share with others.
-def _shells(
-    X: Floats, group: members.Shells, cells: Ints, d: Floats, narrow: Floats, varied: Set[str]
-) -> Block:
-    x, r, t = X[cells], group.offset * d, group.thickness
-    m = _grain(x, group)
-    made = shell.shell(x, d, narrow, m, group.material, t, group.offset, group.name in varied)
-    internal = partial(shell.shell_stresses, x, r, m, common.ply(group.material), t)
-    return Block(group.name, cells, SIX, made, rigid=True, internal=internal)
-
-
 def _grain(x: Floats, group: members.Shells) -> Floats:
     """Return vectors (elements, 3) in the planes of shells along axis 1 of the material."""
     if isinstance(group.material, Material):
@@ -146,7 +136,7 @@ def _grain(x: Floats, group: members.Shells) -> Floats:
     v = check.unit_vector(group.direction)[:3]
     R = shell.centre_axes(x)[:, :2]
     m = (R @ v)[:, None] @ R
-    across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < members.ALONG)
+    across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < WRITTEN)
     if len(across):
         expected = f"a vector not normal to the shell at element {across[0]}"
         raise wrong("direction", expected, tuple(group.direction))
@@ -200,12 +190,12 @@ def _spring_axis(X: Floats, member: members.Spring, nodes: Ints, gap: Floats) ->
     if member.axes is not None:
         raise wrong("axes", "none, as they are for 6 stiffnesses: a vector as direction", "some")
     if member.direction is None:
-        if member.to is None or (length <= check.COINCIDENT * size).any():
+        if member.to is None or (length <= COMPUTED * size).any():
             raise wrong("direction", "one, unless it joins two distant nodes", "nothing")
         return np.pad(gap / length, ((0, 0), (0, 3)))
     axis = np.tile(check.unit_vector(member.direction), (len(nodes), 1))
     slant = np.linalg.norm(np.cross(gap, axis[:, :3]), axis=1)
-    skew = np.flatnonzero(slant > members.ALONG * length[:, 0] + check.COINCIDENT * size)
+    skew = np.flatnonzero(slant > WRITTEN * length[:, 0] + COMPUTED * size)
     if axis[0, :3].any() and len(skew):
         expected = "one along their line between distant nodes, else it resists a rotation of the "
         expected += "whole (or six stiffnesses, which act by rigid arms)"
@@ -224,9 +214,9 @@ def _masses(X: Floats, member: members.Mass) -> Block:
     m = np.asarray(member.mass, dtype=float)
     m = np.repeat(m, 3) if m.shape == () else m
     inertia = np.diag(inertia) if inertia.shape == (3,) else inertia
-    even = np.allclose(inertia, inertia.T, rtol=SYMMETRIC, atol=0)
+    even = np.allclose(inertia, inertia.T, rtol=COMPUTED, atol=0)
     least = np.linalg.eigvalsh(inertia)[0] if even else -np.inf
-    if least < -SYMMETRIC * inertia.max():
+    if least < -COMPUTED * inertia.max():
         raise wrong("inertia", "a symmetric matrix that is not negative", inertia.tolist())
     centre = np.concatenate([np.eye(3), -common.cross_matrix(c)], 1)
     M = centre.T @ (m[:, None] * centre)

@@ -32,13 +32,6 @@ from modefront.options import repeated
 FLAT = 1e-8
 """Length, area or volume of an element over that of its extent that is rounding of coordinates."""
 
-SAME_PLACE = 1e-6
-"""Distance over the size of a structure below which points are the same:
-files hold seven digits."""
-
-COINCIDENT = 1e-9
-"""Distance over the size of a structure below which nodes were given the same coordinates."""
-
 
 def check_points(nodes: npt.ArrayLike) -> Floats:
     """Nodes as finite floats (nodes, 3)."""

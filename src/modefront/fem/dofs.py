@@ -23,9 +23,9 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.errors import Fault, noted, wrong
 from modefront.fem.check import axes_of, node_list
 from modefront.fem.elements.common import cross_matrix
-from modefront.fem.structure import DIRECTIONS, Coupling, Link, Structure, Support
+from modefront.fem.structure import DIRECTIONS, Coupling, Structure, Support
 from modefront.linalg.affine import sparse_rows
-from modefront.rounding import ACCUMULATED
+from modefront.rounding import ACCUMULATED, COMPUTED, WRITTEN
 
 
 @dataclass(frozen=True)
@@ -61,20 +61,16 @@ def following_rows(X: Floats, structure: Structure, faults: list[Fault]) -> list
     rows = []
     for n, link in enumerate(structure.links):
         with noted(faults, f"link {n}"):
-            rows.append(_link(X, link))
+            master, slaves = (node_list(nodes, len(X)) for nodes in (link.master, link.slaves))
+            slaves = slaves[slaves != master[0]]
+            motion = rigid_motion(X[slaves] - X[master])[:, :, None]
+            masters = np.tile(master, (len(slaves), 1))
+            directions = [DIRECTIONS.index(name) for name in link.directions]
+            rows.append(_followers(X, slaves, masters, motion, directions))
     for n, coupling in enumerate(structure.couplings):
         with noted(faults, f"coupling {n}"):
             rows.append(_coupling(X, coupling))
     return rows
-
-
-def _link(X: Floats, link: Link) -> Followers:
-    master = node_list(link.master, len(X))
-    slaves = node_list(link.slaves, len(X))
-    slaves = slaves[slaves != master[0]]
-    motion = rigid_motion(X[slaves] - X[master])
-    directions = [DIRECTIONS.index(name) for name in link.directions]
-    return _followers(X, slaves, np.tile(master, (len(slaves), 1)), motion[:, :, None], directions)
 
 
 def _coupling(X: Floats, coupling: Coupling) -> Followers:
@@ -94,8 +90,8 @@ def _coupling(X: Floats, coupling: Coupling) -> Followers:
     P = rigid_motion(X[of] - X[node])[:, :3] * np.repeat([1, 1 / size], 3)
     weighted = np.broadcast_to(weights, of.shape)[:, None, None] * P
     normal = np.einsum("ndi,ndj->ij", weighted, P)
-    inverse = np.linalg.pinv(normal, rcond=UNDETERMINED, hermitian=True)
-    lost = [d for d in directions if abs(inverse[d] @ normal - np.eye(6)[d]).max() > UNDETERMINED]
+    inverse = np.linalg.pinv(normal, rcond=COMPUTED, hermitian=True)
+    lost = [d for d in directions if abs(inverse[d] @ normal - np.eye(6)[d]).max() > COMPUTED]
     if lost:
         names = ", ".join(DIRECTIONS[d] for d in lost)
         expected = "nodes that are not on one line, or fewer directions"
@@ -119,10 +115,6 @@ def _followers(
     columns = np.repeat(columns, len(directions), axis=0)
     rows = sparse_rows(weight, columns, 6 * len(X))
     return Followers((6 * slaves[:, None] + np.array(directions)).ravel(), rows)
-
-
-UNDETERMINED = 1e-9
-"""Eigenvalue of the normal equations of a mean motion, over the greatest, that is rounding."""
 
 
 def rigid_motion(arms: Floats) -> Floats:
@@ -168,7 +160,7 @@ def _solved(C: Floats) -> list[tuple[int, Floats]]:
     C, pivots = C.copy(), []
     for n in range(min(C.shape)):
         i, j = divmod(int(np.argmax(abs(C[n:]))), 6)
-        if abs(C[n + i, j]) <= SKEW:
+        if abs(C[n + i, j]) <= WRITTEN:
             break
         C[[n, n + i]] = C[[n + i, n]]
         C[n] /= C[n, j]
@@ -177,10 +169,6 @@ def _solved(C: Floats) -> list[tuple[int, Floats]]:
         pivots.append(j)
     C[abs(C) <= ACCUMULATED] = 0
     return [(j, np.eye(6)[j] - C[n]) for n, j in enumerate(pivots)]
-
-
-SKEW = 1e-6
-"""Component of a direction that is nothing: files hold seven digits."""
 
 
 def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> Dofs:
@@ -202,11 +190,7 @@ def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> D
             raise wrong(f"slave at node {node}, {DIRECTIONS[direction]}", expected, found)
 
     values, counts = np.unique(slave, return_counts=True)
-    refuse(
-        values[counts > 1],
-        "one link, coupling or support in axes that it follows",
-        "another",
-    )
+    refuse(values[counts > 1], "one link, coupling or support in axes that it follows", "another")
     refuse(slave[held.ravel()[slave]], "no support but that of the master", "held by a support")
 
     free = (exists & ~held).ravel()

@@ -23,19 +23,15 @@ from scipy.sparse.csgraph import connected_components
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import wrong
 from modefront.fem.blocks import Block
-from modefront.fem.check import SAME_PLACE
 from modefront.fem.dofs import Followers, rigid_motion
 from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.structure import DIRECTIONS
 from modefront.linalg.affine import sparse_rows
 from modefront.linalg.factorisation import factorise
-from modefront.rounding import ACCUMULATED
+from modefront.rounding import ACCUMULATED, WRITTEN
 
 STEPS = 4
 """Steps of inverse iteration: each leaves of other motions the ratio of shift and eigenvalue."""
-
-INVOLVED = 1e-6
-"""Share of a body in the squares of free motions of length one that is more than rounding."""
 
 NAMED = 0.05
 """Share of a direction in a motion, over the greatest, from which the message names it."""
@@ -205,7 +201,14 @@ def check_mechanisms(
         columns = (6 * inside[:, None] + np.arange(6))[bodies.moves[inside]]
         N = null_space(C, columns)
         if floating:
-            whole = _common_motions(bodies, inside)[np.isin(np.arange(6 * count), columns)]
+            # Motions (6 bodies, 6) in which all bodies of the part move as one, scaled like C.
+            arms = bodies.centre[inside] - bodies.centre[inside].mean(0)
+            size = max(np.linalg.norm(arms, axis=1).max(), bodies.extent[inside].max())
+            motions = np.zeros((count, 6, 6))
+            motions[inside] = rigid_motion(arms)
+            motions[:, :, 3:] /= size
+            motions[:, 3:] *= bodies.extent[:, None, None]
+            whole = motions.reshape(-1, 6)[np.isin(np.arange(6 * count), columns)]
             allowed = null_space(sparse.csr_array(C[:, columns] @ whole), np.arange(6)).shape[1]
             loose += allowed > 0
             if N.shape[1] <= allowed and loose <= 1:
@@ -215,23 +218,11 @@ def check_mechanisms(
             raise wrong("mechanism", expected, _describe(X, bodies, columns, N, parts))
 
 
-def _common_motions(bodies: Bodies, inside: Ints) -> Floats:
-    """Motions (6 bodies, 6) in which the bodies `inside` move as one, scaled like C."""
-    origin = bodies.centre[inside].mean(0)
-    size = float(np.max(np.linalg.norm(bodies.centre[inside] - origin, axis=1)))
-    size = max(size, float(bodies.extent[inside].max()))
-    motions = np.zeros((len(bodies.extent), 6, 6))
-    motions[inside] = rigid_motion(bodies.centre[inside] - origin)
-    motions[:, :, 3:] /= size
-    motions[:, 3:] *= bodies.extent[:, None, None]
-    return motions.reshape(-1, 6)
-
-
 def _describe(X: Floats, bodies: Bodies, columns: Ints, N: Floats, parts: int) -> str:
     """Message that names the nodes that move, how, and a likely reason."""
     share = np.zeros((len(bodies.extent), 6))
     share.ravel()[columns] = (N**2).sum(1)
-    moving = np.flatnonzero(share.max(1) > INVOLVED)
+    moving = np.flatnonzero(share.max(1) > WRITTEN)
     total = share[moving].sum(0)
     ways = ", ".join(DIRECTIONS[d] for d in np.flatnonzero(total > NAMED * total.max()))
     nodes = np.flatnonzero(np.isin(bodies.home, moving))
@@ -245,7 +236,7 @@ def _describe(X: Floats, bodies: Bodies, columns: Ints, N: Floats, parts: int) -
     others = np.flatnonzero((bodies.home >= 0) & ~np.isin(bodies.home, moving))
     if len(others):
         distance, first = scipy.spatial.KDTree(X[others]).query(X[nodes])
-        near = np.flatnonzero(distance <= SAME_PLACE * np.ptp(X, axis=0).max())
+        near = np.flatnonzero(distance <= WRITTEN * np.ptp(X, axis=0).max())
         for k in near[:1]:
             pair = f"Nodes {nodes[k]} and {others[first[k]]}"
             message += f". {pair} are at the same place but not the same node: merge them"

@@ -30,6 +30,7 @@ from modefront.options import (
     text,
     whole,
 )
+from modefront.rounding import WRITTEN
 
 Direction = str | Sequence[float]
 Vector = Sequence[float]
@@ -39,9 +40,6 @@ Axes = tuple[Sequence[float], Sequence[float]]
 Quantity = Literal["E", "density", "thickness", "spring", "mass", "prestress"]
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 ALL = DIRECTIONS
-
-ALONG = 1e-6
-"""Sine of an angle below which two directions are the same: files hold seven digits."""
 
 NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
 """Directions by their names."""
@@ -60,7 +58,7 @@ AXES = Requirement(
     "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane",
     array(VECTOR, 2, 2),
     further=lambda x: bool(
-        np.linalg.norm(np.cross(*x)) > ALONG * np.prod(np.linalg.norm(x, axis=1))
+        np.linalg.norm(np.cross(*x)) > WRITTEN * np.prod(np.linalg.norm(x, axis=1))
     ),
 )
 NODE = any_of(whole(0, WHOLE).schema, {"type": "string"})
@@ -74,16 +72,11 @@ RELEASES = Requirement(f"a list for either end, of {NAMES}", array(OF_NAMES, 2, 
 FORCE = number("an axial force")
 
 
-def _one_or(count: int, expected: str, one: Mapping[str, object]) -> Requirement:
-    """Return the requirement of one number, or of a list of as many, of 0 or more."""
-    return Requirement(expected, any_of(one, array(NOT_NEGATIVE, count, count)))
-
-
-STIFFNESS = _one_or(6, "a stiffness above 0, or 6 of 0 or more", ABOVE_ZERO)
-MASS = _one_or(3, "a mass of 0 or more, or 3 for x, y and z", NOT_NEGATIVE)
+SIX, THREE = array(NOT_NEGATIVE, 6, 6), array(NOT_NEGATIVE, 3, 3)
+STIFFNESS = Requirement("a stiffness above 0, or 6 of 0 or more", any_of(ABOVE_ZERO, SIX))
+MASS = Requirement("a mass of 0 or more, or 3 for x, y and z", any_of(NOT_NEGATIVE, THREE))
 INERTIA = Requirement(
-    "3 moments of inertia of 0 or more, or a matrix of 3 x 3",
-    any_of(array(NOT_NEGATIVE, 3, 3), array(VECTOR, 3, 3)),
+    "3 moments of inertia of 0 or more, or a matrix of 3 x 3", any_of(THREE, array(VECTOR, 3, 3))
 )
 WEIGHTS = Requirement("numbers above 0, or one for all", any_of(ABOVE_ZERO, array(ABOVE_ZERO, 1)))
 LOADED = numbers("3 components, or 6 with moments", any_of(VECTOR, array(NUMBER, 6, 6)))

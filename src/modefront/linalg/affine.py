@@ -34,8 +34,7 @@ SPARSE = 1.5
 
 def first_axis(A: Floats, B: Floats) -> Floats:
     """Return sum_j A_ij B_j for a matrix A (m, k) and an array B (k, ...), shape (m, ...)."""
-    out: Floats = (A @ B.reshape(len(B), -1)).reshape(len(A), *B.shape[1:])
-    return out
+    return (A @ B.reshape(len(B), -1)).reshape(len(A), *B.shape[1:])
 
 
 @dataclass(frozen=True)
@@ -117,10 +116,8 @@ class Monomials:
         """Return c(theta), shape (terms,)."""
         theta = theta if self.origin is None else theta - self.origin
         if self._linear:
-            linear: Floats = self._constant + self.exponents @ theta
-            return linear
-        out: Floats = np.prod(theta**self.exponents, axis=1)
-        return out
+            return self._constant + self.exponents @ theta
+        return np.prod(theta**self.exponents, axis=1)
 
     def jacobian(self, theta: Floats) -> Floats:
         """Return dc/dtheta, shape (terms, parameters)."""
@@ -158,14 +155,9 @@ class DenseAffine:
         """Return A(theta), shape (N, N)."""
         return first_axis(self.coefficients.values(theta)[None], self.terms)[0]
 
-    @property
-    def varies(self) -> bool:
-        """Whether the matrix depends on any parameter."""
-        return self.coefficients.varies
-
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
-        if not self.varies:
+        if not self.coefficients.varies:
             return np.zeros((*vectors.shape, self.coefficients.exponents.shape[1]))
         products = self.terms @ vectors
         return first_axis(self.coefficients.jacobian(theta).T, products).transpose(1, 2, 0)
@@ -227,9 +219,8 @@ class SparseAffine:
 
     def has_pattern_of(self, other: SparseAffine) -> bool:
         """Return whether both matrices have the same pattern."""
-        return np.array_equal(self.indptr, other.indptr) and np.array_equal(
-            self.indices, other.indices
-        )
+        pairs = (self.indptr, other.indptr), (self.indices, other.indices)
+        return all(np.array_equal(*pair) for pair in pairs)
 
     def at(self, theta: Floats) -> scipy.sparse.csr_array:
         """Return A(theta), N x N; it holds every entry of the pattern, zero or not."""
@@ -329,10 +320,8 @@ class SparseAffine:
             place, length = _place(own), int(own[-1] - own[0]) + 1
             if not isinstance(place, slice) and length <= SPARSE * own.size:
                 # Rows of zeros for those between are cheaper than to collect the others.
-                place, some = (
-                    slice(int(own[0]), int(own[0]) + length),
-                    np.zeros((length, right.shape[1])),
-                )
+                place = slice(int(own[0]), int(own[0]) + length)
+                some = np.zeros((length, right.shape[1]))
                 some[own - own[0]] = products[rows]
             for block, end in zip(left, ends, strict=True):
                 out[j, end - block.shape[1] : end] += gram(block[place], some)
@@ -389,14 +378,10 @@ def sparse_affine(
         # Ascending runs are merged, which is far quicker than sorting them.
         merged = np.sort(np.concatenate([union, each]), kind="stable")
         union = merged[np.append(True, merged[1:] != merged[:-1])[: merged.size]]
-    data = scipy.sparse.csc_array(
-        (
-            np.concatenate([A.data for A in matrices]),
-            np.concatenate([np.searchsorted(union, each) for each in keys]),
-            np.cumsum([0, *(each.size for each in keys)]),
-        ),
-        shape=(union.size, len(matrices)),
-    )
+    values = np.concatenate([A.data for A in matrices])
+    rows = np.concatenate([np.searchsorted(union, each) for each in keys])
+    parts = values, rows, np.cumsum([0, *(each.size for each in keys)])
+    data = scipy.sparse.csc_array(parts, shape=(union.size, len(matrices)))
     indptr = np.searchsorted(union, np.arange(size + 1) * size)
     indices = (union % size).astype(np.int32)
     return SparseAffine(indptr.astype(np.int32), indices, data, coefficients)

@@ -28,9 +28,10 @@ class SingularMatrixError(ModelError):
 
 @dataclass(frozen=True, eq=False)
 class Factorisation:
-    """Factors L D L^T with pivots of order one and two."""
+    """Factors L D L^T with pivots of order one and two, of A = K - sigma M for a pencil."""
 
     ldl: rslab.Ldlt
+    sigma: float = 0.0
 
     @property
     def negative(self) -> int | None:
@@ -40,29 +41,21 @@ class Factorisation:
 
     def solve(self, block: Floats) -> Floats:
         """Return the solution X of A X = block, both of shape (N, columns)."""
-        out: Floats = self.ldl.solve_many(block)
-        return out
+        return self.ldl.solve_many(block)
 
 
-@dataclass(frozen=True, eq=False)
-class Analysis:
-    """Ordering, elimination tree and supernodes of a pattern, for all matrices that have it."""
+def factor(pattern: rslab.LdltSymbolic, values: Floats, sigma: float = 0.0) -> Factorisation:
+    """Factor a matrix with these values, in the order of the entries of its analysed pattern.
 
-    symbolic: rslab.LdltSymbolic
-
-    def factor(self, values: Floats) -> Factorisation:
-        """Factor the matrix with these values, in the order of the pattern's entries.
-
-        Raises SingularMatrixError where the matrix is singular to working precision.
-        """
-        limit = "auto", min(MOST, threads())
-        try:
-            return Factorisation(self.symbolic.factor(values, threads=limit))
-        except RuntimeError as error:
-            raise SingularMatrixError(str(error)) from error
+    Raises SingularMatrixError where the matrix is singular to working precision.
+    """
+    try:
+        return Factorisation(pattern.factor(values, threads=("auto", min(MOST, threads()))), sigma)
+    except RuntimeError as error:
+        raise SingularMatrixError(str(error)) from error
 
 
-def analyse(keys: Ints, size: int) -> tuple[Analysis, Ints]:
+def analyse(keys: Ints, size: int) -> tuple[rslab.LdltSymbolic, Ints]:
     """Return the analysis of a pattern, and the keys of its entries, ascending.
 
     ``keys`` are column * N + row of entries of the lower triangle of N x N, in any order, some more
@@ -74,7 +67,7 @@ def analyse(keys: Ints, size: int) -> tuple[Analysis, Ints]:
     starts = np.searchsorted(keys, np.arange(size + 1) * size)
     parts = np.ones(keys.size), (keys % size).astype(np.intp), starts.astype(np.intp)
     lower = scipy.sparse.csc_array(parts, shape=(size, size))
-    return Analysis(rslab.analyze(lower, path="ldlt")), keys
+    return rslab.analyze(lower, path="ldlt"), keys
 
 
 def factorise(A: scipy.sparse.sparray) -> Factorisation:
@@ -86,7 +79,7 @@ def factorise(A: scipy.sparse.sparray) -> Factorisation:
     own = lower.col.astype(np.int64) * A.shape[0] + lower.row
     analysis, keys = analyse(own, A.shape[0])
     values = np.bincount(np.searchsorted(keys, own), lower.data, keys.size).astype(float)
-    return analysis.factor(values)
+    return factor(analysis, values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +99,7 @@ class Pencil:
 
     K: SparseAffine
     M: SparseAffine
-    analysis: Analysis
+    analysis: rslab.LdltSymbolic
     entries: int
     stiffness: tuple[Ints, Ints]
     mass: tuple[Ints, Ints]
@@ -128,7 +121,7 @@ class Pencil:
             take, put = self.mass
             values[put] -= sigma * M[take]
         self.before()
-        return self.analysis.factor(values)
+        return factor(self.analysis, values, sigma)
 
 
 def pencil(K: SparseAffine, M: SparseAffine, before: Callable[[], None] = lambda: None) -> Pencil:

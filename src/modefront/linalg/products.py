@@ -85,8 +85,12 @@ def combine(X: Floats, C: Floats) -> Floats:
 
     def multiply(first: int, last: int) -> None:
         for k in range(first * CHUNK, min(last * CHUNK, N), CHUNK):
-            rows = slice(k, min(k + CHUNK, N))
-            _multiply(X[rows], C, out[rows])
+            x, part = (A[k : min(k + CHUNK, N)] for A in (X, out))
+            whole, rows = _blocks(x, b)
+            np.matmul(x[whole:], C, out=part[whole:])
+            if whole:
+                blocks = whole // rows, rows
+                np.matmul(x[:whole].reshape(*blocks, -1), C, out=part[:whole].reshape(*blocks, b))
 
     _share(multiply, -(-N // CHUNK), N * C.size)
     return out
@@ -101,20 +105,11 @@ def combine_all(blocks: Sequence[Floats], C: Floats) -> Floats:
     return out
 
 
-def _multiply(X: Floats, C: Floats, out: Floats) -> None:
-    (a, b), (whole, rows) = C.shape, _blocks(X, C.shape[1])
-    np.matmul(X[whole:], C, out=out[whole:])
-    if whole:
-        left = X[:whole].reshape(whole // rows, rows, a)
-        np.matmul(left, C, out=out[:whole].reshape(whole // rows, rows, b))
-
-
 def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:
     """Return A X for a sparse A of shape (M, N) and X of shape (N, b)."""
     M, N = A.shape
     if X.shape[1] < WIDE:
-        product: Floats = A @ X
-        return product
+        return A @ X
     out = np.empty((M, X.shape[1]))
     X = np.ascontiguousarray(X)
 

@@ -103,12 +103,10 @@ def chain(
         )
         if len(values) not in lengths
     )
+    scales = {"stiffness_parameters": stiffness_scales, "mass_parameters": mass_scales}
     refuse(
         Fault("", place, "names of parameters", suggestion(name, parameters))
-        for place, names in (
-            ("stiffness_parameters", stiffness_scales),
-            ("mass_parameters", mass_scales),
-        )
+        for place, names in scales.items()
         for name in names
         if name and name not in parameters
     )

@@ -120,11 +120,11 @@ class CheckedFunction:
         with warnings.catch_warnings():
             warnings.simplefilter("error", ComplexWarning)
             returned = self._call(moved, place, expected)
-        K, M = (
-            _checked(A, f"{place}: {what}", size, real=False)
+        dK, dM = (
+            _checked(A, f"{place}: {what}", size, real=False).imag / h
             for what, A in zip("KM", returned[:2], strict=True)
         )
-        return _imaginary(K, h), _imaginary(M, h)
+        return dK if abs(dK).max() > 0 else None, dM if abs(dM).max() > 0 else None
 
     def _listed(self, slopes: Any, place: str, size: int) -> tuple[Any, ...]:
         listed = isinstance(slopes, Sequence | np.ndarray)
@@ -206,8 +206,15 @@ class FunctionModel:
         Without ``derivatives`` its matrices are constant. Raises InputError where the function does
         not return such matrices; a ModelError of the function is passed on.
         """
-        K, M = self.function.at(theta, self.size, derivatives=derivatives)
-        return self.nominal.with_matrices(_affine(K, theta), _affine(M, theta))
+        known = self.function.at(theta, self.size, derivatives=derivatives)
+        K, M = (_affine(A, theta) for A in known)
+        out = replace(self.nominal, stiffness=K, mass=M)
+        if isinstance(K, SparseAffine) and isinstance(M, SparseAffine):
+            pencil = self.nominal.pencil
+            if K.has_pattern_of(pencil.K) and M.has_pattern_of(pencil.M):
+                # The analysis costs more than a factorisation, and is that of the pattern alone.
+                vars(out)["pencil"] = replace(pencil, K=K, M=M)
+        return out
 
 
 def function_model(
@@ -308,11 +315,6 @@ def _checked(value: Matrix, place: str, size: int | None, real: bool = True) -> 
     elif scipy.sparse.issparse(A):
         A = A.toarray()
     return symmetrised(A, "", place)
-
-
-def _imaginary(A: Any, h: float) -> Any:
-    slope = A.imag / h
-    return slope if abs(slope).max() > 0 else None
 
 
 def _wrong_entry(A: Any, slope: Any, difference: Any, span: float) -> str:

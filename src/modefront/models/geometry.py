@@ -11,14 +11,13 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
+from modefront.fem.structure import DIRECTIONS
 from modefront.fem.structure import Cells as Cells
 from modefront.linalg.affine import sparse_rows
 from modefront.text import Shown
 
 ALONG = 0.99
 """Component of a direction from which on it is one along an axis."""
-
-SIX = ("x", "y", "z", "rx", "ry", "rz")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -78,5 +77,5 @@ def axis_name(direction: Floats) -> str:
     """Return a direction, (3,) or (6,), in words: an axis with its sign, or a vector."""
     greatest = int(np.argmax(np.abs(direction)))
     if abs(direction[greatest]) > ALONG:
-        return ("-" if direction[greatest] < 0 else "") + SIX[greatest]
+        return ("-" if direction[greatest] < 0 else "") + DIRECTIONS[greatest]
     return "(" + ", ".join(f"{x:.2g}" for x in direction[:3]) + ")"

@@ -186,18 +186,6 @@ class MatrixModel:
                 column += weight * row
         return out
 
-    def with_matrices(
-        self, stiffness: DenseAffine | SparseAffine, mass: DenseAffine | SparseAffine
-    ) -> MatrixModel:
-        """Return the model with other matrices; those of the same pattern share its analysis."""
-        out = replace(self, stiffness=stiffness, mass=mass)
-        if isinstance(stiffness, SparseAffine) and isinstance(mass, SparseAffine):
-            known = self.pencil
-            if stiffness.has_pattern_of(known.K) and mass.has_pattern_of(known.M):
-                # The analysis costs more than a factorisation, and is that of the pattern alone.
-                vars(out)["pencil"] = replace(known, K=stiffness, M=mass)
-        return out
-
     def held(self, fixed: Mapping[str, float], tied: Mapping[str, str]) -> MatrixModel:
         """Return the model as a function of the other parameters.
 
@@ -339,10 +327,8 @@ def common_size(
                 found = suggestion(name, [BASE, *parameters])
                 faults.append(Fault("", place, form_of(name), found))
             if A.shape != (size, size):
-                expected, found = (
-                    f"{size} x {size}, as the other matrices",
-                    " x ".join(map(str, A.shape)),
-                )
+                expected = f"{size} x {size}, as the other matrices"
+                found = " x ".join(map(str, A.shape))
                 faults.append(Fault("", f"{place} {name}", expected, found))
     return size, faults
 
@@ -370,12 +356,11 @@ def weights_of(places: Mapping[str, SensorSpec] | None, size: int, place: str) -
     return dict(zip(known, select(known, size, place).toarray(), strict=True))
 
 
-def _row_and_column(i: int, j: int) -> str:
-    return f"row {i}, column {j} (from 0)"
-
-
 def symmetrised(
-    A: Any, file: str, place: str, label: Callable[[int, int], str] = _row_and_column
+    A: Any,
+    file: str,
+    place: str,
+    label: Callable[[int, int], str] = "row {}, column {} (from 0)".format,
 ) -> Any:
     """Return a matrix, an array or a sparse one, without the rounding in its symmetry.
 
@@ -386,9 +371,8 @@ def symmetrised(
     def error(B: scipy.sparse.coo_array, wrong: Floats, expected: str, why: str) -> InputError:
         k = int(np.argmax(wrong))
         i, j = int(B.row[k]), int(B.col[k])
-        found = f"{A[i, j]:.6g}" + (
-            f", and {A[j, i]:.6g} across the diagonal ({why})" if why else ""
-        )
+        found = f"{A[i, j]:.6g}"
+        found += f", and {A[j, i]:.6g} across the diagonal ({why})" if why else ""
         where = ", ".join(filter(None, (place, label(i, j))))
         return InputError(Fault(file, where, expected, found))
 

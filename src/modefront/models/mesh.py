@@ -11,7 +11,7 @@ import scipy.sparse
 from modefront import fem
 from modefront.errors import wrong
 from modefront.fem.check import check_points, limits_of
-from modefront.linalg.affine import Monomials, SparseAffine
+from modefront.linalg.affine import Monomials
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import MatrixModel
 
@@ -57,20 +57,28 @@ def mesh_model(
         if name not in parameters:
             expected = f"the structure's {', '.join(built.parameters)}"
             raise wrong("parameters", expected, f"no {name}")
-    columns = [list(parameters).index(name) for name in built.parameters]
-
-    def placed(matrix: SparseAffine) -> SparseAffine:
-        exponents = np.zeros((len(matrix.coefficients.exponents), len(parameters)))
-        exponents[:, columns] = matrix.coefficients.exponents
-        return replace(matrix, coefficients=Monomials(exponents))
-
-    direction = built.dofs.free[:, 1]
+    own = np.array([[x == name for x in parameters] for name in built.parameters], dtype=float)
+    K, M = (
+        replace(
+            A, coefficients=Monomials(A.coefficients.exponents @ own.reshape(-1, len(parameters)))
+        )
+        for A in (built.stiffness, built.mass)
+    )
+    direction, X = built.dofs.free[:, 1], check_points(structure.nodes)
+    types = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
+    types |= {15: "wedge15", 20: "hexahedron20"}
+    cells = [np.atleast_2d(np.asarray(group.cells)) for group in structure.groups]
+    named = zip(structure.groups, cells, strict=True)
+    known = tuple(Cells(group.name, types[each.shape[1]], each) for group, each in named)
+    translations = 6 * np.arange(len(X))[:, None] + np.arange(3)
+    motion = scipy.sparse.csr_array(built.dofs.T[translations.ravel()])
+    (at, along), count = built.places, len(structure.sensors)
     return MatrixModel(
         tuple(parameters),
         tuple(built.sensors[i] for i in sensors),
         built.selection[sensors],
-        placed(built.stiffness),
-        placed(built.mass),
+        K,
+        M,
         outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
         # Slaves of rigid links follow their masters, which is the same translation.
         base={
@@ -78,19 +86,6 @@ def mesh_model(
             for d, name in enumerate(fem.DIRECTIONS[:3])
             if (direction == d).any()
         },
-        limits=tuple(limits_of(structure, check_points(structure.nodes))),
-        geometry=_geometry(structure, built),
+        limits=tuple(limits_of(structure, X)),
+        geometry=Geometry(X, known, motion, at[:count], along[:count, :3]),
     ).compact()
-
-
-def _geometry(structure: fem.Structure, built: fem.StructureMatrices) -> Geometry:
-    nodes = np.asarray(structure.nodes, dtype=float)
-    types = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
-    types |= {15: "wedge15", 20: "hexahedron20"}
-    cells = [np.atleast_2d(np.asarray(group.cells)) for group in structure.groups]
-    named = zip(structure.groups, cells, strict=True)
-    known = tuple(Cells(group.name, types[each.shape[1]], each) for group, each in named)
-    translations = 6 * np.arange(len(nodes))[:, None] + np.arange(3)
-    motion = scipy.sparse.csr_array(built.dofs.T[translations.ravel()])
-    (at, along), count = built.places, len(structure.sensors)
-    return Geometry(nodes, known, motion, at[:count], along[:count, :3])

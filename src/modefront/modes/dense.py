@@ -26,6 +26,7 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, first_axis
 from modefront.modes.result import FullModes, ModeDerivatives, Modes, SecondDerivatives, Solved
+from modefront.rounding import TINY
 
 CLOSE = 1e-2
 """Relative gap of eigenvalues below which a quotient is formed with the gap itself."""
@@ -143,8 +144,7 @@ class Decomposition:
     def Phi(self) -> Floats:
         """Mass-normalised modes, shape (N, modes)."""
         finite = self.lam.size
-        out: Floats = self.X[:, :finite] / np.sqrt(self.mu[:finite])
-        return out
+        return self.X[:, :finite] / np.sqrt(self.mu[:finite])
 
 
 def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:
@@ -175,9 +175,9 @@ def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:
     mu, X = mu[::-1], X[:, ::-1]
     known = mu > FINITE * mu[0]
     lowest = mu[min(count, mu.size) - 1] / mu[0] if count else 1.0
-    if (lowest < PRECISE or mu[-1] < FINITE * mu[0]) and (high := _high_modes(K, M)):
-        mu, X = _joined(mu, X, shift, *high)
-        known = np.ones(mu.size, bool)
+    if lowest < PRECISE or mu[-1] < FINITE * mu[0]:
+        mu, X, exact = _with_high_modes(K, M, mu, X, shift)
+        known |= exact
     lam = 1 / mu[known] - shift
     if not lam.size:
         raise ModelError("no mode has a finite frequency: a stiffness vanishes; check its units")
@@ -186,37 +186,28 @@ def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:
     return Decomposition(mu, X, shift, lam)
 
 
-def _high_modes(K: Floats, M: Floats) -> tuple[Floats, Floats] | None:
-    """Solve K phi = lam M phi, precise in the highest modes; None where M is singular.
+def _with_high_modes(
+    K: Floats, M: Floats, mu: Floats, X: Floats, shift: float
+) -> tuple[Floats, Floats, bool]:
+    """Return mu and X with the modes above the middle of the spectrum from K phi = lam M phi.
 
-    M is judged with a diagonal of ones, as units and slender elements have nothing to do with it.
+    They are precise in the highest modes, and joined at the widest relative gap in the middle,
+    where both ways have half of all digits. Nothing changes, as is returned, where M is singular;
+    it is judged with a diagonal of ones, as units and slender elements have nothing to do with it.
     """
-    diagonal = np.diag(M)
-    if diagonal.min() <= 0:
-        return None
-    scale = 1 / np.sqrt(diagonal)
-    if scipy.linalg.eigvalsh(M * np.outer(scale, scale), check_finite=False)[0] < FINITE:
-        return None
-    scaled = np.outer(scale, scale)
+    scale = 1 / np.sqrt(np.maximum(np.diag(M), TINY))
+    scaled, positive = np.outer(scale, scale), np.diag(M).min() > 0
+    if not positive or scipy.linalg.eigvalsh(M * scaled, check_finite=False)[0] < FINITE:
+        return mu, X, False
     lam, Phi = scipy.linalg.eigh(K * scaled, M * scaled, check_finite=False)
-    return lam, scale[:, None] * Phi
-
-
-def _joined(mu: Floats, X: Floats, shift: float, lam: Floats, Phi: Floats) -> tuple[Floats, Floats]:
-    """Return mu and X with the modes above the middle of the spectrum from lam and Phi.
-
-    They are joined at the widest relative gap there, where both ways have half of all digits.
-    """
     middle = np.sqrt((lam[-1] + shift) / mu[0])
     near = np.flatnonzero((lam[1:] > middle / MIDDLE) & (lam[1:] < middle * MIDDLE)) + 1
     if not near.size:
         near = np.array([np.searchsorted(lam, middle)])
     start = int(near[np.argmax(lam[near] / np.maximum(lam[near - 1], middle / MIDDLE**2))])
     high = lam[start:] + shift
-    return (
-        np.concatenate([mu[:start], 1 / high]),
-        np.hstack([X[:, :start], Phi[:, start:] / np.sqrt(high)]),
-    )
+    X = np.hstack([X[:, :start], scale[:, None] * Phi[:, start:] / np.sqrt(high)])
+    return np.concatenate([mu[:start], 1 / high]), X, True
 
 
 def is_singular(K: Floats) -> bool:
@@ -254,7 +245,7 @@ def nelson(
 
     Phi = Phi[:, r]
     force = K.derivatives_times(theta, Phi)
-    if M.varies:
+    if M.coefficients.varies:
         dM_phi = M.derivatives_times(theta, Phi)
         force = force - lam[r, None] * dM_phi
     S = first_axis(decomposition.X.T, force)  # S[j, r] = x_j^T (K' - lam_r M') phi_r
@@ -269,6 +260,6 @@ def nelson(
     np.copyto(finite, decomposition.mu[: lam.size, None] * gap, where=close)
     finite[same] = np.inf
     S /= -denominator[:, :, None]
-    if M.varies:
+    if M.coefficients.varies:
         S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi, dM_phi) / np.sqrt(decomposition.mu[r, None])
     return dlam, S, coincident, denominator

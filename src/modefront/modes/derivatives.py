@@ -27,14 +27,6 @@ from modefront.rounding import TINY
 
 
 @dataclass(frozen=True)
-class Shifted:
-    """The factor of K - sigma M."""
-
-    sigma: float
-    factor: Factorisation
-
-
-@dataclass(frozen=True)
 class Spectrum:
     """The lowest modes at one theta.
 
@@ -56,7 +48,7 @@ class Spectrum:
     noise: Floats
     beyond: float
     proved: int
-    factors: tuple[Shifted, Shifted]
+    factors: tuple[Factorisation, Factorisation]
 
 
 COINCIDENT = 1e-6
@@ -206,7 +198,7 @@ def _columns(rows: Sensors, some: Ints) -> Floats:
 
 
 def _forms(
-    shifted: Shifted, spectrum: Spectrum, right: Floats, tau: Floats, left: Sensors
+    shifted: Factorisation, spectrum: Spectrum, right: Floats, tau: Floats, left: Sensors
 ) -> Floats:
     """Return left (K - lam_r M)^+ right, shape (rows of left, shifts, columns of right).
 
@@ -214,7 +206,7 @@ def _forms(
     ``lower`` (left of d in L), ``u`` and ``P`` belong to the last step.
     """
     dual = right - combine(spectrum.MPhi, gram(spectrum.Phi, right))
-    W = _projected(spectrum, shifted.factor.solve(dual))
+    W = _projected(spectrum, shifted.solve(dual))
     first = beta = _norm(W, dual)
     Q_old, dual_old = np.zeros_like(W), np.zeros_like(W)
     lower = np.zeros((tau.shape[0], beta.size))
@@ -236,7 +228,7 @@ def _forms(
         out += P * (u / d)
         Q_old *= -beta
         dual_old *= -beta
-        Q_old += shifted.factor.solve(MQ)
+        Q_old += shifted.solve(MQ)
         Q_old -= alpha * W
         dual_old += MQ
         dual_old -= alpha * dual
@@ -256,5 +248,4 @@ def _projected(spectrum: Spectrum, W: Floats) -> Floats:
 
 def _norm(W: Floats, dual: Floats) -> Floats:
     """Return the norm of each column of W in B, given B W."""
-    out: Floats = np.sqrt(np.maximum(np.einsum("nc,nc->c", W, dual), 0.0))
-    return out
+    return np.sqrt(np.maximum(np.einsum("nc,nc->c", W, dual), 0.0))

@@ -27,13 +27,10 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.linalg.products import combine, gram, times
-from modefront.modes.dense import INDEFINITE_MASS
+from modefront.modes.dense import FINITE, INDEFINITE_MASS
 
 TOLERANCE = 1e-7
 """Residual of a Ritz pair over its mu; modes are usually refined once more with another shift."""
-
-LOST = 1e-13
-"""Share of the greatest mu below which a residual or an eigenvalue is taken for zero."""
 
 NEW = 1e-8
 """Share of a random block, after T, outside the basis below which there are no more modes."""
@@ -91,7 +88,7 @@ def greatest(
         H[new, :d] = H[:d, new].T
         W = _outside(solve(MQ) - combine(V[:, :d], H[:d, new]), V[:, :d], AV[:, :d])
         scale = np.abs(np.diagonal(H[:d, :d])).max()
-        Q, AQ, R = _orthonormal(W, A, LOST * scale, n - d)
+        Q, AQ, R = _orthonormal(W, A, FINITE * scale, n - d)
         if R.size and np.abs(R).max() < 1e-4 * scale:
             Q, AQ, again = _orthonormal(_outside(Q, V[:, :d], AV[:, :d]), A, 0.0)
             R = again @ R
@@ -101,9 +98,9 @@ def greatest(
         mu, Y = mu[::-1], Y[:, ::-1]
         if mu[-1] < -INDEFINITE_MASS * mu[0]:
             raise ModelError("the mass matrix is indefinite")
-        good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(TOLERANCE * mu, LOST * mu[0])
+        good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(TOLERANCE * mu, FINITE * mu[0])
         leading = d if good.all() else int(np.argmin(good))
-        if leading >= needed and mu[needed - 1] > LOST * mu[0]:
+        if leading >= needed and mu[needed - 1] > FINITE * mu[0]:
             break
         if leading == d:
             # All modes that the block contains are found; a random one may contain others.
@@ -123,8 +120,7 @@ def greatest(
 
 def _outside(W: Floats, V: Floats, AV: Floats) -> Floats:
     """Return the part of W that is orthogonal to V in A."""
-    out: Floats = W - combine(V, gram(AV, W))
-    return out
+    return W - combine(V, gram(AV, W))
 
 
 def _orthonormal(

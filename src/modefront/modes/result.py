@@ -180,8 +180,7 @@ class Modes:
     @cached_property
     def frequency(self) -> Floats:
         """Natural frequencies in Hz, shape (modes,); zero for rigid-body modes."""
-        out: Floats = np.sqrt(np.maximum(self.lam, 0.0)) / (2 * np.pi)
-        return out
+        return np.sqrt(np.maximum(self.lam, 0.0)) / (2 * np.pi)
 
     @cached_property
     def dfrequency(self) -> Floats:
@@ -189,8 +188,7 @@ class Modes:
 
         Raises ValueError where derivatives were not requested.
         """
-        out: Floats = self.dlam * self.frequency_by_lam[:, None]
-        return out
+        return self.dlam * self.frequency_by_lam[:, None]
 
     @cached_property
     def frequency_by_lam(self) -> Floats:

@@ -29,7 +29,7 @@ from modefront.linalg.factorisation import Factorisation, Pencil, SingularMatrix
 from modefront.linalg.products import combine, gram, times
 from modefront.modes import dense
 from modefront.modes import derivatives as exact
-from modefront.modes.derivatives import Shifted, Spectrum
+from modefront.modes.derivatives import Spectrum
 from modefront.modes.lanczos import greatest
 from modefront.modes.result import FullModes, ModeDerivatives, Modes, SecondDerivatives
 
@@ -45,9 +45,6 @@ ATTEMPTS = 4
 
 SINGULAR = 1e-13
 """x^T A x / x^T diag(A) x below which A is singular to working precision."""
-
-SHIFT = 1e-5
-"""First s over trace(K) / trace(M); lowered until it is no greater than the eigenvalues."""
 
 GAP = 1e-2
 """Relative gap of eigenvalues that is wide enough for sigma; else the widest one is taken."""
@@ -106,7 +103,7 @@ def full_modes(pencil: Pencil, theta: Floats, count: int, loads: Floats) -> Full
     lam = dense.without_rounding(pencil.K.at(theta).diagonal(), known.lam, known.Phi)
     below = known.factors[0]
     if below.sigma == 0 and lam[0] > 0:  # factors take one right-hand side at least
-        static = below.factor.solve(np.ascontiguousarray(loads)) if loads.size else loads
+        static = below.solve(np.ascontiguousarray(loads)) if loads.size else loads
     return FullModes(lam[:count], known.Phi[:, :count], static)
 
 
@@ -118,7 +115,7 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
         needed, block = min(needed, pencil.size), min(block, pencil.size)
         right = np.random.default_rng(attempt).standard_normal((pencil.size, block))
         below, A, start = _positive_definite(pencil, K, M, needed, right, least)
-        ritz = greatest(below.factor.solve, A, M, start, needed)
+        ritz = greatest(below.solve, A, M, start, needed)
         finite = int(np.sum(ritz.mu > SINGULAR * ritz.mu[0]))
         known = min(ritz.converged, finite)
         lam, X = 1 / ritz.mu[:finite] + below.sigma, ritz.X[:, :known] / np.sqrt(ritz.mu[:known])
@@ -143,8 +140,8 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
             and (gap := _gap(lam, known, count, -below.sigma, ritz.complete)) is not None
         ):
             lower, sigma = gap
-            above = Shifted(sigma, pencil.factor(K.data, M.data, sigma))
-            if above.factor.negative == lower:
+            above = pencil.factor(K.data, M.data, sigma)
+            if above.negative == lower:
                 refined = (
                     _refined(above, M, lam[:known], X, lower) if refines else (lam, X, times(M, X))
                 )
@@ -217,15 +214,15 @@ def _positive_definite(
     needed: int,
     right: Floats,
     least: float,
-) -> tuple[Shifted, scipy.sparse.csr_array, Floats]:
+) -> tuple[Factorisation, scipy.sparse.csr_array, Floats]:
     """Return the factor of A = K + s M, A, and A^-1 right to begin the Lanczos iteration with.
 
     s is ``least``, or greater where that leaves A singular.
     """
     factor, start = _regular(pencil, K, M, least, right)
     if factor is not None:
-        return Shifted(-least, factor), K + least * M if least else K, start
-    s = SHIFT * K.trace() / M.trace()
+        return factor, K + least * M if least else K, start
+    s = dense.SHIFT * K.trace() / M.trace()  # at first: no greater than the eigenvalues at last
     while True:
         factor, start = _regular(pencil, K, M, s, right)
         A = K + s * M
@@ -244,7 +241,7 @@ def _positive_definite(
         elastic = np.maximum(1 / mu - s, noise)[min(needed, mu.size) - 1 :]
         target = elastic[int(np.argmax(elastic > noise))]
         if target > 0.1 * s:
-            return Shifted(-s, factor), A, start
+            return factor, A, start
         s = target
 
 
@@ -277,7 +274,7 @@ def _regular(
 
 
 def _refined(
-    above: Shifted, M: scipy.sparse.csr_array, lam: Floats, Phi: Floats, needed: int
+    above: Factorisation, M: scipy.sparse.csr_array, lam: Floats, Phi: Floats, needed: int
 ) -> tuple[Floats, Floats, Floats] | None:
     r"""Return eigenvalues, modes and M times the modes after subspace iteration with B.
 
@@ -293,7 +290,7 @@ def _refined(
     MPhi = times(M, Phi)
     for _ in range(REFINEMENTS):
         distance = lam - above.sigma
-        Y = above.factor.solve(MPhi) * distance
+        Y = above.solve(MPhi) * distance
         MY = times(M, Y)
         error = np.sqrt(np.abs(np.einsum("nr,nr->r", Y - Phi, MY - MPhi)))
         B = gram(Y, MPhi) * distance

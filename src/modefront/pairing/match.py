@@ -165,5 +165,4 @@ def mac(phi: Floats | Complexes, psi: Floats | Complexes) -> Floats:
     """
     cross = np.abs(phi.conj().T @ psi) ** 2
     norm = np.outer((np.abs(phi) ** 2).sum(axis=0), (np.abs(psi) ** 2).sum(axis=0))
-    out: Floats = np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)
-    return out
+    return np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)

@@ -18,17 +18,13 @@ from modefront.predictions import reliability
 from modefront.predictions import system as modal
 from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVariable, Setting
 from modefront.residuals.problem import UpdatingProblem
-from modefront.rounding import ACCUMULATED
+from modefront.rounding import ACCUMULATED, WRITTEN
 
 STEPS_A_PERIOD = 20
 """Time steps in the shortest period, where the step is not given."""
 
 MOST_STEPS = 10**6
 """Time steps at most: convolutions of more fill the memory."""
-
-WHOLE = 1e-6
-"""Difference from a whole number of time steps that passes for the digits of their length."""
-
 
 LEVELS = options.numbers(
     "a list of different levels above 0", options.array(options.ABOVE_ZERO, 1, once=True)
@@ -140,8 +136,7 @@ class Passage:
             Setting("failure_duration", "duration", unit="s"),
             Setting("failure_step", "time step", unit="s"),
             Setting(
-                "failure_density",
-                "spectral density of the white noise, (unit of load)^2/(rad/s)",
+                "failure_density", "spectral density of the white noise, (unit of load)^2/(rad/s)"
             ),
             Setting("failure_sided", "whether that density is one- or two-sided", "text"),
             Setting("failure_load", "load case", "text"),
@@ -170,7 +165,7 @@ class Passage:
         steps = 1.0 if self.step is None else self.duration / self.step
         if steps > MOST_STEPS:
             faults.append(Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}"))
-        elif steps < 0.5 or abs(steps - round(steps)) > WHOLE:
+        elif steps < 0.5 or abs(steps - round(steps)) > WRITTEN:
             expected = f"a whole number of steps of {self.step:g} s in {self.duration:g} s"
             faults.append(Fault("", "step", expected, f"{steps:.6g} of them"))
         refuse(faults)
@@ -201,19 +196,9 @@ class Passage:
     @property
     def settings(self) -> Mapping[str, Sequence[object]]:
         """Values of the kind's settings, one a place, by the name of the variable."""
-        loads = self.loads
-        values = {
-            "failure_samples": self.samples,
-            "failure_method": self.method,
-            "failure_duration": self.duration,
-            "failure_step": self.step,
-            "failure_density": self.density,
-            "failure_sided": f"{self.sided}-sided",
-            "failure_load": loads.load,
-            "failure_damping": loads.damped,
-            "failure_modes": self.modes,
-        }
-        repeated = {name: [value] * len(self.levels) for name, value in values.items()}
+        keys = "samples", "method", "duration", "step", "density"
+        own = {key: getattr(self, key) for key in keys} | {"sided": f"{self.sided}-sided"}
+        repeated = self.loads.settings("failure", len(self.levels), own)
         return {**repeated, "failure_level": list(self.levels)}
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
@@ -277,18 +262,14 @@ class Passage:
         Raises ModelError where the model cannot be evaluated at ``theta``, InputError where the
         time step is too long there.
         """
-        method, passage = reliability.METHODS[self.method], self.problem(problem, theta)
-        P, variation = reliability.estimate(
-            method, passage, np.array(self.levels), self.samples, seed
-        )
+        asked = self.problem(problem, theta), np.array(self.levels), self.samples, seed
+        P, variation = reliability.estimate(reliability.METHODS[self.method], *asked)
         return {"probability": P, "variation": variation}
 
     def check(
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
     ) -> Mapping[str, Floats]:
         """Return P with half the time step over P, and its standard error, (levels,)."""
-        method, passage = reliability.METHODS[self.method], self.problem(problem, theta)
-        ratio, error = reliability.step_effect(
-            method, passage, np.array(self.levels), self.samples, seed
-        )
+        asked = self.problem(problem, theta), np.array(self.levels), self.samples, seed
+        ratio, error = reliability.step_effect(reliability.METHODS[self.method], *asked)
         return {"ratio": ratio, "error": error}

@@ -111,8 +111,7 @@ class Slope:
         rigid = 0.0 if pair.rigid is None else abs(pair.rigid[0, 0])
         t = omega**s * alpha + rigid
         t1 = omega**s * alpha1 + s * omega ** max(s - 1, 0) * alpha
-        size: Floats = 8 * np.finfo(float).eps * (t * t1 + omega * abs(g1))
-        return size
+        return 8 * np.finfo(float).eps * (t * t1 + omega * abs(g1))
 
 
 DEGREE = 24
@@ -120,10 +119,6 @@ DEGREE = 24
 
 RESOLVED = 1e-12
 """The series is done when its last coefficients are below this, relative to its largest."""
-
-TOUCH = 1e-6
-"""Distance of a root from the interval, over its half length, up to which it may be a zero in it:
-the root of `RESOLVED`, by which rounding parts a double zero."""
 
 SETTLED = 1e-8
 """Relative length of the last step of Newton's method at a zero; elsewhere steps stay long."""
@@ -199,10 +194,11 @@ def _zeros(slope: Slope, a: float, b: float) -> Floats:
     if trimmed.size == 1:
         return np.empty(0)
     roots = chebyshev.chebroots(trimmed)
-    # A touch beyond the ends: a zero on a break must not fall between two intervals.
-    real = (abs(roots.imag) < TOUCH) & (abs(roots.real) < 1 + TOUCH)
-    zeros: Floats = middle + half * roots.real[real]
-    return zeros
+    # Rounding parts a double zero by the root of its size, and as far beyond the ends may be a zero
+    # on a break, which must not fall between two intervals.
+    touch = math.sqrt(RESOLVED)
+    real = (abs(roots.imag) < touch) & (abs(roots.real) < 1 + touch)
+    return middle + half * roots.real[real]
 
 
 BAND = options.numbers(
@@ -265,9 +261,8 @@ class PeakResponse:
         options.check_fields(self)
         faults = list(self.loads.contradictions())
         if self.quantity == "absolute accelerance" and self.base is None:
-            faults.append(
-                Fault("", "quantity", "another one where forces act", f"'{self.quantity}'")
-            )
+            expected = "another one where forces act"
+            faults.append(Fault("", "quantity", expected, f"'{self.quantity}'"))
         refuse(faults)
 
     @property
@@ -293,15 +288,8 @@ class PeakResponse:
     @property
     def settings(self) -> Mapping[str, Sequence[object]]:
         """Values of the kind's settings, one a place, by the name of the variable."""
-        loads = self.loads
-        values = {
-            "frf_quantity": self.quantity,
-            "frf_band": self.band,
-            "frf_load": loads.load,
-            "frf_damping": loads.damped,
-            "frf_modes": self.modes,
-        }
-        return {name: [value] * len(self.response) for name, value in values.items()}
+        own = {"quantity": self.quantity, "band": self.band}
+        return self.loads.settings("frf", len(self.response), own)
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""
@@ -315,10 +303,8 @@ class PeakResponse:
         Raises InputError with what this model cannot predict.
         """
         refuse(self.faults(problem.model, problem.data))
-        low, top = self.band or (
-            0.0,
-            modal.ABOVE * modal.filled(modal.highest_frequency(problem.data), "band"),
-        )
+        highest = modal.highest_frequency(problem.data)
+        low, top = self.band or (0.0, modal.ABOVE * modal.filled(highest, "band"))
         out = replace(self, band=(low, top), modes=self.loads.complete_modes(problem, top))
         omega, faults = out.loads.nominal(problem).omega, []
         last, count = float(omega[-1]) / (2 * math.pi), omega.size

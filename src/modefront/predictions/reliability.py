@@ -53,7 +53,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from queue import SimpleQueue
-from types import MappingProxyType
 from typing import Final, final
 
 import numpy as np
@@ -193,8 +192,7 @@ def pulse_response(problem: FirstPassage) -> Floats:
         power = np.einsum("mij,mjk->mik", power, power)
     modal = states[:, 0, : problem.steps]
     shapes = problem.system
-    outputs: Floats = np.einsum("om,mi,mk->oik", shapes.output, shapes.input, modal)
-    return outputs
+    return np.einsum("om,mi,mk->oik", shapes.output, shapes.input, modal)
 
 
 def _generator(system: ModalSystem, soil: tuple[float, float] | None) -> Floats:
@@ -240,22 +238,6 @@ NEGLIGIBLE = 1e-22
 """The Q(ρ_oj) left out, relative to the largest: even millions of them are below rounding."""
 
 
-@dataclass(frozen=True, eq=False)
-class Failed:
-    """Samples, each given an elementary failure drawn with probability P_oj/ΣP.
-
-    Attributes
-    ----------
-    z : (samples, n_inputs, n) z*
-    output, step : (samples,) o and j, counted from 0, of the elementary failure that each sample
-        was given
-    """
-
-    z: Floats
-    output: Ints
-    step: Ints
-
-
 def elementary_failures(response: GaussianResponse, level: float) -> Floats:
     """Return the sums of P_oj over the steps of one output after another, (n_outputs · n,).
 
@@ -267,8 +249,10 @@ def elementary_failures(response: GaussianResponse, level: float) -> Floats:
     return np.cumsum(2 * ndtr(-beta))
 
 
-Share = Callable[[Failed, float, Iterator[Floats]], Floats]
-"""(samples, level, |x| by output) → the part of ΣP that each sample stands for, (samples,)."""
+Share = Callable[[Floats, tuple[Ints, Ints], float, Iterator[Floats]], Floats]
+"""Returns the part of ΣP that each sample stands for, (samples,): of samples z* (samples, n_inputs,
+n), each given an elementary failure drawn with probability P_oj/ΣP, of o and j (samples,) of that,
+counted from 0, the level, and |x| of one output after another."""
 
 
 # 6 arguments: the levels with what belongs to them, and the samples.
@@ -298,33 +282,37 @@ def _given_failures(
         u = np.einsum("sik,sik->s", z, a) / sigma
         a *= ((r - u) / sigma)[:, None, None]
         a += z
-        row[:] = cumulative[-1] * share(Failed(a, output, step), level, convolution.magnitudes(a))
+        row[:] = cumulative[-1] * share(a, (output, step), level, convolution.magnitudes(a))
     return weights
 
 
-def _one_of_all(failed: Failed, level: float, magnitudes: Iterator[Floats]) -> Floats:
-    exceedances = np.zeros(failed.z.shape[0])
+def _one_of_all(
+    z: Floats, _: tuple[Ints, Ints], level: float, magnitudes: Iterator[Floats]
+) -> Floats:
+    exceedances = np.zeros(len(z))
     for x in magnitudes:
         exceedances += np.count_nonzero(x > level, axis=1)
     # The failure that was drawn is one of them, even where rounding leaves it on the barrier.
     return 1 / np.maximum(exceedances, 1)
 
 
-def _first(failed: Failed, level: float, magnitudes: Iterator[Floats]) -> Floats:
-    first = np.ones(failed.z.shape[0], dtype=bool)
-    steps = np.arange(failed.z.shape[-1])
+def _first(
+    z: Floats, drawn: tuple[Ints, Ints], level: float, magnitudes: Iterator[Floats]
+) -> Floats:
+    first, steps = np.ones(len(z), dtype=bool), np.arange(z.shape[-1])
     for output, x in enumerate(magnitudes):
         # At the time of the failure drawn, outputs of lower number come before it.
-        end = failed.step + (output < failed.output)
+        end = drawn[1] + (output < drawn[0])
         first &= ~np.any((x > level) & (steps < end[:, None]), axis=1)
     return first.astype(np.float64)
 
 
-def _any_radius(failed: Failed, level: float, magnitudes: Iterator[Floats]) -> Floats:
-    count = failed.z.shape[0]
-    half_nu = failed.z[0].size / 2
+def _any_radius(
+    z: Floats, _: tuple[Ints, Ints], level: float, magnitudes: Iterator[Floats]
+) -> Floats:
+    count, half_nu = len(z), z[0].size / 2
     # Below, y = ρ²/2 throughout; x is that of z* and not of e, hence the radius.
-    energy = np.einsum("sik,sik->s", failed.z, failed.z) / 2
+    energy = np.einsum("sik,sik->s", z, z) / 2
     # Each sample fails, so min ρ is at most its radius, and Q(min ρ) at least Q(radius). Most x
     # are so small beside the largest that their Q is nothing; they are not worth computing.
     least = NEGLIGIBLE * gammaincc(half_nu, energy)
@@ -341,14 +329,10 @@ def _any_radius(failed: Failed, level: float, magnitudes: Iterator[Floats]) -> F
     return np.asarray(shortest / total, dtype=np.float64)
 
 
-METHODS: Final[Mapping[str, Share | None]] = MappingProxyType(
-    {
-        "importance": _one_of_all,
-        "directional": _any_radius,
-        "additive": _first,
-        "monte-carlo": None,  # failures are counted
-    }
-)
+METHODS: Final[Mapping[str, Share | None]] = {
+    **{"importance": _one_of_all, "directional": _any_radius, "additive": _first},
+    "monte-carlo": None,  # failures are counted
+}
 """The methods by the names that a user gives them."""
 
 

@@ -215,6 +215,13 @@ class ModalLoadModel:
         ratios = (self.damping,) if isinstance(self.damping, float) else self.damping
         return ", ".join(f"{ratio:g}" for ratio in ratios)
 
+    def settings(
+        self, prefix: str, count: int, values: Mapping[str, object]
+    ) -> dict[str, list[object]]:
+        """Return values of settings, and of those of the loads, at each of so many places."""
+        own = {"load": self.load, "damping": self.damped, "modes": self.modes}
+        return {f"{prefix}_{key}": [value] * count for key, value in {**values, **own}.items()}
+
     def system(self, problem: UpdatingProblem, theta: Floats) -> ModalSystem:
         """Return the structure in modal coordinates at ``theta``.
 
@@ -267,9 +274,8 @@ class ModalLoadModel:
                     yield Fault("", name, expected, suggestion(place, model.places))
         if load_case.base is not None and load_case.base not in model.directions:
             names = ", ".join(f"'{x}'" for x in model.directions) or "none: the model names no base"
-            yield Fault(
-                "", "base", f"one of the directions of the base, {names}", f"'{load_case.base}'"
-            )
+            expected = f"one of the directions of the base, {names}"
+            yield Fault("", "base", expected, f"'{load_case.base}'")
         if self.modes is not None and self.modes > model.size:
             yield Fault("", "modes", f"a whole number from 1 to {model.size}", str(self.modes))
         if isinstance(damping, tuple) and len(damping) > model.size:

@@ -47,7 +47,14 @@ def read(path: Path, options: JobOptions) -> Listed:
             return _from_full(_Words(file), file)
         except ValueError as error:
             raise wrong(file, f"{expected}matrix of Ansys (.full)", reason(error)) from None
-    return _from_market(path, options)
+    files, matrices, suffixes = [], [], (".mmf", ".mtx", ".mmx", ".txt")
+    for what, endings in MATRICES.items():
+        names = [path.with_name(path.name + end + suffix) for end in endings for suffix in suffixes]
+        file = next(filter(Path.is_file, names), names[0])
+        found = existing(file, f"the {what} of Ansys", ADVICE)
+        matrices.append(read_entries(found, form=".mtx"))
+        files.append(found)
+    return Listed((files[0], files[1]), matrices, _labels(path, options, matrices[0].shape[0]))
 
 
 # .full
@@ -119,16 +126,6 @@ def _rows(words: _Words, position: int, terms: int, size: int) -> scipy.sparse.c
     if (diagonal != np.arange(size)).any():
         raise ValueError("rows that are not in their order, each to its diagonal")
     return entries_of(np.repeat(diagonal, length), column, np.concatenate(values), size)
-
-
-def _from_market(path: Path, options: JobOptions) -> Listed:
-    files, matrices, suffixes = [], [], (".mmf", ".mtx", ".mmx", ".txt")
-    for what, endings in MATRICES.items():
-        names = [path.with_name(path.name + end + suffix) for end in endings for suffix in suffixes]
-        file = next((name for name in names if name.is_file()), names[0])
-        matrices.append(read_entries(existing(file, f"the {what} of Ansys", ADVICE), form=".mtx"))
-        files.append(file)
-    return Listed((files[0], files[1]), matrices, _labels(path, options, matrices[0].shape[0]))
 
 
 def _labels(path: Path, options: JobOptions, size: int) -> DofTable:

@@ -18,6 +18,7 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import reason
+from modefront.fem.structure import FACES
 from modefront.inputs import ended, file_size, first_repeated, fortran, wrong
 from modefront.isolated import Read, isolated
 from modefront.models.dofs import DofTable, read_dofs
@@ -26,14 +27,8 @@ from modefront.outputs import output
 from modefront.text import Shown
 
 CORNERS: Mapping[str, int] = {
-    "vertex": 1,
-    "line": 2,
-    "triangle": 3,
-    "quad": 4,
-    "tetra": 4,
-    "pyramid": 5,
-    "wedge": 6,
-    "hexahedron": 8,
+    **{"vertex": 1, "line": 2},
+    **{kind: 1 + max(map(max, faces)) for kind, faces in FACES.items()},
 }
 """Types of cells, as meshio and VTK call them, and their nodes; further nodes are left out."""
 
@@ -66,9 +61,8 @@ def mesh_of(nodes: Mapping[int, Floats], elements: Iterable[tuple[str, list[int]
         corners = members[: CORNERS[kind]]
         if len(corners) == CORNERS[kind] and nodes.keys() >= set(corners):
             cells.setdefault(kind, []).append(corners)
-    return ProgramMesh(
-        number, coordinates, {kind: np.array(x, np.intp) for kind, x in cells.items()}
-    )
+    tables = {kind: np.array(x, np.intp) for kind, x in cells.items()}
+    return ProgramMesh(number, coordinates, tables)
 
 
 def refuse_unknown_nodes(path: Path, known: Collection[int], nodes: Iterable[int]) -> None:

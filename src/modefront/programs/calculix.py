@@ -90,22 +90,14 @@ def _table(labels: DofTable, deck: Deck | None) -> DofTable:
     if deck is not None:
         node[~np.isin(node, deck.mesh.number)] *= -1
         single = set(nodes[most == 1].tolist()) & (deck.expanded - deck.others - blocks.keys())
-        follow = list(_followers(labels, deck, single, leading))
+        # Of what follows a rigid body, the program eliminates all but one of the nodes it makes
+        # of a node. What is left does not tell how that moves, nor does the motion that it prints
+        # for the reference node agree with that of its degrees of freedom.
+        follow = single & {*labels.node[leading:].tolist(), *deck.nodes_of(deck.bodies)}
+        follow |= set(deck.nodes_of(deck.guides)) if follow else set()
         held = [pair in deck.held for pair in map(tuple, pairs.tolist())]
-        counted &= (node > 0) & ~np.isin(node, follow) & ~np.array(held, bool)
+        counted &= (node > 0) & ~np.isin(node, list(follow)) & ~np.array(held, bool)
     return DofTable(node, labels.direction, counted / np.where(itself, own, made).clip(1))
-
-
-def _followers(labels: DofTable, deck: Deck, single: set[int], leading: int) -> set[int]:
-    """Return the nodes of shells and beams that follow a rigid body, and its reference nodes.
-
-    The program eliminates all but one of the nodes that it makes of such a node, which are
-    ``single``. What is left does not tell how the node moves, nor does the motion that it prints
-    for the reference node agree with that of its degrees of freedom. ``leading`` degrees of freedom
-    are of nodes themselves.
-    """
-    out = single & {*labels.node[leading:].tolist(), *deck.nodes_of(deck.bodies)}
-    return out | set(deck.nodes_of(deck.guides)) if out else out
 
 
 def _own_blocks(labels: DofTable, deck: Deck | None) -> tuple[dict[int, tuple[int, int]], int]:

@@ -127,7 +127,15 @@ class Differences:
         """
         values = np.array([values for values, _ in self._runs]).reshape(-1, len(self.parameters))
         c = np.array([self.coefficients.values(theta) for theta in values]) - 1.0
-        self._refuse_undetermined(c.reshape(len(values), len(self.names)))
+        c = c.reshape(len(values), len(self.names))
+        for i, parameter in enumerate(self.parameters):
+            own = np.flatnonzero(self.coefficients.exponents[:, i] != 0)
+            if own.size and (rank := np.linalg.matrix_rank(c[:, own])) < own.size:
+                names = ", ".join(self.names[k] for k in own)
+                expected = f"at least {own.size} runs with other values for the terms {names}"
+                raise wrong(f"--parameter {parameter}", expected, f"{rank} that tell them apart")
+        if not c.size or np.linalg.matrix_rank(c) < c.shape[1]:
+            raise wrong("--parameter", f"runs that tell {c.shape[1]} terms apart", f"{len(c)}")
         W = np.linalg.pinv(c)
         terms: dict[str, dict[Quantity, Matrix]] = {name: {} for name in self.names}
         base: dict[Quantity, Matrix] = {}
@@ -155,16 +163,6 @@ class Differences:
             rank = _reduced(matrices[first], self.nominal.matrices[first], noise)[1]
             found.append(Term(name, matrices, _support(matrices[first]).size, rank))
         return Terms(self.parameters, Term(BASE, base), tuple(found), self.nominal.dofs)
-
-    def _refuse_undetermined(self, c: Floats) -> None:
-        for i, name in enumerate(self.parameters):
-            own = np.flatnonzero(self.coefficients.exponents[:, i] != 0)
-            if (rank := np.linalg.matrix_rank(c[:, own])) < own.size:
-                terms = ", ".join(self.names[k] for k in own)
-                expected = f"at least {own.size} runs with other values for the terms {terms}"
-                raise wrong(f"--parameter {name}", expected, f"{rank} that tell them apart")
-        if c.shape[1] == 0 or np.linalg.matrix_rank(c) < c.shape[1]:
-            raise wrong("--parameter", f"runs that tell {c.shape[1]} terms apart", f"{len(c)}")
 
     def check(self, terms: Terms, label: str, job: Job, values: Floats) -> float:
         """Return the error of the terms at another job, over the greatest entry of the matrices.

@@ -127,8 +127,9 @@ def _check_labels(path: Path, deck: Bulk, K: base.Matrix, dofs: DofTable, free: 
     moving = set(zip(dofs.node[free].tolist(), dofs.direction[free].tolist(), strict=True))
     held = {n for n in deck.mesh.number.tolist() if any((n, c) not in moving for c in (1, 2, 3))}
     held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)
+    joined = [*deck.links, *(tuple(nodes) for _, nodes in deck.elements.values())]
     for _ in range(2 if deck.followers else 1):  # followers join elements of their masters
-        held |= {n for link in deck.joined if held.intersection(link) for n in link}
+        held |= {n for link in joined if held.intersection(link) for n in link}
     strained = free & ~np.isin(dofs.node, list(held))
     for direction in (1, 2, 3):
         r = (free & (dofs.direction == direction)).astype(float)
@@ -224,11 +225,6 @@ class Bulk:
         """Nodes and elements."""
         elements = self.elements.values()
         return base.mesh_of(self.nodes, ((_ELEMENTS[name][2], nodes) for name, nodes in elements))
-
-    @property
-    def joined(self) -> list[tuple[int, ...]]:
-        """Nodes that an element, a spring or a constraint joins."""
-        return [*self.links, *(tuple(nodes) for _, nodes in self.elements.values())]
 
     def dofs(self, *, reduced: bool, singular: bool) -> list[Dof]:
         """Return nodes and components in the order of matrices: of the a-set, or of all nodes.
@@ -354,10 +350,6 @@ def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
         yield begins, card + EMPTY
 
 
-def _whole(text: str) -> int:
-    return int(text) if text else 0
-
-
 def _components(text: str) -> list[int]:
     return [int(c) for c in text if c in "0123456"]
 
@@ -392,16 +384,16 @@ def _take(content: Bulk, card: list[str], default: list[str]) -> None:
         content.scalar.update(_listed(card[1:]))
     elif name in _ELEMENTS:
         number, (first, most, cell, _) = int(card[1]), _ELEMENTS[name]
-        nodes = [n for n in map(_whole, card[first : first + most]) if n]
+        nodes = [n for n in (int(x or 0) for x in card[first : first + most]) if n]
         if number in content.elements:
             raise ValueError(f"element {number} again")
         if len(nodes) < base.CORNERS[cell] and name != "CBUSH":  # one end of it may be the ground
             raise ValueError(f"{len(nodes)} nodes of {base.CORNERS[cell]}")
         content.elements[number] = name, nodes
     elif name.startswith(("CELAS", "CDAMP")):
-        ends = [(_whole(card[k]), _whole(card[k + 1])) for k in (3, 5)]
+        ends = [(int(card[k] or 0), int(card[k + 1] or 0)) for k in (3, 5)]
         if name.endswith(("3", "4")):  # between scalar points
-            ends = [(_whole(card[k]), 0) for k in (3, 4)]
+            ends = [(int(card[k] or 0), 0) for k in (3, 4)]
             content.scalar.update(n for n, _ in ends if n)
         content.links.append(tuple(n for n, _ in ends if n))
         if not name.startswith("CDAMP"):
@@ -416,7 +408,7 @@ def _take(content: Bulk, card: list[str], default: list[str]) -> None:
     elif name == "MPC":
         terms = (*card[2::8], *card[5::8])  # two in a line of 8 fields: G, C, A, G, C, A
         content.links.append(tuple(int(x) for x in terms if x.isdigit()))
-        follower = int(card[2]), _whole(card[3])
+        follower = int(card[2]), int(card[3] or 0)
         content.sets.setdefault(("MPC", int(card[1])), set()).add(follower)
     elif name in ("ASET1", "OMIT1", "ASET", "OMIT"):
         target = content.kept if name.startswith("ASET") else content.omitted
@@ -428,12 +420,12 @@ def _grid(content: Bulk, card: list[str], default: list[str]) -> None:
     if number in content.nodes:
         raise ValueError(f"node {number} again")
     content.held.update((number, c) for c in _components(card[7] or default[7]))
-    if _whole(card[6] or default[6]):
+    if int(card[6] or default[6] or 0):
         content.turned.add(number)
     point = [fortran(x) if x else 0.0 for x in (card[3], card[4], card[5])]
     if not np.isfinite(point).all():
         raise ValueError(f"coordinates {', '.join(card[3:6])}")
-    system = _whole(card[2] or default[2])
+    system = int(card[2] or default[2] or 0)
     content.nodes[number] = np.array(point if system == 0 else [np.nan] * 3)
 
 

@@ -240,11 +240,8 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
     known = (text.lstrip("+-").upper() for x in entries.values() for *_, text in x[: 10**4])
     behind = (re.split("[DE+-]", text)[0].partition(".")[2] for text in known)
     precision = 10.0 ** -max(map(len, behind), default=15)
-    return {
-        name: (
-            np.array([label for label, *_ in rows], dtype=np.intp).reshape(-1, 4),
-            np.array([value for _, value, _ in rows]),
-            precision,
-        )
-        for name, rows in entries.items()
-    }
+    out = {}
+    for name, rows in entries.items():
+        labels = np.array([label for label, *_ in rows], dtype=np.intp).reshape(-1, 4)
+        out[name] = labels, np.array([value for _, value, _ in rows]), precision
+    return out

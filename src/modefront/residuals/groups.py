@@ -98,7 +98,11 @@ class Group:
 
     def positions(self, data: ModalData) -> list[tuple[ResidualKind, tuple[int, ...]]]:
         """Return the positions of the chosen modes in the data, for each kind of the group."""
-        return [(KINDS[name], _positions(name, modes, data)) for name, modes in self.chosen]
+        places, out = {mode: r for r, mode in enumerate(data.modes)}, []
+        for name, modes in self.chosen:
+            numbers = _measured_modes(name, data) if modes == "all" else modes
+            out.append((KINDS[name], tuple(places[int(mode)] for mode in numbers)))
+        return out
 
     def members(self, data: ModalData) -> list[Member]:
         """Return the members of the group.
@@ -150,9 +154,3 @@ def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str
 def _measured_modes(name: str, data: ModalData) -> list[int]:
     measured = KINDS[name].measured(data)
     return [mode for mode, known in zip(data.modes, measured, strict=True) if known]
-
-
-def _positions(name: str, modes: ModeNumbers, data: ModalData) -> tuple[int, ...]:
-    numbers = _measured_modes(name, data) if modes == "all" else modes
-    places = {mode: position for position, mode in enumerate(data.modes)}
-    return tuple(places[int(mode)] for mode in numbers)

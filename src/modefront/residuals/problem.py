@@ -312,12 +312,7 @@ def updating_problem(
     if reduction is not None:
         model = reduction.of(model, data, pairing or Pairing(), chosen)
     return UpdatingProblem(
-        model,
-        data,
-        tuple(groups),
-        pairing=pairing or Pairing(),
-        whole=whole,
-        **_limits(chosen),
+        model, data, tuple(groups), pairing=pairing or Pairing(), whole=whole, **_limits(chosen)
     )
 
 

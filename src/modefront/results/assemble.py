@@ -21,7 +21,7 @@ from modefront.optim.problem import at_bounds
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.findings import Determinations, as_values, findings
 from modefront.results.schema import FORMAT, Values, described
-from modefront.rounding import TINY
+from modefront.rounding import COMPUTED, TINY
 from modefront.uncertainty.inference import Inference
 from modefront.uncertainty.prediction import summary
 from modefront.uncertainty.prior import NoiseModel, prior_widths
@@ -29,9 +29,6 @@ from modefront.uncertainty.scatter import std
 
 ITERATED = "iterated-weights"
 """Name of the fixed point of the iteration of the weights, among the minima."""
-
-PART = 1e-9
-"""Component of a direction over the greatest that is rounding of its basis."""
 
 QUANTILES = (0.05, 0.5, 0.95)
 """Quantiles of the parameters: a 90 % interval and the median."""
@@ -87,6 +84,12 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     dominated = np.zeros(len(J), dtype=bool)
     if on.any():
         dominated[on] = ~nondominated(J[on], scale=front.scale)
+    # All evaluated models are known, minima, ends of branches and equivalent models too. An end
+    # that another branch dominates at the same level counts for the points next to it only.
+    others = [x.J for edge in front.edges for x in edge.minima] + [x.J for x in front.optimal]
+    others += [x.J for gap in front.gaps for x in gap.ends]
+    others += [x.J for _, found in analysis.manifolds for each in found for x in each.models]
+    known = np.vstack([J, front.known.reshape(-1, J.shape[1]), *others])
     # Weights times the ranges of J, with sum 1.
     weights = np.array([x.weights for x in solutions], dtype=float).reshape(J.shape)
     weights = weights * (1.0 if front.scale is None else front.scale)
@@ -95,7 +98,8 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     return {
         "label": [point.label for point in points],
         "kind": [point.kind.value for point in points],
-        "pareto": _pareto(front, analysis, J),
+        # Of a front that is a point, the ranges over models as good as each other are rounding.
+        "pareto": undominated(J, known, front.sizes if front.scale is None else front.scale),
         "dominated_among_front": dominated,
         "theta": theta,
         "objective": J,
@@ -138,9 +142,7 @@ def _branches(problem: UpdatingProblem, front: Front) -> Values:
     return {
         "piece": branch_numbers(J, nondominated(J), front.gaps),
         "end_label": [
-            f"{x}-{i}"
-            for i in range(1, len(front.gaps) + 1)
-            for x, i in (("end", i), ("start", i + 1))
+            x for k in range(len(front.gaps)) for x in (f"end-{k + 1}", f"start-{k + 2}")
         ],
         "end_theta": [x.theta if x else unknown[0] for x in ends],
         "end_objective": [x.J if x else unknown[1] for x in ends],
@@ -154,21 +156,6 @@ def lattice_values(front: Front) -> Values:
         return {}
     labels = ["" if k < 0 else front.points[k].label for k in front.places]
     return {"lattice": front.lattice, "lattice_label": labels}
-
-
-def _pareto(front: Front, analysis: FrontAnalysis, J: Floats) -> Bools:
-    """Return which points (points, n) no known model dominates.
-
-    All evaluated models are known, minima, ends of branches and equivalent models too. An end that
-    another branch dominates at the same level counts for the points next to it only.
-    """
-    minima = [x.J for edge in front.edges for x in edge.minima]
-    minima += [x.J for gap in front.gaps for x in gap.ends]
-    minima += [x.J for x in front.optimal]
-    equal = [x.J for _, manifolds in analysis.manifolds for each in manifolds for x in each.models]
-    known = np.vstack([J, front.known.reshape(-1, J.shape[1]), *minima, *equal])
-    # Of a front that is a point, the ranges over models as good as each other are rounding.
-    return undominated(J, known, front.sizes if front.scale is None else front.scale)
 
 
 def _weights(front: Front, J: Floats, a: Floats) -> Floats:
@@ -251,8 +238,7 @@ def _std(covariance: Floats, free: Floats) -> Floats:
 
 def left_open(free: Floats) -> Bools:
     """Return the parameters that have a part in directions (p, d)."""
-    out: Bools = (np.abs(free) > PART * np.abs(free).max(initial=TINY)).any(axis=1)
-    return out
+    return (np.abs(free) > COMPUTED * np.abs(free).max(initial=TINY)).any(axis=1)
 
 
 def _posterior(front: Front, analysis: FrontAnalysis) -> Values:
@@ -276,12 +262,11 @@ def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis)
     p, n = len(problem.model.parameters), len(problem.objectives)
     solutions = [[each.get(x.label) for x in front.points] for each in analysis.replicates]
     nothing = np.full(p + n, np.nan)
-    both = np.array(
-        [
-            [np.concatenate([x.theta, x.J]) if x and x.converged else nothing for x in row]
-            for row in solutions
-        ]
+    rows = (
+        [np.concatenate([x.theta, x.J]) if x and x.converged else nothing for x in row]
+        for row in solutions
     )
+    both = np.array(list(rows))
     deviation = summary(both.reshape(len(both), -1))[1].reshape(-1, p + n)
     theta, J = both[..., :p], both[..., p:]
     return {

@@ -171,9 +171,7 @@ def short_names(folders: Sequence[str]) -> list[str]:
     return short if len(set(short)) == len(short) else list(folders)
 
 
-def read_together(
-    folders: Path | str | Sequence[Path | str],
-) -> list[tuple[str, Dataset]]:
+def read_together(folders: Path | str | Sequence[Path | str]) -> list[tuple[str, Dataset]]:
     """Return the results in a folder or several, each with the name of its folder.
 
     Raises InputError where there are none, or where their groups are not the same.

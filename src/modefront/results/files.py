@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -86,7 +85,10 @@ def written_for(path: Path) -> str | None:
 def checksums(data: Dataset) -> dict[str, str]:
     """Return the checksums of variables and attributes by their places, BLAKE2b in hexadecimal."""
     of = {
-        f"variable '{name}'": _text(*x.dims) + _values(x.values) + _attributes(x.attrs)
+        f"variable '{name}'": _text(*x.dims)
+        + _values(x.values)
+        # In the order of their names; files do not tell one value from a list.
+        + b"".join(_text(key) + _values(np.atleast_1d(x.attrs[key])) for key in sorted(x.attrs))
         for name, x in data.variables.items()
     }
     of |= {
@@ -95,13 +97,6 @@ def checksums(data: Dataset) -> dict[str, str]:
         if name != CHECKSUM
     }
     return {place: hashlib.blake2b(x, digest_size=8).hexdigest() for place, x in of.items()}
-
-
-def _attributes(attributes: Mapping[Any, Any]) -> bytes:
-    """Return attributes in the order of their names; files do not tell one value from a list."""
-    return b"".join(
-        _text(name) + _values(np.atleast_1d(attributes[name])) for name in sorted(attributes)
-    )
 
 
 def _values(values: np.ndarray[Any, Any]) -> bytes:

@@ -11,13 +11,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.analysis.front import FrontAnalysis, followed
 from modefront.analysis.manifold import Extent, Manifold
-from modefront.findings.knowledge import (
-    PARTS,
-    alike,
-    enumeration,
-    no_effect,
-    summaries,
-)
+from modefront.findings.knowledge import PARTS, alike, enumeration, no_effect, summaries
 from modefront.findings.record import Finding, as_text, found, in_order
 from modefront.front.front import Front
 from modefront.front.point import INTERNAL, Kind, label, of_kind
@@ -38,25 +32,16 @@ VARIED = 1e-3
 
 
 def findings(
-    problem: UpdatingProblem,
-    front: Front,
-    analysis: FrontAnalysis,
-    determined: Determinations,
+    problem: UpdatingProblem, front: Front, analysis: FrontAnalysis, determined: Determinations
 ) -> list[Finding]:
     """Return the findings; ``front`` holds all points, those of ``analysis`` too."""
     (label_of_reference, reference), names = determined[0], problem.model.parameters
     where = f"at {label_of_reference}: "
-    return in_order(
-        [
-            *_search(problem, front),
-            *no_effect(reference.idle, names, where),
-            *summaries(problem, reference, where),
-            *alike(reference.effects, names, reference.idle, where),
-            *_flat(problem, front, analysis),
-            *_manifolds(problem, analysis),
-            *_scatter(problem, front, analysis),
-        ]
-    )
+    out = [*_search(problem, front), *no_effect(reference.idle, names, where)]
+    out += summaries(problem, reference, where)
+    out += alike(reference.effects, names, reference.idle, where)
+    out += [*_flat(problem, front, analysis), *_manifolds(problem, analysis)]
+    return in_order([*out, *_scatter(problem, front, analysis)])
 
 
 def as_values(findings: Sequence[Finding]) -> Values:

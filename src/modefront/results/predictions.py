@@ -95,12 +95,11 @@ class PredictionRunner:
             marks = (hash_text(f"{theta.tolist()}")[:8] for theta in thetas)
             parts = [(name, i, mark) for i, mark in enumerate(marks, start=1)]
         file = str(self.file) if labels else ""
-        return self.work.run(
-            [
-                self._task(prediction, part, _predicted, (theta, method, file, part[-1]))
-                for part, theta in zip(parts, thetas, strict=True)
-            ]
-        )
+        tasks = [
+            self._task(prediction, part, _predicted, (theta, method, file, part[-1]))
+            for part, theta in zip(parts, thetas, strict=True)
+        ]
+        return self.work.run(tasks)
 
     def extremes(self, prediction: Prediction, front: Sampled, values: Arrays) -> dict[str, Floats]:
         """Return least and greatest values over a front, and over all models that are equivalent.

@@ -45,8 +45,7 @@ def verdict(data: Dataset) -> list[str]:
 def not_converged(data: Dataset) -> Bools:
     """Return which points should have converged and did not."""
     solved = ~np.isin(data["status"].values, ["sampled", "jump"])
-    out: Bools = ~data["converged"].values & solved
-    return out
+    return ~data["converged"].values & solved
 
 
 def uncertified(data: Dataset) -> Bools:
@@ -285,17 +284,11 @@ def _ranges(data: Dataset) -> Iterator[Finding]:
         rest = len(order) - len(first)
         less = f" ({rest} parameter{'s' * (rest > 1)} more var{'y' if rest > 1 else 'ies'} less)"
         yield found("ranges", said + less * (rest > 0), models=int(best.size))
-    widest = sorted(
-        (
-            (-x.extent[2], f"{x.variable.key} of {x.label} {_times(x.extent[2])}")
-            for each in predictions_in(data)
-            for x in each.quantities
-            if np.isfinite(x.extent[2]) and x.extent[2] > WIDE
-        ),
-        key=lambda each: each[0],
-    )
-    if widest:
-        yield found("spread", "; ".join(text for _, text in widest[:3]))
+    every = (x for each in predictions_in(data) for x in each.quantities)
+    wide = (x for x in every if np.isfinite(x.extent[2]) and x.extent[2] > WIDE)
+    if widest := sorted(wide, key=lambda x: -x.extent[2])[:3]:
+        texts = (f"{x.variable.key} of {x.label} {_times(x.extent[2])}" for x in widest)
+        yield found("spread", "; ".join(texts))
 
 
 def _times(ratio: float) -> str:

@@ -82,17 +82,9 @@ def paired_shapes(row: Dataset, problem: UpdatingProblem) -> PairedShapes:
     product = np.nansum(data.shape * computed, axis=2)
     square = np.nansum(data.shape**2, axis=2)
     factor = np.divide(product, square, out=np.zeros(square.shape), where=square > 0)
-    return PairedShapes(
-        data.modes,
-        row["frequency"].values,
-        data.mean_frequency,
-        row["mac"].values,
-        displacement,
-        computed,
-        data.shape * factor[:, :, None],
-        data.sensors,
-        geometry_of(problem.model),
-    )
+    measured, geometry = data.shape * factor[:, :, None], geometry_of(problem.model)
+    known = data.modes, row["frequency"].values, data.mean_frequency, row["mac"].values
+    return PairedShapes(*known, displacement, computed, measured, data.sensors, geometry)
 
 
 def _scaled(

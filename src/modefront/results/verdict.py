@@ -191,10 +191,7 @@ def _next(data: Dataset, spare: Sequence[str]) -> Iterator[str]:
     name, gain = data["parameter"].values[j], data["candidate_gain"].values[:, j]
     c = int(np.argmax(gain)) if gain.size else -1
     if c >= 0 and gain[c] >= GAIN:
-        sensor, frequency = (
-            data["candidate_sensor"].values[c],
-            data["candidate_frequency"].values[c],
-        )
+        sensor, frequency = (data[f"candidate_{x}"].values[c] for x in ("sensor", "frequency"))
         what = f"at sensor {sensor}" if sensor else f"the mode near {frequency:.3g} Hz"
         yield _say("measure", what=what, name=name, gain=100 * gain[c])
     names = data["parameter"].values.tolist()

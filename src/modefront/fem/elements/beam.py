@@ -33,6 +33,7 @@ from modefront._typing import Floats
 from modefront.errors import wrong
 from modefront.fem.elements.common import ElementMatrices, attachment, congruence, symmetric
 from modefront.fem.section import Material, Section
+from modefront.rounding import COMPUTED
 
 U, V, W, TWIST, PSI_Y, PSI_Z = range(6)
 """Directions of an end in local axes, of which the last two are rotations about y and z."""
@@ -119,16 +120,12 @@ def release(K: Floats, directions: Sequence[int]) -> Floats:
     r = list(directions)
     K_rr = K[:, r][:, :, r]
     size = np.sqrt(np.diagonal(K_rr, axis1=1, axis2=2))
-    if np.linalg.eigvalsh(K_rr / size[:, :, None] / size[:, None]).min() < LOOSE:
+    if np.linalg.eigvalsh(K_rr / size[:, :, None] / size[:, None]).min() < COMPUTED:
         raise wrong("releases", "those that leave the beam no free motion", "one")
     G = np.tile(np.eye(12), (len(K), 1, 1))
     G[:, r] = -np.linalg.solve(K_rr, K[:, r])
     G[:, :, r] = 0
     return G
-
-
-LOOSE = 1e-9
-"""Eigenvalue of the stiffness of released directions, over those of each, that is rounding."""
 
 
 def beam(

@@ -134,7 +134,8 @@ def shell(
             shell(X[some], d[some], narrow[some], m[some], material, thickness, offset, varied)
             for some in (slice(k, k + AT_ONCE) for k in range(0, len(X), AT_ONCE))
         ]
-        K, M = (_joined([getattr(x, y) for x in pieces]) for y in ("stiffness", "mass"))
+        named = [[x.stiffness for x in pieces], [x.mass for x in pieces]]
+        K, M = ({k: np.concatenate([x[k] for x in each]) for k in each[0]} for each in named)
         return common.ElementMatrices(K, M)
     t, r = thickness, offset * d
     x = X + r
@@ -177,10 +178,6 @@ def shell(
     (K1, K2, K3), (more, K4, K5) = _by_order(K_1, n), _by_order(K_3, n)
     K = {1: t * stretched + K1, 2: K2, 3: K3 + more, 4: K4, 5: K5}
     return common.ElementMatrices(K, {1: M_1, 3: M_3})
-
-
-def _joined(parts: Sequence[common.ByPower]) -> common.ByPower:
-    return {power: np.concatenate([each[power] for each in parts]) for power in parts[0]}
 
 
 def _by_order(K: Floats, n: int) -> tuple[Floats, Floats, Floats]:

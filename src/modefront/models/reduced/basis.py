@@ -31,7 +31,6 @@ from modefront.linalg.products import combine, combine_all, gram, times
 from modefront.models.matrices import MatrixModel
 from modefront.modes import dense
 from modefront.modes.dense import Decomposition, decompose
-from modefront.modes.derivatives import Shifted
 from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 
@@ -101,10 +100,13 @@ def extended(basis: Basis, vectors: Floats, shortest: float, capacity: int) -> B
             return basis
         W = combine(W, U[:, kept] / np.sqrt(squares[kept]))
     blocks = *basis.blocks, W
-    K, M = (
-        _bordered(reduced, full.project(blocks, W))
-        for full, reduced in ((pencil.K, basis.K), (pencil.M, basis.M))
-    )
+    n, matrices = basis.columns, []
+    for full, known in ((pencil.K, basis.K), (pencil.M, basis.M)):
+        new = full.project(blocks, W)  # columns, (terms, rows, m), the last of which are new rows
+        across, inner = new[:, :n], (new[:, n:] + new[:, n:].transpose(0, 2, 1)) / 2
+        terms = np.block([[known.terms, across], [across.transpose(0, 2, 1), inner]])
+        matrices.append(DenseAffine(terms, known.coefficients))
+    K, M = matrices
     return replace(basis, blocks=blocks, K=K, M=M)
 
 
@@ -114,14 +116,6 @@ def residuals(pencil: Pencil, thetas: Floats, lam: Floats, X: Floats) -> Floats:
     out *= -lam
     out += pencil.K.each(thetas, X)
     return out
-
-
-def _bordered(reduced: DenseAffine, new: Floats) -> DenseAffine:
-    """Return projected terms with new columns (terms, rows, m), the last of which are new rows."""
-    across, inner = new[:, : reduced.size], new[:, reduced.size :]
-    inner = (inner + inner.transpose(0, 2, 1)) / 2
-    terms = np.block([[reduced.terms, across], [across.transpose(0, 2, 1), inner]])
-    return DenseAffine(terms, reduced.coefficients)
 
 
 STEPS = 30
@@ -381,7 +375,7 @@ class Certifier:
         rho, X = ritz.lam[:m], basis.combine(ritz.Phi[:, :m])
         K, M = pencil.K.at(theta), pencil.M.at(theta)
         R = times(K, X) - times(M, X) * rho
-        Z = above.factor.solve(R)
+        Z = above.solve(R)
         room = above.sigma - rho  # the diagonal of S
         E, unit = gram(R, Z), np.sqrt(np.outer(room, room))
         values, U = np.linalg.eigh((E + E.T) / 2 / unit)
@@ -408,7 +402,9 @@ class Certifier:
         return Certificate(relative, np.minimum(shape, 1.0), ell, phi)
 
 
-def level(pencil: Pencil, theta: Floats, lam: Floats, count: int, shift: float) -> Shifted | None:
+def level(
+    pencil: Pencil, theta: Floats, lam: Floats, count: int, shift: float
+) -> Factorisation | None:
     """Return a level above the lowest ``count`` Ritz values below which no mode is missing.
 
     With it comes the factor that proves it. It is in the first wide gap of the Ritz values
@@ -426,4 +422,4 @@ def level(pencil: Pencil, theta: Floats, lam: Floats, count: int, shift: float) 
         factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
     except SingularMatrixError:
         return None
-    return Shifted(sigma, factor) if factor.negative == k else None
+    return factor if factor.negative == k else None

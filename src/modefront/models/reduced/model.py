@@ -318,8 +318,12 @@ class ReducedModel:
             except ModelError:
                 failed += 1
                 continue
-            error = max(error, _lacked(basis, larger, theta, what.modes))
-            basis = larger
+            lam, lacked = larger.lowest(theta, what.modes).lam[: what.modes], np.inf
+            with suppress(ModelError):
+                before = basis.lowest(theta, what.modes).lam[: what.modes]
+                if before.size == lam.size:
+                    lacked = float(((before - lam) / (lam - larger.sigma)).max())
+            basis, error = larger, max(error, lacked)
         if models and failed == len(what.models):
             raise ModelError("none of the models of a snapshot has modes")
         return basis, error
@@ -387,12 +391,12 @@ class ReducedModel:
         vectors = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
         del spectrum  # the other factor
         vectors = vectors[:, : self.capacity]  # of directions of equal length, the lowest ones
-        basis = known or bases.empty(pencil, below.factor, theta, below.sigma)
+        basis = known or bases.empty(pencil, below, theta, below.sigma)
         basis = bases.extended(basis, vectors, self._shortest, self.capacity)
         solved = time.perf_counter()
         spend(Costs(eigenproblems=1, full_time=solved - started))
         # Of its derivatives the model's own factor knows more.
-        own = self._with_derivatives(replace(basis, factor=below.factor), theta, modes)
+        own = self._with_derivatives(replace(basis, factor=below), theta, modes)
         basis = replace(own, factor=basis.factor)
         if known is None:
             basis = self._at_bounds(basis, theta)
@@ -460,13 +464,3 @@ def _condition(basis: bases.Basis, theta: Floats) -> float:
     """Return the condition of K - sigma M over A in the basis; infinite where it is indefinite."""
     values = np.linalg.eigvalsh(basis.K.at(theta) - basis.sigma * basis.M.at(theta))
     return float(values[-1] / values[0]) if values[0] > 0 else np.inf
-
-
-def _lacked(basis: bases.Basis, larger: bases.Basis, theta: Floats, count: int) -> float:
-    """Return the relative error of ``count`` eigenvalues of a basis, by a larger one."""
-    lam = larger.lowest(theta, count).lam[:count]
-    with suppress(ModelError):
-        before = basis.lowest(theta, count).lam[:count]
-        if before.size == lam.size:
-            return float(((before - lam) / (lam - larger.sigma)).max())
-    return np.inf
