@@ -117,7 +117,8 @@ def solid_sizes(X: Floats) -> Floats:
     extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)
     extent = np.where(extent > 0, extent, 1)
     kind = SOLIDS[X.shape[1]]
-    points = np.vstack([kind.cell.nodes[: kind.corners], kind.stiffness[0]])
+    corners = kind.cell.nodes[: 1 + max(map(max, kind.faces))]
+    points = np.vstack([corners, kind.stiffness[0]])
     return np.asarray(np.linalg.det(jacobian(X, kind.cell.shape(points)[1])).min(1) / extent**3)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from itertools import compress
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -23,7 +24,6 @@ from modefront.models.geometry import Geometry
 from modefront.models.parameters import (
     BASE,
     Parameter,
-    above_zero,
     exponents_of,
     form_of,
     term_exponents,
@@ -109,9 +109,8 @@ class MatrixModel:
     @property
     def above_zero(self) -> tuple[str, ...]:
         """Names of parameters that have to be above 0: there are roots or quotients of them."""
-        tables = self.stiffness.coefficients, self.mass.coefficients
-        indices = {i for table in tables for i in above_zero(table.exponents)}
-        return tuple(self.parameters[i] for i in sorted(indices))
+        e = np.vstack([A.coefficients.exponents for A in (self.stiffness, self.mass)])
+        return tuple(compress(self.parameters, ((e < 0) | (e % 1 != 0)).any(axis=0)))
 
     @property
     def unused(self) -> tuple[str, ...]:

@@ -57,11 +57,10 @@ def mesh_model(
         if name not in parameters:
             expected = f"the structure's {', '.join(built.parameters)}"
             raise wrong("parameters", expected, f"no {name}")
-    own = np.array([[x == name for x in parameters] for name in built.parameters], dtype=float)
+    own = [[float(x == name) for x in parameters] for name in built.parameters]
+    of = np.array(own).reshape(len(own), len(parameters))
     K, M = (
-        replace(
-            A, coefficients=Monomials(A.coefficients.exponents @ own.reshape(-1, len(parameters)))
-        )
+        replace(A, coefficients=Monomials(A.coefficients.exponents @ of))
         for A in (built.stiffness, built.mass)
     )
     direction, X = built.dofs.free[:, 1], check_points(structure.nodes)

@@ -153,9 +153,3 @@ def term_exponents(terms: Sequence[str], parameters: Sequence[str]) -> Floats:
     """Return the exponents (terms, parameters) of terms that are all of the right form."""
     rows = [exponents_of(term, parameters) for term in terms]
     return np.array(rows, dtype=float).reshape(len(terms), len(parameters))
-
-
-def above_zero(exponents: Floats) -> list[int]:
-    """Return the parameters that have to be above 0 where there are roots or quotients of them."""
-    away = (exponents < 0) | (exponents % 1 != 0)
-    return np.flatnonzero(away.any(axis=0)).tolist()

@@ -135,10 +135,8 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
             dense.refuse_fewer(known, count)
         if lam[0] < 1e-2 * below.sigma:
             raise ModelError("the stiffness matrix is indefinite")
-        if (
-            known >= count
-            and (gap := _gap(lam, known, count, -below.sigma, ritz.complete)) is not None
-        ):
+        gap = _gap(lam, known, count, -below.sigma, ritz.complete) if known >= count else None
+        if gap is not None:
             lower, sigma = gap
             above = pencil.factor(K.data, M.data, sigma)
             if above.negative == lower:
@@ -169,10 +167,8 @@ def _finite(
     All have one where M is positive definite; else those below a shift are counted (Sylvester).
     """
     with suppress(SingularMatrixError):
-        if (
-            M.diagonal().min() > 0
-            and pencil.factor(np.zeros_like(K.data), M.data, -1.0).negative == 0
-        ):
+        zeros, positive = np.zeros_like(K.data), M.diagonal().min() > 0
+        if positive and pencil.factor(zeros, M.data, -1.0).negative == 0:
             return pencil.size
     try:
         factor = pencil.factor(K.data, M.data, BEYOND * float(lam[-1]))

@@ -308,10 +308,9 @@ class PeakResponse:
         out = replace(self, band=(low, top), modes=self.loads.complete_modes(problem, top))
         omega, faults = out.loads.nominal(problem).omega, []
         last, count = float(omega[-1]) / (2 * math.pi), omega.size
-        if (
-            last < top
-            and (more := modal.modes_reaching(problem.model, problem.start, top, count)) > count
-        ):
+        reached = problem.model, problem.start, top, count
+        more = modal.modes_reaching(*reached) if last < top else count
+        if more > count:
             expected = f"modes that reach the end of the band, {top:g} Hz: {more}"
             faults.append(Fault("", "modes", expected, f"{count}, up to {last:.4g} Hz"))
         if omega[0] == 0 and self.static:

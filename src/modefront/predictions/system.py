@@ -35,7 +35,7 @@ from modefront import options
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, ModelError, suggestion, wrong
-from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
+from modefront.models.base import LoadCase, Model, NamedWeights
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 
@@ -232,28 +232,26 @@ class ModalLoadModel:
         if self.damping == MEASURED:
             count = max(count, modes_needed(problem.pairing, problem.data, problem.model.size))
         transfer = problem.model.transfer(theta, count, self.load_case)
+        count = transfer.modes.lam.size
+        if self.damping != MEASURED:
+            zeta = np.broadcast_to(np.asarray(self.damping, dtype=float), count)
+        else:
+            measured = problem.data.mean_damping
+            is_known = np.isfinite(measured)
+            zeta = np.full(count, measured[is_known].mean())
+            # The same candidates as in updating, or other modes might be paired.
+            n = modes_needed(problem.pairing, problem.data, problem.model.size)
+            frequency, phi = transfer.modes.frequency[:n], transfer.modes.phi[:, :n]
+            pairs = match(problem.pairing, problem.data, frequency, phi)
+            zeta[pairs.index[is_known]] = measured[is_known]
         return ModalSystem(
             omega=np.sqrt(transfer.modes.lam[:m]),
-            zeta=self._damping(problem, transfer)[:m],
+            zeta=zeta[:m],
             input=transfer.input[:m],
             output=transfer.output[:, :m],
             static=transfer.static if self.static else None,
             rigid=transfer.rigid,
         )
-
-    def _damping(self, problem: UpdatingProblem, transfer: Transfer) -> Floats:
-        count = transfer.modes.lam.size
-        if self.damping != MEASURED:
-            return np.broadcast_to(np.asarray(self.damping, dtype=float), count)
-        measured = problem.data.mean_damping
-        is_known = np.isfinite(measured)
-        zeta = np.full(count, measured[is_known].mean())
-        # The same candidates as in updating, or other modes might be paired.
-        n = modes_needed(problem.pairing, problem.data, problem.model.size)
-        frequency, phi = transfer.modes.frequency[:n], transfer.modes.phi[:, :n]
-        pairs = match(problem.pairing, problem.data, frequency, phi)
-        zeta[pairs.index[is_known]] = measured[is_known]
-        return zeta
 
     def contradictions(self) -> Iterator[Fault]:
         """Yield options that contradict one another."""

@@ -156,15 +156,10 @@ def _from_dmig(path: Path, options: base.JobOptions) -> base.Listed:
         return base.entries_of(row, column, value, keys.size)
 
     deck = _deck(path, options, notes := list[str]())
-    return base.Listed(
-        (path, path),
-        (numbered(*K), numbered(*M)),
-        DofTable(table[:, 0], table[:, 1], np.ones(len(table))),
-        K[2],
-        counted=False,
-        mesh=_drawn(deck, notes) if deck else None,
-        notes=notes,
-    )
+    dofs = DofTable(table[:, 0], table[:, 1], np.ones(len(table)))
+    mesh = _drawn(deck, notes) if deck else None
+    known = (path, path), (numbered(*K), numbered(*M)), dofs, K[2]
+    return base.Listed(*known, counted=False, mesh=mesh, notes=notes)
 
 
 # Bulk data

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain, compress
 from pathlib import Path
 from typing import Any, Literal, TypeVar
@@ -196,22 +197,18 @@ def _ends(
             return own
         return np.log(own, out=np.full(own.shape, np.nan), where=own > 0)
 
+    def at(theta: Floats, variable: ResultVariable, place: int) -> float:
+        key = theta.tobytes()
+        if key not in known:
+            known[key] = _predicted(problem, prediction, numbers, theta).values
+        return float(scaled(known[key], variable, place))
+
     for variable, place, sign in ends:
-
-        def at(theta: Floats, variable: ResultVariable = variable, place: int = place) -> float:
-            key = theta.tobytes()
-            if key not in known:
-                known[key] = _predicted(problem, prediction, numbers, theta).values
-            return float(scaled(known[key], variable, place))
-
-        step = ROUGH if variable.logarithmic else STEP
-        found = extreme(problem, front, scaled(values, variable, place), at, sign, step)
+        step, own = ROUGH if variable.logarithmic else STEP, scaled(values, variable, place)
+        value = partial(at, variable=variable, place=place)
+        found = extreme(problem, front, own, value, sign, step)
         out.append(float(np.exp(found)) if variable.logarithmic else found)
     return np.array(out)
-
-
-RANGE = ("minimum", "maximum", "spread")
-"""Over the Pareto-optimal models and all that are equivalent; the spread is greatest over least."""
 
 
 def _by_kind(
@@ -280,7 +277,7 @@ def with_predictions(
 def _at_points(data: ArrayDataset, runner: PredictionRunner, slack: float) -> ArrayDataset:
     optimal = data["pareto"].values
     values: Values = {"frequency_range": _range(data["frequency"].values, optimal)}
-    coordinates = {"range": list(RANGE)}
+    coordinates = {"range": ["minimum", "maximum", "spread"]}
     labels, thetas = list(map(str, data["label"].values)), data["theta"].values
     reference = [preferred(data.attrs)]
     theta, J = (data[name].values[optimal] for name in ("theta", "objective"))

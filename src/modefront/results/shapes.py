@@ -36,8 +36,6 @@ from modefront.text import Shown
 TOLERANCE = 1e-3
 """Error of a shape in the basis, over its length, at most."""
 
-AXES = ("x", "y", "z")
-
 
 @dataclass(frozen=True, repr=False)
 class PairedShapes(Shown):
@@ -265,7 +263,7 @@ def with_mode_shapes(
         **shapes,
     }
     coordinates: dict[str, object] = {"set": list(measured.sets), "sensor": list(measured.sensors)}
-    geometry = geometry_of(problem.model)
+    geometry, attributes = geometry_of(problem.model), {}
     if geometry is not None and "shape_basis" in shapes:
         nodes, lines, faces = drawing(geometry)
         values |= {
@@ -276,9 +274,8 @@ def with_mode_shapes(
             "sensor_direction": geometry.sensor_directions,
             "shape_basis": shapes["shape_basis"].astype(np.float32),
         }
-        coordinates["axis"] = list(AXES)
+        coordinates["axis"] = list("xyz")
+        groups = [cells.group for cells in geometry.cells]
+        attributes["geometry"] = "chain" if groups == ["chain"] else "mesh"
     out = data.assign(described(values)).assign_coords(coordinates)
-    if geometry is None or "node" not in values:
-        return out
-    groups = [cells.group for cells in geometry.cells]
-    return out.assign_attrs({"geometry": "chain" if groups == ["chain"] else "mesh"})
+    return out.assign_attrs(attributes)

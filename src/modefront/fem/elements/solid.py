@@ -35,11 +35,6 @@ class Solid:
     stiffness: shapes.Rule
     mass: shapes.Rule
 
-    @property
-    def corners(self) -> int:
-        """Number of corners."""
-        return 1 + max(max(face) for face in self.faces)
-
 
 SOLIDS = {
     8: Solid(shapes.CUBE_8, FACES["hexahedron"], shapes.gauss_box(2, 3), shapes.gauss_box(3, 3)),
