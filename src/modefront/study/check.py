@@ -25,15 +25,7 @@ from modefront.diagnosis.comparison import COMPARED, Comparison, compare
 from modefront.diagnosis.search import diagnose
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
 from modefront.errors import Fault, ModelError, refuse
-from modefront.findings.knowledge import (
-    SHOWN,
-    alike,
-    bound,
-    enumeration,
-    in_words,
-    no_effect,
-    summaries,
-)
+from modefront.findings import knowledge
 from modefront.findings.record import Finding, found
 from modefront.identifiability.combinations import NONE, WEAK, determination, unchanged_groups
 from modefront.inputs import available_memory
@@ -97,9 +89,9 @@ class Findings(Shown):
         """Return the first warnings, one a line."""
         warnings = self.warnings
         agree, count = "agree with" if self.sound else "DIFFER FROM", len(warnings)
-        more = [f"and {count - SHOWN} more: see warnings"] * (count > SHOWN)
+        more = [f"and {count - knowledge.SHOWN} more: see warnings"] * (count > knowledge.SHOWN)
         first = f"Findings: derivatives {agree} finite differences; {count or 'no'} warnings"
-        return "\n".join([first, *warnings[:SHOWN], *more])
+        return "\n".join([first, *warnings[: knowledge.SHOWN], *more])
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -171,7 +163,7 @@ def excluding_bounds(study: Study) -> tuple[Finding, ...]:
         return ()
     sides = at_bounds(best.theta, problem.lower, problem.upper)
     of = problem.model.parameters, problem.objectives
-    wrong = bound(*of, sides, best.theta, noise.over_expected(best.J[:-1]), free)
+    wrong = knowledge.bound(*of, sides, best.theta, noise.over_expected(best.J[:-1]), free)
     return () if wrong is None else (wrong,)
 
 
@@ -242,21 +234,21 @@ def determined(
     Beside these are the parameters without effect, what all data leave open, and those alike.
     """
     names, of = problem.model.parameters, determination(problem, nominal)
-    left_open = no_effect(of.idle, names)
+    left_open = knowledge.no_effect(of.idle, names)
     degrees: dict[str, list[str]] = {"do not determine": [], "hardly determine": []}
     for each in of.combinations[-1][1]:
         if each.share < WEAK and np.linalg.norm(each.direction[of.idle]) <= np.sqrt(0.5):
             degree = "do not determine" if each.share <= NONE else "hardly determine"
-            degrees[degree].append(in_words(each, names))
+            degrees[degree].append(knowledge.in_words(each, names))
     for degree, texts in degrees.items():
-        if len(texts) > SHOWN:
+        if len(texts) > knowledge.SHOWN:
             several, every = len(texts), len(names) - len(of.idle)
             many = found("undetermined-many", degree=degree, several=several, every=every)
             left_open.append(many)
         else:
             left_open += [found("undetermined", text, degree=degree) for text in texts]
-    known = list(summaries(problem, of))
-    return known, [*left_open, *alike(of.effects, names, of.idle)]
+    known = list(knowledge.summaries(problem, of))
+    return known, [*left_open, *knowledge.alike(of.effects, names, of.idle)]
 
 
 @dataclass(frozen=True)
@@ -330,7 +322,7 @@ def _slopes(
 def cause_of(problem: UpdatingProblem, agreement: Agreement) -> Finding:
     """Return which parameter and mode derivatives are wrong for, and the likely cause."""
     names = [problem.model.parameters[j] for j in np.flatnonzero(agreement.step)]
-    of, theta, step = enumeration(names, SHOWN), agreement.theta, agreement.step
+    of, theta, step = knowledge.enumeration(names, knowledge.SHOWN), agreement.theta, agreement.step
     for point in (theta, theta + step, theta - step):
         try:
             problem.modes(point, derivatives=False)
