@@ -45,6 +45,7 @@ AGREEMENT = 1e-5  # greatest relative error of derivatives that finite differenc
 STEP = 2e-3  # change of a residual in its own unit, root mean square, by a finite difference
 SHARE = 0.02  # share of a parameter, or of its range where it is zero, that a step takes at most
 MOST = 60  # directions in which derivatives are compared, at most
+MANY = 100  # parameters from which on a run is said to take long
 KEPT = 500  # models that a search keeps with their second derivatives, some
 
 HARMLESS = {
@@ -184,7 +185,7 @@ def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[Finding
         yield found("elements", text)
     if len(problem.data.sets) > COMPARED:
         yield found("many-sets", str(len(problem.data.sets)), searched=COMPARED)
-    if len(names) > 100:  # a run takes long
+    if len(names) > MANY:
         yield found("many-parameters", str(len(names)), size=memory_of(problem) / 1e9)
 
 
