@@ -12,7 +12,9 @@ import { movingShape } from "./views/moving";
 type Row = (number | null)[];
 
 interface Mode {
-  number: number;
+  /** That of the table without choices by hand; none where a seed alone has the mode. */
+  number: number | null;
+  seed: number | null;
   frequency: number;
   frequencyStd: number;
   damping: number;
@@ -68,6 +70,15 @@ class Choice {
   toggle(of: Set<number>, value: number): void {
     if (!of.delete(value)) of.add(value);
     for (const call of this.changed) call();
+  }
+
+  isOut(mode: Mode): boolean {
+    return mode.number === null ? !this.seed.has(mode.seed!) : this.drop.has(mode.number);
+  }
+
+  leave(mode: Mode): void {
+    if (mode.number === null) this.toggle(this.seed, mode.seed!);
+    else this.toggle(this.drop, mode.number);
   }
 
   lines(): string {
@@ -128,6 +139,8 @@ function chart(
 }
 
 const decibel = (values: Row): Row => values.map((x) => (x === null ? null : x / 100));
+/** Returns the number of a mode, or the seed that it is at. */
+export const named = (mode: Mode): string => (mode.number === null ? `at ${mode.seed} Hz` : String(mode.number));
 const tint = (k: number): string => `var(--series-${(k % 6) + 1})`;
 
 function diagramView(set: DataSet, chosen: Choice, tip: Tip): HTMLElement {
@@ -152,7 +165,7 @@ function diagramView(set: DataSet, chosen: Choice, tip: Tip): HTMLElement {
       const rounded = Number(f.toPrecision(5));
       const near = set.modes.find((mode) => Math.abs(mode.frequency - f) < Math.max(reach, mode.damping) * f);
       dot.addEventListener("click", () =>
-        near ? chosen.toggle(chosen.drop, near.number) : chosen.toggle(chosen.seed, rounded),
+        near ? chosen.leave(near) : chosen.toggle(chosen.seed, rounded),
       );
       dot.addEventListener("mousemove", (event) =>
         tip(`${number(f, 5)} Hz, damping ${fixed(100 * set.poles.damping[k], 2)} %\norder ${set.poles.order[k]}`, event),
@@ -162,14 +175,14 @@ function diagramView(set: DataSet, chosen: Choice, tip: Tip): HTMLElement {
     });
     for (const mode of set.modes) {
       const x = across(mode.frequency);
-      const gone = chosen.drop.has(mode.number);
+      const gone = chosen.isOut(mode);
       const mark = s(
         "g",
-        { class: "mark", role: "button", tabindex: 0, "aria-pressed": gone ? "true" : "false", "aria-label": `leave out mode ${mode.number}` },
+        { class: "mark", role: "button", tabindex: 0, "aria-pressed": gone ? "true" : "false", "aria-label": `leave out mode ${named(mode)}` },
         s("line", { x1: x, x2: x, y1: TOP, y2: height - BOTTOM, stroke: "transparent", "stroke-width": 9 }),
-        s("text", { class: "label", x, y: TOP - 6, "text-anchor": "middle", "text-decoration": gone ? "line-through" : "none" }, String(mode.number)),
+        s("text", { class: "label", x, y: TOP - 6, "text-anchor": "middle", "text-decoration": gone ? "line-through" : "none" }, named(mode)),
       );
-      const toggle = (): void => chosen.toggle(chosen.drop, mode.number);
+      const toggle = (): void => chosen.leave(mode);
       mark.addEventListener("click", toggle);
       mark.addEventListener("keydown", (event) => {
         if (event.key === "Enter" || event.key === " ") {
@@ -219,7 +232,7 @@ function tableView(set: DataSet): HTMLElement {
       fixed(mode.collinearity, 2),
       mode.flags.join("; "),
     ];
-    return h("tr", {}, h("th", { scope: "row" }, String(mode.number)), ...cells.map((text) => h("td", {}, text)));
+    return h("tr", {}, h("th", { scope: "row" }, named(mode)), ...cells.map((text) => h("td", {}, text)));
   });
   const head = h("tr", {}, ...heads.map((text) => h("th", { scope: "col" }, text)));
   const table = h("table", {}, h("thead", {}, head), h("tbody", {}, ...rows));

@@ -137,7 +137,7 @@ def test_a_channel_of_zeros_or_noise_is_left_empty_and_named(size: float) -> Non
     data_set = assemble(channels, "accelerance", "1", turned=False)
     result = identify(data_set.data, (1, 30))
     test = ModalTest("t", None, None, (data_set,))
-    done = IdentifiedTest(test, (result,), combine(["1"], [result]))
+    done = IdentifiedTest(test, (result,), combine(["1"], [result]), ())
     assert np.isnan(done.data.shape[0, :, 0]).all()
     assert np.isfinite(done.data.shape[0, :, 1:]).all()
     expected = "1: nothing but noise at any mode" if size else "only zeros; the channel is left out"

@@ -2,7 +2,7 @@
 
 import { h, s, section, sized } from "../dom";
 import { number } from "../format";
-import type { DataSet } from "../identification";
+import { named, type DataSet } from "../identification";
 
 /** Returns pairs of sensors that are joined: the shortest tree over all. */
 function joined(positions: number[][]): [number, number][] {
@@ -26,7 +26,7 @@ function joined(positions: number[][]): [number, number][] {
 /** Makes the view. */
 export function movingShape(set: DataSet): HTMLElement {
   const select = h("select", { "aria-label": "mode" });
-  set.modes.forEach((mode, k) => select.append(h("option", { value: k }, `mode ${mode.number}: ${number(mode.frequency, 5)} Hz`)));
+  set.modes.forEach((mode, k) => select.append(h("option", { value: k }, `mode ${named(mode)}: ${number(mode.frequency, 5)} Hz`)));
   const still = h("button", { type: "button", "aria-pressed": "false" }, "Stop");
   const stage = h("div", { class: "stage" });
   stage.style.height = "320px";

@@ -51,11 +51,14 @@ class IdentifiedTest(Shown):
     test : its functions and options
     identified : modes of each data set
     modes : of all sets under common numbers; None where there are none
+    numbers : of the modes of each set in the table without choices by hand; 0 for those that only
+        seeds have
     """
 
     test: ModalTest
     identified: tuple[Identification, ...]
     modes: CombinedModes | None
+    numbers: tuple[tuple[int, ...], ...]
 
     @property
     def names(self) -> list[str]:
@@ -196,15 +199,22 @@ def identify(
             raise wrong(path, expected, f"{f:g}", "--seed")
     with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
         identified = _identified(read, band, seeds)
-        table = _identified(read, band) if seeds and (keep or drop) else identified
-    names = IdentifiedTest(read, (), None).names
-    if (keep or drop) and any(each.modes for each in table):
-        unwanted = _unwanted(path, combine(names, table).index, keep, drop)
-        identified = [
-            _without(*each, seeds) for each in zip(identified, table, unwanted, strict=True)
-        ]
-    found = any(each.modes for each in identified)
-    return IdentifiedTest(read, tuple(identified), combine(names, identified) if found else None)
+        table = _identified(read, band) if seeds else identified
+    names = IdentifiedTest(read, (), None, ()).names
+    index: Sequence[Sequence[int]] = [()] * len(names)
+    if any(each.modes for each in table):
+        index = combine(names, table).index
+        for option, numbers in (("--keep", keep), ("--drop", drop)):
+            for number in numbers:
+                if not 1 <= number <= len(index[0]):
+                    expected = f"numbers of modes, from 1 to {len(index[0])}"
+                    raise wrong(path, expected, str(number), option)
+    parts = [
+        _chosen(*each, read.chosen) for each in zip(identified, table, index, strict=True)
+    ]
+    left = tuple(each for each, _ in parts)
+    modes = combine(names, left) if any(each.modes for each in left) else None
+    return IdentifiedTest(read, left, modes, tuple(numbers for _, numbers in parts))
 
 
 def _identified(
@@ -215,38 +225,31 @@ def _identified(
     return [hammer.identify(part.data, band, test.modes, seeds) for part in test.sets]
 
 
-def _unwanted(
-    path: Path, index: Sequence[Sequence[int]], keep: Sequence[int], drop: Sequence[int]
-) -> list[set[int]]:
-    """Return which modes of each set are left out; ``index`` holds those of the table."""
-    count = len(index[0])
-    for option, numbers in (("--keep", keep), ("--drop", drop)):
-        for number in numbers:
-            if not 1 <= number <= count:
-                raise wrong(path, f"numbers of modes, from 1 to {count}", str(number), option)
-    chosen = set(keep or range(1, count + 1)) - set(drop)
-    return [{k for r, k in enumerate(of_set, 1) if r not in chosen} for of_set in index]
+def _chosen(
+    each: Identification, table: Identification, of_set: Sequence[int], chosen: ByHand
+) -> tuple[Identification, tuple[int, ...]]:
+    """Return an identification without modes that were not chosen, and the numbers of the others.
 
-
-def _without(
-    each: Identification, table: Identification, unwanted: set[int], seeds: Sequence[float]
-) -> Identification:
-    """Return an identification without some modes of the table; they stay in its fit.
-
-    It may have modes at seeds beside those of the table; those with a seed in their bandwidth stay.
+    They are those of the ``table`` without seeds, whose modes ``of_set`` holds by number. Modes
+    that are left out stay in the fit; those with a seed in their bandwidth stay anyway.
     """
     f, of_table = (np.array([mode.frequency for mode in x.modes]) for x in (each, table))
     rows, columns = linear_sum_assignment(np.abs(np.subtract.outer(of_table, f)))
-    half = np.reshape([mode.frequency * mode.damping for mode in table.modes], (-1, 1))
-    held = (np.abs(np.subtract.outer(of_table, np.array(seeds))) <= half).any(axis=1)
-    unwanted = unwanted - set(np.flatnonzero(held).tolist())
-    gone = {int(column) for row, column in zip(rows, columns, strict=True) if row in unwanted}
+    numbers = np.zeros(len(f), int)
+    numbers[columns] = [of_set.index(row) + 1 for row in rows.tolist()]
+    half = f * [mode.damping for mode in each.modes]
+    held = (np.abs(np.subtract.outer(f, np.array(chosen.seeds))) <= half[:, None]).any(axis=1)
+    out = (numbers > 0) & ~held & np.isin(numbers, chosen.drop)
+    if chosen.keep:
+        out |= (numbers > 0) & ~held & ~np.isin(numbers, chosen.keep)
     rejected = [
-        Rejected(float(each.modes[k].frequency), float(each.modes[k].damping), "left out by hand")
-        for k in sorted(gone)
+        Rejected(float(mode.frequency), float(mode.damping), "left out by hand")
+        for mode, gone in zip(each.modes, out, strict=True)
+        if gone
     ]
-    modes = tuple(mode for k, mode in enumerate(each.modes) if k not in gone)
-    return replace(each, modes=modes, rejected=(*each.rejected, *rejected))
+    modes = tuple(mode for mode, gone in zip(each.modes, out, strict=True) if not gone)
+    kept = replace(each, modes=modes, rejected=(*each.rejected, *rejected))
+    return kept, tuple(numbers[~out].tolist())
 
 
 def writable(path: Path | str) -> Path:
@@ -290,7 +293,7 @@ def _warnings(identification: Identification) -> list[str]:
             f"the model leaves {residuals.chi2:.1f} times the variance that the data have: "
             "standard deviations are widened accordingly; nonlinearity, leakage or missing modes"
         )
-    if residuals.widening > 1.5:
+    if residuals.widening > 1.5 and not data.decay:  # else the window is known
         out.append(
             "neighbouring lines are correlated: standard deviations are "
             f"{residuals.widening**0.5:.1f} times those of independent lines; windows, zero "

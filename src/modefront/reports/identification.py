@@ -42,11 +42,7 @@ def write_identification(test: IdentifiedTest, path: Path) -> Path:
 
 
 def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
-    each = test.identified[k]
-    numbers = {}
-    if test.modes is not None:
-        given = _numbers(test)
-        numbers = {index: given[r] for r, index in enumerate(test.modes.index[k]) if index >= 0}
+    each, seeds = test.identified[k], test.test.chosen.seeds
     data, diagram = each.functions.data, each.diagram
     # Lines evenly over the band, and those at modes.
     even = np.linspace(0, len(data.frequency) - 1, min(len(data.frequency), MOST_LINES)).astype(int)
@@ -63,7 +59,8 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
         "quantity": data.quantity,
         "modes": [
             {
-                "number": numbers.get(r, r + 1),
+                "number": number or None,
+                "seed": min(seeds, key=lambda f: abs(f - mode.frequency)) if not number else None,
                 "frequency": mode.frequency,
                 "frequencyStd": mode.frequency_std,
                 "damping": mode.damping,
@@ -75,7 +72,7 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
                 "flags": list(mode.evidence.flags),
                 "shape": _rounded(mode.shape.shape),
             }
-            for r, mode in enumerate(each.modes)
+            for mode, number in zip(each.modes, test.numbers[k], strict=True)
         ],
         "poles": {
             "frequency": _rounded(diagram.frequency[inside], 7),
@@ -92,13 +89,6 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
         "positions": positions.tolist(),
         "directions": directions.tolist(),
     }
-
-
-def _numbers(test: IdentifiedTest) -> list[int]:
-    """Return the numbers of the modes in the table in which none was left out by hand."""
-    chosen, count = test.test.chosen, 0 if test.modes is None else len(test.modes.index[0])
-    numbers = sorted(chosen.keep) or range(1, count + len(set(chosen.drop)) + 1)
-    return [number for number in dict.fromkeys(numbers) if number not in chosen.drop]
 
 
 def _functions(each: Identification, kept: Any) -> list[dict[str, Any]]:
