@@ -86,20 +86,6 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
     return out[0], out[1], out[2]
 
 
-def without_decay(poles: Poles, decay: float) -> Poles:
-    """Return poles without the decay in 1/s that an exponential window added to them.
-
-    Poles that decay by less than half of that are noise; others that come out unstable get the
-    damping ratio `LEAST_DAMPING`.
-    """
-    if not decay:
-        return poles
-    kept = -poles.value.real > decay / 2
-    value = poles.value[kept]
-    real = np.minimum(value.real + decay, -LEAST_DAMPING * np.abs(value))
-    return Poles(poles.order, real + 1j * value.imag, poles.participation[kept])
-
-
 def _toeplitz(values: Complexes, p: int) -> Complexes:
     """Return the matrix with entries values[m' - m], m and m' from 0 to p; lags are last."""
     centre = values.shape[-1] // 2
@@ -120,8 +106,13 @@ def _reduced(sums: Moments, p: int) -> Complexes:
     return M - half.conj().T @ half
 
 
-def poles(sums: Moments, p: int, shift: float, rate: float) -> Poles:
-    """Return the stable poles of one order, of z = exp(i rate (omega - shift))."""
+def poles(sums: Moments, p: int, shift: float, rate: float, decay: float = 0.0) -> Poles:
+    """Return the stable poles of one order, of z = exp(i rate (omega - shift)).
+
+    They are those without the ``decay`` in 1/s that an exponential window added to them. What
+    decays by less than half of that is noise; others that come out unstable get the damping ratio
+    `LEAST_DAMPING`.
+    """
     n_in, M = len(sums[2]), _reduced(sums, p)
     M = (M + M.conj().T) / 2
     scale = np.sqrt(np.maximum(M.diagonal().real, np.finfo(float).tiny))
@@ -138,7 +129,9 @@ def poles(sums: Moments, p: int, shift: float, rate: float) -> Poles:
     middle = np.pi * ARC
     angle = np.angle(np.exp(1j * (-np.angle(inverse) - middle))) + middle
     value = -np.log(np.abs(inverse)) / rate + 1j * (shift + angle / rate)
-    good = (value.real < 0) & (value.imag > 0)
+    good = (value.real < -decay / 2) & (value.imag > 0)
+    if decay:
+        value.real = np.minimum(value.real + decay, -LEAST_DAMPING * np.abs(value))
     participation = _participation(alpha.reshape(p, n_in, n_in), 1 / inverse[good])
     order = np.argsort(value[good].imag)
     return Poles(p, value[good][order], participation[order])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -113,9 +113,15 @@ class IdentifiedTest(Shown):
         path = writable(path)
         written = [path]
         if path.suffix.lower() == ".uff":
-            modes = modal_modes(self)
+            sensors, modes = self.data.sensors, list[list[tuple[complex, Complexes]]]()
+            for each in self.identified:
+                at = [sensors.index(name) for name in each.responses]
+                shapes = np.zeros((len(each.modes), len(sensors)), complex)
+                for shape, mode in zip(shapes, each.modes, strict=True):
+                    shape[at] = mode.shape.complex_shape
+                modes.append(list(zip([mode.pole for mode in each.modes], shapes, strict=True)))
             pairs = [each.pairs for each in self.identified]
-            write_uff55(path, self.names, modes, self.data.sensors, pairs)
+            write_uff55(path, self.names, modes, sensors, pairs)
         else:
             sensors = self.data.sensors
             clashing = [name for name in sensors if is_reserved(name, sensors)]
@@ -209,9 +215,7 @@ def identify(
                 if not 1 <= number <= len(index[0]):
                     expected = f"numbers of modes, from 1 to {len(index[0])}"
                     raise wrong(path, expected, str(number), option)
-    parts = [
-        _chosen(*each, read.chosen) for each in zip(identified, table, index, strict=True)
-    ]
+    parts = [_chosen(*each, read.chosen) for each in zip(identified, table, index, strict=True)]
     left = tuple(each for each, _ in parts)
     modes = combine(names, left) if any(each.modes for each in left) else None
     return IdentifiedTest(read, left, modes, tuple(numbers for _, numbers in parts))
@@ -324,24 +328,12 @@ def _warnings(identification: Identification) -> list[str]:
     return out
 
 
-def modal_modes(identified: IdentifiedTest) -> list[list[tuple[complex, Complexes]]]:
-    """Return the pole and the complex shape at all sensors of each mode of each set."""
-
-    def at(phi: Complexes, responses: Sequence[str]) -> Complexes:
-        where = dict(zip(responses, phi, strict=True))
-        return np.array([where.get(name, 0j) for name in identified.data.sensors])
-
-    return [
-        [(mode.pole, at(mode.shape.complex_shape, each.responses)) for mode in each.modes]
-        for each in identified.identified
-    ]
-
-
 def _pairs(values: Any) -> list[list[float | None]]:
-    return [[_number(float(x.real)), _number(float(x.imag))] for x in np.asarray(values, complex)]
+    return [[known(float(x.real)), known(float(x.imag))] for x in np.asarray(values, complex)]
 
 
-def _number(value: float) -> float | None:
+def known(value: float) -> float | None:
+    """Return a number for JSON, None where it is not finite."""
     return value if np.isfinite(value) else None
 
 
@@ -355,19 +347,19 @@ def _plain_set(identification: Identification) -> dict[str, Any]:
         "chi2": residuals.chi2,
         "correlation_factor": residuals.widening,
         "force_noise": [float(np.sqrt(b)) for b in residuals.force],
-        "residual": [[_number(float(x)) for x in row] for row in residuals.share],
+        "residual": [[known(float(x)) for x in row] for row in residuals.share],
         "residual_terms": functions.residual_terms,
         "evaluations": identification.evaluations,
         "converged": identification.converged,
         "modes": [
             {
-                "frequency": mode.frequency,
-                "frequency_std": mode.frequency_std,
-                "damping": mode.damping,
-                "damping_std": mode.damping_std,
+                **{
+                    key: getattr(mode, key)
+                    for key in ("frequency", "frequency_std", "damping", "damping_std")
+                },
                 "pole": [mode.pole.real, mode.pole.imag],
                 "shape": _pairs(mode.shape.complex_shape),
-                "real_shape_std": [_number(float(x)) for x in mode.shape_std],
+                "real_shape_std": [known(float(x)) for x in mode.shape_std],
                 "phase_collinearity": mode.shape.collinearity,
                 "loss": mode.shape.loss,
                 "participation": _pairs(mode.participation),
@@ -378,8 +370,5 @@ def _plain_set(identification: Identification) -> dict[str, Any]:
             }
             for mode in identification.modes
         ],
-        "rejected": [
-            {"frequency": x.frequency, "damping": x.damping, "reason": x.reason}
-            for x in identification.rejected
-        ],
+        "rejected": [asdict(x) for x in identification.rejected],
     }

@@ -89,7 +89,7 @@ def diagram_of(data: FrequencyResponses, variance: Floats) -> tuple[Stabilisatio
     sums = lscf.moments(data.H, weight / weight.max(), z, max(orders))
     kept = []
     for order in orders:
-        p = lscf.without_decay(lscf.poles(sums, order, omega[0], rate), data.decay)
+        p = lscf.poles(sums, order, omega[0], rate, data.decay)
         good = -p.value.real < MOST_DAMPING * np.abs(p.value)
         kept.append(Poles(order, p.value[good], p.participation[good]))
     s: Complexes = np.asarray(1j * omega + data.decay, complex)

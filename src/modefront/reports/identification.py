@@ -12,7 +12,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront._version import __version__
-from modefront.identification.modal_test import IdentifiedTest
+from modefront.identification.modal_test import IdentifiedTest, known
 from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
 from modefront.identification.stabilisation import complex_indicators, multivariate_indicators
@@ -65,9 +65,9 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
                 "frequencyStd": mode.frequency_std,
                 "damping": mode.damping,
                 "dampingStd": mode.damping_std,
-                "evidence": _known(mode.evidence.gain),
-                "orders": _known(mode.evidence.support),
-                "seen": _known(mode.evidence.visibility),
+                "evidence": known(mode.evidence.gain),
+                "orders": known(mode.evidence.support),
+                "seen": known(mode.evidence.visibility),
                 "collinearity": mode.shape.collinearity,
                 "flags": list(mode.evidence.flags),
                 "shape": _rounded(mode.shape.shape),
@@ -129,7 +129,3 @@ def _logarithms(power: Floats) -> list[int | None]:
 
 def _rounded(values: Floats, digits: int = 4) -> list[float | None]:
     return [float(f"{x:.{digits}g}") if np.isfinite(x) else None for x in values.tolist()]
-
-
-def _known(value: float) -> float | None:
-    return value if np.isfinite(value) else None

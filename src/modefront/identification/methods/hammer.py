@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
-from modefront._typing import Bools, Complexes, Floats
+from modefront._typing import Complexes, Floats
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import selection
 from modefront.identification.modal_model import Fit, evaluate
@@ -34,8 +33,6 @@ from modefront.identification.stabilisation import (
     support,
 )
 from modefront.identification.statistics import mode_estimates, residuals
-
-Weighting = Literal["given", "scaled", "residuals"]
 
 LEAST_LINES = 20
 """Lines of a band, at least: two modes with their residual terms have twelve numbers a function."""
@@ -100,16 +97,14 @@ def identify(
     return _result(data, fit, gain, omega, size, diagram)
 
 
-def weighting(data: FrequencyResponses) -> Weighting:
+def weighting(data: FrequencyResponses) -> str:
     """Return the origin of the variance: given, given up to a factor, or residuals alone.
 
     Where it is unknown for one of the functions that were measured, it is that of the residuals for
     all of them, so that none is left out.
     """
-    if data.variance is None:
-        return "residuals"
-    known: Bools = np.any(data.measured & np.isfinite(data.variance), axis=2)
-    if not known[data.measured.any(axis=2)].all():
+    known = data.measured & np.isfinite(np.nan if data.variance is None else data.variance)
+    if not known.any(axis=2)[data.measured.any(axis=2)].all():
         return "residuals"
     return "scaled" if data.scaled else "given"
 
@@ -139,7 +134,7 @@ def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyRes
     return replace(data, H=H, responses=names, variance=None), shared
 
 
-def _reweighted(fit: Fit, kind: Weighting) -> Fit:
+def _reweighted(fit: Fit, kind: str) -> Fit:
     """Return a fit whose data are weighted by the smooth variance of its residuals.
 
     Where the variance is given it stays; where it is known up to a factor it gets that.
@@ -177,7 +172,12 @@ def _result(
     fit = selection.paired(apart)
     task, misfit, f = fit.task, residuals(fit), data.frequency
     estimates = _with_split(mode_estimates(fit, misfit, omega), fit, apart.model.lam * omega)
-    reasons = [_reason(mode, f) for mode in estimates]
+    reasons = [
+        "damped too heavily for a mode" * bool(mode.damping > MOST_DAMPING)
+        if f[0] <= mode.frequency <= f[-1]
+        else "outside the band"
+        for mode in estimates
+    ]
     kept = [k for k, why in enumerate(reasons) if not why]
     rejected = [
         Rejected(float(mode.frequency), float(mode.damping), why)
@@ -187,14 +187,9 @@ def _result(
     shares = support(diagram, fit.model.lam * omega, gain)
     evidence = _evidence(fit, f, gain / selection.needed(task), shares, estimates, kept)
     modes = [replace(estimates[k], evidence=evidence[k]) for k in kept]
-    weight = np.where(task.weight > 0, task.weight, np.nan)
-    functions = FittedFunctions(
-        data,
-        fit.functions * size,
-        size**2 / weight,
-        misfit,
-        len(RESIDUALS) // 2,
-    )
+    variance = size**2 / np.where(task.weight > 0, task.weight, np.nan)
+    terms = len(RESIDUALS) // 2
+    functions = FittedFunctions(data, fit.functions * size, variance, misfit, terms)
     return Identification(
         data.responses,
         (float(f[0]), float(f[-1])),
@@ -224,13 +219,6 @@ def _with_split(estimates: Sequence[ModeEstimate], fit: Fit, lam: Complexes) -> 
                 damping_std=float(np.hypot(out[r].damping_std, of_damping)),
             )
     return out
-
-
-def _reason(mode: ModeEstimate, frequency: Floats) -> str:
-    """Return why a pole that data need stands for residual terms; empty where it is a mode."""
-    if not frequency[0] <= mode.frequency <= frequency[-1]:
-        return "outside the band"
-    return "damped too heavily for a mode" if mode.damping > MOST_DAMPING else ""
 
 
 # 6 arguments: what speaks for a mode, and its neighbours.
