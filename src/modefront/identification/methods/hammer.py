@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from modefront._typing import Complexes, Floats
+from modefront._typing import Bools, Complexes, Floats
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import selection
 from modefront.identification.modal_model import Fit, evaluate
@@ -103,8 +103,9 @@ def weighting(data: FrequencyResponses) -> str:
     Where it is unknown for one of the functions that were measured, it is that of the residuals for
     all of them, so that none is left out.
     """
-    known = data.measured & np.isfinite(np.nan if data.variance is None else data.variance)
-    if not known.any(axis=2)[data.measured.any(axis=2)].all():
+    variance = np.nan if data.variance is None else data.variance
+    known: Bools = np.any(data.measured & np.isfinite(variance), axis=2)
+    if not known[data.measured.any(axis=2)].all():
         return "residuals"
     return "scaled" if data.scaled else "given"
 
