@@ -95,3 +95,15 @@ def test_close_modes_of_nearly_one_shape_stay_two_where_noise_is_small() -> None
     H = accelerance(F, np.array([7.0, 15.0, 15.05, 31.0]), ZETA, phi, [0, 5])
     result = identify(frequency_responses(F, blows(H, 1e-4, np.random.default_rng(0))))
     assert [round(mode.frequency, 2) for mode in result.modes] == [7.0, 15.0, 15.05, 31.0]
+
+
+@pytest.mark.parametrize("seed", [1, 16])
+def test_a_pair_whose_shapes_nearly_meet_is_no_split_peak(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    phi = np.linalg.qr(rng.standard_normal((6, 6)))[0][:4]
+    f = np.arange(5.0, 25.0, 0.05)
+    zeta = np.array([0.01, 0.008, 0.008, 0.01])
+    H = accelerance(f, np.array([9.0, 15.0, 15.0, 20.0]), zeta, phi, [0, 2, 5])
+    result = identify(frequency_responses(f, blows(H, 0.01, rng)))
+    assert len(result.modes) == 4
+    assert result.pairs == ((1, 2),)

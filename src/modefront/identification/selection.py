@@ -139,23 +139,30 @@ def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
 
     The weakest go first, where a fit without them is no worse. The Wald statistic says too little
     of close modes, whose shapes are large and cancel: what they gain is what that fit loses. Where
-    the ``count`` of modes is given, the strongest are kept instead.
+    the ``count`` of modes is given, the strongest are kept instead. Only among modes that are
+    needed are shapes known well enough to tell a split peak, which one pole for both does not
+    explain as it does a pair. Of doubles, the weakest goes first.
     """
     gain, together = gains(fit), True
     while len(fit.model):
         lam, least = fit.model.lam, needed(fit.task)
-        double = doubles(lam, fit.model.phi, gain, fit)
         if count is not None:
             least = np.sort(gain)[::-1][count - 1] if count < len(gain) else -np.inf
-        gone = with_weak(double.copy(), gain, least, lam)
-        if not gone.any():
-            break
-        if not together:
-            gone = double if double.any() else gain == gain.min()
+        gone = with_weak(np.zeros(len(lam), bool), gain, least, lam)
+        needless = gone.any()
+        if not needless:
+            double = doubles(lam, fit.model.phi, gain, fit)
+            for pair in paired(fit).model.pairs if double.any() else ():
+                double[list(pair)] = False
+            if not double.any():
+                break
+            gone = double & (gain == gain[double].min())
+        elif not together:
+            gone = gain == gain.min()
         trial = refit(fit, lam[~gone], fit.model.L[~gone])
         lost = 2 * (trial.cost - fit.cost) / fit.found.noise_of(lam[gone]).min()
         together = lost - np.sort(gain[gone])[:-1].sum() < least
-        if together or double.any() or count is not None:
+        if together or not needless or count is not None:
             fit, together = trial, True
             gain = gains(fit)
         elif gone.sum() == 1:
