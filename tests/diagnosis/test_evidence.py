@@ -13,6 +13,8 @@ from modefront._typing import Floats
 from modefront.data.modal import ModalData, modal_data
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.evidence import Fits, step
+from modefront.diagnosis.mistakes.record import Setting
+from modefront.diagnosis.mistakes.values import other_quantity
 from modefront.diagnosis.state import SPREAD, State, median, scaled
 from modefront.models.chain import chain
 from modefront.residuals.groups import Group
@@ -143,3 +145,19 @@ def test_explanations_cost_the_same_together_and_alone() -> None:
         some, others = ([getattr(x, name) for x in many] for many in (together, alone))
         np.testing.assert_allclose(some, others, rtol=1e-12)
     assert np.unique([round(float(x.cost), 3) for x in alone if x]).size == 4
+
+
+def test_values_that_scatter_little_are_no_more_probable_as_eigenvalues() -> None:
+    """Roots scatter half as much, and their density is half of theirs."""
+    names = ["k"] * 3
+    model = chain(["k"], [1.0] * 3, [1.0] * 3, stiffness_parameters=names)
+    modes, rng = model.modes(np.ones(1), 3, derivatives=False), np.random.default_rng(6)
+    f = modes.frequency * np.exp(0.003 * rng.standard_normal((40, 3)))
+    data = modal_data(f, np.tile(modes.phi.T, (40, 1, 1)), model.sensors)
+    one, groups = np.ones(1), (Group("f", frequency="all"),)
+    fits = Fits(compare(UpdatingProblem(model, data, groups, one / 5, 5 * one, one)))
+    (point,) = fits.at([fits.plain], [np.zeros(1)])
+    assert point is not None
+    setting = Setting(fits.plain, point, modes, modes.frequency, data, model.parameters)
+    for mistake in other_quantity(setting):
+        assert mistake.change(fits.plain).noise > fits.plain.noise - 1e-6

@@ -40,7 +40,7 @@ def test_shapes_leave_the_scale_of_all_stiffnesses() -> None:
     assert result[-1].direction == pytest.approx(np.ones(3) / np.sqrt(3), abs=1e-9)
     text = str(summary("shapes", "shape", result, NAMES))
     assert text.endswith("; k1, k2 and k3 can be scaled together: no shape changes")
-    assert text.startswith("shapes determine 2 of 3 combinations of parameters")
+    assert text.startswith("group shapes determines 2 of 3 combinations of parameters")
 
 
 def test_an_evaluation_tells_the_same_without_another_one() -> None:
@@ -103,14 +103,14 @@ def test_long_lists_are_cut() -> None:
     names = tuple(f"k{i}" for i in range(6))
     text = str(summary("data", "residual", decompose(np.eye(6)[:1]), names))
     assert text == (
-        "data determine 1 of 6 combinations of parameters; k1 can have any value; "
+        "group data determines 1 of 6 combinations of parameters; k1 can have any value; "
         "k2 can have any value; k3 can have any value; and 2 more: no residual changes"
     )
 
 
 def test_what_is_hardly_determined_is_said() -> None:
     text = str(summary("data", "shape", decompose(np.diag([1.0, 1e-3])), ("a", "b")))
-    assert text == "data determine 2 of 2 combinations of parameters, and say little about b"
+    assert text == "group data determines 2 of 2 combinations of parameters, and say little about b"
 
 
 def test_the_collinearity_index_of_known_angles() -> None:

@@ -196,7 +196,7 @@ def test_shapes_leave_the_scale_of_the_stiffness_in_every_form(
 def test_frequencies_and_all_data_determine_all_in_every_form(form: str) -> None:
     problem = problem_of(form)
     text = [str(each) for each in determined(problem, problem.evaluate(problem.start))[0]]
-    assert text[0] == "frequencies determine 4 of 4 combinations of parameters"
+    assert text[0] == "group frequencies determines 4 of 4 combinations of parameters"
     assert text[2] == "all data determine 4 of 4 combinations of parameters"
 
 
@@ -236,7 +236,7 @@ def test_null_directions_of_few_data_hold_in_both_directions(form: str) -> None:
             other = residuals(problem, theta + h * scale.unit * v, 0)
             assert np.abs(other - here).max() < 10 * h**2, "to first order"
     text = str(summary("frequencies", "frequency", result, problem.model.parameters, scale))
-    assert text.startswith("frequencies determine 4 of 12 combinations of parameters; ")
+    assert text.startswith("group frequencies determines 4 of 12 combinations of parameters; ")
     assert text.endswith("; and 5 more: no frequency changes")
     assert "any value" not in text
 
@@ -263,8 +263,8 @@ def test_a_parameter_without_effect_is_said_once_and_is_like_no_other() -> None:
             ).all()
     text = tuple(map(str, determined(problem, evaluation)[0]))
     assert text == (
-        "frequencies determine 3 of 3 combinations of parameters that have an effect",
-        "shapes determine 2 of 3 combinations of parameters that have an effect; "
+        "group frequencies determines 3 of 3 combinations of parameters that have an effect",
+        "group shapes determines 2 of 3 combinations of parameters that have an effect; "
         "k1, k2 and k3 can be scaled together: no shape changes",
         "all data determine 3 of 3 combinations of parameters that have an effect",
     )

@@ -67,9 +67,11 @@ def test_the_check_says_so_in_words(frame: mf.UpdatingProblem) -> None:
     problem = first_two(frame)
     known, _ = determined(problem, problem.evaluate(problem.start))
     frequencies, shapes, together = map(str, known)
-    assert frequencies.startswith("frequencies determine 2 of 18 combinations of parameters; ")
+    assert frequencies.startswith(
+        "group frequencies determines 2 of 18 combinations of parameters; "
+    )
     assert frequencies.endswith("; and 13 more: no frequency changes")
-    assert shapes.startswith("shapes determine 10 of 18 combinations of parameters")
+    assert shapes.startswith("group shapes determines 10 of 18 combinations of parameters")
     assert "; all 18 parameters can be scaled together; " in shapes
     assert shapes.endswith("; and 5 more: no shape changes")
     assert together.startswith("all data determine 12 of 18 combinations of parameters")

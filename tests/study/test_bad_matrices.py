@@ -91,7 +91,7 @@ MATRIX_FILES = [
     ("K2.npz", b"PK\x03\x04garbage", UNREADABLE),
     ("K2.npz", sparse(EYE)[:-30], UNREADABLE),
     ("K2.npz", sparse(EYE)[:200] + b"damage" + sparse(EYE)[206:], UNREADABLE),
-    ("K2.npz", npz(A=EYE), UNREADABLE + " ... does not contain a sparse"),
+    ("K2.npz", npz(A=EYE, B=EYE), "expected one matrix, or { file = ... to say which, found A, B"),
     ("K2.npz", npz(format=b"xyz", shape=(2, 2), data=[1.0]), UNREADABLE),
     (
         "K2.npz",
@@ -141,7 +141,12 @@ MATRIX_KEYS = [
     (MASS, 'maas = { base = "M.mtx" }', "expected a known key, found 'maas' (did you mean 'mass'"),
     (MASS, 'mass = { bas = "M.mtx" }', "[model] mass bas: ... found 'bas' (did you mean 'base'?)"),
     ("stiffness = {", "stifness = {", f"[model] stiffness: {TERMS}nothing"),
-    (FIRST, 'k3 = "K1.npy"', "[model] stiffness k3: expected 'base' or a parameter, found 'k3'"),
+    (
+        FIRST,
+        'k3 = "K1.npy"',
+        "[model] stiffness k3: expected 'base' or a parameter (in a study file, the name of a "
+        "[[parameter]]), found 'k3'",
+    ),
     (FIRST, "k1 = 1", "[model] stiffness k1: expected the name of a file, found 1"),
     (FIRST, "k1 = nan", "[model] stiffness k1: expected the name of a file, found nan"),
     (FIRST, "k1 = true", "[model] stiffness k1: expected the name of a file, found true"),
@@ -171,7 +176,11 @@ MATRIX_KEYS = [
         "stiffness k1 file: expected the name of a file, found nothing",
     ),
     (FIRST, 'k1 = { file = "all.mat", nam = "K1" }', "expected a known key, found 'nam' (did you"),
-    (FIRST, 'k1 = { file = "K1.npy", name = "K1" }', "expected a .mat file, as only these have"),
+    (
+        FIRST,
+        'k1 = { file = "K1.npy", name = "K1" }',
+        "expected a .mat or .npz file, as only these have",
+    ),
     (FIRST, 'k1 = "K.npy"', "K.npy: [model] stiffness k1, file: expected a matrix, found no such"),
     (BASE, 'base = "no.mtx"', "no.mtx: [model] stiffness base, file: ... found no such file"),
     (BASE, 'base = "no.npz"', "no.npz: [model] stiffness base, file: ... found no such file"),

@@ -43,9 +43,9 @@ def test_derivatives_are_proved_however_wide_the_bounds(study: Study) -> None:
 def test_what_the_data_determine_is_said(study: Study) -> None:
     names = "theta1, theta2 and theta3"
     assert tuple(map(str, check(study).determined)) == (
-        "frequencies determine 3 of 3 combinations of parameters",
-        f"shapes determine 2 of 3 combinations of parameters; {names} can be scaled together: "
-        "no shape changes",
+        "group frequencies determines 3 of 3 combinations of parameters",
+        f"group shapes determines 2 of 3 combinations of parameters; {names} can be scaled "
+        "together: no shape changes",
         "all data determine 3 of 3 combinations of parameters",
     )
 

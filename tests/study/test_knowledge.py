@@ -65,7 +65,7 @@ def test_combinations_are_in_the_results_and_in_words() -> None:
     direction = data["combination_direction"].values[chosen][2]
     assert direction == pytest.approx(np.ones(3) / np.sqrt(3), abs=1e-6)
     text = (
-        "at optimal-weights: shapes determine 2 of 3 combinations of parameters; "
+        "at optimal-weights: group shapes determines 2 of 3 combinations of parameters; "
         "k1, k2 and k3 can be scaled together: no shape changes"
     )
     assert text in data["finding"].values.tolist()

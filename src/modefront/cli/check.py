@@ -4,9 +4,9 @@ import numpy as np
 
 from modefront.cli.layout import Screen, number, plural
 from modefront.diagnosis.comparison import Comparison
-from modefront.diagnosis.sensitivity import Sensitivities
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import found
+from modefront.identifiability.sensitivity import Sensitivities
 from modefront.results.remarks import MOST, digest
 from modefront.study.check import Findings
 from modefront.study.definition import Study

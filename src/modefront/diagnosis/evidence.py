@@ -28,7 +28,7 @@ from modefront._typing import Floats, Ints
 from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.state import State, loss, ratio, scaled, stacked
 from modefront.errors import ModelError
-from modefront.linalg.affine import DenseAffine, SparseAffine, first_axis
+from modefront.linalg.affine import DenseAffine, first_axis
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
@@ -63,7 +63,7 @@ LARGE, SAMPLES = 80, 4
 """Degrees of freedom from which on a model is reduced, and models of its basis beside the nominal
 one."""
 
-KEPT, NUMBERS = 64, 2**22
+KEPT, NUMBERS = 64, 2**18
 """Models that are kept, as many explanations are compared at the same parameters, and numbers of
 an array of those that are compared at once, which bounds the memory."""
 
@@ -285,7 +285,7 @@ def in_space_of_modes(
 
     A large one is reduced to modes at the nominal parameters and at others by chance.
     """
-    V, K, M = np.eye(matrices.size), matrices.stiffness, matrices.mass
+    V = np.eye(matrices.size)
     if matrices.size > max(LARGE, 4 * count):
         logs = np.random.default_rng(0).uniform(-OFF, OFF, (SAMPLES, len(problem.start)))
         shapes = []
@@ -295,13 +295,11 @@ def in_space_of_modes(
                 shapes.append(matrices.full_modes(theta, count).Phi)
         V, size, _ = np.linalg.svd(np.hstack(shapes), full_matrices=False)
         V = V[:, size > 1e-7 * size[0]]
-        K, M = _projected(K, V), _projected(M, V)
     every = scipy.sparse.eye_array(V.shape[1], format="csr")
     parts: dict[str, Any] = {"sensors": (), "outputs": {}, "base": {}, "geometry": None}
-    return replace(matrices, selection=every, stiffness=K, mass=M, **parts), V
-
-
-def _projected(A: DenseAffine | SparseAffine, V: Floats) -> DenseAffine:
-    """Return V^T A V."""
-    terms = V.T @ A.terms @ V if isinstance(A, DenseAffine) else A.project([V], V)
-    return DenseAffine((terms + terms.transpose(0, 2, 1)) / 2, A.coefficients)
+    sparse = matrices.sparse()
+    for name in ("stiffness", "mass"):
+        A = getattr(sparse, name)
+        terms = A.project([V], V)
+        parts[name] = DenseAffine((terms + terms.transpose(0, 2, 1)) / 2, A.coefficients)
+    return replace(matrices, selection=every, **parts), V

@@ -10,7 +10,7 @@ it behind.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from enum import Enum
 from pathlib import Path
 
@@ -47,3 +47,11 @@ CATALOGUE: Mapping[str, tuple[Severity, str]] = {
 
 VERDICT: Mapping[str, str] = {kind: sentence for _, kind, sentence in _kinds("verdicts.md")}
 """Sentences of the first answer, and reasons of a refusal, by their names."""
+
+UNITS: Sequence[tuple[float, str, str]] = [
+    (float(factor), looks, mend)
+    for factor, looks, mend in re.findall(
+        r"^\| ([\d.e+-]+) \| (.*) \| (.*) \|$", page("findings.md"), re.MULTILINE
+    )
+]
+"""Measured frequencies over the model's, what makes them so, and what mends it."""

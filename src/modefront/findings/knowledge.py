@@ -86,7 +86,10 @@ def summaries(problem: UpdatingProblem, of: Determination, where: str = "") -> I
         whole = i == len(groups)
         noun = measured_noun(groups if whole else [groups[i]])
         full = sum(x.share >= WEAK for x in combinations) == len(names) - len(of.idle)
-        kind = "determined" if full else "all-data" if whole else "group-data"
+        of_all, of_group = (
+            ("determined", "group-determined") if full else ("all-data", "group-data")
+        )
+        kind = of_all if whole else of_group
         yield summary(name, noun, combinations, names, of.scale, of.idle, kind, where)
 
 

@@ -66,7 +66,8 @@ class Finding:
         """What it means and what to do, in paragraphs; none of a kind that says so itself."""
         _, _, part = page("findings.md").partition(f"\n### {self.kind}\n")
         _, _, text = part.partition("\n## ")[0].partition("\n### ")[0].partition("\n\n")
-        return [LINK.sub(r"\1", " ".join(x.split())) for x in text.split("\n\n") if x.strip()]
+        paragraphs = [x for x in text.split("\n\n") if x.strip() and not x.startswith("|")]
+        return [LINK.sub(r"\1", " ".join(x.split())) for x in paragraphs]
 
     def as_plain(self) -> dict[str, Any]:
         """Return the finding as JSON has it."""

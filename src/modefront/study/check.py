@@ -23,11 +23,11 @@ from threadpoolctl import threadpool_limits
 from modefront._typing import Floats
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
 from modefront.diagnosis.search import diagnose
-from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
 from modefront.errors import Fault, ModelError, refuse
 from modefront.findings import knowledge
 from modefront.findings.record import Finding, found
 from modefront.identifiability.combinations import NONE, WEAK, determination, unchanged_groups
+from modefront.identifiability.sensitivity import Sensitivities, sensitivities
 from modefront.inputs import available_memory
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel

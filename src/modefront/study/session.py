@@ -15,7 +15,6 @@ from modefront._version import __version__
 from modefront.analysis.certified import certificate_attributes, certified_front, certified_points
 from modefront.analysis.front import analyse_front
 from modefront.datasets import Dataset
-from modefront.diagnosis.sensitivity import superfluous
 from modefront.errors import Fault, InputError, writing
 from modefront.front.front import Front
 from modefront.front.given import Weighted
@@ -26,6 +25,7 @@ from modefront.front.point import Kind, Point
 from modefront.front.search import Search
 from modefront.identifiability.combinations import unchanged_groups
 from modefront.identifiability.options import Identifiability
+from modefront.identifiability.sensitivity import superfluous
 from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text
 from modefront.predictions import Prediction

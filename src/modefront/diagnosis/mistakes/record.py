@@ -84,21 +84,18 @@ def one_of(probability: float, count: float) -> float:
     return float(np.log(max(count, 1) / probability))
 
 
-def changed(part: str, new: Callable[[Floats], Floats], cost: float = 0.0) -> Change:
-    """Return the change of a part of the state into what a function makes of it, for a cost."""
+def changed(
+    part: str, place: Any, new: Callable[[Floats], Floats] | float, cost: float = 0.0
+) -> Change:
+    """Return the change of some values of a part of the state, for a cost.
+
+    They become what a function makes of them, or are divided by a factor, of which NaN leaves out.
+    """
 
     def change(state: State) -> State:
-        parts: Any = {part: new(getattr(state, part).copy())}
+        values = getattr(state, part).copy()
+        values[place] = new(values[place]) if callable(new) else values[place] / new
+        parts: Any = {part: values}
         return replace(state, left_out=state.left_out + cost, **parts)
 
     return change
-
-
-def without(part: str, place: Any, cost: float) -> Change:
-    """Return the change that leaves out some values of a part of the data, for a cost."""
-
-    def left(values: Floats) -> Floats:
-        values[place] = np.nan
-        return values
-
-    return changed(part, left, cost)

@@ -20,7 +20,6 @@ from modefront.diagnosis.mistakes.record import (
     Setting,
     changed,
     one_of,
-    without,
 )
 from modefront.diagnosis.state import NOTHING, State, loss
 from modefront.diagnosis.state import SHAPE as NOISE
@@ -85,15 +84,14 @@ def exchanged_sensors(setting: Setting) -> Iterator[Mistake]:
         order = np.arange(len(names))
         order[[s, t]] = t, s
         numbers = {"sensors": enumeration((names[s], names[t])), "where": name}
-        change = changed("shape", partial(_arranged, rows=sets, order=order))
+        change = changed("shape", sets, partial(_arranged, order=order))
         subject = names[s], names[t], name
         yield Mistake("exchanged-sensors", subject, change, price, numbers, True)
 
 
-def _arranged(shape: Floats, rows: Any, order: Ints) -> Floats:
-    """Return shapes with some of their rows in another order, and nothing where that is -1."""
-    shape[rows] = np.where(order < 0, np.nan, shape[rows][..., order])
-    return shape
+def _arranged(shape: Floats, order: Ints) -> Floats:
+    """Return shapes with their components in another order, and nothing where that is -1."""
+    return np.where(order < 0, np.nan, shape[..., order])
 
 
 def copied_sensor(setting: Setting) -> Iterator[Mistake]:
@@ -111,7 +109,7 @@ def copied_sensor(setting: Setting) -> Iterator[Mistake]:
         sets = setting.state.seen[:, :, s].sum(axis=0)
         of_model, of_noise = (sets > 0).sum(), np.maximum(sets - 1, 0).sum()
         usual = np.log(SHAPE) * of_model + np.log(NOISE) * of_noise + NOTHING * sets.sum()
-        change, price = without("shape", np.s_[..., s], usual), one_of(OFTEN, len(same))
+        change, price = changed("shape", np.s_[..., s], np.nan, usual), one_of(OFTEN, len(same))
         numbers, subject = {"sensor": names[s], "other": names[t]}, sorted((names[s], names[t]))
         yield Mistake("copied-sensor", tuple(subject), change, price, numbers)
 
@@ -129,7 +127,7 @@ def shifted_values(setting: Setting) -> Iterator[Mistake]:
         lost, too_many = np.insert(every[:-1], start, -1), np.append(np.delete(every, start), -1)
         for what, order in (("lost", lost), ("too many", too_many)):
             numbers = {"where": name, "sensor": names.sensors[start], "what": what}
-            change = changed("shape", partial(_arranged, rows=rows, order=order))
+            change = changed("shape", rows, partial(_arranged, order=order))
             yield Mistake("shifted-values", (name,), change, price, numbers, True)
 
 

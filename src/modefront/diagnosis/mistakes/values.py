@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import product
@@ -21,45 +21,13 @@ from modefront.diagnosis.mistakes.record import (
     Setting,
     changed,
     one_of,
-    without,
 )
 from modefront.diagnosis.state import NOTHING, State, median
+from modefront.findings.catalogue import UNITS
 from modefront.findings.knowledge import enumeration
 from modefront.pairing.match import assigned
 
-RAD, G = 2 * np.pi, float(np.sqrt(9.81))
-
-CONSISTENT = "give lengths, forces and masses in consistent units: m, N, kg or mm, N, t"
-
-UNITS: Sequence[tuple[float, str, str]] = (
-    (RAD, "they look like rad/s, 2π times Hz", "divide the column 'frequency' by 6.2832 (2π)"),
-    (
-        1 / RAD,
-        "the model looks as if its matrices gave Hz for rad/s, or the data are divided by 2π twice",
-        "see that eigenvalues of K and M are (rad/s)², and multiply the data by 6.2832 (2π) where "
-        "they are not in Hz",
-    ),
-    (60.0, "they look like revolutions or cycles per minute", "divide 'frequency' by 60"),
-    (
-        G,
-        "the model looks as if weight were given for mass, a factor of g = 9.81 on M",
-        "divide masses and densities by 9.81",
-    ),
-    (
-        1 / G,
-        "the model looks as if stiffness were g = 9.81 times too great, or mass 9.81 too small",
-        CONSISTENT,
-    ),
-    (10**1.5, "masses look like kg with stiffness in kN, or t with N", CONSISTENT),
-    (10**-1.5, "masses look like t with stiffness in N, or kg with kN", CONSISTENT),
-    (1e3, "E looks like MPa, or lengths like mm, where all else is in SI units", CONSISTENT),
-    (1e-3, "lengths look like m where all else is in N, mm and t, or E like Pa", CONSISTENT),
-    (10**4.5, "E looks like GPa where all else is in SI units", CONSISTENT),
-    (10**-4.5, "E looks like Pa where it should be GPa", CONSISTENT),
-    (1e6, "lengths look like mm with thicknesses and sections in m", CONSISTENT),
-    (1e-6, "densities look like t/mm³ where all else is in SI units", CONSISTENT),
-)
-"""Measured frequencies over the model's, what makes them so, and what mends it."""
+RAD = 2 * np.pi
 
 REACH = 0.25
 """Logarithm of a factor beside a known one that parameters make up for, as in a poor model."""
@@ -85,26 +53,30 @@ def frequency_factor(setting: Setting) -> Iterator[Mistake]:
             found.append((one_of(OFTEN, len(UNITS) ** 3), float(np.exp(log)), looks, mend))
     for price, factor, looks, mend in found:
         numbers = {"factor": factor, "looks": looks, "mend": mend}
-        change = changed("frequency", partial(np.multiply, 1 / factor))
+        change = changed("frequency", ..., factor)
         yield Mistake("frequency-factor", ("frequencies",), change, price, numbers)
 
 
-QUANTITIES: Sequence[tuple[str, Callable[[Floats], Floats]]] = (
-    ("periods in s", lambda f: 1 / f),
-    ("eigenvalues in (rad/s)²", lambda f: np.sqrt(f) / RAD),
-)
-"""Quantities that are no frequencies, with what makes frequencies of them."""
+QUANTITIES = {"periods in s": (1.0, -1.0), "eigenvalues in (rad/s)²": (1 / RAD, 0.5)}
+"""Quantities that are no frequencies, with the factor a and the power b of f = a g^b of each."""
 
 
 def other_quantity(setting: Setting) -> Iterator[Mistake]:
-    """Yield quantities that are no frequencies."""
-    known = np.flatnonzero(np.isfinite(setting.state.logs))
-    for quantity, new in QUANTITIES if known.size else ():
-        given = np.exp(setting.state.logs[known[0]])
+    """Yield quantities that are no frequencies.
+
+    Scatter of ln g is that of ln f over b, and its density that of ln f times b.
+    """
+    known, f = np.flatnonzero(np.isfinite(setting.state.logs)), setting.state.frequency
+    for quantity, (a, b) in QUANTITIES.items() if known.size else ():
+        given, cost = np.exp(setting.state.logs[known[0]]), -np.log(abs(b)) * np.isfinite(f).sum()
         numbers: dict[str, Any] = {"quantity": quantity, "mode": setting.names.modes[known[0]]}
-        numbers |= {"given": float(given), "better": float(new(given))}
-        change = changed("frequency", new)
+        numbers |= {"given": float(given), "better": float(_power(given, a, b))}
+        change = changed("frequency", ..., partial(_power, a=a, b=b), cost)
         yield Mistake("other-quantity", ("frequencies",), change, one_of(RARE, 1), numbers)
+
+
+def _power(g: Floats, a: float, b: float) -> Floats:
+    return a * g**b
 
 
 def damping_in_percent(setting: Setting) -> Iterator[Mistake]:
@@ -112,7 +84,7 @@ def damping_in_percent(setting: Setting) -> Iterator[Mistake]:
     known = setting.state.damping[np.isfinite(setting.state.damping)]
     if known.size:
         numbers = {"least": float(known.min()), "greatest": float(known.max())}
-        change = changed("damping", lambda zeta: zeta / 100)
+        change = changed("damping", ..., 100.0)
         yield Mistake("damping", ("damping",), change, one_of(OFTEN, 1), numbers)
 
 
@@ -138,9 +110,8 @@ def wrong_frequency(setting: Setting) -> Iterator[Mistake]:
         numbers = {"model": q + 1, "f": float(setting.nominal[q]), "alike": alike}
         numbers["measured"] = float(np.exp(logs[r]))
         for price, factor, looks in found:
-            over = np.where(np.arange(len(modes)) == r, factor, 1.0)
-            change, said = changed("frequency", partial(np.multiply, 1 / over)), {"looks": looks}
-            yield Mistake("far-from-model", (str(modes[r]),), change, price, numbers | said)
+            change, said = changed("frequency", np.s_[:, r], factor), numbers | {"looks": looks}
+            yield Mistake("far-from-model", (str(modes[r]),), change, price, said)
 
 
 def wrong_nominal_value(setting: Setting) -> Iterator[Mistake]:
@@ -148,9 +119,8 @@ def wrong_nominal_value(setting: Setting) -> Iterator[Mistake]:
     start, names = setting.state.start, setting.parameters
     price = one_of(USUAL, len(POWERS) * len(names))
     for j, power in product(np.flatnonzero(setting.state.unit == 0).tolist(), POWERS):
-        over = np.where(np.arange(len(names)) == j, 10.0**power, 1.0)
         numbers = {"name": names[j], "given": float(start[j]), "better": start[j] * 10.0**power}
-        change = changed("start", partial(np.multiply, over))
+        change = changed("start", j, 10.0**-power)
         yield Mistake("nominal-value", (names[j],), change, price, numbers)
 
 
@@ -177,9 +147,8 @@ def set_factor(setting: Setting) -> Iterator[Mistake]:
             else "the structure differed (mass, temperature, supports): update with one of the "
             "sets, or say by frequency_std how far frequencies scatter",
         }
-        over = np.where(np.arange(len(sets)) == k, factor, 1.0)[:, None]
-        change = changed("frequency", partial(np.multiply, 1 / over))
-        yield Mistake("set-factor", (name,), change, one_of(USUAL, len(sets)), numbers)
+        change, price = changed("frequency", k, factor), one_of(USUAL, len(sets))
+        yield Mistake("set-factor", (name,), change, price, numbers)
 
 
 PARTS = ("frequency", "damping", "shape", "std")
@@ -243,7 +212,7 @@ def odd_value(setting: Setting) -> Iterator[Mistake]:
                 other, value = f[known]
             numbers: dict[str, Any] = {"mode": mode, "who": who, "look": look, "f": float(value)}
             numbers |= {"other": float(other), "percent": float(100 * (value / other - 1))}
-            change = without(part, np.s_[k, r], count[k] * (NOTHING + np.log(wrong)))
+            change = changed(part, np.s_[k, r], np.nan, count[k] * (NOTHING + np.log(wrong)))
             yield Mistake(f"odd-{part}", tuple(subject), change, price, numbers)
 
 
