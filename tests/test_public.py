@@ -67,7 +67,8 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     ),
     (
         lambda: mf.matrices(["k"], {"k": I2}, {}, {"one": 0}),
-        "mass: expected 'base' or a parameter, found nothing",
+        "mass: expected 'base' or a parameter (in a study file, the name of a [[parameter]]), "
+        "found nothing",
     ),
     (
         lambda: mf.matrices(["k"], {"k": I2}, {"base": I2}, {"one": -1}),

@@ -52,6 +52,20 @@ def test_all_sparse_formats(form: str, compressed: bool, tmp_path: Path) -> None
     np.testing.assert_array_equal(read_matrix(tmp_path / "A.npz").toarray(), K)
 
 
+@pytest.mark.parametrize("save", [np.savez, np.savez_compressed])
+def test_arrays_of_numpy_in_one_file(save: Callable[..., None], tmp_path: Path) -> None:
+    path = tmp_path / "A.npz"
+    save(path, K)
+    np.testing.assert_array_equal(read_matrix(path).toarray(), K)
+    save(path, K=K, M=2 * K, names=np.array(["a"], object))
+    with pytest.raises(mf.InputError, match="Object arrays cannot be loaded"):
+        read_matrix(path)
+    save(path, K=K, M=2 * K)
+    np.testing.assert_array_equal(read_matrix(path, "M").toarray(), 2 * K)
+    with pytest.raises(mf.InputError, match=r"expected one matrix.* found K, M"):
+        read_matrix(path)
+
+
 @pytest.mark.parametrize("compressed", [True, False])
 @pytest.mark.parametrize("make", [np.asarray, scipy.sparse.csc_array, scipy.sparse.csc_matrix])
 def test_variables_of_matlab(make: Callable[..., Any], compressed: bool, tmp_path: Path) -> None:

@@ -30,8 +30,8 @@ def read_entries(
     form = form or path.suffix
     if form not in READERS:
         raise inputs.wrong(path, f"a name that ends in {', '.join(READERS)}", f"'{path.name}'")
-    if name is not None and form != ".mat":
-        expected = "a .mat file, as only these have names for matrices"
+    if name is not None and form not in (".mat", ".npz"):
+        expected = "a .mat or .npz file, as only these have names for matrices"
         raise inputs.wrong(path, expected, f"'{path.name}'")
     inputs.file_size(path, "a matrix")
     arguments = (form, name or "", "square" if square else "")
@@ -46,10 +46,10 @@ def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_a
     Parameters
     ----------
     path
-        Matrix Market ``.mtx``, SciPy sparse ``.npz``, NumPy ``.npy`` or MATLAB ``.mat``. Nothing is
-        unpickled.
+        Matrix Market ``.mtx``, ``.npz`` of SciPy or NumPy, NumPy ``.npy`` or MATLAB ``.mat``.
+        Nothing is unpickled.
     name
-        Name of the matrix in a ``.mat`` file; None for the only one.
+        Name of the matrix in a ``.mat`` or ``.npz`` file; None for the only one.
 
     Raises
     ------
@@ -131,7 +131,10 @@ def _numpy_npy(path: Path, _: str) -> Any:
     return array
 
 
-def _scipy_npz(path: Path, _: str) -> Any:
+def _npz(path: Path, name: str) -> Any:
+    with np.load(path, allow_pickle=False) as arrays:
+        if "format" not in arrays.files:  # of NumPy
+            return arrays[_chosen(path, name, {key: arrays[key].shape for key in arrays.files})]
     A = scipy.sparse.load_npz(path)
     if hasattr(A, "check_format"):
         _check_shape(path, A.shape, "")
@@ -172,7 +175,7 @@ def _chosen(path: Path, name: str, shapes: Mapping[str, tuple[int, ...]]) -> str
 
 READERS: Mapping[str, Callable[[Path, str], Any]] = {
     ".mtx": _matrix_market,
-    ".npz": _scipy_npz,
+    ".npz": _npz,
     ".npy": _numpy_npy,
     ".mat": _matlab,
 }

@@ -320,7 +320,7 @@ def common_size(
     size = max(counts, key=lambda n: (counts[n], n), default=0)
     for place, terms in tables.items():
         if not terms:
-            faults.append(Fault("", place, f"'{BASE}' or a parameter", "nothing"))
+            faults.append(Fault("", place, form_of(""), "nothing"))
         for name, A in terms.items():
             if exponents_of(name, parameters) is None:
                 found = suggestion(name, [BASE, *parameters])

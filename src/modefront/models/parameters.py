@@ -146,7 +146,7 @@ def form_of(term: str) -> str:
     """Return the expected form of the name of a term, for a message."""
     if any(sign in term for sign in "^*/"):
         return f"'{BASE}', a parameter, or a product of powers of parameters"
-    return f"'{BASE}' or a parameter"
+    return f"'{BASE}' or a parameter (in a study file, the name of a [[parameter]])"
 
 
 def term_exponents(terms: Sequence[str], parameters: Sequence[str]) -> Floats:

@@ -218,9 +218,12 @@ def entries_of(row: Ints, column: Ints, value: Floats, size: int) -> scipy.spars
 
 def given_table(options: JobOptions, size: int) -> DofTable:
     """Return the table of degrees of freedom of ``--dofs``, or that of ones that have no node."""
-    if options.dofs:
-        return read_dofs(options.dofs)
-    return DofTable(np.zeros(size, int), np.zeros(size, int), np.ones(size))
+    if not options.dofs:
+        return DofTable(np.zeros(size, int), np.zeros(size, int), np.ones(size))
+    table = read_dofs(options.dofs)
+    if table.size != size:
+        raise wrong(options.dofs, f"{size} rows, one a row of the matrices", str(table.size))
+    return table
 
 
 def parts_of_job(path: Path, program: str, *given: str) -> Read:
