@@ -5,14 +5,19 @@ from __future__ import annotations
 import io
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
+import pytest
 from rich.console import Console
 
 import modefront as mf
 from modefront.cli.progress import _Lines, _Log
 from modefront.front.search import Search
-from modefront.study.estimate import SHORT, duration, estimate
+from modefront.front.subproblems import Least
+from modefront.optim.sqp import Solution
+from modefront.study.estimate import SHORT, TIMED, duration, estimate
 from modefront.study.examples import write_example
 from modefront.work.progress import State, listening, note, note_iteration, together
 from modefront.work.task import Costs
@@ -78,6 +83,27 @@ def test_a_log_has_a_line_a_stage() -> None:
         "a\\x1b[31m: 0 tasks done: front, at most 7 min left\n"
         "a\\x1b[31m: 3 tasks done: edges and weighted models\n"
     )
+
+
+def test_as_many_searches_are_timed_whatever_the_first_ones_take(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else one is the last because it is long, and the mean of few is too great."""
+    now, solve = [0.0], Least.solve
+
+    def slow(self: Least, *given: Any) -> Solution:
+        now.append(now[-1] + 10.0)
+        return solve(self, *given)
+
+    monkeypatch.setattr(Least, "solve", slow)
+    monkeypatch.setattr(
+        "modefront.study.estimate.time", SimpleNamespace(process_time=lambda: now[-1])
+    )
+    write_example("three-story-c0", tmp_path)
+    found = estimate(mf.load(tmp_path / "study.toml"))
+    assert found is not None
+    assert len(now) == 1 + TIMED
+    assert found.plan.search == pytest.approx(10.0)
 
 
 def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Path) -> None:

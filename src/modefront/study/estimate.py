@@ -40,8 +40,7 @@ ENDS = 20
 """Steps to the end of a range at a model, with a slack: each takes derivatives by differences."""
 
 TIMED, WITHIN = 8, 0.4
-"""Searches that are timed, where an evaluation tells that there is time for them; seconds within
-which another one is begun."""
+"""Searches that are timed at most, and seconds that usual ones may take together."""
 
 SAMPLES = 100  # samples with which a prediction is timed, and three times as many
 
@@ -156,16 +155,16 @@ def _search(study: Study) -> tuple[float, float] | None:
     seconds, average = (USUAL + p) * each, float(USUAL + p)
     found: list[tuple[float, int]] = []
     ends: list[Solution] = []
-    for k in range(TIMED if seconds < WITHIN else 0):
-        if sum(spent for spent, _ in found) < WITHIN:
-            edge = Least(Lexicographic(k % n, sizes), "")
-            theta = rng.uniform(problem.lower, problem.upper)
-            began = time.process_time()
-            start = begin(problem.evaluate(theta, second=True))
-            if start.feasible:
-                known = min((x.J for x in ends), key=lambda J: float(J[k % n]), default=None)
-                ends.append(edge.solve(problem, start, known))
-                found.append((time.process_time() - began, 1 + ends[-1].evaluations))
+    # How many are timed does not depend on what they take: else the last one is often the longest.
+    for k in range(int(WITHIN / max(seconds, WITHIN / TIMED))):
+        edge = Least(Lexicographic(k % n, sizes), "")
+        theta = rng.uniform(problem.lower, problem.upper)
+        began = time.process_time()
+        start = begin(problem.evaluate(theta, second=True))
+        if start.feasible:
+            known = min((x.J for x in ends), key=lambda J: float(J[k % n]), default=None)
+            ends.append(edge.solve(problem, start, known))
+            found.append((time.process_time() - began, 1 + ends[-1].evaluations))
     if found:
         seconds, average = (float(np.mean(x)) for x in zip(*found, strict=True))
     if is_reduced(study.problem.model) and isinstance(problem.model, MatrixModel):
