@@ -1,10 +1,10 @@
 """Models drawn from the posterior against closed forms and numerical integration."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from types import SimpleNamespace
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.most_probable import log_values, maximum
 from modefront.uncertainty.prior import NoiseModel, Standardised
 from modefront.uncertainty.sampling import DRAWS, Peak, agreement, draw_models
-from modefront.work.task import IMMEDIATE
+from modefront.work.task import IMMEDIATE, Task
 
 NU = 4.0
 
@@ -117,6 +117,21 @@ def test_draws_at_bounds_are_those_of_the_truncated_gaussian(mean: float) -> Non
     assert scipy.stats.kstest(draws[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01
 
 
+@dataclass
+class Noting:
+    """An executor that notes how many tasks are still expected, beside those that are done."""
+
+    done: int = 0
+    expected: list[tuple[int, int]] = field(default_factory=list)
+
+    def run(self, tasks: Sequence[Task[Any]], /) -> list[Any]:
+        self.done += len(tasks)
+        return [task() for task in tasks]
+
+    def expect(self, stages: Mapping[str, int]) -> None:
+        self.expected.append((self.done, sum(stages.values())))
+
+
 def test_twins_beyond_a_bound_fill_the_triangle() -> None:
     """Only the sum of two parameters is known, and is greater than bounds allow on average."""
 
@@ -125,7 +140,11 @@ def test_twins_beyond_a_bound_fill_the_triangle() -> None:
         return [(np.array([(x + y - 1.5) / 0.05]), np.array([[20 + 0 * x, 20 + 0 * x]]))]
 
     noise = replace(noise_of(total, [0, 0], [1, 1], [1.0]), weight=1e8)
-    draws = draw_models(noise, [np.array([0.75, 0.75])], 400, 6, IMMEDIATE).theta
+    work = Noting()
+    draws = draw_models(noise, [np.array([0.75, 0.75])], 400, 6, work).theta
+    assert work.expected[1:], "more rounds are said to come, as far as the size of the draws tells"
+    for done, expected in work.expected[1:]:
+        assert expected / 3 < work.done - done < 3 * expected
     assert draws.sum(axis=1).std() == pytest.approx(0.05, rel=0.15)
     for x in draws.T:  # uniform from 0.5 to 1 but for the noise
         assert scipy.stats.kstest(x, scipy.stats.uniform(0.5, 0.5).cdf).statistic < 0.12

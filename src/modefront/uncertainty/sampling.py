@@ -317,6 +317,8 @@ def draw_models(
         stuck = 2 * len(kept) >= rounds and size <= 2 * CHAINS
         if stuck or len(kept) == rounds or (settled and size >= count):
             break
+        more_rounds = np.ceil(len(kept) * max(count / size - 1, 0.0))  # effective draws add up
+        work.expect({stage: CHAINS * int(np.clip(more_rounds, 1, rounds - len(kept)))})
     every = [x for chain in zip(*kept, strict=True) for x in chain]
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
     last = len(every) * ROUND - 1
