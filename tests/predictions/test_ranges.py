@@ -97,6 +97,35 @@ def test_between_points_the_front_is_solved_for() -> None:
     assert calls[0] < 40
 
 
+class Branches:
+    """Sums of wells: a short branch up to x = 0.3, another one at 0.5, and one that ends at 3."""
+
+    objectives = ("a", "b")
+    lower, upper, start = np.zeros(1), np.full(1, 3.0), np.zeros(1)
+    wells = (((0.0156, 0.5, 0.08),), ((0.3, 0.3, 0.15), (0.85, 0.52, 0.08), (0.98, 3.0, 0.5)))
+
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        (x,) = theta
+        J = np.array([[x * x / 9, 2 * x / 9, 2 / 9], [1.0, 0.0, 0.0]])  # and their derivatives
+        for row, wells in zip(J, self.wells, strict=True):
+            for depth, at, w in wells:
+                u = (x - at) / w
+                row -= depth * np.exp(-u * u) * np.array([1, -2 * u / w, (4 * u * u - 2) / w**2])
+        return Evaluation(
+            theta, J[:, 0], ObjectiveDerivatives(J[:, 1:2], J[:, 2:, None], exact=True)
+        )
+
+
+def test_a_branch_of_which_one_model_is_known_is_followed_to_its_end() -> None:
+    """No model is nearer than its ends to the middle of two branches; the first ends at 0.3."""
+    thetas = np.array([[0.0], [0.5], [3.0]])
+    least, greatest = along(Branches(), lambda x: float(abs(x[0] - 0.3)), thetas)
+    assert least == pytest.approx(0.0, abs=3e-3)
+    assert greatest == pytest.approx(2.7)
+
+
 def test_a_range_is_the_same_for_any_points_of_the_front() -> None:
     def q(theta: Floats) -> float:
         return float(np.sin(4 * theta[0]))

@@ -76,7 +76,7 @@ class Sampled:
     J: Floats
     is_open: bool
     slack: float = 0.0
-    between: dict[bytes, Solution | None] = field(default_factory=dict, repr=False)
+    between: dict[bytes, list[Solution]] = field(default_factory=dict, repr=False)
 
     @cached_property
     def ranges(self) -> Floats:
@@ -284,25 +284,42 @@ class _Along:
         key = np.append(one, other).tobytes()
         if key not in self.front.between:
             self.front.between[key] = self._between(a, b)
-        found, known = self.front.between[key], np.array([J for _, J, _ in self.known])
-        if found and undominated(found.J[None], known, self.front.ranges).all():
-            self.known.append((found.theta, found.J, self.value(found.theta)))
+        known = np.array([J for _, J, _ in self.known])
+        for found in self.front.between[key]:
+            if undominated(found.J[None], known, self.front.ranges).all():
+                self.known.append((found.theta, found.J, self.value(found.theta)))
 
-    def _between(self, a: int, b: int) -> Solution | None:
-        """Return the model half-way between two; None where these are as near to it as any."""
+    def _between(self, a: int, b: int) -> list[Solution]:
+        """Return the model half-way between two; where their branches end if none is nearer."""
         (one, J, _), (other, at, _), unit = self.known[a], self.known[b], self.front.ranges
         ends = np.array([J, at]) / unit
         middle = ends.mean(axis=0)
-        programme = achievement(RHO / unit, np.diag(1 / unit), middle)
         for starts in ([(one + other) / 2], [one, other]):
-            found = [
-                solve(self.problem, programme, begin(self.problem.evaluate(start)), _ENOUGH)
-                for start in starts
-            ]
+            found = [self._toward(middle, begin(self.problem.evaluate(x))) for x in starts]
             best = min(found, key=lambda x: float((x.J / unit - middle).max()))
             if (best.J / unit - middle).max() < (ends - middle).max(axis=1).min() - TIE:
-                return best
-        return None
+                return [best]
+        return [x for start in (one, other) if (x := self._end_of(start, middle))]
+
+    def _toward(self, target: Floats, start: Solution) -> Solution:
+        """Return the model nearest to objectives over their ranges, of those that a start sees."""
+        unit = self.front.ranges
+        programme = achievement(RHO / unit, np.diag(1 / unit), target)
+        return solve(self.problem, programme, start, _ENOUGH)
+
+    def _end_of(self, theta: Floats, target: Floats) -> Solution | None:
+        """Return the last model toward a target on the branch of another that none dominates."""
+        known, unit = np.array([J for _, J, _ in self.known]), self.front.ranges
+        here, found = begin(self.problem.evaluate(theta)), None
+        first, low, high = here.J / unit, 0.0, 1.0
+        while high - low > SURE:
+            share = (low + high) / 2
+            there = self._toward(first + share * (target - first), here)
+            if there.feasible and undominated(there.J[None], known, unit).all():
+                here, found, low = there, there, share
+            else:
+                high = share
+        return found if _apart(self.problem, theta, here.theta) > SURE else None
 
 
 def _apart(problem: Problem, one: Floats, other: Floats) -> float:
