@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, Monomials
-from modefront.modes.dense import modes
+from modefront.modes.dense import lowest, modes
 from modefront.modes.result import Modes
 
 
@@ -193,3 +193,23 @@ def test_monomials_have_exact_derivatives(seed: int) -> None:
         step[i] += 1j * h
         expected = np.prod(step**coefficients.exponents, axis=1).imag / h
         assert coefficients.jacobian(theta)[:, i] == pytest.approx(expected, rel=1e-8, abs=1e-12)
+
+
+def test_the_lowest_modes_alone_are_those_of_all() -> None:
+    """They are left to the others where K is singular or indefinite, and where digits are lost."""
+    rng = np.random.default_rng(4)
+    A, B = rng.normal(size=(2, 12, 12))
+    K, M = A @ A.T + np.eye(12), B @ B.T + np.eye(12)
+    one = Monomials(np.zeros((1, 0)))
+    whole = modes(
+        DenseAffine(K[None], one), DenseAffine(M[None], one), np.eye(12), np.zeros(0), 4, False
+    )
+    found = lowest(K, M, 4)
+    assert found
+    assert found[0] == pytest.approx(whole.lam, rel=1e-12)
+    assert np.abs(found[1]) == pytest.approx(np.abs(whole.phi), rel=1e-9)
+    scale = np.logspace(0, 7, 12)
+    far = np.diag(scale), np.diag(1 / scale)
+    for stiffness, mass in ((K - K, M), (K - 9 * np.eye(12), M), far):
+        assert lowest(stiffness, mass, 8) is None
+    assert lowest(K, M, 13) is None

@@ -89,6 +89,23 @@ def modes(
     return Modes(lam[:count], phi, slopes)
 
 
+def lowest(K: Floats, M: Floats, count: int) -> tuple[Floats, Floats] | None:
+    """Return the lowest eigenvalues (count,) and mass-normalised modes (N, count) alone.
+
+    None where these lack digits without all others, or K is not positive definite. M is
+    semidefinite.
+    """
+    least = max(len(K) - count, 0)
+    try:
+        mu, X = scipy.linalg.eigh(M, K, subset_by_index=(least, len(K) - 1), check_finite=False)
+    except np.linalg.LinAlgError:
+        return None
+    K_size, M_size = np.abs(K.diagonal()).sum(), np.abs(M.diagonal()).sum()
+    if mu.size < count or mu[0] < PRECISE * mu[-1] or mu[-1] * K_size * SHIFT**2 > M_size:
+        return None
+    return 1 / mu[::-1], X[:, ::-1] / np.sqrt(mu[::-1])
+
+
 def full_modes(
     K: DenseAffine, M: DenseAffine, theta: Floats, count: int, loads: Floats
 ) -> FullModes:

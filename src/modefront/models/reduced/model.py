@@ -188,7 +188,12 @@ class ReducedModel:
             return self.full.modes(theta, count, derivatives=derivatives)
         _, K, M, sensed = self._projected()
         started = time.perf_counter()
-        modes = dense.modes(K, M, sensed, theta, count, derivatives)
+        every = derivatives or M.coefficients.varies
+        alone = None if every else dense.lowest(K.at(theta), M.at(theta), count)
+        if alone:
+            modes = Modes(alone[0], sensed @ alone[1])
+        else:
+            modes = dense.modes(K, M, sensed, theta, count, derivatives)
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return modes
 
