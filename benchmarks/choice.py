@@ -28,7 +28,7 @@ import scipy.sparse
 from reduced import MODES, shell, solid, timed
 
 import modefront as mf
-from modefront.identifiability.options import Identifiability
+from modefront.identifiability.combinations import Identifiability
 from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel

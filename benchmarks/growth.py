@@ -23,7 +23,7 @@ import numpy as np
 
 import modefront as mf
 from modefront import fem
-from modefront.identifiability.options import Identifiability
+from modefront.identifiability.combinations import Identifiability
 from modefront.models.mesh import mesh_model
 from modefront.work.task import counted
 

@@ -27,7 +27,7 @@ import xarray as xr
 import modefront as mf
 from modefront._typing import Floats
 from modefront.front.dominance import nondominated
-from modefront.identifiability.options import Identifiability
+from modefront.identifiability.combinations import Identifiability
 
 FLOORS, MODES, SENSORS = 150, 4, 8
 NAMES = ["p1", "p2", "k1", "k2", "k3"]

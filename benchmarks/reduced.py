@@ -40,7 +40,7 @@ import xarray as xr
 import modefront as mf
 from modefront import fem
 from modefront._typing import Floats, Ints
-from modefront.identifiability.options import Identifiability
+from modefront.identifiability.combinations import Identifiability
 from modefront.linalg.affine import DenseAffine
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model

@@ -19,7 +19,7 @@ from smu import Structure, frequencies_and_shapes, read
 
 import modefront as mf
 from modefront.front.search import Search
-from modefront.identifiability.options import Identifiability
+from modefront.identifiability.combinations import Identifiability
 from modefront.uncertainty.noise import Uncertainty
 
 

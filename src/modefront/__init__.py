@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from modefront.front.methods import Method as Method
     from modefront.front.options import Pareto as Pareto
     from modefront.front.search import Search as Search
+    from modefront.identifiability.combinations import Identifiability as Identifiability
     from modefront.identifiability.combinations import combinations as combinations
-    from modefront.identifiability.options import Identifiability as Identifiability
     from modefront.identification.modal_test import identify as identify
     from modefront.models.chain import chain as chain
     from modefront.models.files import read_matrix as read_matrix

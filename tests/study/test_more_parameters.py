@@ -14,7 +14,7 @@ from modefront._typing import Floats
 from modefront.analysis.certified import certified_front
 from modefront.front.front import Front
 from modefront.front.search import Search
-from modefront.identifiability.options import Identifiability
+from modefront.identifiability.combinations import Identifiability
 from modefront.study import session
 
 NAMES = tuple(f"k{i + 1}" for i in range(6))

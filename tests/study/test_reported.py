@@ -22,7 +22,7 @@ from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind
 from modefront.front.search import Search
 from modefront.front.state import distinct_points
-from modefront.identifiability.options import Identifiability
+from modefront.identifiability.combinations import Identifiability
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.results.assemble import lattice_values

@@ -15,8 +15,7 @@ from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
 from modefront.front.point import Kind, Point, of_kind
 from modefront.front.simplex import Payoff, default_points
-from modefront.identifiability.combinations import without_effect
-from modefront.identifiability.options import Identifiability
+from modefront.identifiability.combinations import Identifiability, without_effect
 from modefront.identifiability.scale import scale_at
 from modefront.optim.lexicographic import TIE
 from modefront.optim.problem import Evaluation

@@ -92,8 +92,7 @@ def modes(
 def lowest(K: Floats, M: Floats, count: int) -> tuple[Floats, Floats] | None:
     """Return the lowest eigenvalues (count,) and mass-normalised modes (N, count) alone.
 
-    None where these lack digits without all others, or K is not positive definite. M is
-    semidefinite.
+    None where digits need all others, or K is not positive definite; M is semidefinite.
     """
     least = max(len(K) - count, 0)
     try:

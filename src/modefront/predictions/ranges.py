@@ -144,7 +144,7 @@ class Equivalent:
     @cached_property
     def equations(self) -> tuple[Floats, Floats]:
         """The rows (k, rows) of the equations, and their null space (p, d)."""
-        U, sigma, Vt = np.linalg.svd(self._jacobian(self.model))
+        U, sigma, Vt = np.linalg.svd(self._residuals(self.model)[1])
         k = int((sigma > RANK * sigma.max(initial=0.0)).sum())
         return U[:, :k].T / sigma[:k, None], Vt[k:].T
 
@@ -153,13 +153,11 @@ class Equivalent:
         parts = [np.linalg.norm(x.dr * self.span) for x in self.model.residuals]
         return [float(x) if x > 0 else 1.0 for x in parts]
 
-    def _jacobian(self, evaluation: Evaluation) -> Floats:
-        parts = zip(evaluation.residuals, self._lengths, strict=True)
-        return np.vstack([x.dr * self.span / v for x, v in parts])
-
-    def _vector(self, evaluation: Evaluation) -> Floats:
-        parts = zip(evaluation.residuals, self._lengths, strict=True)
-        return np.concatenate([x.r / v for x, v in parts])
+    def _residuals(self, evaluation: Evaluation) -> tuple[Floats, Floats]:
+        """Return residuals over their lengths, and their derivatives over the ranges."""
+        parts = list(zip(evaluation.residuals, self._lengths, strict=True))
+        dr = [x.dr * self.span / v for x, v in parts]
+        return np.concatenate([x.r / v for x, v in parts]), np.vstack(dr)
 
     @property
     def level(self) -> Floats:
@@ -197,7 +195,7 @@ class Equivalent:
     def _with(self, q: Values, size: float) -> Callable[[Problem, Floats, bool, bool], Evaluation]:
         """Return the evaluation of the equations, or the objectives, and of q over its size."""
         rows = self.equations[0] if self.slack == 0 else None
-        r0 = self._vector(self.model)
+        r0, _ = self._residuals(self.model)
 
         def evaluation(problem: Problem, theta: Floats, _: bool, __: bool) -> Evaluation:
             found, value = problem.evaluate(theta), q(theta) / size
@@ -207,8 +205,8 @@ class Equivalent:
             if rows is None:
                 c, dc, H, along = found.J, found.dJ, found.H, np.eye(theta.size)
             else:
-                dr = self._jacobian(found)
-                c, dc = rows @ (self._vector(found) - r0), rows @ dr / self.span
+                r, dr = self._residuals(found)
+                c, dc = rows @ (r - r0), rows @ dr / self.span
                 H = np.zeros((n - 1, theta.size, theta.size))
                 along = np.linalg.svd(rows @ dr)[2][n - 1 :].T
             dq = self._slopes(q, theta, along) / size

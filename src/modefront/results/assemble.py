@@ -25,7 +25,6 @@ from modefront.rounding import COMPUTED, TINY
 from modefront.uncertainty.inference import Inference
 from modefront.uncertainty.prediction import summary
 from modefront.uncertainty.prior import NoiseModel, prior_widths
-from modefront.uncertainty.scatter import std
 
 ITERATED = "iterated-weights"
 """Name of the fixed point of the iteration of the weights, among the minima."""
@@ -226,7 +225,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
             row["objective_std"] = np.sqrt(np.diag(J))
             row["scatter_doubt"] = ", ".join(x.name.lower() for x in scatter.warnings)
             for quantity, slopes in analysis.slopes.get(point.label, {}).items():
-                row[f"{quantity}_std"] = std(scatter.theta @ slopes.T)
+                row[f"{quantity}_std"] = np.linalg.norm(scatter.theta @ slopes.T, axis=0)
         rows.append(row)
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
@@ -324,7 +323,6 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
         values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
         attributes["freed_less"] = freed.less
     if unfixed is not None:
-        attributes |= {"fixed_parameter": unfixed.name, "fixed_value": unfixed.value}
-        values["unfixed_misfit"] = unfixed.misfit
+        attributes["fixed_parameter"], attributes["fixed_value"], values["unfixed_misfit"] = unfixed
     out = data.assign(described(values)).assign_coords({"quantile": QUANTILES})
     return out.assign_attrs(attributes)

@@ -13,7 +13,7 @@ from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
 from modefront.front.point import Kind, label
 from modefront.front.search import Search
-from modefront.identifiability.options import Identifiability
+from modefront.identifiability.combinations import Identifiability
 from modefront.models.parameters import Parameter, parameters_of
 from modefront.options import check_fields, each_once, text, whole
 from modefront.predictions import Prediction

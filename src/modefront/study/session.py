@@ -23,8 +23,7 @@ from modefront.front.options import Pareto, ParetoOptions
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, Point
 from modefront.front.search import Search
-from modefront.identifiability.combinations import unchanged_groups
-from modefront.identifiability.options import Identifiability
+from modefront.identifiability.combinations import Identifiability, unchanged_groups
 from modefront.identifiability.sensitivity import superfluous
 from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text

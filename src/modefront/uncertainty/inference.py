@@ -95,22 +95,6 @@ class Freed:
     less: float
 
 
-@record
-@dataclass(frozen=True)
-class Unfixed:
-    """The most probable model with a parameter free that is fixed.
-
-    Attributes
-    ----------
-    name, value : of this parameter
-    misfit : (n,) root mean square errors of the model over those expected
-    """
-
-    name: str
-    value: float
-    misfit: Floats
-
-
 @dataclass(frozen=True)
 class Inference:
     """The posterior, and what its maximum says.
@@ -120,13 +104,14 @@ class Inference:
     draws : models drawn from the posterior
     fit : of its maximum
     freed : the maximum between wider bounds; None where no bound holds it
-    unfixed : the maximum with a fixed parameter free; None where none lowers errors beyond chance
+    unfixed : name and value of the fixed parameter that is wrong, and the errors (n,) over those
+        expected with it free; None where none lowers them beyond chance
     """
 
     draws: Draws
     fit: Fit
     freed: Freed | None
-    unfixed: Unfixed | None
+    unfixed: tuple[str, float, Floats] | None
 
     @property
     def gaussian(self) -> Posterior:
@@ -194,10 +179,13 @@ def excluding(sides: Ints, theta: Floats, misfit: Floats, free: Freed) -> list[i
     return [] if is_chance or misfit[i] - free.misfit[i] < GAIN * misfit[i] else beyond
 
 
-def unfixed(noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor) -> Unfixed | None:
-    """Return the most probable model with that fixed parameter free with which it is most so.
+def unfixed(
+    noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor
+) -> tuple[str, float, Floats] | None:
+    """Return the fixed parameter with which, if free, a model is most probable.
 
-    None where none is fixed, and where -2 ln p becomes less by no more than right ones may.
+    Returned are its name and value, and the errors (n,) over those expected. None where none is
+    fixed, and where -2 ln p becomes less by no more than right ones may.
     ``misfit`` (n,) are the errors over those expected: where they are large, the promises, which
     are linearised, only say which parameters are tried first.
     """
@@ -221,7 +209,7 @@ def unfixed(noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor) ->
     if best is None or best.less < least:
         return None
     names = problem.with_free([name]).model.parameters
-    return Unfixed(name, float(best.theta[names.index(name)]), best.misfit)
+    return name, float(best.theta[names.index(name)]), best.misfit
 
 
 def _placed(noise: NoiseModel, known: Sequence[str], theta: Floats) -> Floats:

@@ -66,11 +66,6 @@ class LinearisationWarning(Enum):
     UNSOLVED = "the solution has not converged"
 
 
-def std(changes: Floats) -> Floats:
-    """Return the standard deviations over the sources, which are the first dimension."""
-    return np.asarray(np.sqrt((changes**2).sum(axis=0)))
-
-
 @dataclass(frozen=True)
 class Conditions:
     r"""Conditions of a programme on the changes: C dtheta + D dw - e dtau = f, e^T dw = h.
@@ -167,8 +162,8 @@ def boundary(
     slack = tau * n - above
 
     def switch(dw: Floats, dJ: Floats, dtau: Floats) -> bool:
-        hardly = w * n - RHO <= std(dw * n + w * dn)
-        close = slack <= std(moved - dJ + dtau * n)
+        hardly = w * n - RHO <= np.linalg.norm(dw * n + w * dn, axis=0)
+        close = slack <= np.linalg.norm(moved - dJ + dtau * n, axis=0)
         return bool(np.where(active, hardly, close).any())
 
     fixed = {} if equations else {"switch": switch}
@@ -259,19 +254,16 @@ def scatter(
     theta, dw, dtau = x[:, :q] @ B.T, x[:, q : q + n], x[:, q + n :]
     J = noise.J + theta @ evaluation.dJ.T
     slope = (slope + theta @ second + dw @ evaluation.dJ) * span
-    warnings = [
-        (LinearisationWarning.SADDLE, not _is_minimum(W, c.C @ B, dJ, c)),
-        (LinearisationWarning.MEETS, _meets(problem, evaluation.theta, theta, held)),
-        (
-            LinearisationWarning.LEAVES,
-            bool((np.abs(w @ evaluation.dJ * span) <= std(slope))[held].any()),
-        ),
-        (
-            LinearisationWarning.SWITCHES,
-            c.switch(dw, theta @ evaluation.dJ.T, dtau),
-        ),
-    ]
-    why = tuple(warning for warning, holds in warnings if holds)
+    room = np.minimum(evaluation.theta - problem.lower, problem.upper - evaluation.theta)
+    reach = np.linalg.norm(theta, axis=0)
+    leaves = np.abs(w @ evaluation.dJ * span) <= np.linalg.norm(slope, axis=0)
+    holds = {
+        LinearisationWarning.SADDLE: not _is_minimum(W, c.C @ B, dJ, c),
+        LinearisationWarning.MEETS: ((room < reach) & (reach > 0) & ~held).any(),
+        LinearisationWarning.LEAVES: leaves[held].any(),
+        LinearisationWarning.SWITCHES: c.switch(dw, theta @ evaluation.dJ.T, dtau),
+    }
+    why = tuple(warning for warning in holds if holds[warning])
     return Scatter(theta, J, span[:, None] * free, why)
 
 
@@ -292,13 +284,6 @@ def _is_minimum(W: Floats, C: Floats, dJ: Floats, c: Conditions) -> bool:
         C, e = rows[:, : len(W)], rows[:, len(W) :]
         Z = scipy.linalg.null_space(scipy.linalg.null_space(e.T).T @ C if e.size else C)
     return bool((np.linalg.eigvalsh(Z.T @ (L + L.T) @ Z) > 0).all())
-
-
-def _meets(problem: Problem, theta: Floats, changes: Floats, held: Bools) -> bool:
-    """Return whether a parameter that is not held is less than its scatter from a bound."""
-    room = np.minimum(theta - problem.lower, problem.upper - theta)
-    moves = np.abs(changes).max(axis=0, initial=0.0) > 0
-    return bool((room < std(changes))[~held & moves].any())
 
 
 def _solve_scaled(A: Floats, b: Floats) -> Floats:
@@ -392,7 +377,7 @@ def with_neighbours(
         if kind == "end" and known:
             out[point.label] = out[point.role.ends[0]]
         elif known:
-            J, reach = point.solution.J, std(known.J)
+            J, reach = point.solution.J, np.linalg.norm(known.J, axis=0)
             near = kind == "boundary" and any((np.abs(J - end) <= reach).all() for end in ends)
             reasons = {
                 LinearisationWarning.ENDS: near,
@@ -418,7 +403,7 @@ def _has_rival(
     else:
         return False
     J = point.solution.J
-    reach = float(std(scatter.J @ programme.gradient(J)))
+    reach = float(np.linalg.norm(scatter.J @ programme.gradient(J)))
     return any(programme.value(x.J) - programme.value(J) <= reach for x in others)
 
 
