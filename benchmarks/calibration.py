@@ -46,8 +46,7 @@ from modefront.identification.sets import combine
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import begin
 from modefront.results.assemble import DETERMINED
-from modefront.uncertainty.inference import refused
-from modefront.uncertainty.most_probable import most_probable
+from modefront.uncertainty.inference import CHANCE, lack_of_fit, most_probable, refused
 from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS, draw_models
 from modefront.uncertainty.scatter import laplace
@@ -253,12 +252,13 @@ def judged(seed: int, draws: int, test: Test) -> list[Verdict]:
     known = list(rng.uniform(0.6, 1.6, (STARTS, truth.size)))
     maxima = most_probable(problem, noise, known, IMMEDIATE)
     best = maxima[0]
+    found = noise.problem.evaluate(best.theta)
     misfit, nominal = (
-        noise.over_expected(noise.problem.evaluate(theta).J)
-        for theta in (best.theta, problem.start)
+        noise.over_expected(x.J) for x in (found, noise.problem.evaluate(problem.start))
     )
     if np.any(refused(misfit, nominal)):
         return []
+    right = not (lack_of_fit(noise, found) < CHANCE).any()
     drawn = draw_models(noise, [x.theta for x in maxima], draws, seed, IMMEDIATE)
     samples = drawn.theta
     low, middle, high = np.quantile(samples, (0.05, 0.5, 0.95), axis=0, method="weibull")
@@ -271,7 +271,7 @@ def judged(seed: int, draws: int, test: Test) -> list[Verdict]:
             bool(low[j] - 1e-9 <= truth[j] <= high[j] + 1e-9),
             None if old is None else bool(abs(truth[j] - old[0][j]) <= 1.645 * old[1][j]),
             float(abs(truth[j] - middle[j]) / std[j]),
-            bool(determined[j]) and drawn.settled,
+            bool(determined[j]) and drawn.settled and right,
             float(high[j] - low[j]),
         )
         for j in range(truth.size)

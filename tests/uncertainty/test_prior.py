@@ -8,7 +8,7 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.errors import InputError
 from modefront.residuals.problem import UpdatingProblem
-from modefront.uncertainty.most_probable import log_values, most_probable
+from modefront.uncertainty.inference import log_values, most_probable
 from modefront.uncertainty.prior import PULL, NoisePrior
 from modefront.work.task import IMMEDIATE
 

@@ -15,7 +15,7 @@ from scipy.special import ndtr, ndtri
 from modefront._typing import Floats
 from modefront.models.parameters import Prior
 from modefront.residuals.problem import UpdatingProblem
-from modefront.uncertainty.most_probable import log_values, maximum
+from modefront.uncertainty.inference import log_values, maximum
 from modefront.uncertainty.prior import NoiseModel, Standardised
 from modefront.uncertainty.sampling import DRAWS, Peak, agreement, draw_models
 from modefront.work.task import IMMEDIATE, Task
@@ -29,7 +29,9 @@ def noise_of(
     """Return residuals in units of expected errors, one group after the other."""
     problem = squares(function, lower, upper, len(a))
     n = len(a)
-    return NoiseModel(cast(UpdatingProblem, problem), np.array(a), np.zeros(n), np.ones(n), NU, "")
+    return NoiseModel(
+        cast(UpdatingProblem, problem), np.array(a), np.zeros(n), np.zeros(n), np.ones(n), NU, ""
+    )
 
 
 def test_one_group_of_linear_residuals_has_students_distribution() -> None:

@@ -5,8 +5,7 @@ import pytest
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.uncertainty.inference import Freed, excluding, unfixed
-from modefront.uncertainty.most_probable import most_probable
+from modefront.uncertainty.inference import Freed, excluding, most_probable, unfixed
 from modefront.uncertainty.prior import NoisePrior
 from modefront.work.task import IMMEDIATE, counted
 

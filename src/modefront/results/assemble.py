@@ -22,7 +22,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.findings import Determinations, as_values, findings
 from modefront.results.schema import FORMAT, Values, described
 from modefront.rounding import COMPUTED, TINY
-from modefront.uncertainty.inference import Inference
+from modefront.uncertainty.inference import CHANCE, Inference, refused
 from modefront.uncertainty.prediction import summary
 from modefront.uncertainty.prior import NoiseModel, prior_widths
 
@@ -293,15 +293,17 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     """Return results with what the posterior says.
 
     A quantile is such that the next draw is below it with its probability. Of draws that do not
-    settle, and of a model that cannot be used, no parameter is called determined.
+    settle, and of a model that lacks something or cannot be used, none is called determined.
     """
     draws, fit, widths = inference.draws, inference.fit, prior_widths(noise.problem)
     freed, unfixed = inference.freed, inference.unfixed
-    settled = draws.settled and not fit.is_refused
+    settled = draws.settled and not np.any(refused(fit.misfit, fit.nominal))
     (side,) = data["at_bound"].values[data["kind"].values == Kind.MOST_PROBABLE.value]
     interval = intervals(draws.theta, side, data["bounds"].values)
     share = (interval[:, 2] - interval[:, 0]) / widths
-    place = np.where((share < DETERMINED) & settled, 0, np.where(share > OPEN, 2, 1))
+    place = np.where(
+        (share < DETERMINED) & settled & ~(fit.lack < CHANCE).any(), 0, np.where(share > OPEN, 2, 1)
+    )
     values = {
         "sample_theta": draws.theta,
         "interval": interval,
@@ -309,6 +311,7 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
         "prior_width": widths,
         "misfit": fit.misfit,
         "nominal_misfit": fit.nominal,
+        "lack_of_fit": fit.lack,
         "likely_mode": fit.pairs,
         "posterior_std": draws.theta.std(axis=0, ddof=1),
         "posterior_covariance": np.atleast_2d(np.cov(draws.theta, rowvar=False)),

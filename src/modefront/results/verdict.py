@@ -20,7 +20,7 @@ from modefront.front.point import Kind, front_points, preferred
 from modefront.predictions.base import predictions_in
 from modefront.results.assemble import TRUST
 from modefront.results.remarks import fit_of
-from modefront.uncertainty.inference import GAIN, LARGE, WORSE, Freed, refused
+from modefront.uncertainty.inference import CHANCE, GAIN, LARGE, WORSE, Freed, refused
 
 SMALL = 0.5
 """Change of errors along a front, over those expected, below which the compromise hardly counts."""
@@ -86,7 +86,8 @@ def _use(data: Dataset) -> str:
     worst = np.argsort(-misfit) if misfit.size > SHOWN else np.arange(misfit.size)
     size = enumeration([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], SHOWN)
     use = _say("use", reference=data.attrs["reference"], errors=size)
-    return f"{use} {_say('lacks')}" if (misfit > LARGE).any() else use
+    lacks = (misfit > LARGE) | (data["lack_of_fit"].values < CHANCE)
+    return f"{use} {_say('lacks')}" if lacks.any() else use
 
 
 def _at_bounds(data: Dataset) -> Iterator[str]:

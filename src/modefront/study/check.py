@@ -38,8 +38,7 @@ from modefront.rounding import TINY
 from modefront.study.definition import Study
 from modefront.study.file import as_study
 from modefront.text import Shown
-from modefront.uncertainty.inference import freed
-from modefront.uncertainty.most_probable import maximum
+from modefront.uncertainty.inference import freed, maximum
 
 AGREEMENT = 1e-5  # greatest relative error of derivatives that finite differences explain
 STEP = 2e-3  # change of a residual in its own unit, root mean square, by a finite difference

@@ -27,7 +27,7 @@ from modefront.optim.sqp import Solution, begin
 from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
-from modefront.uncertainty.most_probable import STARTS as MAXIMA
+from modefront.uncertainty.inference import STARTS as MAXIMA
 from modefront.uncertainty.sampling import DRAWS, extent
 from modefront.work.progress import Plan, Span, together
 from modefront.work.task import seed_sequence, uncounted

@@ -38,8 +38,7 @@ from modefront.results.verdict import with_verdict
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
 from modefront.study.file import as_study
-from modefront.uncertainty.inference import infer
-from modefront.uncertainty.most_probable import most_probable
+from modefront.uncertainty.inference import infer, most_probable
 from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS

@@ -1,4 +1,6 @@
-"""What the posterior says about a most probable model: draws, misfit, bounds and measurements.
+"""The most probable model, and what the posterior says of it: draws, misfit, bounds, measurements.
+
+It is the greatest maximum of the posterior that the known models lead to.
 
 A bound that excludes the truth also drives other parameters to theirs. All bounds that hold the
 model are widened at once, and only those beyond which it then lies are to blame. Of the fixed
@@ -13,13 +15,15 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtri
+from scipy.special import chdtri, fdtrc
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
+from modefront.front.state import DISTINCT
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
-from modefront.optim.problem import at_bounds
-from modefront.uncertainty.most_probable import maximum
+from modefront.optim.problem import Evaluation, at_bounds
+from modefront.optim.sqp import Options, Solution, begin, solve
+from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.planning import Candidates, candidates
 from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
@@ -28,7 +32,7 @@ from modefront.work.codec import record
 from modefront.work.task import Executor, Task
 
 CHANCE = 0.01
-"""Probability that a fixed parameter, or a bound, is named where all of them are right."""
+"""Probability that a fixed parameter, a bound or the model is blamed where all are right."""
 
 LARGE, FAR = 2.0, 10.0
 """Errors over those expected, from which they are said to be larger, and from which no model is
@@ -44,6 +48,74 @@ GAIN = 0.1
 """Share of its errors that a group loses without bounds, from which these are worth widening."""
 
 
+STARTS = 12
+"""Searches at most, from the most probable of the known models."""
+
+APART = 0.02
+"""Distance of two starts, over the ranges of the parameters, below which one is enough."""
+
+_TIGHT = Options(reduction=1e-17)
+"""Steps end at the tolerance of the parameters, whatever f: a sum of logarithms has any size."""
+
+
+def most_probable(
+    problem: UpdatingProblem, noise: NoiseModel, known: Sequence[Floats], work: Executor
+) -> list[Solution]:
+    """Return the maxima of the posterior below known models theta (p,), the greatest first.
+
+    They are solutions of the problem, with the weights at which they are stationary in it.
+    """
+    thetas = np.unique(np.array([problem.start, *known]), axis=0)
+    (values,) = work.run([Task(("most-probable", "known"), log_values, (noise, thetas))])
+    span = problem.upper - problem.lower
+    starts: list[Floats] = []
+    for k in np.argsort(values, kind="stable").tolist():
+        apart = [np.abs((thetas[k] - x) / span).max() > APART for x in starts]
+        if np.isfinite(values[k]) and all(apart) and len(starts) < STARTS:
+            starts.append(thetas[k])
+    tasks = [
+        Task(("most-probable", k + 1), maximum, (noise, theta)) for k, theta in enumerate(starts)
+    ]
+    found = sorted(work.run(tasks), key=lambda x: noise.programme.value(x.J))
+    out: list[Solution] = []
+    for x in found:
+        if all(np.abs((x.theta - y.theta) / span).max() > DISTINCT for y in out):
+            out.append(x)
+    return work.run(
+        [
+            Task(("most-probable", "model", k + 1), _in_problem, (problem, noise, x))
+            for k, x in enumerate(out)
+        ]
+    )
+
+
+def log_values(noise: NoiseModel, thetas: Floats) -> Floats:
+    """Return -2 ln p of models (models, p), infinite where they are not defined."""
+    target, programme = noise.target, noise.programme
+    found = [target.evaluate(theta, derivatives=False) for theta in thetas]
+    return np.array([programme.value(x.J) if x.feasible else np.inf for x in found])
+
+
+def maximum(noise: NoiseModel, start: Floats) -> Solution:
+    """Return the maximum of the posterior to which a start (p,) leads, in the units of J'."""
+    target = noise.target
+    return solve(target, noise.programme, begin(target.evaluate(start, second=True)), _TIGHT)
+
+
+def _in_problem(problem: UpdatingProblem, noise: NoiseModel, found: Solution) -> Solution:
+    """Return a maximum as a solution of the problem, which has other units.
+
+    Parameters without any effect are nominal.
+    """
+    effects = np.vstack([each.dr for each in found.evaluation.residuals[:-1]])
+    theta = np.where(effects.any(axis=0), found.theta, problem.start)
+    evaluation = problem.evaluate(theta, second=True)
+    J = found.J[:-1]
+    unit = np.divide(J, evaluation.J, out=np.ones(J.size), where=evaluation.J > 0)
+    w = noise.programme.gradient(found.J)[:-1] * unit
+    return replace(found, evaluation=evaluation, weights=w)
+
+
 @record
 @dataclass(frozen=True)
 class Fit:
@@ -53,19 +125,16 @@ class Fit:
     ----------
     misfit, nominal : (n,) root mean square errors of the groups, and those of the nominal model,
         over those expected
+    lack : (n,) probability, times n, of such errors of a right model; NaN where nothing tells
     pairs : (modes,) the model mode that is most likely to be each measured one, from 1
     candidates : further measurements
     """
 
     misfit: Floats
     nominal: Floats
+    lack: Floats
     pairs: Floats
     candidates: Candidates
-
-    @property
-    def is_refused(self) -> bool:
-        """Whether the model cannot be used."""
-        return bool(np.any(refused(self.misfit, self.nominal)))
 
 
 def refused(misfit: Floats, nominal: Floats) -> tuple[Bools, Bools]:
@@ -133,8 +202,9 @@ def infer(
     theta = maxima[0]
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
     (free,) = work.run([Task(("most-probable", "freed"), freed, (noise, theta))])
+    rounds = 1 if np.any(refused(fit.misfit, fit.nominal)) else None
     return Inference(
-        draw_models(noise, maxima, count, seed, work, 1 if fit.is_refused else None),
+        draw_models(noise, maxima, count, seed, work, rounds),
         fit,
         free,
         unfixed(noise, theta, fit.misfit, work),
@@ -146,7 +216,20 @@ def _fit(noise: NoiseModel, theta: Floats) -> Fit:
     problem = noise.problem
     found, nominal = problem.evaluate(theta), problem.evaluate(problem.start, derivatives=False)
     misfit, before = (noise.over_expected(x.J) for x in (found, nominal))
-    return Fit(misfit, before, found.quantities["paired_mode"], candidates(noise, found))
+    further = candidates(noise, found)
+    return Fit(misfit, before, lack_of_fit(noise, found), found.quantities["paired_mode"], further)
+
+
+def lack_of_fit(noise: NoiseModel, found: Evaluation) -> Floats:
+    """Return the probability (n,), times n, of errors beside the scatter of the data sets.
+
+    That is a test of lack of fit; NaN where less than one error is left open, and of one set.
+    """
+    C, w = np.linalg.inv(noise.precision(found)), noise.logs.gradient(found.J)
+    left = noise.a - w * np.einsum("ijk,kj->i", found.gauss_newton, C) / 2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratio = (found.J - noise.S) / left / (noise.S / noise.d)
+    return left.size * np.where(left >= 1, fdtrc(left, noise.d, np.maximum(ratio, 0.0)), np.nan)
 
 
 def freed(noise: NoiseModel, theta: Floats) -> Freed | None:

@@ -80,7 +80,7 @@ class NoisePrior(Checked):
         said = [f"{plural[kind]} to {100 * unsaid[kind]:g} %" for kind in assumed if kind in unsaid]
         words = ", ".join(said).replace(" to", " known to", 1)
         logs = LogSum(a + self.weight, self.weight * level - S)
-        return NoiseModel(replace(scaled, likelihood=logs), a, S, level, self.weight, words)
+        return NoiseModel(replace(scaled, likelihood=logs), a, S, d, level, self.weight, words)
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class NoiseModel:
     ----------
     problem : with these residuals, summed over the data sets
     a : (n,) counts of independent errors
-    S : (n,) the part of J' that no model explains
+    S, d : (n,) the part of J' that no model explains, and its degrees of freedom
     level : (n,) expected variance m
     weight : degrees of freedom nu of the prior
     assumed : in words, which errors neither the data nor the user say; empty for none
@@ -100,6 +100,7 @@ class NoiseModel:
     problem: UpdatingProblem
     a: Floats
     S: Floats
+    d: Floats
     level: Floats
     weight: float
     assumed: str

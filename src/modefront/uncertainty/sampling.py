@@ -502,13 +502,6 @@ def _taken(here: Model, new: Model, change: float, rng: np.random.Generator) -> 
     return (new if rng.random() < probability else here), probability
 
 
-def _ranks(x: Floats) -> Floats:
-    """Return the ranks of values (n,) from 1, of those that are the same the mean one."""
-    _, place, count = np.unique(x, return_inverse=True, return_counts=True)
-    out: Floats = (np.cumsum(count) - (count - 1) / 2)[place]
-    return out
-
-
 def agreement(x: Floats) -> tuple[float, float]:
     """Return R-hat and the effective size of chains (chains, steps, p), of the worst parameter.
 
@@ -518,7 +511,9 @@ def agreement(x: Floats) -> tuple[float, float]:
     halves = np.concatenate([x[:, :half], x[:, -half:]])
     halves = halves.reshape(len(halves), half, -1)
     both = np.concatenate([halves, np.abs(halves - np.median(halves, axis=(0, 1)))], axis=2)
-    ranks = np.apply_along_axis(_ranks, 0, both.reshape(-1, both.shape[2]))
+    each = both.reshape(-1, both.shape[2]).T
+    places = [np.searchsorted(np.sort(x), [x, np.nextafter(x, np.inf)]) for x in each]
+    ranks = (np.sum(places, axis=1).T + 1) / 2  # the mean one of those that are the same
     y = ndtri((ranks - 0.375) / (len(ranks) + 0.25)).reshape(both.shape)
     within = y.var(axis=1, ddof=1).mean(axis=0)
     total = within * (half - 1) / half + y.mean(axis=1).var(axis=0, ddof=1)

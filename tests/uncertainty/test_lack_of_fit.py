@@ -1,0 +1,61 @@
+"""Errors beside the scatter of data sets tell whether a model lacks something."""
+
+import numpy as np
+import scipy.stats
+
+import modefront as mf
+from modefront._typing import Floats
+from modefront.uncertainty.inference import CHANCE, lack_of_fit, most_probable
+from modefront.uncertainty.noise import Uncertainty
+from modefront.uncertainty.prior import NoisePrior
+from modefront.work.task import IMMEDIATE
+
+N, SETS = 5, 4
+SPRING = 0.01
+
+
+def problem_of(seed: int, spring: float, sets: int = SETS) -> mf.UpdatingProblem:
+    """Return a chain of two parameters, and of a spring at its end that the model lacks."""
+    parts = np.zeros((N, N, N))
+    for i in range(N):
+        v = np.eye(N)[i] - (np.eye(N)[i - 1] if i else 0)
+        parts[i] = 1e4 * np.outer(v, v)
+    K = {"low": parts[:2].sum(axis=0), "high": parts[2:].sum(axis=0)}
+    places = {f"s{i}": i for i in range(N)}
+    model = mf.matrices(["low", "high"], K, {"base": np.eye(N)}, places)
+    whole = {"x": 1.2 * K["low"] + 0.9 * K["high"] + spring * 1e4 * np.diag(np.eye(N)[-1])}
+    true = mf.matrices(["x"], whole, {"base": np.eye(N)}, places).modes(np.ones(1), 4)
+    rng, shape = np.random.default_rng(seed), true.phi.T
+    data = mf.modal_data(
+        true.frequency * (1 + 0.005 * rng.normal(size=(sets, 4))),
+        shape + 0.02 * np.abs(shape).max() * rng.normal(size=(sets, *shape.shape)),
+        model.sensors,
+    )
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    parameters = [mf.Parameter(x, nominal=1.0, bounds=(0.3, 3.0)) for x in K]
+    return mf.updating_problem(model, data, groups, parameters=parameters)
+
+
+def lack(problem: mf.UpdatingProblem) -> Floats:
+    noise = NoisePrior().of(problem, Uncertainty().of(problem.data))
+    assert noise is not None
+    theta = most_probable(problem, noise, [problem.start], IMMEDIATE)[0].theta
+    return lack_of_fit(noise, noise.problem.evaluate(theta))
+
+
+def test_of_right_models_the_probabilities_are_uniform() -> None:
+    found = np.array([lack(problem_of(seed, 0.0)) for seed in range(30)]) / 2
+    for p in found.T:
+        assert scipy.stats.kstest(p, "uniform").pvalue > 0.01
+
+
+def test_a_spring_that_the_model_lacks_shows_in_several_sets_only() -> None:
+    assert (lack(problem_of(1, SPRING)) < CHANCE).any()
+    assert np.isnan(lack(problem_of(1, SPRING, sets=1))).all()
+
+
+def test_of_a_model_that_lacks_something_nothing_is_determined() -> None:
+    options = mf.Identifiability(models=0)
+    results = mf.solve(problem_of(2, SPRING), points=3, identifiability=options)
+    assert results.verdict[0].endswith("the model lacks something.")
+    assert set(results.trust.values.tolist()) == {"partly"}
