@@ -41,7 +41,7 @@ from modefront.front.state import Place, State
 from modefront.front.subproblems import SAMPLE, Least, Subproblem, Weights
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.optim.lexicographic import Lexicographic
-from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.problem import Evaluation, Problem, infeasible
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.optim.sqp import given as given_model
 from modefront.work.task import Task, counted
@@ -340,8 +340,8 @@ def state_of(problem: Known, subproblems: list[Subproblem], thetas: list[list[fl
 
 
 def run(state: State, *proposers: Proposer, search: Search | None = None) -> Loop:
-    loop = Loop(state, list(proposers), search or Search())
-    loop.run("test")
+    loop = Loop(state, search or Search())
+    loop.run("test", proposers)
     return loop
 
 
@@ -407,12 +407,13 @@ def test_the_chance_of_a_start_is_what_is_not_covered(
     known, place = ended(1.0, tries, min(gains, tries), counts)
     w = len(counts)
     N = sum(counts)
-    assert known.unseen == (min(w * (w + 1) / (N * (N - 1)), 1.0) if N > 1 else 1.0)
+    assert known.unseen() == (min(w * (w + 1) / (N * (N - 1)), 1.0) if N > 1 else 1.0)
     assert known.hits(place, TOLERANCE) == counts[0]
     rare = counts[0] < SURE
-    least = min(known.unseen, (known.gains + 1) / (tries + 2))
-    assert known.chance(place, TOLERANCE) == (known.unseen if rare else least)
-    assert Minima(9).unseen == 1.0, "nothing is known of what starts say that met no minimum"
+    least = min(known.unseen(), (known.gains + 1) / (tries + 2))
+    assert known.chance(place, TOLERANCE) == (known.unseen() if rare else least)
+    assert Minima(9).unseen() == 1.0, "nothing is known of what starts say that met no minimum"
+    assert Minima(9, lost=9).chance(place, TOLERANCE) == 0.1, "the next one is likely to be lost"
 
 
 def test_starts_that_lead_to_the_same_value_are_counted_together() -> None:
@@ -430,7 +431,7 @@ def test_starts_that_end_at_the_limit_of_iterations_have_met_no_minimum() -> Non
     for J in (1.0, 2.0, 5.0):
         known.note(place, begin(Evaluation(np.zeros(1), np.array([J]))), TOLERANCE)
     assert known.counts == [1, 1]
-    assert known.unseen == 1.0, "two starts that met two minima"
+    assert known.unseen() == 1.0, "two starts that met two minima"
 
 
 def test_starts_begin_at_the_problem_s_own_and_cover_each_range_evenly() -> None:
@@ -446,14 +447,25 @@ def test_starts_begin_at_the_problem_s_own_and_cover_each_range_evenly() -> None
     assert (np.sort(cells, axis=0) == np.arange(USUAL)[:, None]).all()
 
 
-def test_a_place_without_minima_does_not_take_the_starts_of_others() -> None:
+def test_starts_that_are_all_lost_end() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
-    state = state_of(problem, anchors(problem), [[0.0, 0.0]])
+    state = state_of(problem, anchors(problem)[:1], [[0.0, 0.0]])
+    starts, tries = Starts(np.random.default_rng(0)), 0
+    lost = Outcome(begin(infeasible(np.zeros(2), 2)), np.zeros((0, 2)), np.zeros((0, 2)), 1)
+    while (offer := next(starts.offers(state, 1))).chance >= Search().doubt:
+        starts.learn(state, offer, lost, 0.0)
+        tries += 1
+    assert 1 / Search().doubt - 1 <= tries <= 1 / Search().doubt
+
+
+def test_as_many_starts_at_a_time_as_are_needed() -> None:
+    problem = box(many_minima, [-4, -4], [4, 4])
+    state = state_of(problem, anchors(problem)[:1], [[0.0, 0.0]])
     starts = Starts(np.random.default_rng(0))
-    starts.of(state.places[0]).tries = 8
-    places = [offer.place for offer in starts.offers(state, 3)]
-    assert places[-3:] == [0, 0, 0]
-    assert 0 not in places[:-3]
+    known = starts.of(state.places[0])
+    known.ends, known.counts, known.tries = [state.places[0].incumbent], [5], 5
+    chances = [offer.chance for offer in starts.offers(state, 6)]
+    assert sum(chance >= Search().doubt for chance in chances) == 2, "after seven, one is enough"
 
 
 def test_starts_find_all_minima_and_then_stop() -> None:

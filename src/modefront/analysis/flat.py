@@ -107,7 +107,7 @@ def identifiable_part(
     counts = lattice(len(edges), divisions)
     subproblems = [Point(row / divisions, tuple(row.tolist()), target) for row in counts]
     state.add(subproblems)
-    Loop(state, [Polish()], Search()).run("identifiable")
+    Loop(state, Search()).run("identifiable", [Polish()])
     along = distinct_points([place.incumbent for place in state.places], target.scale)
     floor = np.where(flat > 0, (1 - TIE) * target.utopia, 0.0)
     above = [solution for solution in along if (floor <= solution.J).all()]

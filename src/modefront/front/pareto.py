@@ -22,7 +22,7 @@ from modefront.front.proposers.base import Proposer, at, evaluated
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Starts
-from modefront.front.search import EDGES, Loop, Search
+from modefront.front.search import EDGES, POINTS, Loop, Search
 from modefront.front.simplex import (
     Payoff,
     default_points,
@@ -39,7 +39,6 @@ from modefront.front.subproblems import (
     Subproblem,
     Weights,
     active_bounds,
-    is_along,
     near_best,
     sample,
 )
@@ -97,16 +96,13 @@ class _Run:
         self.weighted = [*named, (Kind.EQUAL, "", np.ones(self.n))]
         self.state, self.cut = State(self.problem, self.search.tolerance, self.work), False
         rng = np.random.default_rng(seed_sequence(self.seed, "search"))
-        others = np.random.default_rng(seed_sequence(self.seed, "evolution"))
+        self.children = np.random.default_rng(seed_sequence(self.seed, "evolution"))
         names, edges = self.problem.objectives, self.known.edges if self.known else ()
         again: dict[Key, Sequence[Solution]] = {
             ("edge", x): edge.minima for x, edge in zip(names, edges, strict=False)
         }
         self.starts = Starts(rng, again if self.known else None)
-        proposers: list[Proposer] = [Polish(), self.starts]
-        if self.known is None:
-            proposers.append(Evolution(others))
-        self.loop = Loop(self.state, proposers, self.search)
+        self.loop = Loop(self.state, self.search)
 
     def front(self) -> Front:
         """Return all that is found."""
@@ -120,7 +116,7 @@ class _Run:
         for kind, name, w in self.weighted:
             anchors.append(Weights(w, ("weights", kind.value, name), EXACT * float(w @ sizes)))
         self.state.add(anchors)
-        self.loop.run("edges", EDGES)
+        self._search("edges", EDGES, self.starts)
         for place in self.places:
             if not place.incumbent.feasible:
                 name = " ".join(str(part) for part in place.subproblem.key if part)
@@ -162,6 +158,14 @@ class _Run:
             sizes,
             self._open(),
         )
+
+    def _search(self, stage: str, share: float, *more: Proposer) -> None:
+        """Search for all places up to a share of the budget, with what is proposed always and more.
+
+        What proposers have gained so far says nothing of places that are new, so they start anew.
+        """
+        evolution = () if self.known else (Evolution(self.children),)
+        self.loop.run(stage, (Polish(), *more, *evolution), share)
 
     def _open(self) -> tuple[str, ...]:
         """Return what the search had not finished at its budget, as labels; once for all points."""
@@ -223,7 +227,7 @@ class _Run:
             more = (self._apart(target, len(counts), 1 / divisions), self._halfway(target))
             for new_points in chain([counts], *more):
                 self._add_points(target, new_points)
-                self.loop.run("front")
+                self._search("front", POINTS)
         return target
 
     def _worst(self, bests: Sequence[Solution], sizes: Floats) -> list[Solution]:
@@ -239,7 +243,7 @@ class _Run:
                 w = np.where(np.arange(self.n) == i, TIE, 1.0) / sizes
                 new.append(Weights(w, ("others", name), EXACT * self.n))
             self.state.add(new)
-            self.loop.run("ranges")
+            self._search("ranges", POINTS, self.starts)
         others = (x.incumbent for x in self.places if x.subproblem.key[0] == "others")
         models = [*bests, *others]
         return [max(models, key=lambda x: float(x.J[i])) for i in range(self.n)]
@@ -258,7 +262,7 @@ class _Run:
 
     def _drop_points(self) -> None:
         """Take the points of a front away."""
-        self.state.keep([x for x in self.places if not is_along(x.subproblem)])
+        self.state.keep([x for x in self.places if x.subproblem.key[0] not in ("point", "sweep")])
 
     def _lattice(self) -> list[tuple[Place, LatticePoint]]:
         """Return the places of the points of the lattice, with their subproblems."""
@@ -329,7 +333,7 @@ class _Run:
                 out.append(replace(self.known.edges[k], best=place.incumbent, minima=minima))
                 continue
             rare = known.hits(place, self.state.tolerance) < SURE
-            doubtful = rare and known.unseen >= self.loop.search.doubt
+            doubtful = rare and known.unseen() >= self.loop.search.doubt
             out.append(Edge(place.incumbent, minima, known.tries, len(known.ends), doubtful))
         return out
 

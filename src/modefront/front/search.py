@@ -52,22 +52,23 @@ class Loop:
     Attributes
     ----------
     state : what is known
-    proposers : in the order in which they are asked
     search : when it ends
     turn : number of batches that were solved
     open : subproblems for which offers were left at the budget
     """
 
     state: State
-    proposers: Sequence[Proposer]
     search: Search
     turn: int = 0
     open: set[Key] = field(default_factory=set)
 
-    def run(self, stage: str, share: float = POINTS) -> None:
-        """Search until nothing is worth it, or until a share of the budget is spent."""
+    def run(self, stage: str, proposers: Sequence[Proposer], share: float = POINTS) -> None:
+        """Search until nothing is worth it, or until a share of the budget is spent.
+
+        Proposers are asked in their order.
+        """
         most = int(share * self.search.evaluations)
-        while offers := self._offers():
+        while offers := self._offers(proposers):
             left = most - self.state.evaluations
             if left <= 0:
                 places = self.state.places
@@ -86,8 +87,8 @@ class Loop:
                 if outcome.result is not None:
                     proposer.learn(self.state, offer, outcome, gain)
 
-    def _offers(self) -> list[tuple[Proposer, Offer]]:
+    def _offers(self, proposers: Sequence[Proposer]) -> list[tuple[Proposer, Offer]]:
         """Return the offers worth making, the greatest chance first."""
-        asked = ((x, offer) for x in self.proposers for offer in x.offers(self.state, BATCH))
+        asked = ((x, offer) for x in proposers for offer in x.offers(self.state, BATCH))
         offers = [(x, offer) for x, offer in asked if offer.chance >= self.search.doubt]
         return sorted(offers, key=lambda each: -each[1].chance)

@@ -213,11 +213,6 @@ def competes(subproblem: Subproblem) -> bool:
     return not (isinstance(subproblem, Point) and subproblem.equations)
 
 
-def is_along(subproblem: Subproblem) -> bool:
-    """Return whether a subproblem is one of many along the front."""
-    return subproblem.key[0] in ("point", "sweep")
-
-
 def sample(problem: Problem, *, rng: np.random.Generator) -> Floats:
     """Return the typical size of each objective, of random models; empty without any."""
     span = problem.upper - problem.lower

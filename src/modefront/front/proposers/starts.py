@@ -6,9 +6,11 @@ doi:10.1007/BF02591684)
 
 .. math:: \frac{w (w + 1)}{N (N - 1)} .
 
-That bounds the chance that the next start gains, and where enough starts have led to the best
-model, so does the rate at which they have gained. Points of the lattice have none: they start from
-what others have found.
+That bounds the chance that the next start gains if it is not lost, as those are that meet no
+minimum: their part of all starts is that which has been seen. Where enough starts have led to the
+best model, the rate at which they have gained is a bound as well. Of several starts at a time, each
+has the chance that is left if those before it lead to what is known. Points of the lattice have no
+starts: they begin at what others have found.
 """
 
 from __future__ import annotations
@@ -22,7 +24,6 @@ from modefront._typing import Floats
 from modefront.front.archive import Outcome
 from modefront.front.proposers.base import USUAL, Offer, at, solve_from
 from modefront.front.state import Place, State
-from modefront.front.subproblems import is_along
 from modefront.optim.sqp import Solution, Status
 from modefront.work.task import Key
 
@@ -39,40 +40,46 @@ class Minima:
     tries, gains : numbers of starts, and of those that gained
     ends : minima of different values; what ended at the limit of iterations has met none
     counts : number of starts that led to each
+    lost : number of starts that neither met a minimum nor gained
     """
 
     tries: int = 0
     gains: int = 0
     ends: list[Solution] = field(default_factory=list)
     counts: list[int] = field(default_factory=list)
+    lost: int = 0
 
-    def note(self, place: Place, solution: Solution, tolerance: float) -> None:
-        """Count the end of a start."""
+    def note(self, place: Place, solution: Solution, tolerance: float) -> bool:
+        """Count the end of a start; return whether that has met a minimum."""
         if not solution.feasible or solution.status is Status.EXHAUSTED:
-            return
+            return False
         for k, end in enumerate(self.ends):
             if _equal(place, solution, end, tolerance):
                 self.counts[k] += 1
-                return
+                return True
         self.ends.append(solution)
         self.counts.append(1)
+        return True
 
     def hits(self, place: Place, tolerance: float) -> int:
         """Return the number of starts that led to the best model."""
         pairs = zip(self.ends, self.counts, strict=True)
         return sum(count for x, count in pairs if _equal(place, x, place.incumbent, tolerance))
 
-    @property
-    def unseen(self) -> float:
-        """Part of the box from which unseen minima are reached."""
-        w, N = len(self.ends), sum(self.counts)
+    def unseen(self, ahead: int = 0) -> float:
+        """Return the part of the box from which unseen minima are reached, after more starts.
+
+        These are so many ``ahead`` that lead to minima that are known.
+        """
+        w, N = max(len(self.ends), 1), sum(self.counts) + ahead
         return min(w * (w + 1) / (N * (N - 1)), 1.0) if N > 1 else 1.0
 
-    def chance(self, place: Place, tolerance: float) -> float:
-        """Return the chance that a start gains at most; see the module."""
-        is_sure = self.hits(place, tolerance) >= SURE
-        rate = (self.gains + 1) / (self.tries + 2)  # the posterior mean of a uniform prior
-        return min(self.unseen, rate) if is_sure else self.unseen
+    def chance(self, place: Place, tolerance: float, ahead: int = 0) -> float:
+        """Return the chance that a start gains at most, after so many ``ahead``; see the module."""
+        tries, unseen = self.tries + ahead, self.unseen(ahead)
+        if self.hits(place, tolerance) >= SURE:
+            unseen = min(unseen, (self.gains + 1) / (tries + 2))  # of a uniform prior
+        return unseen * ((tries - self.lost + 1) / (tries + 1))
 
 
 def _equal(place: Place, x: Solution, y: Solution, tolerance: float) -> bool:
@@ -99,23 +106,16 @@ class Starts:
     _queue: list[Floats] = field(default_factory=list)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
-        """Yield random starts of each of them, until points between the edges are searched."""
-        if any(is_along(x.subproblem) for x in state.places):
-            return
-        offers = list(self._of_places(state, most))
-        # Of equal chance, the places that have had fewer come first: one without minima waits.
-        yield from sorted(offers, key=lambda offer: self.of(state.places[offer.place]).tries)
-
-    def _of_places(self, state: State, most: int) -> Iterator[Offer]:
+        """Yield random starts of each place."""
         for k, place in enumerate(state.places):
             known = self.of(place)
-            chance, tries = known.chance(place, state.tolerance), known.tries
             if self.again is not None:
-                left = self.again.get(place.subproblem.key, ())[tries : tries + most]
-                yield from (solve_from(k, place, at(x.theta), 1.0) for x in left)
+                left = self.again.get(place.subproblem.key, ())[known.tries :]
+                yield from (solve_from(k, place, at(x.theta), 1.0) for x in left[:most])
                 continue
-            for number in range(tries, tries + most):
-                theta = state.problem.start if number == 0 else self._next(state)
+            for ahead in range(most):
+                theta = self._next(state) if known.tries + ahead else state.problem.start
+                chance = known.chance(place, state.tolerance, ahead)
                 yield solve_from(k, place, at(theta), chance)
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
@@ -124,7 +124,8 @@ class Starts:
         known = self.of(place)
         known.tries += 1
         known.gains += gain > state.tolerance
-        known.note(place, outcome.result, state.tolerance)
+        met = known.note(place, outcome.result, state.tolerance)
+        known.lost += not met and gain <= state.tolerance
 
     def of(self, place: Place) -> Minima:
         """Return the minima of a subproblem."""
