@@ -6,15 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from modefront.optim.scalarisation import (
+    STEEP,
     LogSum,
     Scalarisation,
     achievement,
-    constrained,
+    limited,
     weighted,
 )
 
 ONES = np.ones(2)
-LEVEL = constrained(np.array([0.0, 1 / 5]), np.array([[1 / 2, 0.0]]), np.array([0.3 / 2]))
+LEVEL = limited(np.array([0.0, 1 / 5]), np.array([1 / 2, 0.0]), 0.3 / 2)
 PROGRAMMES = [
     weighted(np.array([1.0, 3.0])),
     LEVEL,
@@ -39,21 +40,21 @@ def test_derivatives_are_those_of_the_value(programme: Scalarisation, x: float, 
     assert programme.hessian(J) == pytest.approx(np.array(bends), rel=1e-5, abs=1e-9)
 
 
-def test_a_level_is_met_where_the_constraint_vanishes() -> None:
-    programme = LEVEL
-    assert programme.constraints.at(np.array([0.3, 7.0])) == pytest.approx(0.0)
-    assert programme.constraints.at(np.array([0.5, 7.0])) == pytest.approx(0.1), "over the scale"
-    assert programme.value(np.array([0.3, 7.0])) == pytest.approx(7.0 / 5)
+def test_a_penalty_begins_where_a_level_is_exceeded() -> None:
+    def penalty(x: float) -> float:
+        return float(LEVEL.maximised.at(np.array([x, 7.0])).max())
+
+    assert penalty(0.2) == pytest.approx(0.0)
+    assert penalty(0.3) == pytest.approx(0.0, abs=1e-12)
+    assert penalty(0.5) == pytest.approx(0.1 * STEEP), "over the scale"
+    assert LEVEL.value(np.array([0.3, 7.0])) == pytest.approx(7.0 / 5)
 
 
-def test_an_achievement_has_no_constraints_and_constraints_have_no_maximum() -> None:
-    J = np.array([0.4, 0.9])
-    reached = achievement(ONES, np.eye(2), np.array([0.1, 0.2]))
-    assert reached.maximised.at(J) == pytest.approx([0.3, 0.7])
-    assert reached.constraints.at(J).size == 0
-    met = constrained(ONES, np.array([[1.0, 1.0]]), np.ones(1))
-    assert met.constraints.at(J) == pytest.approx(0.3)
-    assert met.maximised.at(J).size == 0
+def test_an_achievement_is_the_greatest_of_its_functions() -> None:
+    J, d = np.array([0.4, 0.9]), np.array([0.1, 0.2])
+    assert achievement(ONES, np.eye(2), d).maximised.at(J) == pytest.approx([0.3, 0.7])
+    assert achievement(ONES, np.eye(2), d, 10.0).maximised.at(J) == pytest.approx([3.0, 7.0])
+    assert weighted(ONES).maximised.at(J).size == 0
 
 
 def test_a_sum_of_logarithms_has_the_weights_a_over_J_and_bounded_ones_with_a_floor() -> None:

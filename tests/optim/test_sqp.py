@@ -10,14 +10,13 @@ from hypothesis import strategies as st
 from problems import Derivatives, Known, bowls, box, circles, curved, sphere
 
 from modefront._typing import Floats
-from modefront.optim.linearised import Merit, Multipliers, projected, surplus
+from modefront.optim.linearised import Merit, projected, surplus
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives
-from modefront.optim.scalarisation import Scalarisation, achievement, constrained, weighted
+from modefront.optim.scalarisation import Scalarisation, achievement, limited, weighted
 from modefront.optim.second import learned_from
 from modefront.optim.sqp import Options, Solution, Status, begin, solve
 
 SEEDS = st.integers(0, 2**31)
-NONE = Multipliers(np.zeros(0), np.zeros(0))
 
 
 # ---- one programme ---------------------------------------------------------------------------
@@ -43,7 +42,7 @@ def test_bounds_hold_exactly() -> None:
 
 def test_levels_are_met() -> None:
     problem = box(curved, [-2, -2], [2, 2])
-    programme = constrained(np.array([0.0, 1.0]), np.array([[1.0, 0.0]]), np.array([0.16]))
+    programme = limited(np.array([0.0, 1.0]), np.array([1.0, 0.0]), 0.16)
     result = solve(problem, programme, begin(problem.evaluate(np.array([0.1, 0.3]))))
     assert result.converged
     assert result.theta == pytest.approx([0.4, 0.16], abs=1e-6)
@@ -132,7 +131,7 @@ def test_equal_functions_have_no_surplus(seed: int, nu: float) -> None:
 
 def test_an_undefined_point_is_worse_than_any_other() -> None:
     nowhere = Evaluation(np.zeros(1), np.array([np.inf]))
-    assert Merit(weighted(np.ones(1)), NONE, 10.0).at(nowhere) == np.inf
+    assert Merit(weighted(np.ones(1)), np.zeros(0), 10.0).at(nowhere) == np.inf
 
 
 # ---- learned second derivatives --------------------------------------------------------------
@@ -251,29 +250,18 @@ def test_the_least_maximum_is_that_of_an_independent_solver(
         assert (solution.weights > 0).all()
 
 
-def test_a_maximum_is_found_within_constraints_too() -> None:
-    """The least of the greater of J2 and J3, at J1 = 0.3: on the diagonal of the triangle."""
-
-    class Both:
-        """A maximum with a constraint."""
-
-        constraints = constrained(np.eye(3)[1], np.eye(3)[[0]], np.array([0.3])).constraints
-        maximised = achievement(np.zeros(3), np.eye(3)[1:], np.zeros(2)).maximised
-
-        def value(self, J: Floats) -> float:
-            return 0.0 * float(J.sum())
-
-        def gradient(self, J: Floats) -> Floats:
-            return np.zeros(J.size)
-
-        def hessian(self, J: Floats) -> Floats:
-            return np.zeros((J.size, J.size))
-
+@pytest.mark.parametrize("slope", [1e1, 1e2, 1e3, 1e4])
+def test_a_penalty_is_exact_whatever_its_slope_if_that_is_above_the_multiplier(
+    slope: float,
+) -> None:
+    """The least J2 where J1 and J3 are equal, from far away; the multiplier is 0.5."""
     problem = box(bowls, [-2.0, -2.0], [2.0, 2.0], 3)
-    start = begin(problem.evaluate(np.array([0.2, -0.4])))
-    result = solve(problem, Both(), start)
+    start = begin(problem.evaluate(np.array([-1.7, 1.9])))
+    rows = np.array([[1.0, 0.0, -1.0], [-1.0, 0.0, 1.0]])
+    result = solve(problem, achievement(np.eye(3)[1], rows, np.zeros(2), slope), start)
     assert result.converged
-    assert result.theta == pytest.approx(np.full(2, np.sqrt(0.15)), abs=1e-6)
+    assert result.evaluations < 30
+    assert result.theta == pytest.approx([1.0, 0.5], abs=1e-6)
 
 
 def test_a_point_between_equal_functions_is_no_minimum_where_the_curvature_is_negative() -> None:

@@ -67,7 +67,7 @@ def evolve_front(
     chosen = nondominated(F) & (UNDEFINED > F).all(axis=1)
     last = algorithm.pop.get("X")[chosen][np.lexsort(F[chosen].T[::-1])]
     found = (known[theta.tobytes()] for theta in last)
-    return [Solution(x, np.full(n, np.nan), 0.0, Status.SAMPLED, 0) for x in found]
+    return [Solution(x, np.full(n, np.nan), Status.SAMPLED, 0) for x in found]
 
 
 def _members(problem: Problem, thetas: Floats) -> list[Evaluation]:

@@ -18,7 +18,7 @@ import numpy as np
 from modefront._typing import Bools, Floats, Ints
 from modefront.front.subproblems import RHO
 from modefront.optim.problem import Problem
-from modefront.optim.scalarisation import Scalarisation, constrained, weighted
+from modefront.optim.scalarisation import Scalarisation, limited, weighted
 from modefront.optim.sqp import TIGHT, Solution, solve
 from modefront.work.task import IMMEDIATE, Task
 
@@ -103,8 +103,11 @@ def _ends(
 
     def at_level(i: int, of: Solution, other: Solution | None) -> Solution | None:
         """Return where the branch of a point has as much of an objective as the other end."""
-        goal = None if other is None else other.J[[i]] / scale[i]
-        return None if goal is None else found(of, constrained(unit[1 - i], unit[[i]], goal))
+        if other is None:
+            return None
+        most = float(other.J[i]) / scale[i]
+        end = found(of, limited(unit[1 - i], unit[i], most))
+        return end if end and end.J[i] / scale[i] <= most + RHO else None
 
     end, start = found(before[0], weighted(unit[1])), found(behind[0], weighted(unit[0]))
     a, b = _first(before, start), _first(behind, end)

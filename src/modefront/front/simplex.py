@@ -9,11 +9,9 @@ from itertools import combinations
 from math import comb
 
 import numpy as np
-import scipy.linalg
 
 from modefront._typing import Floats, Ints
 from modefront.optim.lexicographic import EXACT
-from modefront.optim.scalarisation import Linear, constrained
 from modefront.optim.sqp import Solution
 
 FLAT = 1e-2
@@ -110,19 +108,6 @@ class Payoff:
     def excess(self, beta: Floats, J: Floats) -> Floats:
         """Return how far objectives (..., n) lie above a point of the plane, over the normal."""
         return np.asarray(J / self.unit - self.offset(beta))
-
-    def boundary(self, beta: Floats) -> Linear:
-        r"""Return the equations of normal-boundary intersection (Das & Dennis 1998).
-
-        Maximise t subject to :math:`\Phi \beta + t \hat n = J - J^*`
-        (doi:10.1137/S1052623496307510); t is eliminated: it is the component of the equation along
-        the normal, and what is across the normal remains as constraints.
-        """
-        normal = -self.r
-        across = scipy.linalg.null_space(normal[None]).T
-        point = self.Phi @ beta + self.utopia / self.scale
-        w = -normal / (normal @ normal)
-        return constrained(w / self.scale, across / self.scale, across @ point)
 
 
 def is_flat(edges: Sequence[Solution], sizes: Floats) -> bool:

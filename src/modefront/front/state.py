@@ -11,7 +11,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.front.archive import Archive, Outcome, limited
 from modefront.front.dominance import SAME
-from modefront.front.subproblems import Order, Subproblem, competes, together
+from modefront.front.subproblems import Order, Subproblem, together
 from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution, Status
 from modefront.work.task import IMMEDIATE, Executor, Task
@@ -132,10 +132,8 @@ class State:
 
     def _replaces(self, solution: Solution, gain: float, place: Place, is_incumbent: bool) -> bool:
         """Return whether a solution of a place, from its incumbent or not, takes that place."""
-        if competes(place.subproblem):
-            first = (solution.converged or is_incumbent) and not place.closed
-            return gain > 0 or (gain > -self.tolerance and first)
-        return not place.closed or (solution.converged and not place.incumbent.converged)
+        first = (solution.converged or is_incumbent) and not place.closed
+        return gain > 0 or (gain > -self.tolerance and first)
 
     def behind(self, values: Floats) -> list[int]:
         """Return the places whose incumbents may be behind models of such values (places,).
@@ -151,8 +149,6 @@ class State:
 
         What is open starts from any model that is better, if its derivatives are known.
         """
-        if place.closed and not competes(place.subproblem):
-            return 0.0
         ready = not place.closed and solution.evaluation.derivatives
         gain = place.subproblem.gain(solution.J, place.incumbent)
         if gain <= (0.0 if ready else self.tolerance):

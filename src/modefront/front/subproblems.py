@@ -16,8 +16,8 @@ from modefront._typing import Bools, Floats
 from modefront.front.simplex import Payoff
 from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
 from modefront.optim.problem import Problem
-from modefront.optim.scalarisation import Scalarisation, achievement, constrained, weighted
-from modefront.optim.sqp import Options, Solution, solve
+from modefront.optim.scalarisation import STEEP, Scalarisation, achievement, limited, weighted
+from modefront.optim.sqp import Options, Solution, Status, solve
 from modefront.work.task import Key
 
 RHO = 1e-4
@@ -152,9 +152,12 @@ class Weights:
 
 @dataclass(frozen=True)
 class Point:
-    """The point of the lattice at ``beta`` (n,).
+    r"""The point of the lattice at ``beta`` (n,).
 
-    With ``equations``, those of Das & Dennis are solved, which may lead to dominated models.
+    With ``equations``, those of Das & Dennis are solved, which may lead to dominated models: all
+    excesses c_i are equal, and as small as possible (1998, doi:10.1137/S1052623496307510). With n
+    of them and the slope :math:`\nu` of a penalty, what is minimised is
+    :math:`\bar c + \nu (\max_i c_i - \bar c)`.
     """
 
     beta: Floats
@@ -170,12 +173,13 @@ class Point:
     @cached_property
     def order(self) -> Order:
         """By the greatest excess with its share of all."""
-        return Order(self.target.unit, self.target.offset(self.beta), 1.0, RHO)
+        greatest, share = (STEEP, (1 - STEEP) / self.beta.size) if self.equations else (1.0, RHO)
+        return Order(self.target.unit, self.target.offset(self.beta), greatest, share)
 
     def met(self, solution: Solution) -> bool:
         """Return whether a solution lies on the normal, as it does if it meets equations."""
         apart = float(np.ptp(self.order.excess(solution.J) * self.target.r))
-        return solution.converged and (self.equations or apart <= LOOSE)
+        return solution.converged and apart <= LOOSE
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the fall of the excess, over the objectives along the normal or their ranges."""
@@ -187,30 +191,26 @@ class Point:
         """Return the multipliers of the excess at a solution, or of the greatest one at others."""
         if known.weights.any():
             return known.weights
-        c = self.order.excess(known.J)
-        return np.asarray(((c == c.max()) + RHO) / self.target.unit)
+        order, c = self.order, self.order.excess(known.J)
+        return np.asarray((order.greatest * (c == c.max()) + order.share) / self.target.unit)
 
     def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:
         """Return the point that a start leads to."""
-        return replace(solve(problem, self.programme, start), beta=self.beta)
+        found = replace(solve(problem, self.programme, start), beta=self.beta)
+        missed = self.equations and found.converged and not self.met(found)
+        return replace(found, status=Status.STALLED) if missed else found
 
     @property
     def programme(self) -> Scalarisation:
         """What is minimised."""
-        if self.equations:
-            return self.target.boundary(self.beta)
-        unit = self.target.unit
-        return achievement(RHO / unit, np.diag(1 / unit), self.order.offset)
+        order = self.order
+        share, rows = order.share / order.unit, np.diag(1 / order.unit)
+        return achievement(share, rows, order.offset, float(order.greatest))
 
 
 Subproblem = Least | Weights | Point
 """An order on J: ``gain`` tells how much better objectives (n,) are than a known model. ``solve``
 minimises its programme from a start, in full if that may beat known objectives."""
-
-
-def competes(subproblem: Subproblem) -> bool:
-    """Return whether any model that is better takes its place; else only its own solutions do."""
-    return not (isinstance(subproblem, Point) and subproblem.equations)
 
 
 def sample(problem: Problem, *, rng: np.random.Generator) -> Floats:
@@ -242,10 +242,10 @@ def near_best(
         return best
     value = (1 + tolerance) * least
     others = np.where(np.arange(sizes.size) != objective, 1 / sizes, 0.0)
-    unit = np.eye(sizes.size)[[objective]] / value
+    unit = np.eye(sizes.size)[objective] / value
     closest = sorted(known, key=lambda solution: abs(np.log(solution.J[objective] / value)))
     for start in closest[: sizes.size]:
-        solved = solve(problem, constrained(others, unit, np.ones(1)), start)
-        if solved.converged:
+        solved = solve(problem, limited(others, unit, 1.0), start)
+        if solved.converged and solved.J[objective] <= (1 + TIE) * value:
             return solved
     return best

@@ -1,19 +1,18 @@
 r"""The quadratic programme of one step.
 
 .. math:: \min_s\; g^T s + \tfrac12 s^T B s + \max_i\,(c + C s)_i
-    \quad\text{subject to}\quad A s = b,\; lo \le s \le hi
+    \quad\text{subject to}\quad lo \le s \le hi
 
 with :math:`lo \le 0 \le hi`, by a primal active-set method (Nocedal & Wright, *Numerical
-Optimization*, 2006, section 16.5). The equalities are met first, as nearly as the box allows, and
-then kept. The maximum is the linear function of one of the functions that attain it, the base, and
-the others of the active set are equalities :math:`(C_i - C_a)\, s = c_a - c_i`; E are all of these
-slopes. Variables are held at the box, and functions join the active set, one by one as steps meet
-them; they are let go as their multipliers mu (of equalities) and kappa (of functions, of sum 1)
-have the wrong sign. Where B has negative curvature in the null space of the working set, its
-absolute value is used.
+Optimization*, 2006, section 16.5). The maximum is the linear function of one of the functions that
+attain it, the base, and the others of the active set are equalities
+:math:`(C_i - C_a)\, s = c_a - c_i`; E are all of these slopes. Variables are held at the box, and
+functions join the active set, one by one as steps meet them; they are let go as their multipliers
+kappa, of sum 1, have the wrong sign. Where B has negative curvature in the null space of the
+working set, its absolute value is used.
 
 Hundreds of variables may end at the box, and each change of the working set takes a decomposition:
-without functions and equalities, they are held and let go many at once, as long as what is
+without functions, they are held and let go many at once, as long as what is
 minimised falls (Moré & Toraldo 1991, doi:10.1137/0801008).
 """
 
@@ -30,10 +29,6 @@ FLAT = 1e-10
 """Curvature, singular value, slope or multiplier, over the greatest one, below which it counts as
 none: well above rounding, 1e-16 times the condition of matrices of some thousands."""
 
-NORMAL = 0.8
-"""Share of the box that the normal step may use, so that something is left to descend (Nocedal &
-Wright, equation 18.46)."""
-
 HALVINGS = 8
 """Halvings at most of a step until its projection on the box falls."""
 
@@ -48,40 +43,28 @@ class QuadraticProgramme:
 
     B: Floats
     g: Floats
-    A: Floats
-    b: Floats
     lo: Floats
     hi: Floats
     C: Floats
     c: Floats
 
     def ties(self, active: list[int]) -> Floats:
-        """Return E (., p), the equalities' slopes and those that keep active functions equal."""
-        if len(active) < 2:
-            return self.A
-        return np.vstack([self.A, self.C[active[1:]] - self.C[active[:1]]])
+        """Return E (., p), the slopes that keep active functions equal."""
+        return self.C[active[1:]] - self.C[active[:1]]
 
     def slope(self, s: Floats, active: list[int]) -> Floats:
         """Return the slope (p,) of what is minimised, with the base for the maximum."""
         slope = self.g + self.B @ s
         return slope + self.C[active[0]] if active else slope
 
-    def multipliers(self, s: Floats, active: list[int], free: Bools) -> tuple[Floats, Floats]:
-        """Return mu (k,) and kappa (m,), with which least is left of the slope of free variables.
-
-        Where equalities hardly depend on these, mu is of any size.
-        """
-        E = self.ties(active)
-        both = np.zeros(0)
-        if len(E):
-            left = -self.slope(s, active)[free]
-            both = lstsq(E[:, free].T, left)
-        mu, others = both[: len(self.A)], both[len(self.A) :]
+    def multipliers(self, s: Floats, active: list[int], free: Bools) -> Floats:
+        """Return kappa (m,), with which least is left of the slope of free variables."""
         kappa = np.zeros(len(self.C))
-        if active:
-            kappa[active[0]] = 1 - others.sum()
+        if len(active) > 1:
+            others = lstsq(self.ties(active)[:, free].T, -self.slope(s, active)[free])
             kappa[active[1:]] = others
-        return mu, kappa
+        kappa[active[:1]] = 1 - kappa.sum()
+        return kappa
 
 
 @dataclass(frozen=True)
@@ -93,11 +76,11 @@ class QuadraticStep:
 
 
 def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
-    """Return the solution; near it, where the equalities cannot be met or B is not convex."""
+    """Return the solution; near it, where B is not convex."""
     lo, hi = qp.lo, qp.hi
-    s = _normal_step(qp.A, qp.b, lo, hi)
+    s = np.zeros(lo.size)
     free = (s > lo) & (s < hi)
-    active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
+    active = [int(np.argmax(qp.c))] if len(qp.C) else []
     for _ in range(PASSES * (s.size + len(qp.C))):
         d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free)
         bound = np.where(d > 0, hi, lo)
@@ -107,7 +90,7 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
             s, active = _clipped(s + met * d, lo, hi), [*active, joining]
             continue
         if within < 1:
-            new = None if len(qp.A) or len(qp.C) else _projected(qp, s, d)
+            new = None if len(qp.C) else _projected(qp, s, d)
             held = share <= within if new is None else free & ((new <= lo) | (new >= hi))
             s = np.where(held, bound, _clipped(s + within * d, lo, hi)) if new is None else new
             free = free & ~held
@@ -115,13 +98,12 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
         s = _clipped(s + d, lo, hi)
         if free.all() and len(active) < 2:
             break
-        mu, kappa = qp.multipliers(s, active, free)
+        kappa = qp.multipliers(s, active, free)
         if kappa.min(initial=0.0) < -FLAT:
             active = [i for i in active if i != int(np.argmin(kappa))]
             continue
         slope = qp.g + qp.B @ s + qp.C.T @ kappa
         scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
-        slope = slope + qp.A.T @ mu
         low, high = s <= lo, s >= hi
         gain = np.where(free | (low & high), 0.0, np.where(low, -slope, slope))  # on leaving a side
         wrong = gain > FLAT * scale
@@ -181,31 +163,9 @@ def _met(qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int]) -> tup
     return int(np.argmin(share)), float(share.min())
 
 
-def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:
-    """Return a step that meets the equalities as nearly as a part of the box allows."""
-    s = np.zeros(lo.size)
-    if len(A) == 0:
-        return s
-    U, sigma, Vt = svd(A, full=False)
-    rank = _rank(sigma)
-    s = Vt[:rank].T @ ((U.T @ b)[:rank] / sigma[:rank])
-    if (s < NORMAL * lo).any() or (s > NORMAL * hi).any():
-        import scipy.optimize
-
-        inside = hi - lo > 0
-        s = np.zeros(lo.size)
-        bounds = (NORMAL * lo[inside], NORMAL * hi[inside])
-        s[inside] = scipy.optimize.lsq_linear(A[:, inside], b, bounds, method="bvls").x
-    return s
-
-
 def _null_space(A: Floats) -> Floats:
     """Return an orthonormal basis of the null space, shape (p, p - rank)."""
     if 0 in A.shape:
         return np.eye(A.shape[1])
     _, sigma, Vt = svd(A)
-    return np.asarray(Vt[_rank(sigma) :].T)
-
-
-def _rank(sigma: Floats) -> int:
-    return int((sigma > FLAT * sigma[0]).sum())
+    return np.asarray(Vt[int((sigma > FLAT * sigma[0]).sum()) :].T)

@@ -1,9 +1,8 @@
 r"""Ways to turn a vector of objectives into one programme, which one solver serves.
 
 .. math:: \min_\theta f(J(\theta)) + \max_i\,(C J(\theta) - d)_i
-    \quad\text{subject to}\quad A J(\theta) = b
 
-Most have no maximum (m = 0), and most no constraints (k = 0).
+Most have no maximum (m = 0). A constraint is one whose slope is `STEEP`: an exact penalty.
 """
 
 from __future__ import annotations
@@ -20,6 +19,11 @@ LEAST = float(np.finfo(float).tiny ** (1 / 3))
 overflow."""
 
 
+STEEP = 1e3
+"""Slope of a penalty over that of what is minimised: a constraint is met where its multiplier is
+less."""
+
+
 @dataclass(frozen=True)
 class Rows:
     """Linear functions of the objectives, matrix J - offset.
@@ -28,10 +32,12 @@ class Rows:
     ----------
     matrix : (rows, n)
     offset : (rows,)
+    slope : theirs over that of what is minimised, above 1 of a penalty
     """
 
     matrix: Floats
     offset: Floats
+    slope: float = 1.0
 
     def at(self, J: Floats) -> Floats:
         """Return the values, shape (rows,)."""
@@ -44,11 +50,7 @@ def no_rows(objectives: int) -> Rows:
 
 
 class Scalarisation(Protocol):
-    """A smooth function of the objectives, a maximum of linear ones, and linear constraints."""
-
-    @property
-    def constraints(self) -> Rows:
-        """A J - b, which vanishes at a solution; may be empty."""
+    """A smooth function of the objectives, and a maximum of linear ones."""
 
     @property
     def maximised(self) -> Rows:
@@ -66,10 +68,9 @@ class Scalarisation(Protocol):
 
 @dataclass(frozen=True)
 class Linear:
-    """f = w^T J, with linear constraints or a maximum of linear functions."""
+    """f = w^T J, with a maximum of linear functions."""
 
     w: Floats
-    constraints: Rows
     maximised: Rows
 
     def value(self, J: Floats) -> float:
@@ -101,11 +102,6 @@ class LogSum:
     linear: Floats | float = 0.0
 
     @property
-    def constraints(self) -> Rows:
-        """No constraints."""
-        return no_rows(self.a.size)
-
-    @property
     def maximised(self) -> Rows:
         """No maximum."""
         return no_rows(self.a.size)
@@ -128,17 +124,17 @@ class LogSum:
 
 def weighted(w: Floats) -> Linear:
     """Return min w^T J."""
-    return Linear(w, no_rows(w.size), no_rows(w.size))
+    return Linear(w, no_rows(w.size))
 
 
-def constrained(w: Floats, A: Floats, b: Floats) -> Linear:
-    """Return min w^T J subject to A J = b."""
-    return Linear(w, Rows(A, b), no_rows(w.size))
+def limited(w: Floats, a: Floats, most: float) -> Linear:
+    """Return min w^T J subject to a^T J <= most."""
+    return achievement(w, np.array([0 * a, a]), np.array([0.0, most]), STEEP)
 
 
-def achievement(w: Floats, C: Floats, d: Floats) -> Linear:
-    """Return min w^T J + max (C J - d), an achievement function.
+def achievement(w: Floats, C: Floats, d: Floats, slope: float = 1.0) -> Linear:
+    """Return min w^T J + slope max (C J - d), an achievement function.
 
     Wierzbicki 1980, doi:10.1007/978-3-642-48782-8_32.
     """
-    return Linear(w, no_rows(w.size), Rows(C, d))
+    return Linear(w, Rows(slope * C, slope * d, slope))

@@ -1,11 +1,10 @@
 r"""Sequential quadratic programming with exact first and second derivatives.
 
-Solves :math:`\min f(J(\theta)) + \max_i\,(C J(\theta) - d)_i` subject to :math:`A J(\theta) = b`
-and bounds, for any member of `modefront.optim.scalarisation`. With multipliers :math:`\mu` of the
-constraints and :math:`\kappa` of the functions of which the maximum counts, the weights w of the
-objectives and the Hessian of the Lagrangian are
+Solves :math:`\min f(J(\theta)) + \max_i\,(C J(\theta) - d)_i` subject to bounds, for any member of
+`modefront.optim.scalarisation`. With multipliers :math:`\kappa` of the functions of which the
+maximum counts, the weights w of the objectives and the Hessian of the Lagrangian are
 
-.. math:: w = \partial f / \partial J + A^T \mu + C^T \kappa, \qquad
+.. math:: w = \partial f / \partial J + C^T \kappa, \qquad
     B = \sum_i w_i H_i + \partial J^T f'' \partial J .
 
 :math:`H_i` is taken with or without the part S besides Gauss-Newton's, whichever predicted the last
@@ -28,7 +27,7 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Floats
-from modefront.optim.linearised import PENALTY, Linearised, Merit, Multipliers, length
+from modefront.optim.linearised import PENALTY, Linearised, Merit, length, slopes
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
@@ -51,10 +50,7 @@ class Status(Enum):
     """How a solution ended; the value says what it means and what to do about it."""
 
     CONVERGED = "converged"
-    STALLED = (
-        "no step improves it further: the constraints cannot be met from there, the objectives are "
-        "not smooth, or bounds conflict"
-    )
+    STALLED = "no model near it meets the equations of its point: another start"
     JUMP = (
         "no step improves it, however short: the objectives or their slopes jump there, or end, as "
         "where a measured mode is paired with another mode of the model"
@@ -68,13 +64,12 @@ class Status(Enum):
 
 @dataclass(frozen=True)
 class Options:
-    """Tolerances, relative to the range of the parameters and to the scale of the constraints.
+    """Tolerances, relative to the range of the parameters and to what is minimised.
 
-    A value of a programme without constraints below ``negligible`` is as good as any.
+    A value of a programme without a maximum below ``negligible`` is as good as any.
     """
 
     step: float = 1e-7
-    constraint: float = 1e-7
     reduction: float = 1e-14
     iterations: int = 100
     radius: float = 0.15
@@ -94,7 +89,6 @@ class Solution:
     ----------
     evaluation : of the model that it is
     weights : (n,) weights w of the objectives at which it is stationary
-    violation : greatest violation of the constraints
     status : how it ended
     evaluations : evaluations that it took
     beta : (n,) the point of the simplex that it was projected from, by normal-boundary
@@ -103,7 +97,6 @@ class Solution:
 
     evaluation: Evaluation
     weights: Floats
-    violation: float
     status: Status
     evaluations: int
     beta: Floats | None = None
@@ -131,13 +124,13 @@ class Solution:
 
 def given(evaluation: Evaluation) -> Solution:
     """Return the solution that a given model is."""
-    return replace(begin(evaluation), status=Status.GIVEN, violation=0.0)
+    return replace(begin(evaluation), status=Status.GIVEN)
 
 
 def begin(evaluation: Evaluation) -> Solution:
     """Return a start for `solve` from an evaluation."""
     status = Status.EXHAUSTED if evaluation.feasible else Status.INFEASIBLE
-    return Solution(evaluation, np.zeros(evaluation.J.size), np.inf, status, 0)
+    return Solution(evaluation, np.zeros(evaluation.J.size), status, 0)
 
 
 # More than 60 lines: one step, with all that it changes.
@@ -157,8 +150,8 @@ def solve(
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
     S = evaluation.H - evaluation.gauss_newton
     trusted, escaped = evaluation.exact, False
-    radius, penalty = options.radius, PENALTY
-    multipliers: Multipliers | None = None
+    radius, penalty = options.radius, PENALTY / programme.maximised.slope**2
+    kappa: Floats | None = None
     rejected = False  # whether the last step was
     proposal = np.inf  # length of the last step that the trust region did not hold back
     calm: tuple[float, Solution] | None = None  # where, and how long, steps promised only rounding
@@ -166,45 +159,41 @@ def solve(
         count += 1
         note_iteration(count + 1)
         local = Linearised(problem, programme, evaluation)
-        if local.free and local.f <= options.negligible:
+        if not local.y.size and local.f <= options.negligible:
             ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
-            return Solution(evaluation, local.df, 0.0, ended, count)
+            return Solution(evaluation, local.df, ended, count)
         H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
-        qp, step, multipliers = local.step(H, radius, multipliers)
-        s, w = step.s, multipliers.weights(programme, evaluation.J)
-        violation, far = length(local.c), length(s)
+        qp, step, kappa = local.step(H, radius, kappa)
+        s, w = step.s, slopes(programme, evaluation.J, kappa)
+        far = length(s)
         held = far >= radius
         proposal = proposal if held else far
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
-        if still and violation <= options.constraint and not escaped:
-            escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
+        if still and not escaped:
+            escaped, s = True, _off_the_saddle(qp, local.slope(kappa), step.active)
             still, far = not s.any(), length(s)
         status: Status | None = None
-        if still and violation <= options.constraint:
+        if still:
             status = Status.CONVERGED
         elif far <= np.finfo(float).eps or radius <= options.step:
-            met = violation <= 10 * options.constraint
             # Steps that were not held back were below the tolerance: rounding of J stops it here.
-            near = Status.CONVERGED if proposal <= options.step else Status.JUMP
-            status = near if met else Status.STALLED
-        here = Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
+            status = Status.CONVERGED if proposal <= options.step else Status.JUMP
+        here = Solution(evaluation, w, status or Status.EXHAUSTED, count)
         if status or count >= options.iterations:
             return here
 
-        predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
-        noise = local.noise(multipliers)
+        predicted, penalty = local.predicted(qp.B, s, kappa, penalty)
+        noise = local.noise(kappa)
         rests = predicted <= noise
         if calm and rests and far >= calm[0]:  # the objectives tell no more
-            if calm[1].violation <= options.constraint:
-                return replace(calm[1], status=Status.CONVERGED, evaluations=count)
-        else:
-            calm = (far, here) if rests else None
+            return replace(calm[1], status=Status.CONVERGED, evaluations=count)
+        calm = (far, here) if rests else None
         new = local.after(s)
         if not new.feasible:
             radius, rejected = far / 4, True
             continue
-        merit = Merit(programme, multipliers, penalty)
+        merit = Merit(programme, kappa, penalty)
         actual = merit.at(evaluation) - merit.at(new)
         miss, change = actual - predicted, s * local.span
         rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)

@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import null_space
 
 from modefront._typing import Floats
 from modefront.front.dominance import undominated
@@ -36,7 +37,7 @@ from modefront.optim.problem import (
     infeasible,
     room,
 )
-from modefront.optim.scalarisation import Linear, Rows, achievement, no_rows
+from modefront.optim.scalarisation import achievement
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.options import number
 
@@ -51,7 +52,7 @@ below any error of measurement."""
 FACTORS = (1e1, 1e2, 1e3, 1e4)
 """Penalties on violations of the slack, over the size of the prediction."""
 
-_ENOUGH = Options(step=1e-5, constraint=1e-6, reduction=1e-8, iterations=40)
+_ENOUGH = Options(step=1e-5, reduction=1e-8, iterations=40)
 """A range needs a thousandth of itself, and no more."""
 
 SLACK = number("a share of 0 or more", least=0)
@@ -170,19 +171,17 @@ class Equivalent:
 
         The solution has q over ``size`` as its last objective.
         """
-        if self.slack == 0:
-            k = len(self.equations[0])
-            target = Wrapped(self.problem, self._with(q, size), ("",) * (k + 1))
-            equal = Rows(np.eye(k, k + 1), np.zeros(k))
-            programme = Linear(np.append(np.zeros(k), sign), equal, no_rows(k + 1))
-            found = solve(target, programme, begin(target.evaluate(start)), _ENOUGH)
-            return found if self._as_good(found) else None
-        n = self.model.J.size
+        if self.slack == 0:  # the corners of a simplex about the middle: all are 0 there alone
+            n = len(self.equations[0])
+            C, d = null_space(np.ones((1, n + 1))), np.zeros(n + 1)
+        else:
+            n = self.model.J.size
+            C, d = np.vstack([np.zeros(n), np.diag(1 / self.level)]), np.append(0.0, np.ones(n))
         target = Wrapped(self.problem, self._with(q, size), ("",) * (n + 1))
         w, found = np.append(np.zeros(n), sign), begin(target.evaluate(start))
+        rows = np.pad(C, ((0, 0), (0, 1)))
         for factor in FACTORS:
-            C = np.vstack([np.zeros(n + 1), factor * np.eye(n, n + 1) / self.level[:, None]])
-            programme = Linear(w, no_rows(n + 1), Rows(C, np.append(0.0, np.full(n, factor))))
+            programme = achievement(w, rows, d, factor)
             found = solve(target, programme, begin(found.evaluation), _ENOUGH)
             if self._as_good(found):
                 return found
