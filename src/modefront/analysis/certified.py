@@ -9,17 +9,15 @@ repeated after a single snapshot then. Snapshots are tasks: an interrupted run h
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
-from modefront.front.front import Edge, Front, best_minima
-from modefront.front.gaps import Gap
+from modefront.front.front import Front, best_minima
 from modefront.front.point import Point
 from modefront.front.search import Search
 from modefront.models.reduced.basis import Certificate, Certifier
@@ -49,9 +47,6 @@ CLOSE = 1e-2
 """Relative excess of a minimum over the best one, up to which errors of the basis may have
 exchanged them."""
 
-ERRORS = ("eigenvalue_error", "shape_error")
-"""Names under which the estimates are kept with a solution."""
-
 
 @record
 @dataclass(frozen=True)
@@ -77,9 +72,9 @@ def certified_front(
 ) -> Front:
     """Return the front that a search, called with ``work`` and a ``known`` front, leads to.
 
-    On a reduced model, the estimated errors are among the quantities of the solutions. They are
-    above the tolerance where it could not be met: for want of memory, or because the model has no
-    modes where a snapshot is to be taken. Any other model needs no certificate.
+    A reduced model keeps the estimated errors of the solutions. They are above the tolerance where
+    it could not be met: for want of memory, or because the model has no modes where a snapshot is
+    to be taken. Any other model needs no certificate.
     """
     model = _reduced(problem)
     if model is None:
@@ -99,20 +94,24 @@ def certified_front(
     for number in range(1, ROUNDS + 1):
         here = Within(work, turn=("round", number))
         front = search(work=here, known=known)
-        minima = best_minima(front, problem.properties, CLOSE)
-        candidates = _each_once([*_of_the_front(front), *(x for *_, some in minima for x in some)])
+        best = best_minima(front, problem.properties, CLOSE)
+        candidates = _each_once([*_of_the_front(front), *(x for *_, some in best for x in some)])
         enough = model.tolerance if known else AIM * model.tolerance
         is_last = number == ROUNDS or columns >= model.capacity
         taken = [] if is_last else _improve(model, candidates, enough, here)
         if not taken:
-            front = _with_errors(problem, model, front, here)
-            needed = _each_once([*_of_the_front(front), *_rivals(problem, front)])
-            wrong = [solution for solution in needed if _error(solution) > model.tolerance]
+            front = replace(front, known=np.zeros((0, len(problem.objectives))))  # of the basis
+            minima = [x for edge in front.edges for x in edge.minima]
+            reported = _each_once([*_of_the_front(front), *minima, *front.optimal])
+            _certify(problem, model, reported, "front", here)
+            needed = _each_once([*_of_the_front(front), *_rivals(problem, model, front)])
+            error = [float(_errors_of(model, x)[0].max()) for x in needed]
+            ranked = sorted(range(len(needed)), key=lambda k: -error[k])
+            wrong = [needed[k] for k in ranked if error[k] > model.tolerance][:WORST]
             if not wrong or is_last:
                 break
-            wrong = sorted(wrong, key=_error, reverse=True)[:WORST]
             worst = _snapshot(wrong, 0.0)
-            if not np.isfinite(_error(wrong[0])):
+            if not np.isfinite(max(error)):
                 worst = replace(worst, modes=max(worst.modes, _lowest(problem)))
             last = _take(model, "worst", 1, worst, here)
             if last is None or not last.added:
@@ -123,15 +122,10 @@ def certified_front(
     return front
 
 
-def certified_points(
-    problem: UpdatingProblem, points: Sequence[Point], work: Executor
-) -> list[Point]:
-    """Return points with the estimated errors of a reduced model, if it is one."""
-    model = _reduced(problem)
-    if model is None or not points:
-        return list(points)
-    kept = _certified(problem, model, [point.solution for point in points], "others", work)
-    return [replace(point, solution=x) for point, x in zip(points, kept, strict=True)]
+def certify(problem: UpdatingProblem, points: Sequence[Point], work: Executor) -> None:
+    """Estimate the errors of points in a reduced model, if it is one."""
+    if model := _reduced(problem):
+        _certify(problem, model, [point.solution for point in points], "others", work)
 
 
 def certificate_attributes(problem: UpdatingProblem) -> dict[str, str | int | float]:
@@ -147,13 +141,13 @@ def certificate_values(
     model = _reduced(problem)
     if model is None:
         return {}
+    errors = [_errors_of(model, x) for x in solutions]
     eigenvalue, shape = (
-        np.array([x.evaluation.quantities[name] for x in solutions]).reshape(len(solutions), -1)
-        for name in ERRORS
+        np.array([each[i] for each in errors]).reshape(len(solutions), -1) for i in (0, 1)
     )
     return {
-        prefix + ERRORS[0]: eigenvalue,
-        prefix + ERRORS[1]: shape,
+        f"{prefix}eigenvalue_error": eigenvalue,
+        f"{prefix}shape_error": shape,
         f"{prefix}certified": (eigenvalue <= model.tolerance).all(axis=1),
     }
 
@@ -223,62 +217,36 @@ def _lowest(problem: UpdatingProblem) -> int:
     return modes_needed(problem.pairing, problem.data, problem.model.size)
 
 
-def _with_errors(
-    problem: UpdatingProblem, model: ReducedModel, front: Front, work: Executor
-) -> Front:
-    """Return the front with the estimated errors of all its models."""
-    minima = [x for edge in front.edges for x in edge.minima]
-    reported = _each_once([*_of_the_front(front), *minima, *front.optimal])
-    certified = _certified(problem, model, reported, "front", work)
-    known = {_key(x): x.evaluation.quantities for x in certified}
-    front = replace(front, known=np.zeros((0, front.known.shape[1])))  # it holds in the basis only
-    return _replaced(front, known)
-
-
-def _replaced(part: Any, known: Mapping[bytes, Mapping[str, Floats]]) -> Any:
-    """Return a part of a front of which solutions have the known quantities of their models."""
-    if isinstance(part, Solution):
-        quantities = known.get(_key(part), part.evaluation.quantities)
-        return replace(part, evaluation=replace(part.evaluation, quantities=quantities))
-    if isinstance(part, list | tuple):
-        return type(part)(_replaced(each, known) for each in part)
-    if isinstance(part, Front | Point | Edge | Gap):
-        changed = {x.name: _replaced(getattr(part, x.name), known) for x in fields(part)}
-        return replace(part, **changed)
-    return part
-
-
-def _certified(
+def _certify(
     problem: UpdatingProblem,
     model: ReducedModel,
     solutions: Sequence[Solution],
     name: str,
     work: Executor,
-) -> list[Solution]:
-    """Return solutions with the errors of the modes that are paired with measured ones."""
+) -> None:
+    """Let the model keep the errors of solutions."""
     certifier = model.certifier() if solutions else None
     tasks = [
-        Task(("certificate", name, k + 1), _with_certificate, (problem, certifier, solution))
+        Task(("certificate", name, k + 1), _errors, (problem, certifier, solution))
         for k, solution in enumerate(solutions)
     ]
-    return work.run(tasks)
+    found = zip(solutions, work.run(tasks), strict=True)
+    model.errors.update({_key(solution): errors for solution, errors in found})
 
 
-def _with_certificate(
+def _errors(
     problem: UpdatingProblem, certifier: Certifier, solution: Solution
-) -> Solution:
-    """Return a solution with the errors of the modes that are paired with measured ones.
+) -> tuple[Floats, Floats]:
+    """Return the errors of the modes that are paired with measured ones, and of their shapes.
 
     They are infinite where the full model may pair other modes: where one of those that are looked
     at is missing, or where better known modes would be paired differently.
     """
     modes, place = np.unique(_paired(solution), return_inverse=True)
     (certificate,) = certifier.certify([(solution.theta, modes)], _lowest(problem))
-    errors = (certificate.eigenvalue[place], certificate.shape[place])
     if certificate.known and not _pairs_alike(problem, solution, certificate):
-        errors = (np.full(place.shape, np.inf), np.ones(place.shape))
-    quantities = {**solution.evaluation.quantities, **dict(zip(ERRORS, errors, strict=True))}
-    return replace(solution, evaluation=replace(solution.evaluation, quantities=quantities))
+        return np.full(place.shape, np.inf), np.ones(place.shape)
+    return certificate.eigenvalue[place], certificate.shape[place]
 
 
 def _pairs_alike(problem: UpdatingProblem, solution: Solution, certificate: Certificate) -> bool:
@@ -300,7 +268,7 @@ def _of_the_front(front: Front) -> Iterator[Solution]:
         yield from gap.ends
 
 
-def _rivals(problem: UpdatingProblem, front: Front) -> Iterator[Solution]:
+def _rivals(problem: UpdatingProblem, model: ReducedModel, front: Front) -> Iterator[Solution]:
     """Return the minima that might be the best ones, for all that is known of their errors.
 
     Where a search has ended at a jump is no minimum: the basis and the full model may pair modes
@@ -308,7 +276,7 @@ def _rivals(problem: UpdatingProblem, front: Front) -> Iterator[Solution]:
     """
 
     def roots(solution: Solution) -> tuple[Floats, Floats]:
-        margin = problem.margins(*(solution.evaluation.quantities[name] for name in ERRORS))
+        margin = problem.margins(*_errors_of(model, solution))
         return np.maximum(np.sqrt(solution.J) - margin, 0.0), np.sqrt(solution.J) + margin
 
     for i, edge in enumerate(front.edges):
@@ -335,6 +303,5 @@ def _key(solution: Solution) -> bytes:
     return solution.theta.tobytes()
 
 
-def _error(solution: Solution) -> float:
-    """Return the greatest error of an eigenvalue."""
-    return float(solution.evaluation.quantities[ERRORS[0]].max())
+def _errors_of(model: ReducedModel, solution: Solution) -> tuple[Floats, Floats]:
+    return model.errors[_key(solution)]

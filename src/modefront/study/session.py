@@ -12,7 +12,7 @@ from typing import Any, Unpack
 from threadpoolctl import threadpool_limits
 
 from modefront._version import __version__
-from modefront.analysis.certified import certificate_attributes, certified_front, certified_points
+from modefront.analysis.certified import certificate_attributes, certified_front, certify
 from modefront.analysis.front import analyse_front
 from modefront.datasets import Dataset
 from modefront.errors import Fault, InputError, writing
@@ -199,16 +199,16 @@ def worked(study: Study, work: Run) -> Dataset:
         minima = [x for edge in front.edges for x in edge.minima]
         known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
         maxima = most_probable(problem, noise, known, work)
-        within, points = Within(work, ("most-probable",)), [Point(Kind.MOST_PROBABLE, maxima[0])]
-        added = certified_points(problem, points, within)
+        added = [Point(Kind.MOST_PROBABLE, maxima[0])]
+        certify(problem, added, Within(work, ("most-probable",)))
         front = replace(front, points=[*front.points, *added])
         count = max(DRAWS, study.uncertainty.draws)
         inference = infer(noise, [x.theta for x in maxima], count, seed, work)
     options = study.pareto, study.identifiability, study.uncertainty
     analysis = analyse_front(problem, front, *options, seed, work)
     (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
-    extra = [*analysis.points, Point(Kind.NOMINAL, given(nominal))]
-    analysis = replace(analysis, points=certified_points(problem, extra, work))
+    analysis = replace(analysis, points=[*analysis.points, Point(Kind.NOMINAL, given(nominal))])
+    certify(problem, analysis.points, work)
     data = dataset(problem, front, analysis)
     theta, paired = data["theta"].values, data["paired_mode"].values
     # A refined front has further points: what is kept is that of the points before.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import Any, TypeAlias
 
@@ -81,7 +81,7 @@ _Projected: TypeAlias = tuple[tuple[SnapshotRequest, ...], DenseAffine, DenseAff
 """Some snapshots, K and M in their basis, and the basis as the sensors see it."""
 
 
-# 12 fields: eight describe the basis, four are its state.
+# 13 fields: eight describe the basis, five are its state.
 @shared
 @dataclass(eq=False, repr=False)
 class ReducedModel:
@@ -100,6 +100,7 @@ class ReducedModel:
     memory : GiB that the basis may take; one mode is always allowed
     spare : how many of the modes are only there to tell the others from them
     snapshots : those in use; others may be set, which are computed when needed, and not counted
+    errors : relative ones of eigenvalues, and those of shapes, at models by the bytes of theta
     """
 
     full: MatrixModel
@@ -111,6 +112,7 @@ class ReducedModel:
     memory: float = MEMORY
     spare: int = 0
     snapshots: tuple[SnapshotRequest, ...] = ()
+    errors: dict[bytes, tuple[Floats, Floats]] = field(default_factory=dict)
     _taken: tuple[tuple[SnapshotRequest, Costs, float], ...] = ()
     _basis: bases.Basis | None = None
     _small: _Projected | None = None
@@ -123,7 +125,7 @@ class ReducedModel:
         Modes need no more; for anything else, snapshots are taken again when needed.
         """
         small = self._projected() if self._is_at_hand else None
-        lost = {"_taken": (), "_basis": None, "_small": small}
+        lost: dict[str, Any] = {"errors": {}, "_taken": (), "_basis": None, "_small": small}
         return {**vars(self), **lost}
 
     @property
