@@ -10,12 +10,12 @@ from modefront.optim.scalarisation import (
     LogSum,
     Scalarisation,
     achievement,
-    limited,
+    below,
     weighted,
 )
 
 ONES = np.ones(2)
-LEVEL = limited(np.array([0.0, 1 / 5]), np.array([1 / 2, 0.0]), 0.3 / 2)
+LEVEL = below(np.array([0.0, 1 / 5]), np.array([1 / 2, 0.0]), 0.3 / 2)
 PROGRAMMES = [
     weighted(np.array([1.0, 3.0])),
     LEVEL,

@@ -12,7 +12,7 @@ from problems import Derivatives, Known, bowls, box, circles, curved, sphere
 from modefront._typing import Floats
 from modefront.optim.linearised import Merit, projected, surplus
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives
-from modefront.optim.scalarisation import Scalarisation, achievement, limited, weighted
+from modefront.optim.scalarisation import Scalarisation, achievement, below, weighted
 from modefront.optim.second import learned_from
 from modefront.optim.sqp import Options, Solution, Status, begin, solve
 
@@ -42,7 +42,7 @@ def test_bounds_hold_exactly() -> None:
 
 def test_levels_are_met() -> None:
     problem = box(curved, [-2, -2], [2, 2])
-    programme = limited(np.array([0.0, 1.0]), np.array([1.0, 0.0]), 0.16)
+    programme = below(np.array([0.0, 1.0]), np.array([1.0, 0.0]), 0.16)
     result = solve(problem, programme, begin(problem.evaluate(np.array([0.1, 0.3]))))
     assert result.converged
     assert result.theta == pytest.approx([0.4, 0.16], abs=1e-6)

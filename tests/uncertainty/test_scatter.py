@@ -12,7 +12,7 @@ from modefront._typing import Floats
 from modefront.front.simplex import payoff
 from modefront.front.subproblems import Point, active_bounds
 from modefront.optim.problem import Evaluation
-from modefront.optim.scalarisation import LogSum, Scalarisation, limited, weighted
+from modefront.optim.scalarisation import LogSum, Scalarisation, below, weighted
 from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.uncertainty.noise import Noise
@@ -133,7 +133,7 @@ def test_a_level_that_moves_with_the_data() -> None:
     def cut(problem: Squares) -> Solution:
         best = minimum(problem, weighted(np.array([1.0, 0.0])), first.theta)
         value = (1 + tolerance) * best.J[0]
-        programme = limited(np.array([0.0, 1.0]), np.array([1.0, 0.0]), value)
+        programme = below(np.array([0.0, 1.0]), np.array([1.0, 0.0]), value)
         return minimum(problem, programme, best.theta + 0.01)
 
     problem = case.problem()

@@ -18,7 +18,7 @@ import numpy as np
 from modefront._typing import Bools, Floats, Ints
 from modefront.front.subproblems import RHO
 from modefront.optim.problem import Problem
-from modefront.optim.scalarisation import Scalarisation, limited, weighted
+from modefront.optim.scalarisation import Scalarisation, below, weighted
 from modefront.optim.sqp import TIGHT, Solution, solve
 from modefront.work.task import IMMEDIATE, Task
 
@@ -106,7 +106,7 @@ def _ends(
         if other is None:
             return None
         most = float(other.J[i]) / scale[i]
-        end = found(of, limited(unit[1 - i], unit[i], most))
+        end = found(of, below(unit[1 - i], unit[i], most))
         return end if end and end.J[i] / scale[i] <= most + RHO else None
 
     end, start = found(before[0], weighted(unit[1])), found(behind[0], weighted(unit[0]))

@@ -16,7 +16,7 @@ from modefront._typing import Bools, Floats
 from modefront.front.simplex import Payoff
 from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
 from modefront.optim.problem import Problem
-from modefront.optim.scalarisation import STEEP, Scalarisation, achievement, limited, weighted
+from modefront.optim.scalarisation import STEEP, Scalarisation, achievement, below, weighted
 from modefront.optim.sqp import Options, Solution, Status, solve
 from modefront.work.task import Key
 
@@ -245,7 +245,7 @@ def near_best(
     unit = np.eye(sizes.size)[objective] / value
     closest = sorted(known, key=lambda solution: abs(np.log(solution.J[objective] / value)))
     for start in closest[: sizes.size]:
-        solved = solve(problem, limited(others, unit, 1.0), start)
+        solved = solve(problem, below(others, unit, 1.0), start)
         if solved.converged and solved.J[objective] <= (1 + TIE) * value:
             return solved
     return best

@@ -127,7 +127,7 @@ def weighted(w: Floats) -> Linear:
     return Linear(w, no_rows(w.size))
 
 
-def limited(w: Floats, a: Floats, most: float) -> Linear:
+def below(w: Floats, a: Floats, most: float) -> Linear:
     """Return min w^T J subject to a^T J <= most."""
     return achievement(w, np.array([0 * a, a]), np.array([0.0, most]), STEEP)
 
