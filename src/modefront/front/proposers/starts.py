@@ -41,6 +41,7 @@ class Minima:
     ends : minima of different values; what ended at the limit of iterations has met none
     counts : number of starts that led to each
     lost : number of starts that neither met a minimum nor gained
+    thetas : parameters of all starts so far, and of the next ones
     """
 
     tries: int = 0
@@ -48,6 +49,7 @@ class Minima:
     ends: list[Solution] = field(default_factory=list)
     counts: list[int] = field(default_factory=list)
     lost: int = 0
+    thetas: list[Floats] = field(default_factory=list)
 
     def note(self, place: Place, solution: Solution, tolerance: float) -> bool:
         """Count the end of a start; return whether that has met a minimum."""
@@ -103,7 +105,6 @@ class Starts:
     rng: np.random.Generator
     again: Mapping[Key, Sequence[Solution]] | None = None
     minima: dict[Key, Minima] = field(default_factory=dict)
-    _queue: list[Floats] = field(default_factory=list)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
         """Yield random starts of each place."""
@@ -113,10 +114,12 @@ class Starts:
                 left = self.again.get(place.subproblem.key, ())[known.tries :]
                 yield from (solve_from(k, place, at(x.theta), 1.0) for x in left[:most])
                 continue
+            known.thetas = known.thetas or [state.problem.start]
+            while len(known.thetas) < known.tries + most:
+                known.thetas += self._block(state)
             for ahead in range(most):
-                theta = self._next(state) if known.tries + ahead else state.problem.start
                 chance = known.chance(place, state.tolerance, ahead)
-                yield solve_from(k, place, at(theta), chance)
+                yield solve_from(k, place, at(known.thetas[known.tries + ahead]), chance)
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
         """Count the start, and keep its minimum if it is new."""
@@ -131,11 +134,8 @@ class Starts:
         """Return the minima of a subproblem."""
         return self.minima.setdefault(place.subproblem.key, Minima())
 
-    def _next(self, state: State) -> Floats:
-        """Return random parameters, spread evenly over each range block by block."""
-        if not self._queue:
-            p = state.span.size
-            cells = self.rng.permuted(np.tile(np.arange(USUAL), (p, 1)), axis=1).T
-            u = (cells + self.rng.uniform(size=cells.shape)) / USUAL
-            self._queue = list(state.problem.lower + state.span * u)
-        return self._queue.pop()
+    def _block(self, state: State) -> list[Floats]:
+        """Return random parameters that are spread evenly over each range."""
+        cells = self.rng.permuted(np.tile(np.arange(USUAL), (state.span.size, 1)), axis=1).T
+        u = (cells + self.rng.uniform(size=cells.shape)) / USUAL
+        return list(state.problem.lower + state.span * u)
