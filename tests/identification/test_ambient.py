@@ -27,7 +27,7 @@ def _model(rng: np.random.Generator) -> Density:
     background = half @ half.T / 50 + 0.02 * np.eye(SENSORS)
     poles = np.array([10.0, 10.3, 12.0]), np.array([0.01, 0.02, 0.015])
     return Density(
-        *poles, phi / np.linalg.norm(phi, axis=0), root, background, 2, np.zeros((SENSORS, 0))
+        *poles, phi / np.linalg.norm(phi, axis=0), root, background, 2, np.zeros((SENSORS, 0)), 10.0
     )
 
 
@@ -147,11 +147,12 @@ def test_shapes_of_setups_that_differ_have_greater_deviations() -> None:
     shapes = [np.array([0.6, 0.64, 0.48]), np.array([0.48, 0.6, 0.64])]
     covariances = [1e-6 * (np.eye(3) - np.outer(u, u)) for u in shapes]
     places = [np.array([0, 1, 2]), np.array([0, 1, 3])]
-    phi, C = merged_shape(places, shapes, covariances, 4)
+    phi, C, misfit = merged_shape(places, shapes, covariances, 4)
     assert np.sqrt(C[0, 0]) > 0.01  # either setup says 0.001
     for u, i in zip(shapes, places, strict=True):
         assert (u @ phi[i]) ** 2 > 0.99 * float(phi[i] @ phi[i])
-    _, same = merged_shape(places[:1] * 2, shapes[:1] * 2, covariances[:1] * 2, 4)
+    _, same, agrees = merged_shape(places[:1] * 2, shapes[:1] * 2, covariances[:1] * 2, 4)
+    assert misfit > 100 > 1e-6 > agrees
     assert np.sqrt(np.diag(same)[:3]).max() < 0.001
 
 
@@ -169,7 +170,7 @@ def test_shapes_of_setups_meet_at_shared_sensors() -> None:
             u *= rng.choice([-1, 1]) / np.linalg.norm(u)
             shapes.append(u)
             covariances.append(std**2 * (np.eye(len(i)) - np.outer(u, u)))
-        merged, C = merged_shape(places, shapes, covariances, 7)
+        merged, C, _ = merged_shape(places, shapes, covariances, 7)
         assert np.isnan(merged[6])
         true = phi[:6] / np.linalg.norm(phi[:6])
         sign = np.sign(merged[:6] @ true)

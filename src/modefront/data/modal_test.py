@@ -167,7 +167,7 @@ def _rate(path: Path, time: Floats) -> float:
     if off > 0.3 * length / count:
         found = f"times off by up to {off:.3g} s, steps of {length / count:.3g} s"
         raise wrong(path, "a time axis of even steps", found, "time")
-    return count / length
+    return float(f"{count / length:.12g}")  # products of steps and numbers have rounding
 
 
 MOST_MODES = 200  # modes that a test file may ask for

@@ -90,9 +90,11 @@ def _likelihood(
     lines: Transforms, near: slice, model: Density
 ) -> tuple[float, Complexes, Complexes]:
     """Return the cost of lines, and R with E^-1 = R R^* and H L at each of them."""
-    half, F = model.lifted(lines.omega[near], lines.order) @ model.root, lines.F[:, near].T
+    omega, F = lines.omega[near], lines.F[:, near].T
+    g = model.profile(omega)[:, None, None]
+    half = g * model.lifted(omega, lines.order) @ model.root
     moved = model.columns @ half
-    C = np.linalg.cholesky(moved @ _adjoint(moved) + model.background)
+    C = np.linalg.cholesky(moved @ _adjoint(moved) + g**2 * model.background)
     root: Complexes = np.asarray(np.linalg.inv(C), complex).conj().swapaxes(1, 2)
     misfit = np.sum(np.abs(np.einsum("kji,kj->ki", root.conj(), F)) ** 2)
     determinant = 2 * np.log(np.einsum("kii->ki", C).real).sum(axis=1)

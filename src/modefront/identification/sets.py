@@ -30,6 +30,12 @@ LEAST_MAC = 0.5
 SIGNIFICANT = 0.95
 """Level of the test of homogeneity; the 5 % that is usual."""
 
+ANGLES = 180
+"""Ratios of two shapes of unit norm that are tried, as angles."""
+
+ROUNDING = 1e-12
+"""Least variance of a component of a shape."""
+
 MOST_STEPS = 50
 """Steps of Gauss and Newton, at most."""
 
@@ -175,7 +181,7 @@ def _agreement(
     damping where data of a set turn their shapes. MAC of planes is the squared cosine of the least
     angle between them. Data of a set may turn the shapes of modes that are close within their
     plane: one of a mode has to lie in that of the other one and those whose half bandwidths meet
-    its own.
+    its own. Shapes that their covariances do not tell apart may be the same, too.
     """
     x, y = of_a[1][a], of_b[1][b]
     half = [mode.damping * mode.frequency for mode in (x, y)]
@@ -198,9 +204,29 @@ def _agreement(
         return float(np.linalg.norm(first.T @ second, 2) ** 2) if first.size * second.size else 0.0
 
     near = max(mac(own_a, plane_b), mac(plane_a, own_b))
-    if near <= least:
+    if near <= least and _apart(of_a[0], x, of_b[0], y) > WIDTH:
         return 0.0
     return 1 + mac(own_a, own_b) * float(alike(x.pole, np.array(y.pole)))
+
+
+def _apart(of_a: Sequence[str], a: ModeEstimate, of_b: Sequence[str], b: ModeEstimate) -> float:
+    """Return how many deviations shapes of any scale are apart at common sensors.
+
+    Infinitely many where covariances are not known.
+    """
+    shared = [(of_a.index(name), of_b.index(name)) for name in of_a if name in of_b]
+    if a.shape_covariance is None or b.shape_covariance is None:
+        return np.inf
+    i, j = np.array(shared).T
+    angle = np.linspace(0, np.pi, ANGLES, endpoint=False)
+    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    difference = c * a.shape.shape[i] + s * b.shape.shape[j]
+    C = c[..., None] ** 2 * a.shape_covariance[np.ix_(i, i)]
+    C = C + s[..., None] ** 2 * b.shape_covariance[np.ix_(j, j)] + ROUNDING * np.eye(len(i))
+    if not np.isfinite(C).all():
+        return np.inf
+    squares = np.sum(difference * np.linalg.solve(C, difference[..., None])[..., 0], axis=1)
+    return float(np.sqrt(squares.min()))
 
 
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:
@@ -219,8 +245,10 @@ def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:
 
 def merged_shape(
     places: Sequence[Ints], shapes: Sequence[Floats], covariances: Sequence[Floats], count: int
-) -> tuple[Floats, Floats]:
-    """Return the shape of unit norm at all sensors and its covariance; NaN where none measured.
+) -> tuple[Floats, Floats, float]:
+    """Return the shape of unit norm at all sensors, its covariance, and the misfit of the setups.
+
+    Both are NaN where none measured.
 
     Its parts are along the shapes of all setups, by weighted least squares (Au, Mech. Syst. Signal
     Process. 25 (2011) 163-179). Where these differ by more than their covariances say, that of the
@@ -248,4 +276,4 @@ def merged_shape(
     covariance = np.full((count, count), np.nan)
     covariance[np.ix_(known, known)] = half @ half.T
     phi[np.setdiff1d(np.arange(count), known)] = np.nan
-    return phi, covariance
+    return phi, covariance, float(value[0])

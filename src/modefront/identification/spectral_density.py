@@ -1,11 +1,11 @@
 r"""The likelihood of the Fourier transforms of ambient records, in a band with a few modes.
 
-Of docs/methods/ambient.md, with one more part: a force :math:`f_r` of a mode in the band
+Of docs/methods/ambient.md, with two more parts: a force :math:`f_r` of a mode in the band
 moves :math:`(\varphi_r h_r + \rho_r + y \sigma_r) f_r`, where :math:`y = \omega/\omega_m - 1` and
-the real vectors rho and sigma are the flanks of modes outside of it, as residual terms are. So
-:math:`E_k = \Psi N_k \Psi^T + B`, :math:`N = H S H^*`, with
-:math:`H = [\operatorname{diag} h;\ I;\ y I]`. With :math:`P = \Psi^T B^{-1}\Psi`, all of it needs
-matrices of the size of the modes only,
+the real vectors rho and sigma are the flanks of modes outside of it, as residual terms are; and all
+else has a colour, :math:`g = (\omega/\omega_m)^b`. So :math:`E_k = g_k^2 (\Psi N_k \Psi^T + B)`,
+:math:`N = H S H^*`, with :math:`H = [\operatorname{diag} h;\ I;\ y I] / g`. Data are taken over g.
+With :math:`P = \Psi^T B^{-1}\Psi`, all of it needs matrices of the size of the modes only,
 
 .. math:: D = H (I + S H^* P H)^{-1} S H^*,\quad Y = I - D P,\quad
           E^{-1} = B^{-1} - \hat\Psi D \hat\Psi^T,\quad \hat\Psi = B^{-1}\Psi,\quad
@@ -25,6 +25,7 @@ Psi, H          (sensors, columns), (columns, modes); columns are modes in the b
                 beside it
 S = L L^*       (modes, modes) spectral density of the modal forces, L lower triangular
 B               (sensors, sensors) real; a priori diagonal, with the weight of `PRIOR` lines
+b               a priori normal: the ends of the band then differ from its middle by a factor e
 C, Q            :math:`\Psi^T E^{-1}\Psi = P Y`, :math:`N C N = N - D`
 ==============  ========================================================================
 
@@ -67,6 +68,9 @@ LONGEST = 1.0
 LEAST_DAMPING, GREATEST_DAMPING = 1e-7, 0.5
 """Limits of damping ratios in a search."""
 
+LEAST_KNOWN = 1e-13
+"""Least eigenvalue of the scaled information of what is determined, for rounding."""
+
 TINY = 1e-100
 
 
@@ -89,11 +93,10 @@ class Band:
     order: int
     floor: Floats
 
-    @cached_property
-    def total(self) -> Floats:
-        """Sum of the real part of F F^* over the lines, and of the background a priori."""
+    def total(self, profile: Floats | float = 1.0) -> Floats:
+        """Sum of the real part of F F^* / g^2 over the lines, and of the background a priori."""
         prior = (PRIOR + len(self.floor)) * np.diag(self.floor)
-        out: Floats = np.tensordot(self.count, self.power.real, 1) + prior
+        out: Floats = np.tensordot(self.count / profile**2, self.power.real, 1) + prior
         return out
 
     @property
@@ -102,9 +105,14 @@ class Band:
         return float(self.count.sum() + PRIOR + len(self.floor))
 
     @property
+    def reach(self) -> float:
+        """Half the width over the middle."""
+        return float(np.ptp(self.omega) / (self.omega[0] + self.omega[-1]))
+
+    @property
     def background(self) -> Floats:
         """The most likely background without modes, (sensors, sensors)."""
-        return self.total / self.weight
+        return self.total() / self.weight
 
 
 @dataclass(frozen=True)
@@ -119,8 +127,9 @@ class Density:
     background : (sensors, sensors) B
     free : number of the modes that are in the band, the first ones
     coherent : (sensors, terms x free) R, all constants first; no terms for a model without it
-    middle : rad/s, where the slopes of R are 0
+    middle : rad/s, where the slopes of R are 0, and g is 1
     precision : (terms x free,) of normal distributions of the columns of R a priori, about 0
+    colour : b
     """
 
     omega: Floats
@@ -130,8 +139,9 @@ class Density:
     background: Floats
     free: int
     coherent: Floats
-    middle: float = 1.0
+    middle: float
     precision: Floats = field(default_factory=lambda: np.zeros(0))
+    colour: float = 0.0
 
     @property
     def columns(self) -> Floats:
@@ -142,6 +152,12 @@ class Density:
     def moving(self) -> int:
         """Number of columns that are parameters, the first ones."""
         return self.free + self.coherent.shape[1]
+
+    def prior(self, count: int) -> Floats:
+        """Return what the prior of R adds to the second derivatives by so many parameters."""
+        n, out = len(self.phi), np.zeros(count)
+        out[self.free * n : self.moving * n] = self.precision.repeat(n)
+        return out
 
     @property
     def force(self) -> Complexes:
@@ -156,15 +172,20 @@ class Density:
         inner: Complexes = 1 - x**2 + 2j * zeta * x
         return 2 * zeta * x**order / inner
 
+    def profile(self, omega: Floats) -> Floats:
+        """Return g at circular frequencies."""
+        out: Floats = (omega / self.middle) ** self.colour
+        return out
+
     def lifted(self, omega: Floats, order: int) -> Complexes:
-        """Return H at circular frequencies, (lines, columns, modes)."""
+        """Return H / g at circular frequencies, (lines, columns, modes)."""
         eye = np.eye(len(self.omega))
         of_modes = self.response(omega, order).T[:, :, None] * eye
         terms = range(self.coherent.shape[1] // max(self.free, 1))
         y = (omega / self.middle - 1)[:, None, None]
         smooth = [y**term * eye[: self.free] for term in terms]
         parts = [of_modes[:, : self.free], *smooth, of_modes[:, self.free :]]
-        out: Complexes = np.concatenate(parts, axis=1)
+        out: Complexes = np.concatenate(parts, axis=1) / self.profile(omega)[:, None, None]
         return out
 
     def with_coherent(self, band: Band) -> Density:
@@ -174,8 +195,7 @@ class Density:
         """
         n, ends = len(self.phi), band.omega[[0, -1]]
         size = np.mean(np.abs(self.response(ends, band.order)[: self.free]) ** 2, axis=1)
-        reach = np.ptp(ends) / ends.sum()
-        precision = (n * reach ** (2 * np.arange(TERMS))[:, None] / size).ravel()
+        precision = (n * band.reach ** (2 * np.arange(TERMS))[:, None] / size).ravel()
         R = np.zeros((n, len(precision)))
         return replace(self, coherent=R, middle=float(ends.mean()), precision=precision)
 
@@ -233,8 +253,15 @@ class Fit:
         """A square root of the covariance of all parameters, with as many columns."""
         A, scale = self.scaled()
         value, vector = la.eigh(A)
-        out: Floats = scale[:, None] * vector / np.sqrt(np.maximum(value, 1e-13))
+        out: Floats = scale[:, None] * vector / np.sqrt(np.maximum(value, LEAST_KNOWN))
         return out
+
+    @property
+    def freedom(self) -> float:
+        """Number of parameters that the data determine; those with a prior count in part."""
+        A, scale = self.scaled()
+        of_data = self.information - np.diag(self.model.prior(len(A)))
+        return float(np.vdot(la.pinvh(A, rtol=LEAST_KNOWN), of_data * np.outer(scale, scale)))
 
     def covariance(self, mode: int) -> Floats:
         """Return the covariance of ln omega, ln zeta and the shape of a free mode."""
@@ -250,7 +277,8 @@ class _Matrices:
     """The matrices of the module's text in all blocks, (blocks, columns, columns), and the cost.
 
     ``h`` is H, ``seen`` is F F^* hat of the data, (blocks, sensors, columns), ``own`` is
-    hat^T F F^* hat, and ``weighted`` is D times the number of lines.
+    hat^T F F^* hat, ``weighted`` is D times the number of lines, ``profile`` is g and ``total`` that
+    of the band. H, F and B are those over g.
     """
 
     h: Complexes
@@ -262,6 +290,8 @@ class _Matrices:
     seen: Complexes
     own: Complexes
     weighted: Complexes
+    profile: Floats
+    total: Floats
     cost: float
 
     @cached_property
@@ -278,19 +308,20 @@ class _Matrices:
 
 
 def _matrices(band: Band, model: Density) -> _Matrices:
-    n, B = len(model.phi), model.background
-    h, psi = model.lifted(band.omega, band.order), model.columns
+    n, B, g = len(model.phi), model.background, model.profile(band.omega)
+    h, psi, total = model.lifted(band.omega, band.order), model.columns, band.total(g)
     inverse = np.linalg.inv(B)
     hat = inverse @ psi
     P = psi.T @ hat
     N, D, determinant = _of_responses(h @ model.root, P)
     Y = np.eye(len(P)) - D @ P
-    seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape)
+    seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape) / g[:, None, None] ** 2
     own, weighted = hat.T @ seen, band.count[:, None, None] * D
-    cost = band.weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total)
+    cost = band.weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, total)
+    cost += 2 * n * band.count @ np.log(g) + 2 * (band.reach * model.colour) ** 2
     cost += band.count @ determinant - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
     cost += np.sum(model.precision * model.coherent**2) / 2
-    return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, float(cost))
+    return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, g, total, float(cost))
 
 
 def _of_responses(root: Complexes, P: Floats) -> tuple[Complexes, Complexes, Floats]:
@@ -331,8 +362,7 @@ def evaluate(band: Band, model: Density, known: _Matrices | None = None) -> Fit:
     columns[m : model.moving] += (model.precision * model.coherent).T
     gradient = np.concatenate([columns[: model.moving].ravel(), poles, forces])
     information = _information(model, x, c, d, J)
-    prior = np.arange(m * len(columns.T), model.moving * len(columns.T))
-    information[prior, prior] += model.precision.repeat(len(columns.T))
+    information += np.diag(model.prior(len(gradient)))
     return Fit(model, x.cost, gradient, information, _bending(whole.T))
 
 
@@ -422,7 +452,7 @@ def _background(band: Band, model: Density, x: _Matrices) -> tuple[Floats, Float
     """
     c, weight, psi = band.count, band.weight, model.columns
     both = (psi @ x.both).real
-    after = band.total - both - both.T + psi @ x.second.real @ psi.T
+    after = x.total - both - both.T + psi @ x.second.real @ psi.T
     R = la.cholesky(model.background, lower=True)
     V = la.solve_triangular(R, psi, lower=True)
     inner = la.solve_triangular(R, after - weight * model.background, lower=True)
@@ -444,6 +474,18 @@ def _background(band: Band, model: Density, x: _Matrices) -> tuple[Floats, Float
     return R @ U @ vector, z
 
 
+def _colour(band: Band, model: Density, x: _Matrices) -> float:
+    """Return a step of scoring of b."""
+    y, DP, inverse = np.log(band.omega / model.middle), -x.Y, np.linalg.inv(model.background)
+    DP += np.eye(DP.shape[1])
+    seen = np.tensordot(band.power.real, inverse) / x.profile**2
+    seen -= np.einsum("kij,kji->k", x.D + x.Y @ x.D, x.own).real
+    single, double = (np.einsum("kii->k", each).real for each in (DP, DP @ DP))
+    expected, prior = len(inverse) - single, 4 * band.reach**2
+    slope = 2 * (band.count * y) @ (expected - seen) + prior * model.colour
+    return float(-slope / (4 * (band.count * y**2) @ (expected - single + double) + prior))
+
+
 def _with_background(
     band: Band, model: Density, x: _Matrices, share: float
 ) -> tuple[Density, _Matrices, float]:
@@ -451,10 +493,11 @@ def _with_background(
 
     The step is halved until the cost falls.
     """
-    Q, z = _background(band, model, x)
+    (Q, z), b = _background(band, model, x), _colour(band, model, x)
     z = np.maximum(z, -MOST_OF_BACKGROUND)
     while share > SHORTEST:
-        trial = replace(model, background=(Q * (1 + share * z)) @ Q.T)
+        B = (Q * (1 + share * z)) @ Q.T
+        trial = replace(model, background=B, colour=model.colour + share * b)
         after = _matrices(band, trial)
         if after.cost <= x.cost:
             return trial, after, min(2 * share, 1.0)

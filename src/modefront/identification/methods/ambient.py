@@ -90,7 +90,7 @@ class Local:
     ----------
     omega, zeta : rad/s, damping ratio
     phi : (sensors,) of unit norm
-    gain : 2 Delta J of the fit with the mode
+    gain, freedom : 2 Delta J of the fit with the mode, and the parameters that it has more
     covariance : of ln omega, ln zeta and phi
     share : its greatest share in the density of a sensor, at its frequency
     kurtosis : kappa, and its standard deviation for a mode
@@ -101,6 +101,7 @@ class Local:
     zeta: float
     phi: Floats
     gain: float = np.inf
+    freedom: float = 0.0
     covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     share: float = np.nan
     kurtosis: tuple[float, float] = (2.0, 1.0)
@@ -164,14 +165,6 @@ def default_band(setups: Sequence[Records]) -> tuple[float, float]:
     """Return the frequencies in Hz that all records hold."""
     low = max(CYCLES / records.duration for records in setups)
     return low, min(HIGHEST * records.rate / 2 for records in setups)
-
-
-def needed(chance: float, sensors: int) -> float:
-    """Return the gain 2 Delta J of one mode that noise exceeds by a chance.
-
-    A mode has as many parameters as sensors, and two for its pole.
-    """
-    return float(chi2.isf(chance, sensors + 2))
 
 
 def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float]) -> _Setup:
@@ -275,6 +268,7 @@ def _of_group(
     explains less than one without a mode has not reached its maximum.
     """
     band, tried = setup.lines.part(*limits), False
+    steps = spectral_density.MOST_STEPS if last else TRIAL_STEPS
     start = _first(band, [*modes, *beside], len(modes))
     lines, band, fit, held = _without_sines(setup.lines, limits, start, [x.held for x in modes])
     if lines is not setup.lines and not last:
@@ -283,26 +277,27 @@ def _of_group(
         fit = spectral_density.maximise(band, fit.model.with_coherent(band))
     while fit.model.free:
         models = [fit.model.without(r, band) for r in range(fit.model.free)]
-        without = [spectral_density.maximise(band, model, TRIAL_STEPS) for model in models]
+        without = [spectral_density.maximise(band, model, steps) for model in models]
         gain = 2 * (np.array([each.cost for each in without]) - fit.cost)
+        freedom = fit.freedom - np.array([each.freedom for each in without])
         model = fit.model
         omega, zeta, phi = (x[..., : len(held)] for x in (model.omega, model.zeta, model.phi))
         low, high = band.omega[[0, -1]]
-        least = needed(chance, len(phi))
+        least = chi2.isf(chance, np.maximum(freedom, len(phi) + 2))
         # a mode that left the band, is as flat as it, narrower than a line, or doubles a stronger
         # one explains nothing
         astray = (omega < low) | (omega > high) | (4 * zeta * omega > high - low)
         astray |= 2 * zeta * omega < setup.spacing
         astray |= selection.doubles(omega * (1j - zeta), phi.T.astype(complex), gain)
         worth = np.where(held, np.inf, np.where(astray, 0.0, gain))
-        enough = worth.min() >= least
+        enough = (worth >= least).all()
         if not tried and not fit.converged and (gain.min() < 0 or (enough and last)):
             fit, tried = spectral_density.maximise(band, fit.model), True
             continue
         if enough:
             break
         none = np.zeros(len(held), bool)
-        gone = selection.with_weak(none, worth, least, omega * (1j - zeta))
+        gone = selection.with_weak(none, worth / least, 1.0, omega * (1j - zeta))
         held = held[~gone]
         for r in np.flatnonzero(gone)[::-1].tolist():
             model = model.without(r, band)
@@ -316,6 +311,7 @@ def _of_group(
             float(model.zeta[r]),
             model.phi[:, r],
             float(gain[r]),
+            float(freedom[r]),
             fit.covariance(r),
             float(visible[r]),
             harmonics.kurtosis(lines, model, r, REACH),
@@ -352,6 +348,7 @@ def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
         band.background,
         free,
         np.zeros((len(phi), 0)),
+        float(band.omega[[0, -1]].mean()),
     )
     h2 = np.abs(model.response(band.omega, band.order)) ** 2
     inverse = np.linalg.pinv(phi, rcond=0.1)
@@ -373,7 +370,7 @@ def _shares(band: Band, model: Density) -> Floats:
 
 
 def _estimate(
-    omega: float, zeta: float, stds: Floats, phi: Floats, phi_std: Floats
+    omega: float, zeta: float, stds: Floats, phi: Floats, covariance: Floats
 ) -> ModeEstimate:
     """Return a mode in physical units from logarithmic deviations of its pole."""
     shape = real_shape(np.nan_to_num(phi).astype(complex))
@@ -384,8 +381,9 @@ def _estimate(
         float(stds[0]) * omega / (2 * np.pi),
         float(stds[1]) * zeta,
         shape,
-        phi_std,
+        np.sqrt(np.diag(covariance)),
         np.zeros(0, complex),
+        shape_covariance=covariance,
     )
 
 
@@ -394,7 +392,7 @@ def _groups(setups: Sequence[_Setup], least: float = 0.0) -> list[dict[int, int]
     local = [
         (
             each.records.sensors,
-            [_estimate(x.omega, x.zeta, x.stds, x.phi, np.zeros(0)) for x in each.modes],
+            [_estimate(x.omega, x.zeta, x.stds, x.phi, x.covariance[2:, 2:]) for x in each.modes],
         )
         for each in setups
     ]
@@ -438,12 +436,13 @@ def _combined(
     text = "a harmonic: its lines are those of a sine"
     rejected = [Rejected(f, 0.0, text) for f in sines[apart].tolist()]
     lines = max(len(each.lines.omega) for each in setups)
-    freedom = sum(len(each.records.sensors) + 2 for each in setups)
-    least = float(chi2.isf(FALSE / lines, freedom))
     for group in groups:
         having = [(setups[k], setups[k].modes[r]) for k, r in group.items()]
-        mode, why = _of_structure(having, sensors), _harmonic(having)
-        mode = replace(mode, evidence=_evidence(having, mode, len(setups), least))
+        (mode, misfit), why = _of_structure(having, sensors), _harmonic(having)
+        freedom = sum(local.freedom for _, local in having)
+        gain = sum(local.gain for _, local in having) - misfit
+        gain /= float(chi2.isf(FALSE / lines, freedom))
+        mode = replace(mode, evidence=_evidence(having, mode, len(setups), gain))
         if not any(local.held for _, local in having):
             if len(having) == 1 < len(setups):
                 why = "none of the other setups has it, where its pole was tried"
@@ -473,8 +472,10 @@ def _combined(
     )
 
 
-def _of_structure(having: Sequence[tuple[_Setup, Local]], sensors: tuple[str, ...]) -> ModeEstimate:
-    """Return one mode from the setups that have it.
+def _of_structure(
+    having: Sequence[tuple[_Setup, Local]], sensors: tuple[str, ...]
+) -> tuple[ModeEstimate, float]:
+    """Return one mode from the setups that have it, and what it loses to one in each of them.
 
     Variances of ln zeta go as 1 / zeta, those of ln omega as zeta (Au, Mech. Syst. Signal Process.
     48 (2014) 15-33): all are those at one damping ratio, or setups that find too little of it
@@ -486,20 +487,21 @@ def _of_structure(having: Sequence[tuple[_Setup, Local]], sensors: tuple[str, ..
     common = np.average(logs[:, 1], weights=1 / of_unit[:, 1])
     variance = of_unit * np.exp(-common * power)
     means = np.average(logs, axis=0, weights=1 / variance)
-    misfit = np.sum((logs - means) ** 2 / variance, axis=0) / max(len(logs) - 1, 1)
-    deviations = np.sqrt(np.maximum(misfit, 1.0) / np.sum(1 / variance, axis=0))
+    misfit = np.sum((logs - means) ** 2 / variance, axis=0)
+    widening = np.maximum(misfit / max(len(logs) - 1, 1), 1.0)
+    deviations = np.sqrt(widening / np.sum(1 / variance, axis=0))
     places = [np.array([sensors.index(x) for x in setup.records.sensors]) for setup, _ in having]
     covariances = [mode.covariance[2:, 2:] for _, mode in having]
-    phi, C = merged_shape(places, [mode.phi for _, mode in having], covariances, len(sensors))
+    shapes = [mode.phi for _, mode in having]
+    phi, C, of_shapes = merged_shape(places, shapes, covariances, len(sensors))
     omega, zeta = np.exp(means).tolist()
-    mode = _estimate(omega, zeta, deviations, phi, np.sqrt(np.diag(C)))
-    return replace(mode, shape_covariance=C)
+    mode = _estimate(omega, zeta, deviations, phi, C)
+    return mode, float(misfit.sum() + of_shapes)
 
 
 def _evidence(
-    having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int, least: float
+    having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int, gain: float
 ) -> Evidence:
-    gain = sum(local.gain for _, local in having) / least
     share = max(
         float(support(setup.diagram, np.array([mode.pole]), np.ones(1))[0]) for setup, _ in having
     )
