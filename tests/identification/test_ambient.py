@@ -50,7 +50,8 @@ def _density(band: Band, model: Density) -> Complexes:
     for term in range(model.coherent.shape[1] // 2):
         part = model.coherent[:, 2 * term : 2 * term + 2]
         a[:, :, :2] += y[:, None, None] ** term * part
-    out: Complexes = a @ model.force @ a.conj().swapaxes(1, 2) + model.background
+    g = ((band.omega / model.middle) ** model.colour)[:, None, None]
+    out: Complexes = a @ model.force @ a.conj().swapaxes(1, 2) + g**2 * model.background
     return out
 
 
@@ -77,14 +78,14 @@ def test_cost_and_derivatives_are_those_of_the_whole_density(coherent: int) -> N
     rng = np.random.default_rng(0)
     model, band = _model(rng), _band(rng)
     R, precision = 0.3 * rng.standard_normal((SENSORS, coherent)), np.arange(1.0, coherent + 1)
-    model = replace(model, coherent=R, middle=9.5, precision=precision)
+    model = replace(model, coherent=R, middle=9.5, precision=precision, colour=0.7)
     fit = spectral_density.evaluate(band, model)
 
     def cost(model: Density) -> float:
         E, B = _density(band, model), model.background
         single = np.linalg.slogdet(E)[1] + np.einsum("kii->k", np.linalg.solve(E, band.power)).real
         prior = np.linalg.slogdet(B)[1] + np.linalg.inv(B).diagonal() @ band.floor
-        prior = (spectral_density.PRIOR + SENSORS) * prior
+        prior = (spectral_density.PRIOR + SENSORS) * prior + 2 * (0.1 * model.colour) ** 2
         return float(band.count @ single + prior + precision @ (model.coherent**2).sum(axis=0) / 2)
 
     count, step = len(fit.gradient), 1e-6
@@ -98,6 +99,25 @@ def test_cost_and_derivatives_are_those_of_the_whole_density(coherent: int) -> N
     constants = np.arange(2 * SENSORS, (2 + coherent) * SENSORS)
     expected[constants, constants] += precision.repeat(SENSORS)
     np.testing.assert_allclose(fit.information, expected, atol=1e-7 * np.abs(expected).max())
+    # shapes of unit norm, poles and forces; then what a prior leaves of R
+    alone = 2 * (SENSORS - 1) + 4 + 9
+    assert alone - 1e-6 < fit.freedom < alone + coherent * SENSORS + 1e-6
+    known = replace(model, precision=1e9 * precision)
+    assert spectral_density.evaluate(band, known).freedom == pytest.approx(alone, abs=0.1)
+
+
+def test_the_colour_of_the_background_is_that_of_the_records() -> None:
+    rng = np.random.default_rng(9)
+    model = replace(_model(rng), omega=np.array([9.6, 10.4, 12.0]), colour=3.0)
+    band = replace(_band(rng), count=np.full(LINES, 100.0))
+    root = np.linalg.cholesky(_density(band, model))
+    F = np.einsum("kij,kbj->kbi", root, _circular(rng, LINES, 100, SENSORS))
+    band = replace(band, power=np.einsum("kbi,kbj->kij", F, F.conj()) / 200)
+    fit = spectral_density.maximise(band, replace(model, colour=0.0))
+    assert fit.converged
+    assert fit.model.colour == pytest.approx(3.0, abs=0.5)
+    zeta = fit.model.zeta[:2]
+    assert zeta == pytest.approx(model.zeta[:2], abs=4 * max(fit.covariance(0)[1, 1] ** 0.5 * zeta))
 
 
 def test_every_fit_ends_at_a_minimum_of_shapes_poles_forces_and_background() -> None:

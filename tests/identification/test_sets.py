@@ -1,6 +1,9 @@
 """Modes of several sets: which are the same, where data turn the shapes of close ones."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from modefront._typing import Floats
 from modefront.identification.record import ModeEstimate
@@ -59,6 +62,17 @@ def test_damping_chooses_among_close_modes_of_turned_shapes() -> None:
     plane = np.linalg.qr(np.random.default_rng(1).standard_normal((4, 2)))[0].T
     sets = [_set([5, 5], plane, (0.025, 0.006)), _set([5, 5], _turned(plane, 40), (0.006, 0.025))]
     assert mode_groups(sets, SENSORS) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
+
+
+@pytest.mark.parametrize(("std", "groups"), [(0.01, 2), (0.4, 1)])
+def test_shapes_that_data_do_not_tell_apart_are_of_one_mode(std: float, groups: int) -> None:
+    basis = np.linalg.qr(np.random.default_rng(3).standard_normal((4, 4)))[0].T
+    sets = []
+    for phi in (basis[:1], 0.6 * basis[:1] + 0.8 * basis[1:2]):
+        names, (mode,) = _set([5.0], phi)
+        C = std**2 * (np.eye(4) - np.outer(phi, phi))
+        sets.append((names, [replace(mode, shape_covariance=C)]))
+    assert len(mode_groups(sets, SENSORS)) == groups
 
 
 def test_shapes_outside_the_plane_and_modes_apart_are_others() -> None:
