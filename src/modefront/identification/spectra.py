@@ -70,11 +70,8 @@ class Transforms:
         first = np.arange(0, len(omega), size)
         lines = np.diff(np.append(first, len(omega)))
         count = np.maximum(np.add.reduceat(self.share[kept], first), LEAST_SHARE)
-        products = F.T[:, :, None] * F.T[:, None].conj() if size == 1 else None
-        if products is None:
-            parts = [F[:, k : k + size] for k in first]
-            products = np.array([part @ part.conj().T for part in parts])
-        products /= count[:, None, None]
+        parts = [F[:, k : k + size] for k in first]
+        products = np.array([part @ part.conj().T for part in parts]) / count[:, None, None]
         middle = np.add.reduceat(omega, first) / lines
         value = np.linalg.eigvalsh(np.tensordot(count, products, 1).real / count.sum())
         floor = np.full(len(F), max(value[0], ROUNDING * value[-1]))

@@ -113,11 +113,6 @@ class Local:
         return self.zeta * self.omega
 
     @property
-    def pole(self) -> complex:
-        """Pole in rad/s."""
-        return self.omega * complex(-self.zeta, 1)
-
-    @property
     def stds(self) -> Floats:
         """Standard deviations of ln omega and ln zeta, and of the components of phi."""
         return np.sqrt(np.diag(self.covariance))
@@ -264,8 +259,9 @@ def _of_group(
 ) -> tuple[Transforms, list[Local]]:
     """Return the lines of a setup without sines in a band, and its modes.
 
-    Without those that gain less than noise makes by ``chance``, the weakest first. A fit that
-    explains less than one without a mode has not reached its maximum.
+    Without those that gain less than noise makes by ``chance``, the weakest first: a mode goes from
+    a fit that has reached its maximum only, and stays in the ``last`` one where that without it
+    has, too.
     """
     band, tried = setup.lines.part(*limits), False
     steps = spectral_density.MOST_STEPS if last else TRIAL_STEPS
@@ -290,18 +286,14 @@ def _of_group(
         astray |= 2 * zeta * omega < setup.spacing
         astray |= selection.doubles(omega * (1j - zeta), phi.T.astype(complex), gain)
         worth = np.where(held, np.inf, np.where(astray, 0.0, gain))
-        enough = (worth >= least).all()
-        if not tried and not fit.converged and (gain.min() < 0 or (enough and last)):
+        weakest = int((worth / least).argmin())
+        enough = worth[weakest] >= least[weakest]
+        if not (tried or fit.converged) and (last or not enough):
             fit, tried = spectral_density.maximise(band, fit.model), True
             continue
         if enough:
             break
-        none = np.zeros(len(held), bool)
-        gone = selection.with_weak(none, worth / least, 1.0, omega * (1j - zeta))
-        held = held[~gone]
-        for r in np.flatnonzero(gone)[::-1].tolist():
-            model = model.without(r, band)
-        fit = spectral_density.maximise(band, model, TRIAL_STEPS)
+        fit, held, tried = without[weakest], np.delete(held, weakest), False
     else:
         return lines, []
     model, visible = fit.model, _shares(band, fit.model)
@@ -361,12 +353,9 @@ def _shares(band: Band, model: Density) -> Floats:
     """Return the greatest share of each mode in the density of a sensor, at its frequency."""
     h = model.response(model.omega, band.order)[:, : model.free]
     own = model.phi[:, : model.free] ** 2 * model.force.diagonal().real[: model.free]
-    all_modes = np.einsum(
-        "jr,rk,rs,sk,js->jk", model.phi, h, model.force, h.conj(), model.phi, optimize=True
-    ).real
-    shares = own / (all_modes + np.diag(model.background)[:, None])
-    out: Floats = np.minimum(shares.max(axis=0), 1.0)
-    return out
+    all_modes = np.sum(np.abs(np.einsum("jr,rk,rs->jks", model.phi, h, model.root)) ** 2, axis=2)
+    shares: Floats = own / (all_modes + np.diag(model.background)[:, None])
+    return shares.max(axis=0)
 
 
 def _estimate(
@@ -495,8 +484,8 @@ def _of_structure(
     shapes = [mode.phi for _, mode in having]
     phi, C, of_shapes = merged_shape(places, shapes, covariances, len(sensors))
     omega, zeta = np.exp(means).tolist()
-    mode = _estimate(omega, zeta, deviations, phi, C)
-    return mode, float(misfit.sum() + of_shapes)
+    misfits = float(misfit.sum() + of_shapes)
+    return _estimate(omega, zeta, deviations, phi, C), misfits
 
 
 def _evidence(
