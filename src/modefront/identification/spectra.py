@@ -71,7 +71,8 @@ class Transforms:
         lines = np.diff(np.append(first, len(omega)))
         count = np.maximum(np.add.reduceat(self.share[kept], first), LEAST_SHARE)
         parts = [F[:, k : k + size] for k in first]
-        products = np.array([part @ part.conj().T for part in parts]) / count[:, None, None]
+        products = np.array([part @ part.conj().T for part in parts], complex)
+        products /= count[:, None, None]
         middle = np.add.reduceat(omega, first) / lines
         value = np.linalg.eigvalsh(np.tensordot(count, products, 1).real / count.sum())
         floor = np.full(len(F), max(value[0], ROUNDING * value[-1]))

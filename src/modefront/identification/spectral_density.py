@@ -185,8 +185,9 @@ class Density:
         y = (omega / self.middle - 1)[:, None, None]
         smooth = [y**term * eye[: self.free] for term in terms]
         parts = [of_modes[:, : self.free], *smooth, of_modes[:, self.free :]]
-        out: Complexes = np.concatenate(parts, axis=1) / self.profile(omega)[:, None, None]
-        return out
+        return np.asarray(
+            np.concatenate(parts, axis=1) / self.profile(omega)[:, None, None], complex
+        )
 
     def with_coherent(self, band: Band) -> Density:
         """Return the same model with R = 0 as parameters, in the middle of a band.
@@ -277,8 +278,7 @@ class _Matrices:
     """The matrices of the module's text in all blocks, (blocks, columns, columns), and the cost.
 
     ``h`` is H, ``seen`` is F F^* hat of the data, (blocks, sensors, columns), ``own`` is
-    hat^T F F^* hat, ``weighted`` is D times the number of lines, ``profile`` is g and ``total`` that
-    of the band. H, F and B are those over g.
+    hat^T F F^* hat, and ``weighted`` is D times the number of lines. All are over g.
     """
 
     h: Complexes
@@ -290,8 +290,6 @@ class _Matrices:
     seen: Complexes
     own: Complexes
     weighted: Complexes
-    profile: Floats
-    total: Floats
     cost: float
 
     @cached_property
@@ -309,7 +307,7 @@ class _Matrices:
 
 def _matrices(band: Band, model: Density) -> _Matrices:
     n, B, g = len(model.phi), model.background, model.profile(band.omega)
-    h, psi, total = model.lifted(band.omega, band.order), model.columns, band.total(g)
+    h, psi = model.lifted(band.omega, band.order), model.columns
     inverse = np.linalg.inv(B)
     hat = inverse @ psi
     P = psi.T @ hat
@@ -317,11 +315,11 @@ def _matrices(band: Band, model: Density) -> _Matrices:
     Y = np.eye(len(P)) - D @ P
     seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape) / g[:, None, None] ** 2
     own, weighted = hat.T @ seen, band.count[:, None, None] * D
-    cost = band.weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, total)
+    cost = band.weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total(g))
     cost += 2 * n * band.count @ np.log(g) + 2 * (band.reach * model.colour) ** 2
     cost += band.count @ determinant - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
     cost += np.sum(model.precision * model.coherent**2) / 2
-    return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, g, total, float(cost))
+    return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, float(cost))
 
 
 def _of_responses(root: Complexes, P: Floats) -> tuple[Complexes, Complexes, Floats]:
@@ -452,7 +450,7 @@ def _background(band: Band, model: Density, x: _Matrices) -> tuple[Floats, Float
     """
     c, weight, psi = band.count, band.weight, model.columns
     both = (psi @ x.both).real
-    after = x.total - both - both.T + psi @ x.second.real @ psi.T
+    after = band.total(model.profile(band.omega)) - both - both.T + psi @ x.second.real @ psi.T
     R = la.cholesky(model.background, lower=True)
     V = la.solve_triangular(R, psi, lower=True)
     inner = la.solve_triangular(R, after - weight * model.background, lower=True)
@@ -478,7 +476,7 @@ def _colour(band: Band, model: Density, x: _Matrices) -> float:
     """Return a step of scoring of b."""
     y, DP, inverse = np.log(band.omega / model.middle), -x.Y, np.linalg.inv(model.background)
     DP += np.eye(DP.shape[1])
-    seen = np.tensordot(band.power.real, inverse) / x.profile**2
+    seen = np.tensordot(band.power.real, inverse) / model.profile(band.omega) ** 2
     seen -= np.einsum("kij,kji->k", x.D + x.Y @ x.D, x.own).real
     single, double = (np.einsum("kii->k", each).real for each in (DP, DP @ DP))
     expected, prior = len(inverse) - single, 4 * band.reach**2

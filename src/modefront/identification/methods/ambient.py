@@ -355,7 +355,7 @@ def _shares(band: Band, model: Density) -> Floats:
     own = model.phi[:, : model.free] ** 2 * model.force.diagonal().real[: model.free]
     all_modes = np.sum(np.abs(np.einsum("jr,rk,rs->jks", model.phi, h, model.root)) ** 2, axis=2)
     shares: Floats = own / (all_modes + np.diag(model.background)[:, None])
-    return shares.max(axis=0)
+    return np.minimum(shares.max(axis=0), 1.0)
 
 
 def _estimate(
