@@ -109,11 +109,6 @@ class Band:
         """Half the width over the middle."""
         return float(np.ptp(self.omega) / (self.omega[0] + self.omega[-1]))
 
-    @property
-    def background(self) -> Floats:
-        """The most likely background without modes, (sensors, sensors)."""
-        return self.total() / self.weight
-
 
 @dataclass(frozen=True)
 class Density:

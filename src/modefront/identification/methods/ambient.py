@@ -337,7 +337,7 @@ def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
         np.array([mode.zeta for mode in modes]),
         phi,
         np.eye(len(modes), dtype=complex),
-        band.background,
+        band.total() / band.weight,
         free,
         np.zeros((len(phi), 0)),
         float(band.omega[[0, -1]].mean()),
