@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import islice
 
 import numpy as np
 
@@ -21,8 +22,9 @@ class Polish:
     A point of the lattice that no search has reached has the best known model as its incumbent:
     those that lag least behind what they could be come first, next to what is solved. So a front
     is followed from its edges inwards, each point from its neighbour. A point that ends beside its
-    normal is solved from the nearest one that lies on its own, and one that does not meet its
-    equations from as many as there are objectives: the front may go on from another side.
+    normal is solved from those that lie on their own, the nearest first, as long as that has a
+    chance to gain, and one that does not meet its equations from as many as there are objectives:
+    the front may go on from another side.
 
     Attributes
     ----------
@@ -44,10 +46,13 @@ class Polish:
         J = np.array([x.J for x in met]).reshape(-1, len(state.problem.objectives))
         for k, x, of in pairs:
             if isinstance(of, Point) and state.places[k].closed and not of.met(x):
-                chance, count = (1.0, J.shape[1]) if of.equations else (1 / (self.idle + 2), 1)
-                for m in of.order.spread(J).argsort(kind="stable")[:count].tolist():
-                    if (of.key, met[m].theta.tobytes()) not in self._tried:
-                        yield solve_from(k, state.places[k], met[m], chance)
+                nearest = [met[m] for m in of.order.spread(J).argsort(kind="stable").tolist()]
+                chance, count = 1 / (self.idle + 2), 1
+                if of.equations:
+                    chance, count = 1.0, J.shape[1]
+                    nearest = nearest[:count]
+                new = (y for y in nearest if (of.key, y.theta.tobytes()) not in self._tried)
+                yield from (solve_from(k, state.places[k], y, chance) for y in islice(new, count))
 
     def learn(self, state: State, offer: Offer, _: Outcome, gain: float) -> None:
         """Remember from which model a place was solved, and count what others have led to."""
