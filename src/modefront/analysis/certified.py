@@ -7,8 +7,6 @@ one is above the tolerance, a snapshot is taken there. A poor basis may mislead 
 repeated after a single snapshot then. Snapshots are tasks: an interrupted run has the same digits.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -33,11 +31,8 @@ POOR = Search().tolerance
 """Relative error of an eigenvalue at a reported model above which the search is not trusted: it is
 more than the gains that count."""
 
-ROUNDS = 8
-"""Rounds, after which the tolerance is given up."""
-
-AHEAD = 5
-"""Snapshots between two rounds at most, each of one or more models."""
+ROUNDS = 8  # rounds, after which the tolerance is given up
+AHEAD = 5  # snapshots between two rounds at most, each of one or more models
 
 AIM = 0.1
 """Error, over the tolerance, below which models need no snapshot after the first round: derivatives
@@ -51,20 +46,12 @@ exchanged them."""
 @record
 @dataclass(frozen=True)
 class SnapshotTaken:
-    """Outcome of a snapshot.
+    """Outcome of a snapshot."""
 
-    Attributes
-    ----------
-    error : greatest relative error of an eigenvalue before it
-    columns : of the basis with it
-    added : columns that it added
-    modes : that it is of; 0 where the basis has learned an indefinite stiffness
-    """
-
-    error: float
-    columns: int
-    added: int
-    modes: int
+    error: float  # greatest relative error of an eigenvalue before it
+    columns: int  # of the basis with it
+    added: int  # columns that it added
+    modes: int  # that it is of; 0 where the basis has learned an indefinite stiffness
 
 
 def certified_front(

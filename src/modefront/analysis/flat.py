@@ -4,8 +4,6 @@
 points of the new simplex that come to lie in the flat patch are left out.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -22,28 +20,20 @@ from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Task
 
-SPREAD = 0.2
-"""Share of the range of another objective over which a flat part extends at least."""
+SPREAD = 0.2  # share of the range of another objective over which a flat part extends at least
 
 
 @dataclass(frozen=True)
 class Identifiable:
-    """The part of a front that is not flat.
+    """The part of a front that is not flat."""
 
-    Attributes
-    ----------
-    flat : (n,) how many points of the whole front lie in the flat part at each edge, besides it
-    uncut : (n,) likewise, where the end of the flat part was not found, so that it is not cut
-    ends : where the part ends, one solution an objective
-    target : the simplex between them; None where the part is one point
-    points : along it; empty where it is one point
-    """
-
+    # (n,) how many points of the whole front lie in the flat part at each edge, besides it
     flat: Ints
+    # (n,) likewise, where the end of the flat part was not found, so that it is not cut
     uncut: Ints
-    ends: Sequence[Solution]
-    target: Payoff | None = None
-    points: Sequence[Solution] = ()
+    ends: Sequence[Solution]  # where the part ends, one solution an objective
+    target: Payoff | None = None  # the simplex between them; None where the part is one point
+    points: Sequence[Solution] = ()  # along it; empty where it is one point
 
 
 def flat_points(J: Floats, least: Floats, tolerance: float, sizes: Floats) -> Ints:

@@ -1,7 +1,5 @@
 """Front analysis: the identifiable part of a front, equivalent models, uncertainty."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -38,31 +36,23 @@ from modefront.work.task import Executor, Task, seed_sequence
 
 @dataclass(frozen=True)
 class FrontAnalysis:
-    """Identifiable part, equivalent models and uncertainty of a front.
+    """Identifiable part, equivalent models and uncertainty of a front."""
 
-    Attributes
-    ----------
-    points : of the identifiable part of the front, and its ends
-    identifiable : that part; None where nothing is flat
-    tolerance : the share within which objectives count as the same in a flat part
-    manifolds : of equivalent models, by group or method; ``twin`` of one is a position in what
-        `followed` returns
-    source : where the uncertainty of the data is taken from; None where it is not known
-    scatter : of the points by that uncertainty, by label
-    slopes : derivatives of predicted quantities at points, by label and quantity
-    posterior : of the parameters around the optimally weighted model, where it is the reference and
-        there is one
-    replicates : the points solved again with data drawn again, by label
-    """
-
-    points: Sequence[Point]
-    identifiable: Identifiable | None
-    tolerance: float
+    points: Sequence[Point]  # of the identifiable part of the front, and its ends
+    identifiable: Identifiable | None  # that part; None where nothing is flat
+    tolerance: float  # the share within which objectives count as the same in a flat part
+    # of equivalent models, by group or method; ``twin`` of one is a position in what `followed`
+    # returns
     manifolds: Sequence[tuple[str, Sequence[Manifold]]]
+    # where the uncertainty of the data is taken from; None where it is not known
     source: Source | None
-    scatter: Mapping[str, Scatter]
+    scatter: Mapping[str, Scatter]  # of the points by that uncertainty, by label
+    # derivatives of predicted quantities at points, by label and quantity
     slopes: Mapping[str, Mapping[str, Floats]]
+    # of the parameters around the optimally weighted model, where it is the reference and there is
+    # one
     posterior: Posterior | None
+    # the points solved again with data drawn again, by label
     replicates: Sequence[Mapping[str, Solution]]
 
 

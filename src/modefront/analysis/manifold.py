@@ -15,8 +15,6 @@ are other pieces of the set of minima, and what branches off with another dimens
 those of :math:`u = (\theta - lower) / (upper - lower)`.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -43,15 +41,13 @@ SHORT = 1 - NEAR
 """Share below which a step leads nowhere: of h or of what it is to gain, and the cosine of a turn
 (73 degrees)."""
 
-FAR = 0.25
-"""H: longest step of a walk over the ranges of the parameters."""
+FAR = 0.25  # longest step h of a walk over the ranges of the parameters
 
 GAIN = 1e-2
 """Share of its range by which a parameter has to go on, lest it counts as at its end: what is
 reported of a range has two digits."""
 
-SPEND = 10
-"""Evaluations for the manifolds of a programme, over the number of models of one of them."""
+SPEND = 10  # evaluations for the manifolds of a programme, over the number of models of one of them
 
 
 @record
@@ -70,25 +66,17 @@ class Extent(Enum):
 @record
 @dataclass(frozen=True)
 class Manifold:
-    """A connected set of equivalent models.
+    """A connected set of equivalent models."""
 
-    Attributes
-    ----------
-    dimension : its dimension at the start
-    models : evaluations on it; those of a curve in their order along it, those of a manifold of
-        more than two dimensions where parameters go the farthest
-    extent : how far it was followed
-    evaluations : what that took
-    minima : how many of the minima lie on it
-    twin : position, among the manifolds that were known before, of the same one; None where it
-        was not known
-    """
-
-    dimension: int
+    dimension: int  # its dimension at the start
+    # evaluations on it; those of a curve in their order along it, those of a manifold of more than
+    # two dimensions where parameters go the farthest
     models: Sequence[Evaluation]
-    extent: Extent
-    evaluations: int = 0
-    minima: int = 1
+    extent: Extent  # how far it was followed
+    evaluations: int = 0  # what that took
+    minima: int = 1  # how many of the minima lie on it
+    # position, among the manifolds that were known before, of the same one; None where it was not
+    # known
     twin: int | None = None
 
 

@@ -11,8 +11,6 @@ where residuals vanish, with Gauss-Newton's G, which is B on the manifold and le
 model without exact second derivatives B is G.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -34,8 +32,7 @@ TURNING = 1e-3
 """Eigenvalue of G over the greatest one of B, from which residuals turn in a direction of the null
 space of B; up to `UNCHANGED` none changes there. Slopes of residuals are its roots."""
 
-ARRIVED = Options().step
-"""Correction in u below which a point lies on the manifold."""
+ARRIVED = Options().step  # correction in u below which a point lies on the manifold
 
 
 @dataclass(frozen=True)
@@ -49,27 +46,16 @@ class TangentPoint:
 
 @dataclass(frozen=True)
 class Context:
-    """Quantities that are the same everywhere on a manifold.
+    """Quantities that are the same everywhere on a manifold."""
 
-    Attributes
-    ----------
-    problem, programme : of which its points are minima
-    most : the greatest f that is as good as that of the start
-    top : the greatest eigenvalue of B
-    held : (p,) variables that stay at a bound, or that are idle
-    idle : (p,) variables without effect
-    fits : whether residuals vanish on the manifold
-    dimension : of the manifold
-    """
-
-    problem: Problem
+    problem: Problem  # problem, programme: of which its points are minima
     programme: Scalarisation
-    most: float
-    top: float
-    held: Bools
-    idle: Bools
-    fits: bool = False
-    dimension: int = 0
+    most: float  # the greatest f that is as good as that of the start
+    top: float  # the greatest eigenvalue of B
+    held: Bools  # (p,) variables that stay at a bound, or that are idle
+    idle: Bools  # (p,) variables without effect
+    fits: bool = False  # whether residuals vanish on the manifold
+    dimension: int = 0  # of the manifold
 
     @property
     def span(self) -> Floats:

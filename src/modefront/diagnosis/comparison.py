@@ -1,7 +1,5 @@
 """The nominal model beside the measured modes: what every diagnosis starts from."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,8 +13,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.pairing.match import Pairs, match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 
-MORE = 8
-"""Model modes that are looked at beyond those among which measured modes are paired."""
+MORE = 8  # model modes that are looked at beyond those among which measured modes are paired
 
 COMPARED = 60
 """Data sets in which mistakes are sought, at most: each is compared with every other one."""
@@ -24,24 +21,14 @@ COMPARED = 60
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """A model at its nominal parameters and the measured modes.
+    """A model at its nominal parameters and the measured modes."""
 
-    Attributes
-    ----------
-    problem : the updating problem
-    frequency : (model modes,) frequencies of the model in Hz
-    phi : (sensors, model modes) its shapes
-    candidates : number of the lowest model modes among which the study pairs
-    pairs : model modes of the measured ones by the rule of the study, and their MAC
-    matrices : the model with its matrices; None where it has none
-    """
-
-    problem: UpdatingProblem
-    frequency: Floats
-    phi: Floats
-    candidates: int
-    pairs: Pairs
-    matrices: MatrixModel | None
+    problem: UpdatingProblem  # the updating problem
+    frequency: Floats  # (model modes,) frequencies of the model in Hz
+    phi: Floats  # (sensors, model modes) its shapes
+    candidates: int  # number of the lowest model modes among which the study pairs
+    pairs: Pairs  # model modes of the measured ones by the rule of the study, and their MAC
+    matrices: MatrixModel | None  # the model with its matrices; None where it has none
 
     @property
     def data(self) -> ModalData:

@@ -13,8 +13,6 @@ logarithms where their bounds are positive. They are fitted by Gauss-Newton step
 :math:`(\nu + 1) / (\nu + r_k^2 / \sigma^2)`, the pairs taken anew at every step.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -46,11 +44,8 @@ KAPPA, FARTHEST = 0.4, 2.5
 OF_PARAMETERS, OF_MODEL = 8.0, 4.0
 """Degrees of freedom nu of parameters, and of what no parameter describes."""
 
-FREQUENCY, SHAPE = 0.03, 0.08
-"""Scales that are expected of what no parameter describes."""
-
-OFF = 0.4
-"""Scale of the parameters: of their logarithms, or over their unit."""
+FREQUENCY, SHAPE = 0.03, 0.08  # scales that are expected of what no parameter describes
+OFF = 0.4  # scale of the parameters: of their logarithms, or over their unit
 
 WIDER = 4.0
 """Factor beyond positive bounds up to which fits go, so that no mistake stands for a bound."""
@@ -87,7 +82,7 @@ class Points(NamedTuple):
     g: Floats
     H: Floats
 
-    def at(self, k: int) -> Points:
+    def at(self, k: int) -> "Points":
         """Return one of several states."""
         return Points(*(each[k] for each in self))
 

@@ -1,7 +1,5 @@
 """The search over mistakes: best first, alone and together, and what of it is certain."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -29,20 +27,14 @@ and mistakes of a claim that are fitted."""
 BEAM, MOST = 6, 6
 """Single mistakes to which others are added, before the best explanation is, and most mistakes."""
 
-EITHER = 3
-"""Explanations that the data cannot tell apart and that are named nevertheless, at most."""
-
-WINDOW = 1.5
-"""Window of frequencies that is advised."""
-
-LEFT = 1.0
-"""Difference of costs that fits leave."""
+EITHER = 3  # explanations that the data cannot tell apart and that are named nevertheless, at most
+WINDOW = 1.5  # window of frequencies that is advised
+LEFT = 1.0  # difference of costs that fits leave
 
 MIXED = CLEAR + LEFT
 """Price of an explanation in which mistakes are said of values that are moved later."""
 
-SEEN = 0.02
-"""Increase of a MAC value that is worth its name."""
+SEEN = 0.02  # increase of a MAC value that is worth its name
 
 MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
     values.frequency_factor,
@@ -65,8 +57,7 @@ MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
 
-FOREIGN = ("foreign-mode", "outside-model")
-"""Kinds that leave out all of a mode."""
+FOREIGN = ("foreign-mode", "outside-model")  # kinds that leave out all of a mode
 
 Claims = frozenset[tuple[str, ...]]
 

@@ -11,8 +11,6 @@ So where all are large, a single large one is nothing special (Lange, Little & T
 Assoc. 84, 1989, doi:10.1080/01621459.1989.10478852). C is convex in :math:`\ln \sigma`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -26,17 +24,10 @@ from modefront.models.geometry import Geometry
 NU, FREQUENCY, SHAPE = 100.0, 0.005, 0.03
 """Degrees of freedom nu of noise, and its scales in frequencies and shapes where not known."""
 
-OF_MODEL = 0.08
-"""Scale that is expected of what no parameter describes, in shapes of mean square 1."""
-
-DAMPING = float(np.log(0.01))
-"""Logarithm of the damping ratio that is expected, with a scale of 1."""
-
-ROUNDS = 8
-"""Rounds of the iterations for the shape that data sets have in common and for a scale."""
-
-SPREAD = 0.5
-"""Spread s of logarithms of scales."""
+OF_MODEL = 0.08  # scale that is expected of what no parameter describes, in shapes of mean square 1
+DAMPING = float(np.log(0.01))  # logarithm of the damping ratio that is expected, with a scale of 1
+ROUNDS = 8  # rounds of the iterations for the shape that data sets have in common and for a scale
+SPREAD = 0.5  # spread s of logarithms of scales
 
 NOTHING = 0.5
 """Cost of a value of which nothing is known: of one from a normal distribution of size 1."""
@@ -72,31 +63,21 @@ class State:
     """Data and model under an explanation, or under each of several, as further axes in front.
 
     What was not measured, or is left out, is NaN. Units, basis and geometry are those of all.
-
-    Attributes
-    ----------
-    frequency, damping : (..., sets, modes) frequencies in Hz and damping ratios
-    shape : (..., sets, modes, sensors) components
-    std : (..., sets, modes) relative standard deviations of frequencies; NaN where not known
-    left_out : (...) cost of the values that are left out
-    candidates : (...) number of the lowest model modes among which pairs are sought
-    rows : (..., sensors, n) weights of the coordinates of the model's modes at each sensor
-    start : (..., parameters) nominal values
-    unit : (parameters,) units of what is added to parameters; 0 where they are changed by factors
-    basis : (N, n) motion of the degrees of freedom with these coordinates
-    geometry : places and directions of the sensors; None for a model without matrices
     """
 
-    frequency: Floats
+    frequency: Floats  # frequency, damping: (..., sets, modes) frequencies in Hz and damping ratios
     damping: Floats
-    shape: Floats
+    shape: Floats  # (..., sets, modes, sensors) components
+    # (..., sets, modes) relative standard deviations of frequencies; NaN where not known
     std: Floats
-    left_out: Floats
-    candidates: Ints
-    rows: Floats
-    start: Floats
+    left_out: Floats  # (...) cost of the values that are left out
+    candidates: Ints  # (...) number of the lowest model modes among which pairs are sought
+    rows: Floats  # (..., sensors, n) weights of the coordinates of the model's modes at each sensor
+    start: Floats  # (..., parameters) nominal values
+    # (parameters,) units of what is added to parameters; 0 where they are changed by factors
     unit: Floats
-    basis: Floats
+    basis: Floats  # (N, n) motion of the degrees of freedom with these coordinates
+    # places and directions of the sensors; None for a model without matrices
     geometry: Geometry | None
 
     def theta(self, x: Floats) -> Floats:

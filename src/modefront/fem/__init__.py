@@ -18,8 +18,6 @@
 The names are imported when they are first used: processes that solve models need no elements.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 from modefront._lazy import lazy

@@ -12,8 +12,6 @@ in them. The structure with it is stable where K + K_G is positive definite: L D
 pivots.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

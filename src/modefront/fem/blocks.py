@@ -1,7 +1,5 @@
 """From the members of a structure to blocks of element matrices, checked on the way."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -20,31 +18,21 @@ from modefront.fem.section import Material
 from modefront.rounding import COMPUTED, TINY, WRITTEN
 
 TRANSLATIONS = (0, 1, 2)
-SIX = (0, 1, 2, 3, 4, 5)
-"""Directions of nodes of solids, and of beams and shells."""
+SIX = (0, 1, 2, 3, 4, 5)  # directions of nodes of solids, and of beams and shells
 
 
 @dataclass(frozen=True)
 class Block:
-    """Elements of one kind and group with their matrices.
+    """Elements of one kind and group with their matrices."""
 
-    Attributes
-    ----------
-    name : of the group, spring or mass
-    cells : nodes (elements, k)
-    directions : the d DOFs of each node that the matrices have, ascending
-    matrices : of size k d
-    rigid : whether an element that nothing deforms is one rigid body with its nodes
-    prestress : geometric stiffness (elements, k d, k d) of given forces; None without any
-    internal : returns internal forces; None for elements that make no geometric stiffness
-    """
-
-    name: str
-    cells: Ints
-    directions: tuple[int, ...]
-    matrices: common.ElementMatrices
-    rigid: bool = False
+    name: str  # of the group, spring or mass
+    cells: Ints  # nodes (elements, k)
+    directions: tuple[int, ...]  # the d DOFs of each node that the matrices have, ascending
+    matrices: common.ElementMatrices  # of size k d
+    rigid: bool = False  # whether an element that nothing deforms is one rigid body with its nodes
+    # geometric stiffness (elements, k d, k d) of given forces; None without any
     prestress: Floats | None = None
+    # returns internal forces; None for elements that make no geometric stiffness
     internal: Callable[[], Axial | common.Stresses] | None = None
 
     def dofs(self) -> Ints:

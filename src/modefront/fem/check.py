@@ -5,8 +5,6 @@ det J at the corners of the elements, relative to the element's size. Limits are
 on an engineer should not trust a mesh; ``benchmarks/elements.py`` measures the errors to expect.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -10,8 +10,6 @@ an axis one displacement the others of its node. So all of them are u = T q with
 K_q = T^T K T is exact.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -44,16 +42,10 @@ class Dofs:
 
 @dataclass(frozen=True)
 class Followers:
-    """Degrees of freedom that follow others: u[slave] = weight u.
+    """Degrees of freedom that follow others: u[slave] = weight u."""
 
-    Attributes
-    ----------
-    slave : (rows,) 6 node + direction
-    weight : CSR (rows, 6 nodes)
-    """
-
-    slave: Ints
-    weight: sparse.csr_array
+    slave: Ints  # (rows,) 6 node + direction
+    weight: sparse.csr_array  # CSR (rows, 6 nodes)
 
 
 def following_rows(X: Floats, structure: Structure, faults: list[Fault]) -> list[Followers]:

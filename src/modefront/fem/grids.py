@@ -1,7 +1,5 @@
 """Structured meshes of plates and boxes: nodes and cells for quick models."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from modefront._typing import Floats, Ints

@@ -10,8 +10,6 @@ difference of two, to zero. The null space of these rows C is what can move free
 each part, a set of bodies that rows connect.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -33,27 +31,18 @@ from modefront.rounding import ACCUMULATED, WRITTEN
 STEPS = 4
 """Steps of inverse iteration: each leaves of other motions the ratio of shift and eigenvalue."""
 
-NAMED = 0.05
-"""Share of a direction in a motion, over the greatest, from which the message names it."""
+NAMED = 0.05  # share of a direction in a motion, over the greatest, from which the message names it
 
 
 @dataclass(frozen=True)
 class Bodies:
-    """Rigid bodies of a structure.
+    """Rigid bodies of a structure."""
 
-    Attributes
-    ----------
-    home : (nodes,) body, -1 for nodes without DOFs
-    shared : (ties, 2): node and a body other than its home that it belongs to
-    centre, extent : (bodies, 3) and (bodies,)
-    moves : (bodies, 6) whether the motion exists: a lone node may lack rotations
-    """
-
-    home: Ints
-    shared: Ints
-    centre: Floats
+    home: Ints  # (nodes,) body, -1 for nodes without DOFs
+    shared: Ints  # (ties, 2): node and a body other than its home that it belongs to
+    centre: Floats  # centre, extent: (bodies, 3) and (bodies,)
     extent: Floats
-    moves: Bools
+    moves: Bools  # (bodies, 6) whether the motion exists: a lone node may lack rotations
 
 
 def rigid_bodies(X: Floats, elements: Sequence[Block], exists: Bools) -> Bodies:

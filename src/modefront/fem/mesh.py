@@ -8,8 +8,6 @@ Shells of 6, 8 and 9 nodes are made of those of 3 and 4 that divide them at all 
 so that their curvature and their nodes are used as they are.
 """
 
-from __future__ import annotations
-
 import contextlib
 import importlib.util
 import io

@@ -4,38 +4,27 @@ Sections of beams are constants about principal axes y and z through the centroi
 free: where it is held, open thin walls twist less than beams. Units are consistent ones.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 
+from modefront import options as opt
 from modefront._typing import Floats
 from modefront.errors import wrong
-from modefront.options import (
-    ABOVE_ZERO,
-    NUMBER,
-    PAIR,
-    Checked,
-    Requirement,
-    array,
-    check_fields,
-    number,
-    numbers,
-)
 
-DENSITY = number("a density of 0 or more", least=0)
-Length = Annotated[float, number("a number above 0", above=0)]
+DENSITY = opt.number("a density of 0 or more", least=0)
+Length = Annotated[float, opt.number("a number above 0", above=0)]
 Factor = Annotated[
-    float, Requirement("a shear factor above 0", {"type": "number", "exclusiveMinimum": 0}, float)
+    float,
+    opt.Requirement("a shear factor above 0", {"type": "number", "exclusiveMinimum": 0}, float),
 ]
-POSITIVE = array(ABOVE_ZERO, 3, 3)
+POSITIVE = opt.array(opt.ABOVE_ZERO, 3, 3)
 
 
 @dataclass(frozen=True)
-class Material(Checked):
+class Material(opt.Checked):
     """Isotropic material, in consistent units (SI: Pa, -, kg/m^3).
 
     Raises InputError if a value is outside its range.
@@ -47,8 +36,8 @@ class Material(Checked):
     rho : density, >= 0
     """
 
-    E: Annotated[float, number("Young's modulus above 0", above=0)]
-    nu: Annotated[float, number("Poisson's ratio between -1 and 0.5", above=-1, below=0.5)]
+    E: Annotated[float, opt.number("Young's modulus above 0", above=0)]
+    nu: Annotated[float, opt.number("Poisson's ratio between -1 and 0.5", above=-1, below=0.5)]
     rho: Annotated[float, DENSITY]
 
     @property
@@ -76,13 +65,15 @@ class Orthotropic:
     rho : density, >= 0
     """
 
-    E: Annotated[tuple[float, float, float], numbers("three values of E above 0", POSITIVE)]
-    nu: Annotated[tuple[float, float, float], numbers("three values of nu", array(NUMBER, 3, 3))]
-    G: Annotated[tuple[float, float, float], numbers("three values of G above 0", POSITIVE)]
+    E: Annotated[tuple[float, float, float], opt.numbers("three values of E above 0", POSITIVE)]
+    nu: Annotated[
+        tuple[float, float, float], opt.numbers("three values of nu", opt.array(opt.NUMBER, 3, 3))
+    ]
+    G: Annotated[tuple[float, float, float], opt.numbers("three values of G above 0", POSITIVE)]
     rho: Annotated[float, DENSITY]
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        opt.check_fields(self)
         if not np.linalg.eigvalsh(self.compliance()[:3, :3] * max(self.E))[0] > 0:
             raise wrong("nu", "ratios that leave the elasticity positive definite", self.nu)
 
@@ -99,7 +90,7 @@ def _compliance(E: Sequence[float], nu: Sequence[float], G: Sequence[float]) -> 
 
 
 @dataclass(frozen=True)
-class Section(Checked):
+class Section(opt.Checked):
     """Section constants of a beam; lengths in the unit of the nodes.
 
     Raises InputError if a constant is not positive.
@@ -118,7 +109,7 @@ class Section(Checked):
     J: Length
     kappa_y: Factor = 5 / 6
     kappa_z: Factor = 5 / 6
-    shear_centre: Annotated[tuple[float, float], numbers("its y and z", PAIR)] = (0.0, 0.0)
+    shear_centre: Annotated[tuple[float, float], opt.numbers("its y and z", opt.PAIR)] = (0.0, 0.0)
 
 
 def rectangle(b_y: Length, b_z: Length) -> Section:

@@ -4,8 +4,6 @@ Every class is plain data; `modefront.fem.assembly.assemble` checks it and turns
 matrices. Nodes and elements are counted from 0. Units are consistent ones, such as SI.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
@@ -41,8 +39,7 @@ Quantity = Literal["E", "density", "thickness", "spring", "mass", "prestress"]
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 ALL = DIRECTIONS
 
-NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
-"""Directions by their names."""
+NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]  # directions by their names
 
 VECTOR = array(NUMBER, 3, 3)
 OF_VECTOR = numbers("a vector of 3 numbers", VECTOR)
@@ -100,18 +97,11 @@ FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Cells of one type in one group.
+    """Cells of one type in one group."""
 
-    Attributes
-    ----------
-    group : name
-    type : as meshio and VTK say: vertex, line, triangle, quad, hexahedron, tetra10, ..
-    nodes : (cells, k) nodes, counted from 0
-    """
-
-    group: str
-    type: str
-    nodes: Ints
+    group: str  # name
+    type: str  # as meshio and VTK say: vertex, line, triangle, quad, hexahedron, tetra10,
+    nodes: Ints  # (cells, k) nodes, counted from 0
 
 
 @dataclass(frozen=True)

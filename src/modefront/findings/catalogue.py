@@ -7,8 +7,6 @@ and several subjects. Those of mistakes say what is wrong before the first semic
 it behind.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from enum import Enum

@@ -1,7 +1,5 @@
 """What data determine of the parameters, and what they leave open, as findings."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

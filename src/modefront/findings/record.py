@@ -1,7 +1,5 @@
 """Findings: kind, subject, and the numbers and names of their sentences."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable, Mapping
@@ -10,8 +8,7 @@ from typing import Any
 
 from modefront.findings.catalogue import CATALOGUE, Severity, page
 
-LINK = re.compile(r"\[([^]]*)\]\([^)]*\)")
-"""A link on the page of findings."""
+LINK = re.compile(r"\[([^]]*)\]\([^)]*\)")  # a link on the page of findings
 
 NUMBER = re.compile(r"\{([^{}|]*)\|([^{}|]*)\}")
 """Words of a sentence on one subject, and on several."""
@@ -19,25 +16,15 @@ NUMBER = re.compile(r"\{([^{}|]*)\|([^{}|]*)\}")
 
 @dataclass(frozen=True)
 class Finding:
-    """What was found.
+    """What was found."""
 
-    Attributes
-    ----------
-    kind : its name in the catalogue
-    subject : what it is about: parameters, groups, modes or models
-    numbers : further values of its sentence, by name
-    many : whether the sentence is on several subjects
-    others : what may be wrong instead, where the data cannot tell
-    evidence : what else shows it, in brackets
-    gain : logarithm of the odds against the best explanation without it; NaN where none was sought
-    """
-
-    kind: str
-    subject: str
-    numbers: Mapping[str, Any]
-    many: bool = False
-    others: tuple[Finding, ...] = ()
-    evidence: str = ""
+    kind: str  # its name in the catalogue
+    subject: str  # what it is about: parameters, groups, modes or models
+    numbers: Mapping[str, Any]  # further values of its sentence, by name
+    many: bool = False  # whether the sentence is on several subjects
+    others: "tuple[Finding, ...]" = ()  # what may be wrong instead, where the data cannot tell
+    evidence: str = ""  # what else shows it, in brackets
+    # logarithm of the odds against the best explanation without it; NaN where none was sought
     gain: float = float("nan")
 
     @property

@@ -1,7 +1,5 @@
 """Every model that was evaluated competes: the nondominated ones of all evaluations of a search."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -44,21 +42,13 @@ class Archive:
 @record
 @dataclass(frozen=True)
 class Outcome:
-    """What a task found: its result, and the nondominated of the models that it evaluated.
+    """What a task found: its result, and the nondominated of the models that it evaluated."""
 
-    Attributes
-    ----------
-    result : of the task; None where its evaluations were spent before
-    theta, J : (models, p) and (models, n)
-    evaluations : number of evaluations
-    spent : whether there was none left for it to end
-    """
-
-    result: Any
-    theta: Floats
+    result: Any  # of the task; None where its evaluations were spent before
+    theta: Floats  # theta, J: (models, p) and (models, n)
     J: Floats
-    evaluations: int
-    spent: bool = False
+    evaluations: int  # number of evaluations
+    spent: bool = False  # whether there was none left for it to end
 
     @property
     def models(self) -> list[Solution]:

@@ -1,7 +1,5 @@
 """Which points are Pareto optimal among the points of a set."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from modefront._typing import Bools, Floats
@@ -10,11 +8,8 @@ TRADE = 1e-9
 """Loss in one objective, over the gain in another one, that counts as none: no proper trade-off."""
 
 
-SAME = 1e-6
-"""Gain in an objective, over its range, that counts as none: solvers leave as much."""
-
-BLOCK = 1_000_000
-"""Differences of objectives that are held at once."""
+SAME = 1e-6  # gain in an objective, over its range, that counts as none: solvers leave as much
+BLOCK = 1_000_000  # differences of objectives that are held at once
 
 
 def nondominated(J: Floats, tolerance: float = SAME, scale: Floats | None = None) -> Bools:

@@ -4,8 +4,6 @@ A generation's evaluations are a task: a run that is continued is played again, 
 with those that are kept.
 """
 
-from __future__ import annotations
-
 import zlib
 from collections.abc import Callable, Sequence
 from typing import Any

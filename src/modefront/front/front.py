@@ -1,7 +1,5 @@
 """A Pareto front with its edges, weighted models and gaps."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -18,20 +16,13 @@ from modefront.optim.sqp import Solution
 
 @dataclass(frozen=True)
 class Edge:
-    """The edge of one objective, and all other minima of that objective.
+    """The edge of one objective, and all other minima of that objective."""
 
-    Attributes
-    ----------
-    best, minima : the edge, and all minima with it
-    starts : number of random models from which the least objective was sought
-    found : number of different minima to which they led
-    doubtful : whether fewer than two of them led to the edge, and unseen minima are likely
-    """
-
-    best: Solution
+    best: Solution  # best, minima: the edge, and all minima with it
     minima: Sequence[Solution]
-    starts: int = 0
-    found: int = 0
+    starts: int = 0  # number of random models from which the least objective was sought
+    found: int = 0  # number of different minima to which they led
+    # whether fewer than two of them led to the edge, and unseen minima are likely
     doubtful: bool = False
 
 
@@ -41,36 +32,28 @@ class Front:
     """A Pareto front with its edges, its weighted models and its gaps.
 
     The record has more than ten fields because results report each of them.
-
-    Attributes
-    ----------
-    method : by which the front was found
-    points : points along the front, then edges and weighted models
-    edges : the edge of each objective with its other minima
-    optimal : all minima of the optimally weighted residuals that are accepted, best first
-    iterated : fixed point of the iteration of the weights; None where it met a singularity
-    exact : (n,) whether a model fits the objective exactly
-    target : utopia point and ranges over the edges; None where the front is one point
-    gaps : gaps between the branches of a front of two objectives
-    lattice : (places, n) lattice points of normal-boundary intersection
-    places : (places,) the point of the front, from 0, to which each of them led; -1 for none
-    known : (models, n) objectives of evaluated models that no evaluated model dominates
-    sizes : (n,) typical sizes of the objectives, of random models; empty where not known
-    open : labels of what the search had not finished when its budget was spent
     """
 
-    method: str
-    points: Sequence[Point]
-    edges: Sequence[Edge]
+    method: str  # by which the front was found
+    points: Sequence[Point]  # points along the front, then edges and weighted models
+    edges: Sequence[Edge]  # the edge of each objective with its other minima
+    # all minima of the optimally weighted residuals that are accepted, best first
     optimal: Sequence[Solution]
+    # fixed point of the iteration of the weights; None where it met a singularity
     iterated: Solution | None
-    exact: tuple[bool, ...]
+    exact: tuple[bool, ...]  # (n,) whether a model fits the objective exactly
+    # utopia point and ranges over the edges; None where the front is one point
     target: Payoff | None
-    gaps: Sequence[Gap]
+    gaps: Sequence[Gap]  # gaps between the branches of a front of two objectives
+    # (places, n) lattice points of normal-boundary intersection
     lattice: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    # (places,) the point of the front, from 0, to which each of them led; -1 for none
     places: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    # (models, n) objectives of evaluated models that no evaluated model dominates
     known: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    # (n,) typical sizes of the objectives, of random models; empty where not known
     sizes: Floats = field(default_factory=lambda: np.zeros(0))
+    # labels of what the search had not finished when its budget was spent
     open: tuple[str, ...] = ()
 
     @property

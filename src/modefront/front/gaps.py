@@ -6,8 +6,6 @@ own least first one, unless these lie beyond the other branch. Where only one en
 one dominates the other, the other branch ends or starts at its level.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -25,19 +23,12 @@ from modefront.work.task import IMMEDIATE, Task
 
 @dataclass(frozen=True)
 class Gap:
-    """A gap of the front.
+    """A gap of the front."""
 
-    Attributes
-    ----------
-    last, first : the points of the front before the gap and behind it
-    end : where the branch before it ends; None where that is not known
-    start : where the branch behind it starts; None where that is not known
-    """
-
-    last: Solution
+    last: Solution  # last, first: the points of the front before the gap and behind it
     first: Solution
-    end: Solution | None
-    start: Solution | None
+    end: Solution | None  # where the branch before it ends; None where that is not known
+    start: Solution | None  # where the branch behind it starts; None where that is not known
 
     @property
     def ends(self) -> list[Solution]:

@@ -1,30 +1,19 @@
 """Weights that the user gives."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 
+from modefront import options as opt
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, suggestion
-from modefront.options import (
-    ABOVE_ZERO,
-    TABLE,
-    Requirement,
-    check_fields,
-    number,
-    shown,
-    table_of,
-    text,
-)
 
-WEIGHT = number("a weight above 0", above=0)
+WEIGHT = opt.number("a weight above 0", above=0)
 
-WEIGHTS = Requirement(
-    "a table of weights, group = weight above 0", TABLE, entries=table_of(ABOVE_ZERO)
+WEIGHTS = opt.Requirement(
+    "a table of weights, group = weight above 0", opt.TABLE, entries=opt.table_of(opt.ABOVE_ZERO)
 )
 
 
@@ -40,13 +29,13 @@ class Weighted:
     weights : w_i, above 0, by the name of each group
     """
 
-    name: Annotated[str, text("a label for the model found with these weights")]
+    name: Annotated[str, opt.text("a label for the model found with these weights")]
     weights: Annotated[Mapping[str, float], WEIGHTS]
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        opt.check_fields(self)
         refuse(
-            Fault("", f"weights {group}", WEIGHT.expected, shown(weight))
+            Fault("", f"weights {group}", WEIGHT.expected, opt.shown(weight))
             for group, weight in self.weights.items()
             if not WEIGHT.holds(weight)
         )

@@ -4,8 +4,6 @@ Hypervolume (Zitzler & Thiele 1998, doi:10.1007/BFb0056872), IGD+ (Ishibuchi et 
 doi:10.1007/978-3-319-15892-1_8), and the longest branch of the shortest tree that joins all points.
 """
 
-from __future__ import annotations
-
 import importlib.util
 from collections.abc import Iterable
 
@@ -19,8 +17,7 @@ from modefront.front.gaps import branches_of
 from modefront.front.point import Kind, of_kind
 from modefront.optim.sqp import Solution
 
-REFERENCE = 1.1
-"""Each coordinate of the point up to which the hypervolume counts."""
+REFERENCE = 1.1  # each coordinate of the point up to which the hypervolume counts
 
 
 def hypervolume(Y: Floats) -> float:

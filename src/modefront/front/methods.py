@@ -1,7 +1,5 @@
 """Methods that find the points of a front, by their name in ``[pareto] method``."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec

@@ -1,7 +1,5 @@
 """Options of the Pareto front."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, TypedDict
@@ -11,8 +9,7 @@ from modefront.front.methods import METHODS
 from modefront.front.simplex import size
 from modefront.options import Requirement, check_fields, number, one_of, whole
 
-MOST = 10_000
-"""Points of a front at most."""
+MOST = 10_000  # points of a front at most
 
 
 def _one_of_the_methods() -> Requirement:

@@ -1,7 +1,5 @@
 """The search for a Pareto front: edges and weighted models first, then the points between them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, count, pairwise
@@ -23,14 +21,7 @@ from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Starts
 from modefront.front.search import EDGES, POINTS, Loop, Search
-from modefront.front.simplex import (
-    Payoff,
-    default_points,
-    is_flat,
-    lattice,
-    nearest,
-    payoff,
-)
+from modefront.front.simplex import Payoff, default_points, is_flat, lattice, nearest, payoff
 from modefront.front.state import DISTINCT, Place, State, distinct_points
 from modefront.front.subproblems import (
     LOOSE,
@@ -43,12 +34,7 @@ from modefront.front.subproblems import (
     sample,
 )
 from modefront.front.subproblems import Point as LatticePoint
-from modefront.front.weights import (
-    accepted,
-    iterate_weights,
-    least_along,
-    optimal_minimum,
-)
+from modefront.front.weights import accepted, iterate_weights, least_along, optimal_minimum
 from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
 from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution

@@ -1,7 +1,5 @@
 """A point of the results: a model, and why it is reported."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -42,20 +40,13 @@ REFERENCES = (Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL)
 
 @dataclass(frozen=True)
 class Point:
-    """A model with the reason why it is reported.
+    """A model with the reason why it is reported."""
 
-    Attributes
-    ----------
-    kind : the reason
-    solution : the model, and how it was found
-    name : method of a point of the front, group of an edge, name of given weights; else empty
-    index : number along the front or its identifiable part, from 1; else 0
-    """
-
-    kind: Kind
-    solution: Solution
+    kind: Kind  # the reason
+    solution: Solution  # the model, and how it was found
+    # method of a point of the front, group of an edge, name of given weights; else empty
     name: str = ""
-    index: int = 0
+    index: int = 0  # number along the front or its identifiable part, from 1; else 0
 
     @property
     def label(self) -> str:

@@ -6,8 +6,6 @@ a time. The search ends when no offer is worth making, or at its budget. Nothing
 solves the offers, and in which order they are done.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Annotated
@@ -17,8 +15,7 @@ from modefront.front.state import State
 from modefront.options import Checked, number, whole
 from modefront.work.task import Key, Task
 
-BATCH = 6
-"""Offers that are solved at the same time."""
+BATCH = 6  # offers that are solved at the same time
 
 EDGES, POINTS = 0.5, 0.9
 """Shares of the budget up to which edges and weighted models, and then points between edges, are
@@ -47,19 +44,12 @@ class Search(Checked):
 
 @dataclass
 class Loop:
-    """A search at work.
+    """A search at work."""
 
-    Attributes
-    ----------
-    state : what is known
-    search : when it ends
-    turn : number of batches that were solved
-    open : subproblems for which offers were left at the budget
-    """
-
-    state: State
-    search: Search
-    turn: int = 0
+    state: State  # what is known
+    search: Search  # when it ends
+    turn: int = 0  # number of batches that were solved
+    # subproblems for which offers were left at the budget
     open: set[Key] = field(default_factory=set)
 
     def run(self, stage: str, proposers: Sequence[Proposer], share: float = POINTS) -> None:

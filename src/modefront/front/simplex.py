@@ -1,7 +1,5 @@
 """The simplex between the edges of a front, and its lattice."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,11 +12,8 @@ from modefront._typing import Floats, Ints
 from modefront.optim.lexicographic import EXACT
 from modefront.optim.sqp import Solution
 
-FLAT = 1e-2
-"""Least singular value of Phi, over the greatest one, below which the simplex is flat."""
-
-MANY = 300
-"""Points of the simplex that are not exceeded if nothing else is wanted."""
+FLAT = 1e-2  # least singular value of Phi, over the greatest one, below which the simplex is flat
+MANY = 300  # points of the simplex that are not exceeded if nothing else is wanted
 
 
 def lattice(objectives: int, divisions: int) -> Ints:
@@ -65,19 +60,12 @@ def size(objectives: int, points: int) -> int:
 
 @dataclass(frozen=True)
 class Payoff:
-    """The simplex between the edges.
+    """The simplex between the edges."""
 
-    Attributes
-    ----------
-    utopia : (n,) least objectives
-    scale : (n,) range of each objective
-    Phi : (n, n) the scaled pay-off matrix, one column an edge
-    worst : the model worst in each objective, where the simplex is that of the ranges; else none
-    """
-
-    utopia: Floats
-    scale: Floats
-    Phi: Floats
+    utopia: Floats  # (n,) least objectives
+    scale: Floats  # (n,) range of each objective
+    Phi: Floats  # (n, n) the scaled pay-off matrix, one column an edge
+    # the model worst in each objective, where the simplex is that of the ranges; else none
     worst: Sequence[Solution] = ()
 
     @cached_property

@@ -1,7 +1,5 @@
 """The state of a search: an incumbent for each subproblem, and all that is known of models."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -25,38 +23,24 @@ COPY = 10 * SAME
 
 @dataclass
 class Place:
-    """A subproblem with the best model known.
-
-    Attributes
-    ----------
-    incumbent : the best model
-    closed : whether the search from the incumbent itself leads nowhere better
-    """
+    """A subproblem with the best model known."""
 
     subproblem: Subproblem
-    incumbent: Solution
-    closed: bool = False
+    incumbent: Solution  # the best model
+    closed: bool = False  # whether the search from the incumbent itself leads nowhere better
 
 
 @dataclass
 class State:
-    """What a search knows.
+    """What a search knows."""
 
-    Attributes
-    ----------
-    problem : that is searched
-    tolerance : gain of a subproblem that counts
-    work : carries out tasks
-    places : subproblems with their incumbents, changed by `add` and `keep`
-    evaluations : so far
-    archive : nondominated models of all evaluations, as the solutions that they are
-    """
-
-    problem: Problem
-    tolerance: float
-    work: Executor = IMMEDIATE
+    problem: Problem  # that is searched
+    tolerance: float  # gain of a subproblem that counts
+    work: Executor = IMMEDIATE  # carries out tasks
+    # subproblems with their incumbents, changed by `add` and `keep`
     places: list[Place] = field(default_factory=list)
-    evaluations: int = 0
+    evaluations: int = 0  # so far
+    # nondominated models of all evaluations, as the solutions that they are
     archive: Archive = field(init=False)
     _orders: Order | None = None
 

@@ -4,8 +4,6 @@ Each orders all models by J alone, so that whatever model one of them meets comp
 of the best in all others. `docs/methods/nbi.md` has the edges and the points of the lattice.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -20,8 +18,7 @@ from modefront.optim.scalarisation import STEEP, Scalarisation, achievement, bel
 from modefront.optim.sqp import Options, Solution, Status, solve
 from modefront.work.task import Key
 
-RHO = 1e-4
-"""Share of all objectives in what a point of the lattice minimises."""
+RHO = 1e-4  # share of all objectives in what a point of the lattice minimises
 
 LOOSE = 10 * RHO
 """Distance of a point from its normal, over the ranges, above which the front ends there: the share
@@ -41,8 +38,7 @@ _TIGHT = Options(step=1e-8, reduction=1e-24, negligible=1e-16)
 """Of an edge, over its typical size: residuals of the tolerance of steps end a search."""
 
 
-SAMPLE = 16
-"""Random models of which typical sizes are medians."""
+SAMPLE = 16  # random models of which typical sizes are medians
 
 
 @dataclass(frozen=True)

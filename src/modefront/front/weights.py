@@ -5,8 +5,6 @@ vanishes at it, and the second derivatives are positive in all directions in whi
 and no bound holds it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -18,8 +16,7 @@ from modefront.optim.problem import AT_BOUND, Evaluation, Problem
 from modefront.optim.scalarisation import LogSum, weighted
 from modefront.optim.sqp import TIGHT, Options, Solution, Status, solve
 
-UNCHANGED = 1e-12
-"""Eigenvalue over the greatest one below which a direction changes no residual."""
+UNCHANGED = 1e-12  # eigenvalue over the greatest one below which a direction changes no residual
 
 
 def regular(J: Floats, sizes: Floats) -> bool:

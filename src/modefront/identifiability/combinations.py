@@ -7,8 +7,6 @@ singular values hardly change any residual. With its columns scaled to length on
 G)}` (Brun, Reichert & Künsch 2001, doi:10.1029/2000WR900350, eq. 2; they call 10 to 20 critical).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
@@ -21,17 +19,13 @@ from modefront.optim.problem import Evaluation
 from modefront.options import Checked, number, whole
 from modefront.residuals.problem import UpdatingProblem
 
-WEAK = 1e-2
-"""Singular value over the greatest one, below which a combination is weakly determined."""
+WEAK = 1e-2  # singular value over the greatest one, below which a combination is weakly determined
 
 ROUNDING = 1e-9
 """Change of residuals over the measured values, for a unit of a parameter, that is rounding."""
 
-CRITICAL = 10.0
-"""Collinearity index from which parameters count as not told apart."""
-
-_LARGEST = 1e8
-"""Greatest collinearity index; columns beyond it are parallel but for rounding."""
+CRITICAL = 10.0  # collinearity index from which parameters count as not told apart
+_LARGEST = 1e8  # greatest collinearity index; columns beyond it are parallel but for rounding
 
 NONE = 1e-7
 """Singular value over the greatest one, below which a combination is not determined at all."""
@@ -63,18 +57,11 @@ class Identifiability(Checked):
 
 @dataclass(frozen=True)
 class Combination:
-    """A combination of parameters and how well residuals determine it.
+    """A combination of parameters and how well residuals determine it."""
 
-    Attributes
-    ----------
-    direction : (parameters,) changes of the parameters in their units, of length 1
-    sensitivity : change of the residuals for a unit change along it
-    share : that over the greatest of all combinations, 0 to 1
-    """
-
-    direction: Floats
-    sensitivity: float
-    share: float
+    direction: Floats  # (parameters,) changes of the parameters in their units, of length 1
+    sensitivity: float  # change of the residuals for a unit change along it
+    share: float  # that over the greatest of all combinations, 0 to 1
 
 
 def combinations(
@@ -187,11 +174,8 @@ def unchanged_groups(problem: UpdatingProblem) -> list[int]:
     return np.flatnonzero(still).tolist()
 
 
-EQUAL = 1e-9
-"""Difference of singular values, over the greatest one, up to which they are equal."""
-
-TIE = 1e-6
-"""Relative difference of components up to which they are equally great."""
+EQUAL = 1e-9  # difference of singular values, over the greatest one, up to which they are equal
+TIE = 1e-6  # relative difference of components up to which they are equally great
 
 
 def decompose(G: Floats, least: float = 0.0) -> list[Combination]:
@@ -240,8 +224,7 @@ def _first_greatest(values: Floats) -> int:
     return int(np.argmax(values >= values.max() * (1 - TIE)))
 
 
-LEAST = 1e-3
-"""Root of the mean square of residuals that no measurement is taken to be better than."""
+LEAST = 1e-3  # root of the mean square of residuals that no measurement is taken to be better than
 
 
 def optimal_weights(a: Floats, J: Floats) -> Floats:
@@ -253,26 +236,18 @@ def optimal_weights(a: Floats, J: Floats) -> Floats:
     return np.asarray(a / np.maximum(J, a * LEAST**2))
 
 
-ALL = "all data"
-"""Name of all groups together."""
+ALL = "all data"  # name of all groups together
 
 
 @dataclass(frozen=True)
 class Determination:
-    """Combinations of parameters that each group, then all data determine at a model.
+    """Combinations of parameters that each group, then all data determine at a model."""
 
-    Attributes
-    ----------
-    scale : units of the parameters there
-    idle : positions of parameters without effect
-    combinations : of each group, and of `ALL` where there are several, by these names
-    effects : (p, p) products of the effects of parameters on all weighted residuals
-    """
-
-    scale: Scale
-    idle: list[int]
+    scale: Scale  # units of the parameters there
+    idle: list[int]  # positions of parameters without effect
+    # of each group, and of `ALL` where there are several, by these names
     combinations: Sequence[tuple[str, Sequence[Combination]]]
-    effects: Floats
+    effects: Floats  # (p, p) products of the effects of parameters on all weighted residuals
 
 
 def determination(problem: UpdatingProblem, evaluation: Evaluation) -> Determination:

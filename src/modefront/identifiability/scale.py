@@ -11,8 +11,6 @@ A combination of parameters that scales all of K or all of M is looked for in th
 \partial \theta_j = 0`, and so on. Mode shapes do not change along it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from weakref import ref
@@ -29,8 +27,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.modes import sparse
 from modefront.residuals.problem import UpdatingProblem
 
-STEPS = 12
-"""Steps of the power iteration, after which the greatest eigenvalue is known to a tenth."""
+STEPS = 12  # steps of the power iteration, after which the greatest eigenvalue is known to a tenth
 
 SINGULAR = 1e-13
 """Eigenvalue of K with a unit diagonal, over the greatest and their number, that is rounding."""
@@ -41,11 +38,8 @@ WHOLE = 1e-6
 RANK = 1e-6
 """Singular value of the derivatives of K and M, over the greatest, below which they depend."""
 
-RIGID = 1e-3
-"""Frequency over the greatest one below which a measured mode is one of a rigid body."""
-
-SETTLED = 1e-3
-"""Relative change of an eigenvalue at which power iteration ends."""
+RIGID = 1e-3  # frequency over the greatest one below which a measured mode is one of a rigid body
+SETTLED = 1e-3  # relative change of an eigenvalue at which power iteration ends
 
 SHIFT = 1e-3
 """Share of the least measured eigenvalue that is added to a K with rigid-body modes, times M."""
@@ -53,33 +47,20 @@ SHIFT = 1e-3
 
 @dataclass(frozen=True)
 class Scaling:
-    """A change of the parameters that scales matrices as a whole.
+    """A change of the parameters that scales matrices as a whole."""
 
-    Attributes
-    ----------
-    of : "stiffness matrix", "mass matrix", or both
-    change : (p,) change of theta for a factor of e, to first order
-    """
-
-    of: str
-    change: Floats
+    of: str  # "stiffness matrix", "mass matrix", or both
+    change: Floats  # (p,) change of theta for a factor of e, to first order
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Units of changes of the parameters at one model.
+    """Units of changes of the parameters at one model."""
 
-    Attributes
-    ----------
-    theta : (p,) parameters there
-    unit : (p,) s
-    positive : (p,) which parameters are above 0 in all of their range
-    model : the matrices and their derivatives there; None of a model without matrices
-    """
-
-    theta: Floats
-    unit: Floats
-    positive: Bools
+    theta: Floats  # (p,) parameters there
+    unit: Floats  # (p,) s
+    positive: Bools  # (p,) which parameters are above 0 in all of their range
+    # the matrices and their derivatives there; None of a model without matrices
     model: MatrixModel | None = None
 
     @cached_property

@@ -7,8 +7,6 @@ each at the sensors and without the change of scale. Parameters with 0 among the
 changed by a hundredth of their range instead.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,22 +21,13 @@ from modefront.residuals.problem import UpdatingProblem
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """Sensitivities of the measured modes to each parameter.
+    """Sensitivities of the measured modes to each parameter."""
 
-    Attributes
-    ----------
-    parameters : names
-    modes : measured modes
-    frequency : (parameters, modes) percent of the frequency for a percent of the parameter
-    shape : (parameters,) percent of all shapes together
-    superfluous : parameters to fix, so that the data determine the others
-    """
-
-    parameters: tuple[str, ...]
-    modes: tuple[int, ...]
-    frequency: Floats
-    shape: Floats
-    superfluous: tuple[str, ...]
+    parameters: tuple[str, ...]  # names
+    modes: tuple[int, ...]  # measured modes
+    frequency: Floats  # (parameters, modes) percent of the frequency for a percent of the parameter
+    shape: Floats  # (parameters,) percent of all shapes together
+    superfluous: tuple[str, ...]  # parameters to fix, so that the data determine the others
 
 
 def sensitivities(problem: UpdatingProblem) -> Sensitivities:

@@ -1,7 +1,5 @@
 """A basis of what is not determined, of directions that are short in words."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

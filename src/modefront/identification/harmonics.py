@@ -10,8 +10,6 @@ normal response and 1 for a harmonic; over n samples whose response has the corr
 :math:`\rho` at all lags, its variance is :math:`4 \sum |\rho|^4 / n`.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -23,11 +21,8 @@ from modefront._typing import Bools, Complexes, Floats
 from modefront.identification.spectra import Transforms
 from modefront.identification.spectral_density import Band, Density
 
-NEAR = 5
-"""Lines on either side of a sine that tell its amplitudes."""
-
-BLOCK = 128
-"""Lines that tell how much more there is about them than the model has."""
+NEAR = 5  # lines on either side of a sine that tell its amplitudes
+BLOCK = 128  # lines that tell how much more there is about them than the model has
 
 
 def without_sine(

@@ -26,8 +26,6 @@ doi:10.1155/2004/523692; Cauberghe, Guillaume, Verboven, Vanlanduit & Parloo, Me
 Process. 19 (2005) 989-1014, doi:10.1016/j.ymssp.2004.08.003 (the constraint).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,33 +33,19 @@ import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats
 
-ARC = 0.92
-"""Share of the unit circle that the band covers: all of it would join its ends."""
-
-LEAST_DAMPING = 1e-3
-"""Damping ratio of poles that the decay of an exponential window leaves none."""
-
-PORTION = 1 << 11
-"""Lines of which the powers of z are held at once."""
-
-SINGULAR = 1e-13
-"""Relative size of eigenvalues of R that are rounding."""
+ARC = 0.92  # share of the unit circle that the band covers: all of it would join its ends
+LEAST_DAMPING = 1e-3  # damping ratio of poles that the decay of an exponential window leaves none
+PORTION = 1 << 11  # lines of which the powers of z are held at once
+SINGULAR = 1e-13  # relative size of eigenvalues of R that are rounding
 
 
 @dataclass(frozen=True)
 class Poles:
-    """Poles of one order.
+    """Poles of one order."""
 
-    Attributes
-    ----------
-    order : p
-    value : (poles,) in rad/s, stable ones within the arc and of positive frequency
-    participation : (poles, references)
-    """
-
-    order: int
-    value: Complexes
-    participation: Complexes
+    order: int  # p
+    value: Complexes  # (poles,) in rad/s, stable ones within the arc and of positive frequency
+    participation: Complexes  # (poles, references)
 
 
 Moments = tuple[Complexes, Complexes, Complexes]

@@ -30,8 +30,6 @@ Sources: Golub & Pereyra 1973, doi:10.1137/0710036; El-Kafafy, De Troyer, Peeter
 Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -52,30 +50,19 @@ MOST_EVALUATIONS = 40
 
 TINY = float(np.finfo(float).tiny)
 
-ROUNDING = 1e-13
-"""Share of the squares of a column that may be rounding."""
-
-BEND = 1 / 8
-"""Width of a block of lines over the distance of the nearest pole."""
+ROUNDING = 1e-13  # share of the squares of a column that may be rounding
+BEND = 1 / 8  # width of a block of lines over the distance of the nearest pole
 
 
 @dataclass(frozen=True)
 class ModalModel:
-    """Parameters of the model in the scale of a `Problem`.
+    """Parameters of the model in the scale of a `Problem`."""
 
-    Attributes
-    ----------
-    lam : (modes,) poles
-    L : (modes, references) participation factors
-    phi : (modes, responses)
-    residual : (powers, references, responses)
-    pairs : modes that have one and the same pole; their shapes are a basis of a plane
-    """
-
-    lam: Complexes
-    L: Complexes
-    phi: Complexes
-    residual: Floats
+    lam: Complexes  # (modes,) poles
+    L: Complexes  # (modes, references) participation factors
+    phi: Complexes  # (modes, responses)
+    residual: Floats  # (powers, references, responses)
+    # modes that have one and the same pole; their shapes are a basis of a plane
     pairs: tuple[tuple[int, int], ...] = ()
 
     def __len__(self) -> int:
@@ -104,34 +91,20 @@ class ModalModel:
 # 11 fields: a model, what was fitted, and the equations of linear and nonlinear parameters there.
 @dataclass(frozen=True)
 class Fit:
-    """A model with the cost and the curvature there; linear parameters are eliminated.
+    """A model with the cost and the curvature there; linear parameters are eliminated."""
 
-    Attributes
-    ----------
-    task : what was fitted
-    model : the parameters
-    cost : J, sum of squared weighted residuals
-    gradient : (alphas,) half the gradient of J
-    information : (alphas, alphas) projected Gauss-Newton matrix, the first term of A
-    inverse : (responses, linear, linear) inverse of G; one where the responses share their weights
-    Z : (responses, linear, alphas), G^-1 Phi^T D
-    rho : (references, responses, primitives), weighted products of the residuals with them
-    size : (alphas,) squares of the columns of D; parts that Phi can make up are in them
-    evaluations : number of evaluations of the model
-    converged : whether the iteration met its tolerance
-    """
-
-    task: Problem
-    model: ModalModel
-    cost: float
-    gradient: Floats
-    information: Floats
+    task: Problem  # what was fitted
+    model: ModalModel  # the parameters
+    cost: float  # J, sum of squared weighted residuals
+    gradient: Floats  # (alphas,) half the gradient of J
+    information: Floats  # (alphas, alphas) projected Gauss-Newton matrix, the first term of A
+    # (responses, linear, linear) inverse of G; one where the responses share their weights
     inverse: Floats
-    Z: Floats
-    rho: Floats
-    size: Floats
-    evaluations: int = 1
-    converged: bool = False
+    Z: Floats  # (responses, linear, alphas), G^-1 Phi^T D
+    rho: Floats  # (references, responses, primitives), weighted products of the residuals with them
+    size: Floats  # (alphas,) squares of the columns of D; parts that Phi can make up are in them
+    evaluations: int = 1  # number of evaluations of the model
+    converged: bool = False  # whether the iteration met its tolerance
 
     @cached_property
     def functions(self) -> Complexes:

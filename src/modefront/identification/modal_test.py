@@ -1,7 +1,5 @@
 """From the file of a modal test to its modes, and these as files."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
@@ -26,14 +24,9 @@ from modefront.inputs import wrong
 from modefront.outputs import write_text
 from modefront.text import Shown
 
-POOR_FIT = 0.5
-"""Residual of a function over its norm from which on it is pointed out."""
-
-NAMED = 3
-"""Functions that are fitted poorly, modes and warnings that are named."""
-
-LONG = 35
-"""Minutes of records of ambient tests; modes of longer ones have a warning."""
+POOR_FIT = 0.5  # residual of a function over its norm from which on it is pointed out
+NAMED = 3  # functions that are fitted poorly, modes and warnings that are named
+LONG = 35  # minutes of records of ambient tests; modes of longer ones have a warning
 
 NARROW = (
     f"standard deviations of records of more than {LONG} min are up to a quarter too small where "

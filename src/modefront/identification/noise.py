@@ -5,8 +5,6 @@ no smooth function passes, made robust by running medians. The model is that of
 docs/methods/deviations.md.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.ndimage import median_filter
 
@@ -14,23 +12,12 @@ from modefront._typing import Complexes, Floats
 
 DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 
-WINDOW = 21
-"""Lines of a running median."""
-
-LINES_A_HAT = 30
-"""Lines a hat function, enough for its coefficient to be known within some 20 %."""
-
-MOST_HATS = 16
-"""Hat functions over the band: noise of sensors and amplifiers is smooth."""
-
-MOST_BLOCKS = 600
-"""Blocks of lines that raw values are averaged over before the fit."""
-
-ITERATIONS = 60
-"""Multiplicative steps, after which coefficients change by less than their errors."""
-
-ROUNDING = 1e-14
-"""Least variance over the mean square of a function: files hold some seven digits."""
+WINDOW = 21  # lines of a running median
+LINES_A_HAT = 30  # lines a hat function, enough for its coefficient to be known within some 20 %
+MOST_HATS = 16  # hat functions over the band: noise of sensors and amplifiers is smooth
+MOST_BLOCKS = 600  # blocks of lines that raw values are averaged over before the fit
+ITERATIONS = 60  # multiplicative steps, after which coefficients change by less than their errors
+ROUNDING = 1e-14  # least variance over the mean square of a function: files hold some seven digits
 
 
 def square(values: Complexes) -> Floats:

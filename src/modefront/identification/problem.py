@@ -3,8 +3,6 @@
 The *primitives* are those of `modefront.identification.modal_model`.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,30 +17,21 @@ RESIDUALS = (-4, -2, 0, 2)
 """Powers of s of the residual terms: what lightly damped modes below and above the band leave is
 even in s. Two on either side cost deviations a hundredth; one may shift frequencies by them."""
 
-CHUNK = 1 << 20
-"""Numbers in an intermediate array of products."""
+CHUNK = 1 << 20  # numbers in an intermediate array of products
 
 
 @dataclass(frozen=True)
 class Problem:
-    """Data and weights, with frequencies over the highest one and functions over their size.
+    """Data and weights, with frequencies over the highest one and functions over their size."""
 
-    Attributes
-    ----------
-    s : (lines,) (i omega + decay) / omega_max
-    H : (references, responses, lines), 0 where not measured
-    weight : of the shape of ``H``, 1/v, 0 where not measured; or (references, 1, lines) where all
-        responses share it, which makes their equations one
-    order : q
-    decay : what an exponential window has decayed by at the end of the record, d T
-    force_noise : noise of the force channel, where it is known; times in the unit of 1 / s
-    """
-
-    s: Complexes
-    H: Complexes
+    s: Complexes  # (lines,) (i omega + decay) / omega_max
+    H: Complexes  # (references, responses, lines), 0 where not measured
+    # of the shape of ``H``, 1/v, 0 where not measured; or (references, 1, lines) where all
+    # responses share it, which makes their equations one
     weight: Floats
-    order: int
-    decay: float = 0.0
+    order: int  # q
+    decay: float = 0.0  # what an exponential window has decayed by at the end of the record, d T
+    # noise of the force channel, where it is known; times in the unit of 1 / s
     force_noise: ForceNoise | None = None
 
     @cached_property

@@ -1,7 +1,5 @@
 """What every method of identification returns: modes with their standard deviations."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -18,49 +16,35 @@ MOST_COVARIED = 200
 
 @dataclass(frozen=True)
 class Evidence:
-    """What speaks for a mode, and what to look at.
+    """What speaks for a mode, and what to look at."""
 
-    Attributes
-    ----------
-    gain : how much better the fit is than that without the mode, 2 Delta J over the noise, over the
-        least that a mode needs
-    support : share of the orders of the diagram, from the first one with its pole, that have it
-    visibility : its greatest share, over all functions, in the sum of all modes at its frequency
-    flags : reasons to look at it
-    """
-
+    # how much better the fit is than that without the mode, 2 Delta J over the noise, over the
+    # least that a mode needs
     gain: float = np.nan
+    # share of the orders of the diagram, from the first one with its pole, that have it
     support: float = np.nan
+    # its greatest share, over all functions, in the sum of all modes at its frequency
     visibility: float = np.nan
-    flags: tuple[str, ...] = ()
+    flags: tuple[str, ...] = ()  # reasons to look at it
 
 
 @dataclass(frozen=True)
 class ModeEstimate:
-    """One mode with its standard deviations, in physical units.
+    """One mode with its standard deviations, in physical units."""
 
-    Attributes
-    ----------
-    pole : rad/s
-    frequency, damping : Hz, ratio
-    frequency_std, damping_std : their standard deviations
-    shape : the complex shape and the real one
-    shape_std : (responses,) standard deviations of the real shape of unit norm; NaN where the
-        response was not measured, or shows nothing but noise of any mode
-    participation : (references,) factors that go with the complex shape as given, before rotation
-    evidence : what speaks for it
-    shape_covariance : (responses, responses) of the real shape, None for more than `MOST_COVARIED`
-    """
-
-    pole: complex
-    frequency: float
+    pole: complex  # rad/s
+    frequency: float  # frequency, damping: Hz, ratio
     damping: float
-    frequency_std: float
+    frequency_std: float  # frequency_std, damping_std: their standard deviations
     damping_std: float
-    shape: RealShape
+    shape: RealShape  # the complex shape and the real one
+    # (responses,) standard deviations of the real shape of unit norm; NaN where the response was
+    # not measured, or shows nothing but noise of any mode
     shape_std: Floats
+    # (references,) factors that go with the complex shape as given, before rotation
     participation: Complexes
-    evidence: Evidence = Evidence()
+    evidence: Evidence = Evidence()  # what speaks for it
+    # (responses, responses) of the real shape, None for more than `MOST_COVARIED`
     shape_covariance: Floats | None = None
 
 
@@ -75,20 +59,14 @@ class Rejected:
 
 @dataclass(frozen=True)
 class Residuals:
-    """Correlation and size of the errors of the data, from the residuals of a fit.
+    """Correlation and size of the errors of the data, from the residuals of a fit."""
 
-    Attributes
-    ----------
-    chi2 : weighted sum of squares over the degrees of freedom; 1 where the variance is right
-    correlation : (lags,) of a line with the next ones
-    force : (references,) b, variance of the noise of the force channel, relative
-    share : (references, responses) norm of the residual over that of the function; NaN where the
-        function was not measured
-    """
-
+    # weighted sum of squares over the degrees of freedom; 1 where the variance is right
     chi2: float
-    correlation: Complexes
-    force: Floats
+    correlation: Complexes  # (lags,) of a line with the next ones
+    force: Floats  # (references,) b, variance of the noise of the force channel, relative
+    # (references, responses) norm of the residual over that of the function; NaN where the function
+    # was not measured
     share: Floats
 
     @property
@@ -99,48 +77,27 @@ class Residuals:
 
 @dataclass(frozen=True)
 class FittedFunctions:
-    """Measured functions beside those of the modal model.
+    """Measured functions beside those of the modal model."""
 
-    Attributes
-    ----------
-    data : the functions within the band
-    synthesised : functions of the model, of the shape of ``data.H``
-    variance : the variance that weighted the data
-    residuals : what the residuals say
-    residual_terms : number of residual terms on either side of the band
-    """
-
-    data: FrequencyResponses
-    synthesised: Complexes
-    variance: Floats
-    residuals: Residuals
-    residual_terms: int
+    data: FrequencyResponses  # the functions within the band
+    synthesised: Complexes  # functions of the model, of the shape of ``data.H``
+    variance: Floats  # the variance that weighted the data
+    residuals: Residuals  # what the residuals say
+    residual_terms: int  # number of residual terms on either side of the band
 
 
 @dataclass(frozen=True)
 class Identification:
-    """Modes of one data set.
+    """Modes of one data set."""
 
-    Attributes
-    ----------
-    responses : names of the sensors, the components of shapes
-    band : the lowest and the highest line in Hz
-    modes : accepted modes by frequency
-    rejected : what was found besides, and why it is no mode
-    diagram : poles of all orders
-    functions : measured and fitted functions
-    evaluations : number of evaluations of the model in the last fit
-    converged : whether it met its tolerance
-    """
-
-    responses: tuple[str, ...]
-    band: tuple[float, float]
-    modes: tuple[ModeEstimate, ...]
-    rejected: tuple[Rejected, ...]
-    diagram: StabilisationDiagram
-    functions: FittedFunctions
-    evaluations: int
-    converged: bool
+    responses: tuple[str, ...]  # names of the sensors, the components of shapes
+    band: tuple[float, float]  # the lowest and the highest line in Hz
+    modes: tuple[ModeEstimate, ...]  # accepted modes by frequency
+    rejected: tuple[Rejected, ...]  # what was found besides, and why it is no mode
+    diagram: StabilisationDiagram  # poles of all orders
+    functions: FittedFunctions  # measured and fitted functions
+    evaluations: int  # number of evaluations of the model in the last fit
+    converged: bool  # whether it met its tolerance
 
     @property
     def pairs(self) -> tuple[tuple[int, int], ...]:

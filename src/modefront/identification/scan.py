@@ -1,7 +1,5 @@
 """What poles all over the band explain of the residuals of a fit."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
@@ -14,23 +12,18 @@ from modefront._typing import Complexes, Floats
 from modefront.identification.noise import square
 from modefront.identification.problem import Problem, gram
 
-HEAVIEST = 0.1
-"""Greatest damping ratio of the poles that are looked for in residuals."""
+HEAVIEST = 0.1  # greatest damping ratio of the poles that are looked for in residuals
 
 NEIGHBOURHOOD = 32
 """Half bandwidths on either side of a pole in which poles of the same damping tell the noise."""
 
-UPPER = 0.8
-"""Share of these poles that explain less than the level that tells the noise."""
+UPPER = 0.8  # share of these poles that explain less than the level that tells the noise
 
 DRAWS, SEED = 1000, 1
 """Matrices of noise that tell what poles explain of it, and the seed of their random numbers."""
 
-MOST_PLACES = 1 << 18
-"""Places of the grid of lines, at most."""
-
-PORTION = 32
-"""Responses whose products with poles are computed at once."""
+MOST_PLACES = 1 << 18  # places of the grid of lines, at most
+PORTION = 32  # responses whose products with poles are computed at once
 
 TINY = float(np.finfo(float).tiny)
 
@@ -50,20 +43,14 @@ def alike(pole: complex, others: Complexes) -> Floats:
 
 @dataclass(frozen=True)
 class Scan:
-    """Poles all over the band, and what each explains of the residuals of a fit.
+    """Poles all over the band, and what each explains of the residuals of a fit."""
 
-    Attributes
-    ----------
-    lam : (poles,) half bandwidths go up by factors of two from the distance of lines, as do steps
-    gain : (poles,) 2 Delta J of each in units of its noise
-    L : (poles, references) its participation factors
-    noise : (poles,) variance of the noise, as poles of the same damping find it in the
-        neighbourhood; at least that of the residuals, and 1, the variance of the data
-    """
-
+    # (poles,) half bandwidths go up by factors of two from the distance of lines, as do steps
     lam: Complexes
-    gain: Floats
-    L: Complexes
+    gain: Floats  # (poles,) 2 Delta J of each in units of its noise
+    L: Complexes  # (poles, references) its participation factors
+    # (poles,) variance of the noise, as poles of the same damping find it in the neighbourhood; at
+    # least that of the residuals, and 1, the variance of the data
     noise: Floats
 
     def noise_of(self, lam: Complexes) -> Floats:

@@ -6,8 +6,6 @@ noise does, one is added, until nothing stands out. Backwards, :math:`\Delta J` 
 Wald statistic of its shape, or what the fit without it loses.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -29,11 +27,8 @@ from modefront.identification.problem import Problem
 from modefront.identification.scan import alike
 from modefront.identification.shapes import auto_mac, plane_basis
 
-FALSE = 1e-3
-"""Expected number of modes in a band that noise alone makes."""
-
-MOST_ROUNDS = 20
-"""Rounds in which poles are added, at most."""
+FALSE = 1e-3  # expected number of modes in a band that noise alone makes
+MOST_ROUNDS = 20  # rounds in which poles are added, at most
 
 OVERDAMPED = 0.9
 """Damping ratio from which on a pole and its conjugate are nearly one and the same real pole."""
@@ -53,21 +48,15 @@ TRACES = 10.0
 """Gain of a pole over what the ones that are added already explain of it: a missing mode bends the
 fit of its neighbours, too."""
 
-ALONE = 0.25
-"""Squared correlation with another pole below which a pole is judged for itself."""
-
-SAME = 0.95
-"""MAC of shapes that are the same."""
-
-APART = 0.01
-"""Probability that two modes of one pole are taken for modes of two."""
+ALONE = 0.25  # squared correlation with another pole below which a pole is judged for itself
+SAME = 0.95  # MAC of shapes that are the same
+APART = 0.01  # probability that two modes of one pole are taken for modes of two
 
 CLEARLY = 100.0
 """Squared difference of two poles in its deviations from which on they are no pair: close poles
 are not normally distributed, and are told apart by the likelihood below."""
 
-PAIR_FREEDOM = 6
-"""Real numbers of a matrix, 2 by 2, beyond those of one pole."""
+PAIR_FREEDOM = 6  # real numbers of a matrix, 2 by 2, beyond those of one pole
 
 
 def needed(task: Problem) -> float:

@@ -6,8 +6,6 @@ each set may turn within their plane. Shapes are compared in the sign and scale 
 that has the mode. Equations: docs/methods/deviations.md.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -21,48 +19,29 @@ from modefront.data.modal import ModalData
 from modefront.identification.record import MOST_COVARIED, Identification, ModeEstimate
 from modefront.identification.scan import alike
 
-WIDTH = 5.0
-"""Distance within which frequencies may belong to the same mode."""
-
-LEAST_MAC = 0.5
-"""MAC from which on shapes may be of the same mode."""
-
-SIGNIFICANT = 0.95
-"""Level of the test of homogeneity; the 5 % that is usual."""
-
-ANGLES = 180
-"""Ratios of two shapes of unit norm that are tried, as angles."""
-
-ROUNDING = 1e-12
-"""Least variance of a component of a shape."""
-
-MOST_STEPS = 50
-"""Steps of Gauss and Newton, at most."""
-
-TOLERANCE = 1e-10
-"""Change of the norm of a setup's part of a shape below which the shape is found."""
+WIDTH = 5.0  # distance within which frequencies may belong to the same mode
+LEAST_MAC = 0.5  # MAC from which on shapes may be of the same mode
+SIGNIFICANT = 0.95  # level of the test of homogeneity; the 5 % that is usual
+ANGLES = 180  # ratios of two shapes of unit norm that are tried, as angles
+ROUNDING = 1e-12  # least variance of a component of a shape
+MOST_STEPS = 50  # steps of Gauss and Newton, at most
+TOLERANCE = 1e-10  # change of the norm of a setup's part of a shape below which the shape is found
 
 TINY = 1e-100
 
 
 @dataclass(frozen=True)
 class CombinedModes:
-    """Modes of all sets; NaN where a set does not have a mode.
+    """Modes of all sets; NaN where a set does not have a mode."""
 
-    Attributes
-    ----------
-    data : what studies read: real shapes of unit norm; deviations and covariances of shapes have
-        the spread of the sets in them
-    damping_std : (sets, modes) standard deviations, spread included
-    spread : (modes, 2) standard deviations between sets of frequency and damping, 0 where the
-        sets agree within theirs
-    index : (sets, modes) which mode of each set it is; -1 for none
-    """
-
+    # what studies read: real shapes of unit norm; deviations and covariances of shapes have the
+    # spread of the sets in them
     data: ModalData
-    damping_std: Floats
+    damping_std: Floats  # (sets, modes) standard deviations, spread included
+    # (modes, 2) standard deviations between sets of frequency and damping, 0 where the sets agree
+    # within theirs
     spread: Floats
-    index: tuple[tuple[int, ...], ...]
+    index: tuple[tuple[int, ...], ...]  # (sets, modes) which mode of each set it is; -1 for none
 
 
 def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> CombinedModes:
@@ -144,8 +123,7 @@ def _at(values: Floats, names: Sequence[str], sensors: Sequence[str]) -> Floats:
     return out
 
 
-ModesOfSet = tuple[Sequence[str], Sequence[ModeEstimate]]
-"""Sensors and modes of one set."""
+ModesOfSet = tuple[Sequence[str], Sequence[ModeEstimate]]  # sensors and modes of one set
 
 
 def mode_groups(

@@ -3,8 +3,6 @@
 Rotations, differentials and planes of pairs are derived in docs/methods/deviations.md.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,24 +14,16 @@ TINY = float(np.finfo(float).tiny)
 
 @dataclass(frozen=True)
 class RealShape:
-    """A complex shape turned to be as real as it can be.
+    """A complex shape turned to be as real as it can be."""
 
-    Attributes
-    ----------
-    complex_shape : (responses,) rotated, its real part of unit norm
-    shape : (responses,) its real part
-    collinearity : MPC
-    norm : that of the real part before it was scaled
-    turn : the rotation, exp(-i theta), with the sign that makes the greatest component positive
-    plane : (responses, 1 or 2) orthonormal shapes of which none changes in the span of them: the
-        shape itself, and the other one of a pair
-    """
-
-    complex_shape: Complexes
-    shape: Floats
-    collinearity: float
-    norm: float
+    complex_shape: Complexes  # (responses,) rotated, its real part of unit norm
+    shape: Floats  # (responses,) its real part
+    collinearity: float  # MPC
+    norm: float  # that of the real part before it was scaled
+    # the rotation, exp(-i theta), with the sign that makes the greatest component positive
     turn: complex
+    # (responses, 1 or 2) orthonormal shapes of which none changes in the span of them: the shape
+    # itself, and the other one of a pair
     plane: Floats
 
     @property

@@ -4,8 +4,6 @@ docs/methods/ambient.md defines both. References of half spectra are the princip
 of the records.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,23 +16,12 @@ from modefront.data.responses import FrequencyResponses
 from modefront.identification.noise import square
 from modefront.identification.spectral_density import Band
 
-REFERENCES = 4
-"""Principal components that half spectra are taken with."""
-
-LAGS = 0.1
-"""Longest lag over the length of the record: longer ones are mostly errors of estimation."""
-
-MOST_LINES = 4096
-"""Lines of half spectra, at most."""
-
-LEFT = 0.05
-"""Exponential window at the longest lag."""
-
-ROUNDING = 1e-9
-"""Least background over the greatest power of a band."""
-
-LEAST_SHARE = 1e-9
-"""Share of a line that is left where a sine takes all of it, for rounding."""
+REFERENCES = 4  # principal components that half spectra are taken with
+LAGS = 0.1  # longest lag over the length of the record: longer ones are mostly errors of estimation
+MOST_LINES = 4096  # lines of half spectra, at most
+LEFT = 0.05  # exponential window at the longest lag
+ROUNDING = 1e-9  # least background over the greatest power of a band
+LEAST_SHARE = 1e-9  # share of a line that is left where a sine takes all of it, for rounding
 
 SMOOTH = 0.02
 """Share of the lines over which the size of half spectra is averaged for their weights."""
@@ -42,22 +29,14 @@ SMOOTH = 0.02
 
 @dataclass(frozen=True)
 class Transforms:
-    """Transforms of the records of one setup at the lines of a band.
+    """Transforms of the records of one setup at the lines of a band."""
 
-    Attributes
-    ----------
-    omega : (lines,) rad/s
-    F : (sensors, lines), scaled so that the mean of F F^* is a two-sided spectral density
-    order : differentiations of the displacement in the records
-    share : (lines,) how much of a line there is beside the sines that were taken off
-    sines : rad/s, of these
-    """
-
-    omega: Floats
+    omega: Floats  # (lines,) rad/s
+    # (sensors, lines), scaled so that the mean of F F^* is a two-sided spectral density
     F: Complexes
-    order: int
-    share: Floats
-    sines: tuple[float, ...] = ()
+    order: int  # differentiations of the displacement in the records
+    share: Floats  # (lines,) how much of a line there is beside the sines that were taken off
+    sines: tuple[float, ...] = ()  # rad/s, of these
 
     def part(self, low: float, high: float, width: float) -> Band:
         """Return a band, low and high in rad/s, of blocks that are at most so wide, in rad/s.

@@ -34,8 +34,6 @@ modes); Li & Au, Mech. Syst. Signal Process. 132 (2019) 490-511, doi:10.1016/j.y
 (expectation and maximisation).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 
@@ -44,29 +42,17 @@ import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats, Ints
 
-PRIOR = 1.0
-"""Lines that the prior of the background weighs, beyond the number of sensors."""
+PRIOR = 1.0  # lines that the prior of the background weighs, beyond the number of sensors
 
 TOLERANCE = 1e-2
 """Change of the cost below which a maximum is reached: a half is one standard deviation."""
 
-MOST_STEPS = 60
-"""Steps to a maximum, at most."""
-
-MOST_OF_BACKGROUND = 0.9
-"""Share of the background that a step takes away, at most."""
-
-SHORTEST = 1e-3
-"""Share of a step of the background below which it is left out."""
-
-TERMS = 2
-"""Terms of what a force moves besides, over frequency: a constant and a slope."""
-
-LONGEST = 1.0
-"""Change of ln zeta, and of ln omega in half bandwidths, in one step, at most."""
-
-LEAST_DAMPING, GREATEST_DAMPING = 1e-7, 0.5
-"""Limits of damping ratios in a search."""
+MOST_STEPS = 60  # steps to a maximum, at most
+MOST_OF_BACKGROUND = 0.9  # share of the background that a step takes away, at most
+SHORTEST = 1e-3  # share of a step of the background below which it is left out
+TERMS = 2  # terms of what a force moves besides, over frequency: a constant and a slope
+LONGEST = 1.0  # change of ln zeta, and of ln omega in half bandwidths, in one step, at most
+LEAST_DAMPING, GREATEST_DAMPING = 1e-7, 0.5  # limits of damping ratios in a search
 
 LEAST_KNOWN = 1e-13
 """Least eigenvalue of the scaled information of what is determined, for rounding."""
@@ -76,22 +62,13 @@ TINY = 1e-100
 
 @dataclass(frozen=True)
 class Band:
-    """Periodograms of the records of one setup, means over blocks of neighbouring lines.
+    """Periodograms of the records of one setup, means over blocks of neighbouring lines."""
 
-    Attributes
-    ----------
-    omega : (blocks,) rad/s, of the middle
-    count : (blocks,) number of lines
-    power : (blocks, sensors, sensors) mean of F F^*, a two-sided spectral density
-    order : differentiations of the displacement in the records
-    floor : (sensors,) variances of the background a priori
-    """
-
-    omega: Floats
-    count: Floats
-    power: Complexes
-    order: int
-    floor: Floats
+    omega: Floats  # (blocks,) rad/s, of the middle
+    count: Floats  # (blocks,) number of lines
+    power: Complexes  # (blocks, sensors, sensors) mean of F F^*, a two-sided spectral density
+    order: int  # differentiations of the displacement in the records
+    floor: Floats  # (sensors,) variances of the background a priori
 
     def total(self, profile: Floats | float = 1.0) -> Floats:
         """Sum of the real part of F F^* / g^2 over the lines, and of the background a priori."""
@@ -112,31 +89,20 @@ class Band:
 
 @dataclass(frozen=True)
 class Density:
-    """A model of the spectral density in a band.
+    """A model of the spectral density in a band."""
 
-    Attributes
-    ----------
-    omega, zeta : (modes,) natural frequencies in rad/s and damping ratios
-    phi : (sensors, modes) shapes of unit norm
-    root : (modes, modes) L
-    background : (sensors, sensors) B
-    free : number of the modes that are in the band, the first ones
-    coherent : (sensors, terms x free) R, all constants first; no terms for a model without it
-    middle : rad/s, where the slopes of R are 0, and g is 1
-    precision : (terms x free,) of normal distributions of the columns of R a priori, about 0
-    colour : b
-    """
-
-    omega: Floats
+    omega: Floats  # omega, zeta: (modes,) natural frequencies in rad/s and damping ratios
     zeta: Floats
-    phi: Floats
-    root: Complexes
-    background: Floats
-    free: int
+    phi: Floats  # (sensors, modes) shapes of unit norm
+    root: Complexes  # (modes, modes) L
+    background: Floats  # (sensors, sensors) B
+    free: int  # number of the modes that are in the band, the first ones
+    # (sensors, terms x free) R, all constants first; no terms for a model without it
     coherent: Floats
-    middle: float
+    middle: float  # rad/s, where the slopes of R are 0, and g is 1
+    # (terms x free,) of normal distributions of the columns of R a priori, about 0
     precision: Floats = field(default_factory=lambda: np.zeros(0))
-    colour: float = 0.0
+    colour: float = 0.0  # b
 
     @property
     def columns(self) -> Floats:
@@ -184,7 +150,7 @@ class Density:
             np.concatenate(parts, axis=1) / self.profile(omega)[:, None, None], complex
         )
 
-    def with_coherent(self, band: Band) -> Density:
+    def with_coherent(self, band: Band) -> "Density":
         """Return the same model with R = 0 as parameters, in the middle of a band.
 
         A priori, either term is at the ends of the band as large as what the mode itself does.
@@ -195,7 +161,7 @@ class Density:
         R = np.zeros((n, len(precision)))
         return replace(self, coherent=R, middle=float(ends.mean()), precision=precision)
 
-    def without(self, mode: int, band: Band) -> Density:
+    def without(self, mode: int, band: Band) -> "Density":
         """Return the model without one of its modes, whose power becomes background."""
         kept, phi = np.delete(np.arange(len(self.omega)), mode), self.phi[:, mode]
         h = self.response(band.omega, band.order)[mode]

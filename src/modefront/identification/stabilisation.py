@@ -3,8 +3,6 @@
 They are those of docs/methods/identification.md and docs/methods/deviations.md.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -18,49 +16,31 @@ from modefront.data.responses import ORDERS, FrequencyResponses
 from modefront.identification import lscf
 from modefront.identification.lscf import Poles
 
-MOST_POLES = 160
-"""Poles at the highest order: some four for each of forty modes."""
-
-MOST_ORDERS = 25
-"""Orders of a diagram; more add no information to clusters of poles."""
+MOST_POLES = 160  # poles at the highest order: some four for each of forty modes
+MOST_ORDERS = 25  # orders of a diagram; more add no information to clusters of poles
 
 CUT = 0.05
 """Distance within which poles of neighbouring orders are stable, and belong to one cluster."""
 
-LEAST_ORDERS = 3
-"""Orders on which a cluster has to be before a fit starts from it."""
+LEAST_ORDERS = 3  # orders on which a cluster has to be before a fit starts from it
 
 SHAPE_LINES = 4096
 """Lines from which shapes of the diagram are taken where there are more, those at poles apart."""
 
-NEXT = 8
-"""Lines on either side of a pole that its shape is taken from."""
-
-LEAST = 1e-12
-"""Share of the mean motion by which none at all is told apart by an indicator."""
-
-MOST_DAMPING = 0.3
-"""Damping ratio from which on a pole is no mode."""
+NEXT = 8  # lines on either side of a pole that its shape is taken from
+LEAST = 1e-12  # share of the mean motion by which none at all is told apart by an indicator
+MOST_DAMPING = 0.3  # damping ratio from which on a pole is no mode
 
 
 @dataclass(frozen=True)
 class StabilisationDiagram:
-    """Poles of all orders.
+    """Poles of all orders."""
 
-    Attributes
-    ----------
-    order : (poles,) order at which each was found
-    pole : (poles,) rad/s
-    participation : (poles, references)
-    stable : (poles,) whether the nearest pole of the order below is within `CUT`
-    orders : all orders
-    """
-
-    order: Ints
-    pole: Complexes
-    participation: Complexes
-    stable: Bools
-    orders: tuple[int, ...]
+    order: Ints  # (poles,) order at which each was found
+    pole: Complexes  # (poles,) rad/s
+    participation: Complexes  # (poles, references)
+    stable: Bools  # (poles,) whether the nearest pole of the order below is within `CUT`
+    orders: tuple[int, ...]  # all orders
 
     @property
     def frequency(self) -> Floats:

@@ -6,8 +6,6 @@ which all responses of a reference share, and correlation of neighbouring lines,
 padding.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -22,20 +20,11 @@ from modefront.identification.problem import CHUNK, Problem, gram
 from modefront.identification.record import MOST_COVARIED, ModeEstimate, Residuals
 from modefront.identification.shapes import TINY, RealShape, real_shape, real_shapes
 
-SIGNIFICANT = 3.0
-"""Standard errors beyond which a correlation of the residuals is one."""
-
-SILENT = 1e-3
-"""Probability that a response that holds nothing but noise is taken for one that does."""
-
-MOST_LAGS = 60
-"""Lines over which correlations of the residuals are measured."""
-
-MOST_TIMES = 400
-"""Samples of the noise of the force; they are taken together where there are more."""
-
-TOGETHER = 50
-"""Samples of the noise of the force whose effects are computed at once."""
+SIGNIFICANT = 3.0  # standard errors beyond which a correlation of the residuals is one
+SILENT = 1e-3  # probability that a response that holds nothing but noise is taken for one that does
+MOST_LAGS = 60  # lines over which correlations of the residuals are measured
+MOST_TIMES = 400  # samples of the noise of the force; they are taken together where there are more
+TOGETHER = 50  # samples of the noise of the force whose effects are computed at once
 
 
 def residuals(fit: Fit) -> Residuals:

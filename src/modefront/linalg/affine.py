@@ -22,14 +22,9 @@ import scipy.sparse
 from modefront._typing import Bools, Floats, Ints, Ints32
 from modefront.linalg.products import gram, times
 
-ROWS = 2**15
-"""Rows of a term that are projected at once, to bound the memory."""
-
-FEW = 2**10
-"""Rows that are added at once, which stay in the cache."""
-
-SPARSE = 1.5
-"""Fraction of zero rows above which the rows are compressed."""
+ROWS = 2**15  # rows of a term that are projected at once, to bound the memory
+FEW = 2**10  # rows that are added at once, which stay in the cache
+SPARSE = 1.5  # fraction of zero rows above which the rows are compressed
 
 
 def first_axis(A: Floats, B: Floats) -> Floats:
@@ -39,16 +34,10 @@ def first_axis(A: Floats, B: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Monomials:
-    """Coefficients c_j(theta) = prod_i (theta_i - origin_i) ** exponents[j, i].
+    """Coefficients c_j(theta) = prod_i (theta_i - origin_i) ** exponents[j, i]."""
 
-    Attributes
-    ----------
-    exponents : (terms, parameters) e
-    origin : (parameters,) theta_0; None for zeros
-    """
-
-    exponents: Floats
-    origin: Floats | None = None
+    exponents: Floats  # (terms, parameters) e
+    origin: Floats | None = None  # (parameters,) theta_0; None for zeros
 
     @cached_property
     def _linear(self) -> bool:
@@ -185,20 +174,13 @@ class DenseAffine:
 
 @dataclass(frozen=True, eq=False)
 class SparseAffine:
-    """A(theta) with sparse terms on one pattern, by rows of the full symmetric matrix.
+    """A(theta) with sparse terms on one pattern, by rows of the full symmetric matrix."""
 
-    Attributes
-    ----------
-    indptr : (N + 1,) where each row starts in ``indices``
-    indices : (entries,) columns, ascending within each row
-    terms : (entries, terms) values of each term; sparse, since most terms are local
-    coefficients : c(theta)
-    """
-
-    indptr: Ints32
-    indices: Ints32
+    indptr: Ints32  # (N + 1,) where each row starts in ``indices``
+    indices: Ints32  # (entries,) columns, ascending within each row
+    # (entries, terms) values of each term; sparse, since most terms are local
     terms: scipy.sparse.csc_array
-    coefficients: Monomials
+    coefficients: Monomials  # c(theta)
 
     @property
     def size(self) -> int:

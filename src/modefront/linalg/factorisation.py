@@ -3,8 +3,6 @@
 The factors do not depend on the number of threads.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -87,23 +85,17 @@ class Pencil:
     """K(theta), M(theta) and the analysis of the union of their patterns.
 
     Each matrix keeps its own pattern, since M often has far fewer entries than K.
-
-    Attributes
-    ----------
-    K, M : stiffness and mass matrix, N x N
-    analysis : that of the union, which has ``entries`` in its lower triangle
-    stiffness, mass : (take, put) of K and M: their entry ``take[k]`` is entry ``put[k]`` of the
-        lower triangle
-    before : what is called before each factorisation
     """
 
-    K: SparseAffine
+    K: SparseAffine  # K, M: stiffness and mass matrix, N x N
     M: SparseAffine
-    analysis: rslab.LdltSymbolic
+    analysis: rslab.LdltSymbolic  # that of the union, which has ``entries`` in its lower triangle
     entries: int
+    # stiffness, mass: (take, put) of K and M: their entry ``take[k]`` is entry ``put[k]`` of the
+    # lower triangle
     stiffness: tuple[Ints, Ints]
     mass: tuple[Ints, Ints]
-    before: Callable[[], None]
+    before: Callable[[], None]  # what is called before each factorisation
 
     @property
     def size(self) -> int:

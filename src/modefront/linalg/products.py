@@ -6,8 +6,6 @@ to be shared by it, the same products are as fast on one core and always the sam
 be computed by several threads of our own.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -19,24 +17,16 @@ import scipy.sparse
 
 from modefront._typing import Floats
 
-WORK = 2**17
-"""Multiplications a block; OpenBLAS shares products from 2**18 on."""
-
-CHUNK = 2**12
-"""Rows that are combined at once, which stay in the cache."""
-
-GROUP = 16
-"""Blocks of which products are added up together."""
+WORK = 2**17  # multiplications a block; OpenBLAS shares products from 2**18 on
+CHUNK = 2**12  # rows that are combined at once, which stay in the cache
+GROUP = 16  # blocks of which products are added up together
 
 TILE = 64
 """Rows and columns of a matrix X^T Y that are computed together: a greater one would be written
 again after every few rows, which is 25 times slower for 300 columns."""
 
-SHARED = 2**22
-"""Multiplications from which on a product is shared among threads."""
-
-WIDE = 2
-"""Columns from which on that pays for a sparse matrix."""
+SHARED = 2**22  # multiplications from which on a product is shared among threads
+WIDE = 2  # columns from which on that pays for a sparse matrix
 
 THREADS = "RAYON_NUM_THREADS"
 """Variable of the environment that limits the threads of products, and of factors by rslab."""

@@ -4,8 +4,6 @@ Of matrices of some ten rows, numpy's functions of the same name take more time 
 arguments than to decompose them. Here these are real, and results have the same digits.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.linalg
 

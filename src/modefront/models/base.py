@@ -5,8 +5,6 @@ base loads with -M r, r the motion of all degrees of freedom with it. In modes t
 `modefront.predictions.system` has it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
@@ -24,38 +22,25 @@ NamedWeights = Mapping[str, float]
 
 @dataclass(frozen=True)
 class LoadCase:
-    """Loads and outputs of a model: either forces, or one motion of the base.
+    """Loads and outputs of a model: either forces, or one motion of the base."""
 
-    Attributes
-    ----------
-    outputs : weighted sums of sensors and outputs, such as a storey drift
-    forces : distributions of force, one an input; none where the base moves
-    base : the direction in which the base moves, of the model's directions; None for forces
-    """
-
+    # weighted sums of sensors and outputs, such as a storey drift
     outputs: tuple[NamedWeights, ...]
+    # distributions of force, one an input; none where the base moves
     forces: tuple[NamedWeights, ...] = ()
+    # the direction in which the base moves, of the model's directions; None for forces
     base: str | None = None
 
 
 @dataclass(frozen=True)
 class Transfer:
-    """A model at one theta from the loads of a load case to its outputs, in its lowest modes.
+    """A model at one theta from the loads of a load case to its outputs, in its lowest modes."""
 
-    Attributes
-    ----------
-    modes : the modes at the sensors, without derivatives
-    input : (modes, inputs) modal loads
-    output : (outputs, modes) mode shapes at the outputs
-    static : (outputs, inputs) static response; None with rigid-body modes
-    rigid : (outputs, 1) motion of the outputs with the base; None for forces
-    """
-
-    modes: Modes
-    input: Floats
-    output: Floats
-    static: Floats | None
-    rigid: Floats | None
+    modes: Modes  # the modes at the sensors, without derivatives
+    input: Floats  # (modes, inputs) modal loads
+    output: Floats  # (outputs, modes) mode shapes at the outputs
+    static: Floats | None  # (outputs, inputs) static response; None with rigid-body modes
+    rigid: Floats | None  # (outputs, 1) motion of the outputs with the base; None for forces
 
 
 class Model(Protocol):
@@ -115,7 +100,7 @@ def is_reduced(model: Model) -> bool:
     return full_of(model) is not model
 
 
-def matrices_at(model: Model, theta: Floats) -> MatrixModel | None:
+def matrices_at(model: Model, theta: Floats) -> "MatrixModel | None":
     """Return the model with the matrices, and their derivatives, that a model has at ``theta``.
 
     A reduced model has those of the full one; None for a model that has no matrices.
@@ -124,7 +109,7 @@ def matrices_at(model: Model, theta: Floats) -> MatrixModel | None:
     return full.at(theta) if hasattr(type(full), "at") else None
 
 
-def geometry_of(model: Model) -> Geometry | None:
+def geometry_of(model: Model) -> "Geometry | None":
     """Return where the degrees of freedom of a model are; None where that is not known."""
     full: Any = full_of(model)
     return full.geometry if hasattr(type(full), "geometry") else None

@@ -5,8 +5,6 @@ there are masses joins the last mass and the ground. Each spring and each mass m
 parameter, :math:`k_i = \theta_j k_{0i}`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated

@@ -1,7 +1,5 @@
 """Degrees of freedom by node and direction, as a finite-element program numbers them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,8 +15,7 @@ from modefront.inputs import wrong
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
 
-COLUMNS = ("node", "direction", "weight")
-"""Header of a file of degrees of freedom."""
+COLUMNS = ("node", "direction", "weight")  # header of a file of degrees of freedom
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,17 +24,11 @@ class DofTable:
 
     Several degrees of freedom may have the same node and direction, as those that a program makes
     through the thickness of a shell: the motion of the node is their weighted sum.
-
-    Attributes
-    ----------
-    node : (N,) number of the node; 0 or less where a degree of freedom belongs to none
-    direction : (N,) 1 to 6 for x, y, z, rx, ry, rz; other numbers for other quantities
-    weight : (N,) share in the motion of the node; 0 for what is no part of it
     """
 
-    node: Ints
-    direction: Ints
-    weight: Floats
+    node: Ints  # (N,) number of the node; 0 or less where a degree of freedom belongs to none
+    direction: Ints  # (N,) 1 to 6 for x, y, z, rx, ry, rz; other numbers for other quantities
+    weight: Floats  # (N,) share in the motion of the node; 0 for what is no part of it
 
     @property
     def size(self) -> int:

@@ -4,8 +4,6 @@ The readers of other packages do not believe what a file announces, or end with 
 process of their own, with limits on time and memory (`modefront.isolated`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any

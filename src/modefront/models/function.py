@@ -9,8 +9,6 @@ wrong derivatives and says nothing. Those at the nominal values, the user's own 
 therefore compared with differences.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -60,16 +58,10 @@ RETURNED = "K and M, or K, M and lists of their derivatives dK and dM"
 
 @dataclass(frozen=True)
 class CheckedFunction:
-    """A user's function of theta that returns matrices.
+    """A user's function of theta that returns matrices."""
 
-    Attributes
-    ----------
-    function : returns K and M, or K, M and lists of their derivatives
-    names : names of the parameters
-    """
-
-    function: MatrixFunction
-    names: tuple[str, ...]
+    function: MatrixFunction  # returns K and M, or K, M and lists of their derivatives
+    names: tuple[str, ...]  # names of the parameters
 
     def at(
         self, theta: Floats, size: int | None, *, derivatives: bool = True
@@ -157,16 +149,10 @@ class CheckedFunction:
 @shared
 @dataclass(frozen=True, eq=False, repr=False)
 class FunctionModel:
-    """A model whose matrices are a function of the parameters; `function_model` makes it.
+    """A model whose matrices are a function of the parameters; `function_model` makes it."""
 
-    Attributes
-    ----------
-    function : returns K and M with their derivatives
-    nominal : the affine model at the nominal values of the parameters
-    """
-
-    function: CheckedFunction
-    nominal: MatrixModel
+    function: CheckedFunction  # returns K and M with their derivatives
+    nominal: MatrixModel  # the affine model at the nominal values of the parameters
 
     __repr__ = brief_model
 

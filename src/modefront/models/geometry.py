@@ -3,8 +3,6 @@
 Geometry is for pictures and for other programs; no result depends on it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,8 +14,7 @@ from modefront.fem.structure import Cells as Cells
 from modefront.linalg.affine import sparse_rows
 from modefront.text import Shown
 
-ALONG = 0.99
-"""Component of a direction from which on it is one along an axis."""
+ALONG = 0.99  # component of a direction from which on it is one along an axis
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,7 +1,5 @@
 r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j c_j(\theta) K_j`, M likewise."""
 
-from __future__ import annotations
-
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,13 +19,7 @@ from modefront.linalg.factorisation import Pencil, pencil
 from modefront.linalg.products import gram
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
 from modefront.models.geometry import Geometry
-from modefront.models.parameters import (
-    BASE,
-    Parameter,
-    exponents_of,
-    form_of,
-    term_exponents,
-)
+from modefront.models.parameters import BASE, Parameter, exponents_of, form_of, term_exponents
 from modefront.modes import dense, sparse
 from modefront.modes.result import FullModes, Modes
 from modefront.options import NUMBER, WHOLE, any_of, array, whole
@@ -36,8 +28,7 @@ from modefront.text import brief_model
 from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 
-DENSE = 180
-"""Degrees of freedom up to which dense matrices are faster."""
+DENSE = 180  # degrees of freedom up to which dense matrices are faster
 
 ARRAYS = 8
 """Matrices N x N that a dense solution holds: K, M, their factors, the modes and workspace."""
@@ -49,8 +40,7 @@ SensorSpec = int | Sequence[tuple[int, float]]
 """A sensor: a degree of freedom, counted from 0, or weighted degrees of freedom."""
 
 DOF = whole(0, WHOLE).schema
-WEIGHTED = any_of(DOF, array(array([DOF, NUMBER], 2, 2), 1))
-"""Schema of a `SensorSpec` in a file."""
+WEIGHTED = any_of(DOF, array(array([DOF, NUMBER], 2, 2), 1))  # schema of a `SensorSpec` in a file
 
 Matrix: TypeAlias = Floats | scipy.sparse.sparray
 
@@ -68,30 +58,22 @@ def _eigenproblem() -> Iterator[None]:
 @shared
 @dataclass(frozen=True, eq=False, repr=False)
 class MatrixModel:
-    """A model with affine stiffness and mass matrices, both dense or both sparse.
+    """A model with affine stiffness and mass matrices, both dense or both sparse."""
 
-    Attributes
-    ----------
-    parameters : names of the parameters
-    sensors : names of the sensors
-    selection : (sensors, N) weights of the degrees of freedom at each sensor
-    stiffness, mass : K(theta), M(theta), N x N
-    outputs : weights (N,) of the degrees of freedom at places that are no sensors, by name
-    base : motion (N,) of the degrees of freedom with the base, by the name of its direction
-    floating : whether the stiffness matrix may be singular: rigid-body modes are wanted
-    limits : warnings on the elements of which the matrices are made
-    geometry : where the degrees of freedom are in space; None where that is not known
-    """
-
-    parameters: tuple[str, ...]
-    sensors: tuple[str, ...]
+    parameters: tuple[str, ...]  # names of the parameters
+    sensors: tuple[str, ...]  # names of the sensors
+    # (sensors, N) weights of the degrees of freedom at each sensor
     selection: scipy.sparse.csr_array
-    stiffness: DenseAffine | SparseAffine
+    stiffness: DenseAffine | SparseAffine  # stiffness, mass: K(theta), M(theta), N x N
     mass: DenseAffine | SparseAffine
+    # weights (N,) of the degrees of freedom at places that are no sensors, by name
     outputs: Mapping[str, Floats] = field(default_factory=dict)
+    # motion (N,) of the degrees of freedom with the base, by the name of its direction
     base: Mapping[str, Floats] = field(default_factory=dict)
+    # whether the stiffness matrix may be singular: rigid-body modes are wanted
     floating: bool = True
-    limits: tuple[str, ...] = ()
+    limits: tuple[str, ...] = ()  # warnings on the elements of which the matrices are made
+    # where the degrees of freedom are in space; None where that is not known
     geometry: Geometry | None = None
 
     __repr__ = brief_model
@@ -137,7 +119,7 @@ class MatrixModel:
                 return dense.full_modes(*self._dense[:2], theta, count, columns)
             return sparse.full_modes(self.pencil, theta, count, columns)
 
-    def at(self, _: Floats) -> MatrixModel:
+    def at(self, _: Floats) -> "MatrixModel":
         """Return the model itself: its matrices are known at all parameters."""
         return self
 
@@ -185,7 +167,7 @@ class MatrixModel:
                 column += weight * row
         return out
 
-    def held(self, fixed: Mapping[str, float], tied: Mapping[str, str]) -> MatrixModel:
+    def held(self, fixed: Mapping[str, float], tied: Mapping[str, str]) -> "MatrixModel":
         """Return the model as a function of the other parameters.
 
         ``fixed`` parameters have one value, and ``tied`` ones that of another parameter, which is
@@ -201,14 +183,14 @@ class MatrixModel:
             mass=self.mass.held(values, others),
         )
 
-    def sparse(self) -> MatrixModel:
+    def sparse(self) -> "MatrixModel":
         """Return the same model with sparse matrices."""
         if self._dense is None:
             return self
         K, M, _ = self._dense
         return replace(self, stiffness=K.sparse(), mass=M.sparse())
 
-    def compact(self) -> MatrixModel:
+    def compact(self) -> "MatrixModel":
         """Return the same model, with dense matrices where it is so small that these are faster."""
         K, M = self.stiffness, self.mass
         if self.size > DENSE or isinstance(K, DenseAffine) or isinstance(M, DenseAffine):

@@ -1,7 +1,5 @@
 """Models made of finite elements on a mesh."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -6,8 +6,6 @@ A term is written ``E``, ``t^3``, ``1/L``, ``E*t^3`` or ``E*t/L^2``. A name of a
 stands for the parameter, whatever characters are in it.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -117,8 +115,7 @@ def in_order(parameters: Sequence[Parameter], names: Sequence[str]) -> list[Para
     return [given[name] for name in names]
 
 
-BASE = "base"
-"""Name of the term that does not depend on the parameters."""
+BASE = "base"  # name of the term that does not depend on the parameters
 
 _POWER = re.compile(r"(?P<name>.*?)\s*(?:\^|\*\*)\s*(?P<power>[+-]?\d+(?:\.\d+)?)")
 

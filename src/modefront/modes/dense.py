@@ -14,8 +14,6 @@ the denominator is :math:`\mu_j (\lambda_j - \lambda_r)`, the only place that a 
 where it does, the modes are called coincident, and the quotient is left out.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -28,8 +26,7 @@ from modefront.linalg.affine import DenseAffine, first_axis
 from modefront.modes.result import FullModes, ModeDerivatives, Modes, SecondDerivatives, Solved
 from modefront.rounding import TINY
 
-CLOSE = 1e-2
-"""Relative gap of eigenvalues below which a quotient is formed with the gap itself."""
+CLOSE = 1e-2  # relative gap of eigenvalues below which a quotient is formed with the gap itself
 
 SHIFT = 1e-5
 """sigma over trace(K) / trace(M), where K is singular: balances rounding in low and high modes."""
@@ -37,8 +34,7 @@ SHIFT = 1e-5
 MIDDLE = 100.0
 """Factor around the middle of the spectrum within which the two ways of solving are joined."""
 
-RIGID = 1e-4
-"""Eigenvalue over the shift, below which a mode counts as a rigid-body mode."""
+RIGID = 1e-4  # eigenvalue over the shift, below which a mode counts as a rigid-body mode
 
 INDEFINITE = 1e-2
 """Negative eigenvalue over the shift that passes for rounding; below it, K is indefinite."""
@@ -141,20 +137,12 @@ def refuse_fewer(known: int, count: int) -> None:
 
 @dataclass(frozen=True)
 class Decomposition:
-    """All solutions of M x = mu (K + sigma M) x.
+    """All solutions of M x = mu (K + sigma M) x."""
 
-    Attributes
-    ----------
-    mu : (N,) eigenvalues, descending
-    X : (N, N) eigenvectors, orthonormal in K + sigma M
-    sigma : the shift
-    lam : (modes,) the finite eigenvalues of K and M, ascending; of the leading ones of mu
-    """
-
-    mu: Floats
-    X: Floats
-    sigma: float
-    lam: Floats
+    mu: Floats  # (N,) eigenvalues, descending
+    X: Floats  # (N, N) eigenvectors, orthonormal in K + sigma M
+    sigma: float  # the shift
+    lam: Floats  # (modes,) the finite eigenvalues of K and M, ascending; of the leading ones of mu
 
     @cached_property
     def Phi(self) -> Floats:

@@ -10,8 +10,6 @@ the factor that makes it smallest. The form is symmetric, so b may be the forces
 sensors (adjoint, one solution for all modes), whichever is expected to need fewer solutions.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -28,26 +26,16 @@ from modefront.rounding import TINY
 
 @dataclass(frozen=True)
 class Spectrum:
-    """The lowest modes at one theta.
+    """The lowest modes at one theta."""
 
-    Attributes
-    ----------
-    lam : (modes,) eigenvalues, ascending
-    Phi, MPhi : (N, modes) mass-normalised modes, and M times them
-    M : the mass matrix
-    noise : (modes,) rounding to be expected in ``lam``
-    beyond : estimate of the next eigenvalue; infinite where there is none
-    proved : how many modes were proved to be the lowest ones
-    factors : the factors of K - sigma M below all modes and above the proved ones
-    """
-
-    lam: Floats
-    Phi: Floats
+    lam: Floats  # (modes,) eigenvalues, ascending
+    Phi: Floats  # Phi, MPhi: (N, modes) mass-normalised modes, and M times them
     MPhi: Floats
-    M: scipy.sparse.csr_array
-    noise: Floats
-    beyond: float
-    proved: int
+    M: scipy.sparse.csr_array  # the mass matrix
+    noise: Floats  # (modes,) rounding to be expected in ``lam``
+    beyond: float  # estimate of the next eigenvalue; infinite where there is none
+    proved: int  # how many modes were proved to be the lowest ones
+    # the factors of K - sigma M below all modes and above the proved ones
     factors: tuple[Factorisation, Factorisation]
 
 
@@ -58,20 +46,14 @@ The bound is ten to a hundred times the rounding itself, and far less in ill-con
 than the gaps between modes that count as coincident.
 """
 
-TOLERANCE = 1e-10
-"""Residual of a solution over that of zero."""
-
-STEPS = 1000
-"""Steps after which the iteration is given up."""
-
-COLUMNS = 64
-"""Right-hand sides that are solved together: more would only take more memory."""
+TOLERANCE = 1e-10  # residual of a solution over that of zero
+STEPS = 1000  # steps after which the iteration is given up
+COLUMNS = 64  # right-hand sides that are solved together: more would only take more memory
 
 ENTRIES = 2**22
 """Entries that a block of right-hand sides holds at most, unless it has `FEWEST` columns."""
 
-FEWEST = 8
-"""Right-hand sides that are solved together however large the model is."""
+FEWEST = 8  # right-hand sides that are solved together however large the model is
 
 Sensors: TypeAlias = Floats | scipy.sparse.csr_array
 

@@ -16,8 +16,6 @@ Source: Wu & Simon 2000, doi:10.1137/S0895479898334605 (thick restart); Grimes, 
 doi:10.1137/S0895479888151111 (blocks, singular M).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -35,28 +33,19 @@ TOLERANCE = 1e-7
 NEW = 1e-8
 """Share of a random block, after T, outside the basis below which there are no more modes."""
 
-STEPS = 500
-"""Steps after which the iteration is given up."""
+STEPS = 500  # steps after which the iteration is given up
 
 Solve = Callable[[Floats], Floats]
 
 
 @dataclass(frozen=True)
 class Ritz:
-    """Ritz pairs of T, mu descending.
+    """Ritz pairs of T, mu descending."""
 
-    Attributes
-    ----------
-    mu : (k,) Ritz values
-    X : (N, k) Ritz vectors, orthonormal in A
-    converged : how many of the leading pairs have converged
-    complete : whether there are no eigenvalues but these
-    """
-
-    mu: Floats
-    X: Floats
-    converged: int
-    complete: bool
+    mu: Floats  # (k,) Ritz values
+    X: Floats  # (N, k) Ritz vectors, orthonormal in A
+    converged: int  # how many of the leading pairs have converged
+    complete: bool  # whether there are no eigenvalues but these
 
 
 def greatest(

@@ -23,8 +23,6 @@ price is one product of each term of K and M with z, and one of N x p with N x p
 Source: the equations of Fox & Kapoor 1968, doi:10.2514/3.5008, differentiated once more.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -46,25 +44,16 @@ position ``owner`` (adjoints,) in r, when second derivatives are requested."""
 
 @dataclass(frozen=True, eq=False)
 class SecondDerivatives:
-    """Second derivatives of modes at one theta, computed when they are requested.
+    """Second derivatives of modes at one theta, computed when they are requested."""
 
-    Attributes
-    ----------
-    K, M : stiffness and mass matrix
-    theta : (p,) parameters
-    lam, phi, dlam : the modes at the sensors as in `modefront.modes.result.Modes`
-    solve : gives the modes at all degrees of freedom, and adjoints
-    most : number of modes that are solved for at once, at most
-    """
-
-    K: DenseAffine | SparseAffine
+    K: DenseAffine | SparseAffine  # K, M: stiffness and mass matrix
     M: DenseAffine | SparseAffine
-    theta: Floats
-    lam: Floats
+    theta: Floats  # (p,) parameters
+    lam: Floats  # lam, phi, dlam: the modes at the sensors as in `modefront.modes.result.Modes`
     phi: Floats
     dlam: Floats
-    solve: Solve
-    most: int
+    solve: Solve  # gives the modes at all degrees of freedom, and adjoints
+    most: int  # number of modes that are solved for at once, at most
 
     def of_sums(self, r: Ints, w: Floats, v: Floats) -> Floats:
         """Return the Hessians of sum_r w_r lam_r + v_r^T phi_r for several w and v, (n, p, p).
@@ -109,38 +98,29 @@ class SecondDerivatives:
 
 @dataclass(frozen=True)
 class ModeDerivatives:
-    """Derivatives of modes with respect to the parameters.
+    """Derivatives of modes with respect to the parameters."""
 
-    Attributes
-    ----------
-    dlam : (modes, parameters) derivatives of eigenvalues; for coinciding modes, those of the
-        ascending eigenvalues as the parameter alone increases
-    dphi : (sensors, modes, parameters) derivatives of mode shapes; for coinciding modes, only the
-        part that leaves their common subspace, which is the well-defined one
-    coincident : (modes,) true where a mode is so close to another one that derivatives of the
-        single mode are not defined to eight digits, and only those of the subspace are
-    second : the second derivatives, computed when requested; None where they are not known
-    """
-
+    # (modes, parameters) derivatives of eigenvalues; for coinciding modes, those of the ascending
+    # eigenvalues as the parameter alone increases
     dlam: Floats
+    # (sensors, modes, parameters) derivatives of mode shapes; for coinciding modes, only the part
+    # that leaves their common subspace, which is the well-defined one
     dphi: Floats
+    # (modes,) true where a mode is so close to another one that derivatives of the single mode are
+    # not defined to eight digits, and only those of the subspace are
     coincident: Bools
+    # the second derivatives, computed when requested; None where they are not known
     second: SecondDerivatives | None = None
 
 
 @dataclass(frozen=True)
 class Modes:
-    """The lowest modes of a model, in ascending order, seen at its sensors.
+    """The lowest modes of a model, in ascending order, seen at its sensors."""
 
-    Attributes
-    ----------
-    lam : (modes,) eigenvalues omega**2 in (rad/s)**2
-    phi : (sensors, modes) mass-normalised mode shapes at the sensors; the sign is arbitrary
-    derivatives : with respect to the parameters; None where they were not requested
-    """
-
-    lam: Floats
+    lam: Floats  # (modes,) eigenvalues omega**2 in (rad/s)**2
+    # (sensors, modes) mass-normalised mode shapes at the sensors; the sign is arbitrary
     phi: Floats
+    # with respect to the parameters; None where they were not requested
     derivatives: ModeDerivatives | None = None
 
     @property
@@ -199,15 +179,8 @@ class Modes:
 
 @dataclass(frozen=True)
 class FullModes:
-    """The lowest modes of a model at one theta, and its static response.
+    """The lowest modes of a model at one theta, and its static response."""
 
-    Attributes
-    ----------
-    lam : (modes,) eigenvalues omega**2 in (rad/s)**2, ascending; 0 for rigid-body modes
-    Phi : (N, modes) mass-normalised modes; the sign is arbitrary
-    static : (N, loads) displacement under each load; None with rigid-body modes
-    """
-
-    lam: Floats
-    Phi: Floats
-    static: Floats | None
+    lam: Floats  # (modes,) eigenvalues omega**2 in (rad/s)**2, ascending; 0 for rigid-body modes
+    Phi: Floats  # (N, modes) mass-normalised modes; the sign is arbitrary
+    static: Floats | None  # (N, loads) displacement under each load; None with rigid-body modes

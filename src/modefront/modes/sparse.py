@@ -14,8 +14,6 @@ r"""Modes and their exact derivatives for large models, with sparse matrices.
 Source: Ericsson & Ruhe 1980, doi:10.1090/S0025-5718-1980-0583502-2.
 """
 
-from __future__ import annotations
-
 from contextlib import suppress
 from functools import partial
 
@@ -33,24 +31,19 @@ from modefront.modes.derivatives import Spectrum
 from modefront.modes.lanczos import greatest
 from modefront.modes.result import FullModes, ModeDerivatives, Modes, SecondDerivatives
 
-BLOCK = 8
-"""Columns of a block: greatest multiplicity of an eigenvalue that is found at once."""
+BLOCK = 8  # columns of a block: greatest multiplicity of an eigenvalue that is found at once
 
 LEAST = 2
 """Modes beyond those asked for: half of their number, but no fewer than this. The gap for sigma is
 sought among them, and the more there are, the faster subspace iteration is."""
 
-ATTEMPTS = 4
-"""Runs, each with more modes and a larger block, before missing modes are an error."""
-
-SINGULAR = 1e-13
-"""x^T A x / x^T diag(A) x below which A is singular to working precision."""
+ATTEMPTS = 4  # runs, each with more modes and a larger block, before missing modes are an error
+SINGULAR = 1e-13  # x^T A x / x^T diag(A) x below which A is singular to working precision
 
 GAP = 1e-2
 """Relative gap of eigenvalues that is wide enough for sigma; else the widest one is taken."""
 
-NARROW = 1e-6
-"""Relative gap that is too narrow for sigma: more modes are sought."""
+NARROW = 1e-6  # relative gap that is too narrow for sigma: more modes are sought
 
 RESTART = 1e-2
 """s over the greatest known eigenvalue, where the iteration has lost modes and is begun again."""
@@ -58,8 +51,7 @@ RESTART = 1e-2
 ALL_AT_ONCE = 3000
 """Degrees of freedom up to which all modes are solved for where the iteration loses some."""
 
-BEYOND = 1e3
-"""Eigenvalue up to which modes are counted, over the greatest known one."""
+BEYOND = 1e3  # eigenvalue up to which modes are counted, over the greatest known one
 
 CONVERGED = 1e-8
 """Change of a mode in subspace iteration, after which the next one is exact to rounding."""

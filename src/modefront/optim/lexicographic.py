@@ -4,8 +4,6 @@ It is the limit of a path of minimisers (`docs/methods/nbi.md`), extrapolated fr
 their distance from it is proportional to epsilon.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,8 +25,7 @@ RANK = Options().step
 """Singular value of the residuals' derivatives, over the greatest, that counts as none: the
 tolerance of the parameters."""
 
-RATIO = 10
-"""Ratio of epsilon, which begins at 1 / RATIO and ends at `EXACT`, to the next one."""
+RATIO = 10  # ratio of epsilon, which begins at 1 / RATIO and ends at `EXACT`, to the next one
 
 SHARE = 0.01 * TIE
 """Change of the others, over themselves, below which a minimiser on the path is exact enough."""

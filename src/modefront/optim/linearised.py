@@ -15,8 +15,6 @@ Rockafellar (1974, doi:10.1137/0312021) for :math:`\min \tau` subject to :math:`
 as the other terms where they are not, so that a step on which y bends is not rejected for that.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,8 +24,7 @@ from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.qp import QuadraticProgramme, QuadraticStep, solve_qp
 from modefront.optim.scalarisation import Scalarisation
 
-PENALTY = 10.0
-"""Penalty at least; it hardly changes the evaluations that a solution takes."""
+PENALTY = 10.0  # penalty at least; it hardly changes the evaluations that a solution takes
 
 
 NOISE = 1e-11

@@ -12,8 +12,6 @@ H         (n, p, p)  their second derivatives, exact; or, unless these are reque
 ========  =========  ==================================================================
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
@@ -151,18 +149,13 @@ class Problem(Protocol):
 
 @dataclass(eq=False)
 class Wrapped:
-    """A problem that is evaluated in another way, and is the same in everything else.
+    """A problem that is evaluated in another way, and is the same in everything else."""
 
-    Attributes
-    ----------
-    problem : the problem that is evaluated
-    evaluation : returns the evaluation of a problem at theta (p,), with derivatives or without,
-        and with second ones or without
-    names : names of the objectives, where they are not those of the problem
-    """
-
-    problem: Problem
+    problem: Problem  # the problem that is evaluated
+    # returns the evaluation of a problem at theta (p,), with derivatives or without, and with
+    # second ones or without
     evaluation: Callable[[Problem, Floats, bool, bool], Evaluation]
+    # names of the objectives, where they are not those of the problem
     names: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:

@@ -16,8 +16,6 @@ without functions, they are held and let go many at once, as long as what is
 minimised falls (Moré & Toraldo 1991, doi:10.1137/0801008).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,8 +27,7 @@ FLAT = 1e-10
 """Curvature, singular value, slope or multiplier, over the greatest one, below which it counts as
 none: well above rounding, 1e-16 times the condition of matrices of some thousands."""
 
-HALVINGS = 8
-"""Halvings at most of a step until its projection on the box falls."""
+HALVINGS = 8  # halvings at most of a step until its projection on the box falls
 
 PASSES = 4
 """Changes of the working set, over the number of variables and functions, after which the method

@@ -5,8 +5,6 @@ r"""Ways to turn a vector of objectives into one programme, which one solver ser
 Most have no maximum (m = 0). A constraint is one whose slope is `STEEP`: an exact penalty.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -26,18 +24,11 @@ less."""
 
 @dataclass(frozen=True)
 class Rows:
-    """Linear functions of the objectives, matrix J - offset.
+    """Linear functions of the objectives, matrix J - offset."""
 
-    Attributes
-    ----------
-    matrix : (rows, n)
-    offset : (rows,)
-    slope : theirs over that of what is minimised, above 1 of a penalty
-    """
-
-    matrix: Floats
-    offset: Floats
-    slope: float = 1.0
+    matrix: Floats  # (rows, n)
+    offset: Floats  # (rows,)
+    slope: float = 1.0  # theirs over that of what is minimised, above 1 of a penalty
 
     def at(self, J: Floats) -> Floats:
         """Return the values, shape (rows,)."""

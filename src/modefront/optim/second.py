@@ -11,8 +11,6 @@ Unconstrained Optimization*, 1983, section 9.2). Before, S is sized, as it vanis
 residuals (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965), unless H knows nothing.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

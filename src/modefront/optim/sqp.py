@@ -18,8 +18,6 @@ watchdog; Nocedal & Wright 2006, section 15.6). One attempt is made to leave a s
 clearly negative curvature.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -83,22 +81,14 @@ TIGHT = Options(reduction=1e-17)
 @record
 @dataclass(frozen=True)
 class Solution:
-    """A solution of one programme.
+    """A solution of one programme."""
 
-    Attributes
-    ----------
-    evaluation : of the model that it is
-    weights : (n,) weights w of the objectives at which it is stationary
-    status : how it ended
-    evaluations : evaluations that it took
-    beta : (n,) the point of the simplex that it was projected from, by normal-boundary
-        intersection; None of another programme
-    """
-
-    evaluation: Evaluation
-    weights: Floats
-    status: Status
-    evaluations: int
+    evaluation: Evaluation  # of the model that it is
+    weights: Floats  # (n,) weights w of the objectives at which it is stationary
+    status: Status  # how it ended
+    evaluations: int  # evaluations that it took
+    # (n,) the point of the simplex that it was projected from, by normal-boundary intersection;
+    # None of another programme
     beta: Floats | None = None
 
     @property

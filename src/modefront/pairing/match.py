@@ -6,8 +6,6 @@ Candidates whose frequency lies outside the window cost more than any within. On
 paired in their order: measured mode r is model mode r.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -18,8 +16,7 @@ from modefront.data.modal import ModalData
 from modefront.options import Checked, number, whole
 from modefront.rounding import TINY
 
-OUTSIDE = 1e3
-"""Cost of a candidate outside the window of frequencies."""
+OUTSIDE = 1e3  # cost of a candidate outside the window of frequencies
 
 UNSEEN = 1e-6
 """Greatest component of a mode at the sensors, over that of all modes, below which it is noise."""
@@ -49,16 +46,10 @@ class Pairing(Checked):
 
 @dataclass(frozen=True)
 class Pairs:
-    """Model mode of each measured mode, and how well they match.
+    """Model mode of each measured mode, and how well they match."""
 
-    Attributes
-    ----------
-    index : (measured modes,) model modes, counted from 0
-    mac : (measured modes,) mean MAC over the data sets; NaN where no shape was measured
-    """
-
-    index: Ints
-    mac: Floats
+    index: Ints  # (measured modes,) model modes, counted from 0
+    mac: Floats  # (measured modes,) mean MAC over the data sets; NaN where no shape was measured
 
 
 def modes_needed(pairing: Pairing, data: ModalData, size: int) -> int:

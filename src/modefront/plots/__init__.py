@@ -49,13 +49,9 @@ class Plots:
     """Pictures of results; each method returns a figure of matplotlib, with ``savefig``.
 
     All raise InputError without matplotlib, and where the results do not hold what is drawn.
-
-    Attributes
-    ----------
-    data : the results
     """
 
-    data: Dataset
+    data: Dataset  # the results
 
     def front(self, *, log: bool = False) -> Picture:
         """Return the front in the space of errors; axes are logarithmic if ``log``."""

@@ -6,8 +6,6 @@ class is written into the results, where all that show them read it. `modefront.
 class from anywhere known to study files.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, is_dataclass
@@ -26,8 +24,7 @@ from modefront.options import TRUE_OR_FALSE, Checked, Requirement, check_fields,
 from modefront.residuals.problem import UpdatingProblem
 from modefront.text import NAME, clean
 
-Contents = Literal["number", "count", "truth", "text"]
-"""Types of values of a variable."""
+Contents = Literal["number", "count", "truth", "text"]  # types of values of a variable
 
 
 @dataclass(frozen=True)
@@ -351,26 +348,17 @@ def _kinds(text: str) -> tuple[PredictionKind, ...]:
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number that models predict, as results hold it: one variable at one place.
+    """A number that models predict, as results hold it: one variable at one place."""
 
-    Attributes
-    ----------
-    variable : what it is
-    place : where, without the name of the prediction
-    label : of the place, with that name
-    values : (points,) of all models
-    extent : least, greatest and their ratio over the Pareto-optimal models; NaN for none
-    std : standard deviation by the posterior, of the logarithm where that is linearised, as a
-        factor then; None where it is not known to the results
-    drawn : statistics over the models drawn from the posterior, by name; none without draws
-    """
-
-    variable: ResultVariable
-    place: str
-    label: str
-    values: Floats
-    extent: Floats
+    variable: ResultVariable  # what it is
+    place: str  # where, without the name of the prediction
+    label: str  # of the place, with that name
+    values: Floats  # (points,) of all models
+    extent: Floats  # least, greatest and their ratio over the Pareto-optimal models; NaN for none
+    # standard deviation by the posterior, of the logarithm where that is linearised, as a factor
+    # then; None where it is not known to the results
     std: float | None
+    # statistics over the models drawn from the posterior, by name; none without draws
     drawn: Mapping[str, float]
 
 
@@ -398,24 +386,14 @@ def quantity(
 
 @dataclass(frozen=True)
 class RecordedPrediction:
-    """A prediction in results.
+    """A prediction in results."""
 
-    Attributes
-    ----------
-    kind : what it is
-    name : of the prediction
-    heading : its load case and options
-    load : its load; empty where the kind has no such setting
-    positions : of its values along the dimension of the kind
-    quantities : of each place in turn, one a variable
-    """
-
-    kind: PredictionKind
-    name: str
-    heading: str
-    load: str
-    positions: tuple[int, ...]
-    quantities: tuple[Quantity, ...]
+    kind: PredictionKind  # what it is
+    name: str  # of the prediction
+    heading: str  # its load case and options
+    load: str  # its load; empty where the kind has no such setting
+    positions: tuple[int, ...]  # of its values along the dimension of the kind
+    quantities: tuple[Quantity, ...]  # of each place in turn, one a variable
 
 
 def predictions_in(data: Dataset) -> Iterator[RecordedPrediction]:

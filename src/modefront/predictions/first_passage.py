@@ -1,7 +1,5 @@
 """The probability that any of several responses to random excitation leaves [-b, b]."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -20,11 +18,8 @@ from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVar
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import ACCUMULATED, WRITTEN
 
-STEPS_A_PERIOD = 20
-"""Time steps in the shortest period, where the step is not given."""
-
-MOST_STEPS = 10**6
-"""Time steps at most: convolutions of more fill the memory."""
+STEPS_A_PERIOD = 20  # time steps in the shortest period, where the step is not given
+MOST_STEPS = 10**6  # time steps at most: convolutions of more fill the memory
 
 LEVELS = options.numbers(
     "a list of different levels above 0", options.array(options.ABOVE_ZERO, 1, once=True)

@@ -20,8 +20,6 @@ vanish. Newton's method brings each to rounding, which is bounded by the same su
 taken by its absolute value.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -114,8 +112,7 @@ class Slope:
         return 8 * np.finfo(float).eps * (t * t1 + omega * abs(g1))
 
 
-DEGREE = 24
-"""Degree of the series; twice as many intervals with half of it cost about the same."""
+DEGREE = 24  # degree of the series; twice as many intervals with half of it cost about the same
 
 RESOLVED = 1e-12
 """The series is done when its last coefficients are below this, relative to its largest."""
@@ -123,8 +120,7 @@ RESOLVED = 1e-12
 SETTLED = 1e-8
 """Relative length of the last step of Newton's method at a zero; elsewhere steps stay long."""
 
-TWICE = 1e-10
-"""Relative distance of two zeros up to which they are the same, found twice."""
+TWICE = 1e-10  # relative distance of two zeros up to which they are the same, found twice
 
 NEWTON_STEPS = 6
 """From the accuracy of the series, two or three do; more than enough even for merging peaks."""

@@ -16,8 +16,6 @@ out. The constraints are a penalty on the greatest violation, which grows until 
 the bounds to which :math:`V_0 V_0^T e_j` leads promise more, the search goes on from there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -57,26 +55,18 @@ _ENOUGH = Options(step=1e-5, reduction=1e-8, iterations=40)
 
 SLACK = number("a share of 0 or more", least=0)
 
-Values = Callable[[Floats], float]
-"""Returns the prediction of a model (p,); NaN where it has none."""
+Values = Callable[[Floats], float]  # returns the prediction of a model (p,); NaN where it has none
 
 
 @dataclass(frozen=True)
 class Sampled:
-    """A front at some of its models.
+    """A front at some of its models."""
 
-    Attributes
-    ----------
-    theta, J : (m, p) and (m, n) parameters and objectives
-    is_open : whether others are equivalent to these
-    slack : share by which objectives of models may be greater that count
-    between : what has been solved for half-way between two models, for any prediction
-    """
-
-    theta: Floats
+    theta: Floats  # theta, J: (m, p) and (m, n) parameters and objectives
     J: Floats
-    is_open: bool
-    slack: float = 0.0
+    is_open: bool  # whether others are equivalent to these
+    slack: float = 0.0  # share by which objectives of models may be greater that count
+    # what has been solved for half-way between two models, for any prediction
     between: dict[bytes, list[Solution]] = field(default_factory=dict, repr=False)
 
     @cached_property
@@ -88,20 +78,12 @@ class Sampled:
 
 @dataclass(frozen=True)
 class Equivalent:
-    """Models that are as good as one of a front.
+    """Models that are as good as one of a front."""
 
-    Attributes
-    ----------
-    problem : the problem
-    model : evaluation of the model of the front
-    slack : share by which objectives may be greater
-    step : of differences of a prediction, over the ranges of the parameters
-    """
-
-    problem: Problem
-    model: Evaluation
-    slack: float
-    step: float
+    problem: Problem  # the problem
+    model: Evaluation  # evaluation of the model of the front
+    slack: float  # share by which objectives may be greater
+    step: float  # of differences of a prediction, over the ranges of the parameters
 
     def extreme(self, q: Values, sign: float) -> float:
         """Return the least (sign 1) or greatest (-1) value of a prediction; NaN without any."""
@@ -232,21 +214,14 @@ class Equivalent:
 
 @dataclass
 class _Along:
-    """Models of a front that are solved for where a prediction may have its least value.
+    """Models of a front that are solved for where a prediction may have its least value."""
 
-    Attributes
-    ----------
-    problem : the problem
-    front : some of its models, and what is known between them
-    value : returns the value of a model of the front
-    known : parameters, objectives and value of each model
-    halved : pairs of models between which the front has been solved for
-    """
-
-    problem: Problem
-    front: Sampled
-    value: Callable[[Floats], float]
+    problem: Problem  # the problem
+    front: Sampled  # some of its models, and what is known between them
+    value: Callable[[Floats], float]  # returns the value of a model of the front
+    # parameters, objectives and value of each model
     known: list[tuple[Floats, Floats, float]] = field(default_factory=list)
+    # pairs of models between which the front has been solved for
     halved: set[tuple[int, int]] = field(default_factory=set)
 
     def least(self) -> float:

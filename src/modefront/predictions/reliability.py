@@ -46,8 +46,6 @@ chunk's number, and the chunk's size follows from the problem alone, so who comp
 nothing.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -75,23 +73,17 @@ class FirstPassage:
     The responses are displacements at the outputs of `system`, of its modes alone: white noise
     has no quasi-static response, so `system.static` is not used. Responses with barriers of their
     own are brought to a common one by scaling the rows of the system's `output`.
-
-    Attributes
-    ----------
-    system : the structure, with n_inputs loads and n_outputs responses
-    intensity : 2πS of the white noise, independent at each input, with its two-sided spectral
-        density S in (unit of load)²/(rad/s)
-    duration : T in s, a whole number of time steps
-    time_step : δt in s, at most a quarter of the shortest period of a mode or of the filter
-    soil : ω_g in rad/s and ζ_g of the filter that the noise passes, or None
-    modulation : q, mapping an (n,) array of times in s to (n,) factors; None for a constant 1
     """
 
-    system: ModalSystem
+    system: ModalSystem  # the structure, with n_inputs loads and n_outputs responses
+    # 2πS of the white noise, independent at each input, with its two-sided spectral density S in
+    # (unit of load)²/(rad/s)
     intensity: float
-    duration: float
-    time_step: float
+    duration: float  # T in s, a whole number of time steps
+    time_step: float  # δt in s, at most a quarter of the shortest period of a mode or of the filter
+    # ω_g in rad/s and ζ_g of the filter that the noise passes, or None
     soil: tuple[float, float] | None = None
+    # q, mapping an (n,) array of times in s to (n,) factors; None for a constant 1
     modulation: Callable[[Floats], Floats] | None = None
 
     @property
@@ -102,22 +94,15 @@ class FirstPassage:
 
 @dataclass(frozen=True, eq=False)
 class GaussianResponse:
-    """The map from z to x, made by `gaussian_response`.
+    """The map from z to x, made by `gaussian_response`."""
 
-    Attributes
-    ----------
-    modulation : (n,) q
-    spectrum : (n_outputs, n_inputs, n_frequencies) transform of h, padded so that nothing wraps
-        round
-    backwards : (n_outputs, n_inputs, 2n - 1) h backwards in time, then zeros: the window of length
-        n at n - 1 - j is h_oi[j - k], k = 0 … n-1
-    deviation : (n_outputs, n) σ
-    """
-
-    modulation: Floats
+    modulation: Floats  # (n,) q
+    # (n_outputs, n_inputs, n_frequencies) transform of h, padded so that nothing wraps round
     spectrum: NDArray[np.complex128]
+    # (n_outputs, n_inputs, 2n - 1) h backwards in time, then zeros: the window of length n at n - 1
+    # - j is h_oi[j - k], k = 0 … n-1
     backwards: Floats
-    deviation: Floats
+    deviation: Floats  # (n_outputs, n) σ
 
     @property
     def n_inputs(self) -> int:
@@ -336,8 +321,7 @@ METHODS: Final[Mapping[str, Share | None]] = {
 """The methods by the names that a user gives them."""
 
 
-LARGEST_CHUNK = 32
-"""Samples in a chunk: enough for the loops in C, few enough for the cache."""
+LARGEST_CHUNK = 32  # samples in a chunk: enough for the loops in C, few enough for the cache
 
 MOST_WORKERS = 8
 """Threads at most; each takes some 100 MB. How many there are changes no digit."""

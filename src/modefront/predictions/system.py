@@ -23,8 +23,6 @@ sets, of the measured mode that is paired with it; modes without a partner, or w
 damping was not measured, have the mean of all that was.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeVar
@@ -82,8 +80,7 @@ class ModalSystem:
 
 T = TypeVar("T")
 
-MEASURED = "measured"
-"""Damping ratios of the measured modes."""
+MEASURED = "measured"  # damping ratios of the measured modes
 
 BEYOND = 1.5
 """Frequency that the superposed modes reach unless their number is given, over that of the band."""
@@ -175,23 +172,17 @@ Damping = Annotated[
 
 @dataclass(frozen=True)
 class ModalLoadModel:
-    """Load case, outputs, modes and damping of a prediction.
+    """Load case, outputs, modes and damping of a prediction."""
 
-    Attributes
-    ----------
-    load_case : where it is loaded, and its responses
-    modes : number of the lowest modes superposed; None where it is not known yet
-    damping : ratio of all modes, or of each, or `MEASURED`
-    static : whether the static response of the modes left out is added
-    """
-
-    load_case: LoadCase
-    modes: int | None
-    damping: str | float | Sequence[float]
-    static: bool
+    load_case: LoadCase  # where it is loaded, and its responses
+    modes: int | None  # number of the lowest modes superposed; None where it is not known yet
+    damping: str | float | Sequence[float]  # ratio of all modes, or of each, or `MEASURED`
+    static: bool  # whether the static response of the modes left out is added
 
     @classmethod
-    def of(cls, prediction: Any, forces: Sequence[NamedWeights], *, static: bool) -> ModalLoadModel:
+    def of(
+        cls, prediction: Any, forces: Sequence[NamedWeights], *, static: bool
+    ) -> "ModalLoadModel":
         """Return that of a prediction with forces, by its response, base, modes and damping."""
         load_case = LoadCase(tuple(prediction.response.values()), tuple(forces), prediction.base)
         return cls(load_case, prediction.modes, prediction.damping, static)

@@ -6,8 +6,6 @@ itself have negative numbers: they are a part of the model, and `modefront.progr
 eliminates them where that is exact. Supports are diagonal entries of 1e36: these rows are left out.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

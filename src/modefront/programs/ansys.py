@@ -19,8 +19,6 @@ item      meaning (words of the header, counted from 1)
 ========  ===========================================================
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

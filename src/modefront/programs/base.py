@@ -5,8 +5,6 @@ in a process of its own, with limits on time and memory, in which the matrices a
 are whole, finite and symmetric, and without what is held.
 """
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass
@@ -154,18 +152,14 @@ class Job(Shown):
 
 @dataclass(frozen=True)
 class JobOptions:
-    """Options of the command line for all jobs.
+    """Options of the command line for all jobs."""
 
-    Attributes
-    ----------
-    stiffness, mass : names of the matrices in files that hold several; None for the usual ones
-    dofs : a table of degrees of freedom, for files that do not tell nodes; None where they do
-    deck : the input file, for coordinates and elements; None for one beside the matrices
-    """
-
+    # stiffness, mass: names of the matrices in files that hold several; None for the usual ones
     stiffness: str | None = None
     mass: str | None = None
+    # a table of degrees of freedom, for files that do not tell nodes; None where they do
     dofs: Path | None = None
+    # the input file, for coordinates and elements; None for one beside the matrices
     deck: Path | None = None
 
 
@@ -187,27 +181,20 @@ def read_job(program: str, path: Path, options: JobOptions) -> Job:
 
 @dataclass(frozen=True, eq=False)
 class Listed:
-    """What the files of a job list, before it is checked.
+    """What the files of a job list, before it is checked."""
 
-    Attributes
-    ----------
-    files : that of the stiffness, and that of the mass
-    matrices : stiffness and mass as they are listed, one triangle or both
-    dofs : node and direction of each row; those of `given_table` where no file tells them
-    precision : relative error of the numbers, that of binary doubles unless given
-    free : which rows are not held, (N,), or what returns it, given both matrices; None for all
-    counted : whether files say how many entries they have; else those that are cut off at a line
-        show by mass without stiffness, which is refused
-    mesh, notes : as in `Job`
-    """
-
-    files: tuple[Path, Path]
+    files: tuple[Path, Path]  # that of the stiffness, and that of the mass
+    # stiffness and mass as they are listed, one triangle or both
     matrices: Sequence[scipy.sparse.coo_array]
+    # node and direction of each row; those of `given_table` where no file tells them
     dofs: DofTable
-    precision: float = 1e-15
+    precision: float = 1e-15  # relative error of the numbers, that of binary doubles unless given
+    # which rows are not held, (N,), or what returns it, given both matrices; None for all
     free: Bools | Callable[[Matrix, Matrix], Bools] | None = None
+    # whether files say how many entries they have; else those that are cut off at a line show by
+    # mass without stiffness, which is refused
     counted: bool = True
-    mesh: ProgramMesh | None = None
+    mesh: ProgramMesh | None = None  # mesh, notes: as in `Job`
     notes: Sequence[str] = ()
 
 

@@ -12,8 +12,6 @@ mean already. What the program writes for nodes that are not in the deck (knots,
 modes) moves with the model, and belongs to no node.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 From it, updated values can be written as lines of the deck.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,21 +23,13 @@ CHANGES, KEPT = "changes.json", "deck-"
 
 @dataclass(frozen=True)
 class Change:
-    """A line of the nominal deck that a run changes.
+    """A line of the nominal deck that a run changes."""
 
-    Attributes
-    ----------
-    parameter : name
-    file : the nominal deck
-    line : number from 1
-    text : the line
-    spans : beginning and end of each number that the factor multiplies
-    """
-
-    parameter: str
-    file: str
-    line: int
-    text: str
+    parameter: str  # name
+    file: str  # the nominal deck
+    line: int  # number from 1
+    text: str  # the line
+    # beginning and end of each number that the factor multiplies
     spans: tuple[tuple[int, int], ...]
 
     def updated(self, factor: float) -> str:
@@ -88,7 +78,7 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
     return None if value <= 0 or abs(value / factor - 1) < 1e-5 else (value, line)
 
 
-def _different_lines(nominal: Path, run: Path) -> Iterator[tuple[str, int, str, Numbers | None]]:
+def _different_lines(nominal: Path, run: Path) -> "Iterator[tuple[str, int, str, Numbers | None]]":
     """Yield file, number and text of lines of the nominal deck that differ, and their numbers."""
     deck, lines = _deck(nominal), [deck_text(job).splitlines() for job in (nominal, run)]
     if deck and len(lines[0]) == len(lines[1]):

@@ -12,8 +12,6 @@ Differences of large numbers are noise where nothing has changed: ``docs/import.
 dropped. Terms of few degrees of freedom keep the rank that they have above the rounding.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -30,53 +28,34 @@ from modefront.models.parameters import BASE, term_exponents
 from modefront.programs.base import Job, Matrix, Quantity
 from modefront.rounding import ACCUMULATED
 
-AFFINE = 1e-10
-"""Greatest error of the terms at other values of the parameters, over the change."""
-
-ROUNDING = 20.0
-"""Roundings that may add up in an entry."""
+AFFINE = 1e-10  # greatest error of the terms at other values of the parameters, over the change
+ROUNDING = 20.0  # roundings that may add up in an entry
 
 CANCELLED = 1e-14
 """Size over the greatest of what has cancelled: some fifty roundings of one operation."""
 
-COVERED = 0.99
-"""Share of an error within the terms of a parameter, from which it may come from it."""
+COVERED = 0.99  # share of an error within the terms of a parameter, from which it may come from it
 
 
 @dataclass(frozen=True, eq=False)
 class Term:
-    """One term of K and M.
+    """One term of K and M."""
 
-    Attributes
-    ----------
-    name : as `modefront.models.parameters` has it
-    matrices : symmetric ones by quantity; only those that are not zero
-    dofs : number of degrees of freedom on which the term acts
-    rank : of the stiffness, or of the mass where there is no stiffness; None where not found
-    """
-
-    name: str
-    matrices: Mapping[Quantity, Matrix]
-    dofs: int = 0
+    name: str  # as `modefront.models.parameters` has it
+    matrices: Mapping[Quantity, Matrix]  # symmetric ones by quantity; only those that are not zero
+    dofs: int = 0  # number of degrees of freedom on which the term acts
+    # of the stiffness, or of the mass where there is no stiffness; None where not found
     rank: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Terms:
-    """Base and terms of both matrices.
+    """Base and terms of both matrices."""
 
-    Attributes
-    ----------
-    parameters : names
-    base : the term that does not depend on parameters
-    terms : all others
-    dofs : degrees of freedom, those of the nominal run
-    """
-
-    parameters: tuple[str, ...]
-    base: Term
-    terms: tuple[Term, ...]
-    dofs: DofTable
+    parameters: tuple[str, ...]  # names
+    base: Term  # the term that does not depend on parameters
+    terms: tuple[Term, ...]  # all others
+    dofs: DofTable  # degrees of freedom, those of the nominal run
 
     def of(self, quantity: Quantity) -> dict[str, Matrix]:
         """Return the matrices of a quantity by the names of the terms, the base first."""

@@ -1,7 +1,5 @@
 """Decks in the keyword language of Abaqus and CalculiX: nodes, elements, supports."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -16,8 +14,7 @@ from modefront.errors import reason
 from modefront.inputs import ended, wrong
 from modefront.programs.base import ProgramMesh, mesh_of, refuse_unknown_nodes
 
-DEEPEST = 20
-"""Decks that include each other, one in the other, at most."""
+DEEPEST = 20  # decks that include each other, one in the other, at most
 
 _TYPES = (
     (r"C3D(8|20|27)|SC8|F3D8|DC3D(8|20)", "hexahedron"),
@@ -33,31 +30,21 @@ _TYPES = (
 
 @dataclass
 class Deck:
-    """Nodes, elements and constraints of a deck, as they are collected while it is read.
+    """Nodes, elements and constraints of a deck, as they are collected while it is read."""
 
-    Attributes
-    ----------
-    nodes : coordinates by number
-    cells : types and nodes of elements
-    sets : nodes by the name of their set
-    supports : node or set, first and last direction, from 1
-    elements : numbers
-    expanded : nodes of elements that CalculiX makes solids of
-    others : nodes of all other elements
-    bodies : nodes of rigid bodies, or their sets
-    guides : reference nodes of rigid bodies and couplings, or their sets
-    parts : whether nodes are numbered in parts, so that their numbers are not those of matrices
-    """
-
-    nodes: dict[int, Floats] = field(default_factory=dict)
-    cells: list[tuple[str, list[int]]] = field(default_factory=list)
-    sets: dict[str, list[int]] = field(default_factory=dict)
+    nodes: dict[int, Floats] = field(default_factory=dict)  # coordinates by number
+    cells: list[tuple[str, list[int]]] = field(default_factory=list)  # types and nodes of elements
+    sets: dict[str, list[int]] = field(default_factory=dict)  # nodes by the name of their set
+    # node or set, first and last direction, from 1
     supports: list[tuple[str, int, int]] = field(default_factory=list)
-    elements: set[int] = field(default_factory=set)
+    elements: set[int] = field(default_factory=set)  # numbers
+    # nodes of elements that CalculiX makes solids of
     expanded: set[int] = field(default_factory=set)
-    others: set[int] = field(default_factory=set)
-    bodies: list[str] = field(default_factory=list)
+    others: set[int] = field(default_factory=set)  # nodes of all other elements
+    bodies: list[str] = field(default_factory=list)  # nodes of rigid bodies, or their sets
+    # reference nodes of rigid bodies and couplings, or their sets
     guides: list[str] = field(default_factory=list)
+    # whether nodes are numbered in parts, so that their numbers are not those of matrices
     parts: bool = False
 
     @cached_property

@@ -9,8 +9,6 @@ followers (MPC, RBE2, RBE3, RBAR) and OMIT are taken away, and those components 
 makes stiff, which AUTOSPC holds: the rotation about the normal of a flat shell, for example.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
@@ -67,7 +65,7 @@ def _pair(path: Path, names: Iterable[str], options: base.JobOptions) -> tuple[s
     return pair
 
 
-def _deck(path: Path, options: base.JobOptions, notes: list[str]) -> Bulk | None:
+def _deck(path: Path, options: base.JobOptions, notes: list[str]) -> "Bulk | None":
     deck = options.deck or next((x for x in map(path.with_suffix, DECKS) if x.is_file()), None)
     if deck is None:
         notes.append(f"there is no deck ({path.stem}.dat or .bdf), and so there are no coordinates")
@@ -88,7 +86,7 @@ def _from_op4(path: Path, options: base.JobOptions) -> base.Listed:
     return listed if deck is None or options.dofs else _labelled(listed, deck, notes)
 
 
-def _labelled(listed: base.Listed, deck: Bulk, notes: list[str]) -> base.Listed:
+def _labelled(listed: base.Listed, deck: "Bulk", notes: list[str]) -> base.Listed:
     """Return a job with nodes and components of the deck, of which some may be held."""
     path, size = listed.files[0], listed.dofs.size
     choices = {
@@ -116,14 +114,14 @@ def _labelled(listed: base.Listed, deck: Bulk, notes: list[str]) -> base.Listed:
     return replace(listed, dofs=dofs, free=free, mesh=_drawn(deck, notes))
 
 
-def _drawn(deck: Bulk, notes: list[str]) -> base.ProgramMesh | None:
+def _drawn(deck: "Bulk", notes: list[str]) -> base.ProgramMesh | None:
     if np.isfinite(deck.mesh.coordinates).all():
         return deck.mesh
     notes.append("nodes in coordinate systems of their own (CP): coordinates are left out")
     return None
 
 
-def _check_labels(path: Path, deck: Bulk, K: base.Matrix, dofs: DofTable, free: Bools) -> None:
+def _check_labels(path: Path, deck: "Bulk", K: base.Matrix, dofs: DofTable, free: Bools) -> None:
     moving = set(zip(dofs.node[free].tolist(), dofs.direction[free].tolist(), strict=True))
     held = {n for n in deck.mesh.number.tolist() if any((n, c) not in moving for c in (1, 2, 3))}
     held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)
@@ -186,33 +184,25 @@ Dof = tuple[int, int]
 # 12 fields: one for each kind of entry of a deck.
 @dataclass
 class Bulk:
-    """Nodes, elements and constraints of a deck, as they are collected while it is read.
+    """Nodes, elements and constraints of a deck, as they are collected while it is read."""
 
-    Attributes
-    ----------
-    nodes : coordinates by number; NaN for those in another than the basic system
-    scalar : scalar points
-    elements : name and nodes by number
-    springs : nodes and components that springs hold
-    links : nodes that a spring or a constraint joins
-    held : supports that the case control chooses, node and component
-    sets, added : sets of SPC and MPC by kind and number, and the sets of which others are
-    followers : dependent degrees of freedom
-    omitted : OMIT; kept : ASET, empty for all
-    turned : nodes whose directions are those of a system of their own
-    """
-
+    # coordinates by number; NaN for those in another than the basic system
     nodes: dict[int, Floats] = field(default_factory=dict)
-    scalar: set[int] = field(default_factory=set)
+    scalar: set[int] = field(default_factory=set)  # scalar points
+    # name and nodes by number
     elements: dict[int, tuple[str, list[int]]] = field(default_factory=dict)
-    springs: list[Dof] = field(default_factory=list)
+    springs: list[Dof] = field(default_factory=list)  # nodes and components that springs hold
+    # nodes that a spring or a constraint joins
     links: list[tuple[int, ...]] = field(default_factory=list)
+    # supports that the case control chooses, node and component
     held: set[Dof] = field(default_factory=set)
+    # sets, added: sets of SPC and MPC by kind and number, and the sets of which others are
     sets: dict[tuple[str, int], set[Dof]] = field(default_factory=dict)
     added: dict[tuple[str, int], list[int]] = field(default_factory=dict)
-    followers: set[Dof] = field(default_factory=set)
-    omitted: set[Dof] = field(default_factory=set)
+    followers: set[Dof] = field(default_factory=set)  # dependent degrees of freedom
+    omitted: set[Dof] = field(default_factory=set)  # OMIT; kept : ASET, empty for all
     kept: set[Dof] = field(default_factory=set)
+    # nodes whose directions are those of a system of their own
     turned: set[int] = field(default_factory=set)
 
     @cached_property

@@ -17,8 +17,6 @@ Each column of DMIG has a line ``DMIG*  NAME  node  component``, followed by a l
 of 0 is a scalar point.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from operator import length_hint
@@ -34,8 +32,7 @@ from modefront.errors import reason
 from modefront.inputs import ended, fortran, wrong
 from modefront.programs.base import fixed_width
 
-STRING = 65536
-"""Unit of the length in the header of a string."""
+STRING = 65536  # unit of the length in the header of a string
 
 PRECISIONS = {1: 6e-8, 2: 1e-15}
 """Relative errors of the types of numbers: single and double; others are complex."""

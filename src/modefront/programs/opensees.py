@@ -5,8 +5,6 @@ direction of each equation; ``job_nodes.csv`` (node, x, y, z) and ``job_elements
 its nodes) may be there for pictures.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The report of an identification: one HTML file to look at, and to choose poles in."""
 
-from __future__ import annotations
-
 import base64
 import gzip
 import json

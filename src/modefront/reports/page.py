@@ -5,8 +5,6 @@ each other, all little-endian. Coordinates and columns of the basis of mode shap
 integers with a common unit: columns that matter less have smaller integers, which compress well.
 """
 
-from __future__ import annotations
-
 import base64
 import gzip
 import hashlib
@@ -36,11 +34,8 @@ from modefront.results.remarks import findings_of, verdict
 CONSTANTS = {"NaN": None, "Infinity": 10**400, "-Infinity": -(10**400)}
 """What JSON has for numbers of which it has no word; JavaScript reads such integers as infinity."""
 
-LISTED = methodcaller("tolist")
-"""What makes lists and numbers of those of NumPy."""
-
-LARGEST = 32767
-"""Of a 16-bit integer."""
+LISTED = methodcaller("tolist")  # what makes lists and numbers of those of NumPy
+LARGEST = 32767  # of a 16-bit integer
 
 CITE = (
     "The modefront developers, modefront {version}: structural model updating with all "

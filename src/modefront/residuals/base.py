@@ -15,8 +15,6 @@ A kind (`ResidualKind`) says which measured modes it can be formed of, makes the
 `modefront.residuals.groups`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
@@ -37,30 +35,18 @@ NEGLIGIBLE = 1e-9
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Changes of an objective by one standard deviation of each of some measured values.
+    """Changes of an objective by one standard deviation of each of some measured values."""
 
-    Attributes
-    ----------
-    values : (values,) numbers of the measured values, see `value_numbers`
-    J : (values,) changes of the objective at fixed parameters
-    dJ : (values, p) changes of its derivatives
-    """
-
-    values: Ints
-    J: Floats
-    dJ: Floats
+    values: Ints  # (values,) numbers of the measured values, see `value_numbers`
+    J: Floats  # (values,) changes of the objective at fixed parameters
+    dJ: Floats  # (values, p) changes of its derivatives
 
 
 @dataclass(frozen=True)
 class ModeErrors:
-    """Relative errors of the model modes that are paired with the measured ones.
+    """Relative errors of the model modes that are paired with the measured ones."""
 
-    Attributes
-    ----------
-    eigenvalue, shape : (measured modes,)
-    """
-
-    eigenvalue: Floats
+    eigenvalue: Floats  # eigenvalue, shape: (measured modes,)
     shape: Floats
 
 
@@ -70,16 +56,11 @@ class Curvature:
 
     It is the sum of ``own`` and of the second derivatives of :math:`\sum_r w_r \lambda_r + v_r^T
     \varphi_r` with w and v constant, the derivatives of J with respect to the modes.
-
-    Attributes
-    ----------
-    w : (modes,) dJ / dlam
-    v : (sensors, modes) dJ / dphi
-    own : (p, p) :math:`2 \sum_k r_k \nabla^2 r_k` with second derivatives of the modes left out
     """
 
-    w: Floats
-    v: Floats
+    w: Floats  # (modes,) dJ / dlam
+    v: Floats  # (sensors, modes) dJ / dphi
+    # (p, p) :math:`2 \sum_k r_k \nabla^2 r_k` with second derivatives of the modes left out
     own: Floats
 
 

@@ -14,8 +14,6 @@ of a data set by
 where q = 1 for a unit that is given, and q = f / y for the unit y, which changes with it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property

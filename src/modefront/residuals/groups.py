@@ -1,7 +1,5 @@
 """Groups of measured properties: which residuals each objective sums."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args

@@ -7,8 +7,6 @@ of its second derivatives, :math:`2\, \partial r^T \partial r + 2 \sum_k r_k \na
 count :math:`a_i` of measured properties is the sum of theirs.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -98,7 +96,7 @@ class UpdatingProblem:
         """Return the state without the whole model, which no other process needs."""
         return vars(self) | {"whole": None}
 
-    def with_free(self, names: Sequence[str]) -> UpdatingProblem:
+    def with_free(self, names: Sequence[str]) -> "UpdatingProblem":
         """Return the problem with more parameters: those of its fixed ones that are named.
 
         A reduced model has a basis of its own, in which there is nothing so far.

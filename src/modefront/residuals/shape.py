@@ -34,8 +34,6 @@ where s = 1 for a given w, and :math:`s = \pi^T \pi / a` for the one that change
 :math:`\psi`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -258,7 +256,7 @@ class ShapeResiduals:
             return out
         return (inverse @ out.reshape(*out.shape[:2], -1)).reshape(out.shape)
 
-    def _fit(self, modes: Modes, pairs: Pairs) -> tuple[_Fit, Floats]:
+    def _fit(self, modes: Modes, pairs: Pairs) -> "tuple[_Fit, Floats]":
         """Return the fit, and dX (shapes, components, m, p)."""
         places = self._places(pairs)
         dX = self._over(modes.dphi[places])

@@ -1,7 +1,5 @@
 """A front, its analysis, and what the posterior says of the parameters, as one dataset."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -29,15 +27,13 @@ from modefront.uncertainty.prior import NoiseModel, prior_widths
 ITERATED = "iterated-weights"
 """Name of the fixed point of the iteration of the weights, among the minima."""
 
-QUANTILES = (0.05, 0.5, 0.95)
-"""Quantiles of the parameters: a 90 % interval and the median."""
+QUANTILES = (0.05, 0.5, 0.95)  # quantiles of the parameters: a 90 % interval and the median
 
 DETERMINED, OPEN = 1 / 3, 0.8
 """Width of the 90 % interval over that of the prior, below which a parameter is determined, and
 above which it is not."""
 
-TRUST = ("determined", "partly", "not determined")
-"""What the data say of a parameter."""
+TRUST = ("determined", "partly", "not determined")  # what the data say of a parameter
 
 
 def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> ArrayDataset:

@@ -6,8 +6,6 @@ that of the shortest tree that joins its Pareto-optimal points, without gaps. Ra
 are those of all Pareto-optimal models, edges and weighted ones included.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -85,18 +83,11 @@ class Apart(Shown):
 
 @dataclass(frozen=True, repr=False)
 class Comparison:
-    """Several results side by side.
+    """Several results side by side."""
 
-    Attributes
-    ----------
-    groups : names of the objectives of all
-    fronts : one summary of each
-    pairs : distances of each two
-    """
-
-    groups: tuple[str, ...]
-    fronts: tuple[Summary, ...]
-    pairs: tuple[Apart, ...]
+    groups: tuple[str, ...]  # names of the objectives of all
+    fronts: tuple[Summary, ...]  # one summary of each
+    pairs: tuple[Apart, ...]  # distances of each two
 
     @property
     def rows(self) -> dict[str, list[object]]:
@@ -120,7 +111,7 @@ class Comparison:
         return {name: [column[name] for column in columns] for name in columns[0]}
 
     @property
-    def table(self) -> pd.DataFrame:
+    def table(self) -> "pd.DataFrame":
         """One column a study, one row a quantity of its front."""
         import pandas as pd
 

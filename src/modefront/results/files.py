@@ -5,8 +5,6 @@ attribute. It does not depend on how a file lays these out: truth values and who
 integers of 64 bits, other numbers as floats of 64 bits, and texts in UTF-8.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from contextlib import suppress
@@ -30,8 +28,7 @@ FILE = "results.nc"
 READER, SECONDS, EXPECTED = "modefront.hdf5:contents", 120.0, "results in netCDF"
 """Function that reads the file, the time that it may take, and what the file is."""
 
-CHECKSUM = "checksum"
-"""Attribute that holds the checksums, in JSON."""
+CHECKSUM = "checksum"  # attribute that holds the checksums, in JSON
 
 
 def write(data: Dataset, path: Path) -> None:

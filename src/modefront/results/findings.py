@@ -1,7 +1,5 @@
 """Findings of the analysis of a front, the most important first."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import compress
 from typing import Any
@@ -24,11 +22,8 @@ from modefront.uncertainty.scatter import LinearisationWarning
 Determinations = Sequence[tuple[str, Determination]]
 """What is determined at the reference, then at each edge, with the labels of these."""
 
-FEW = 10
-"""Points that are named one by one in a sentence."""
-
-VARIED = 1e-3
-"""Change of a parameter along a manifold, over its range, from which it is named."""
+FEW = 10  # points that are named one by one in a sentence
+VARIED = 1e-3  # change of a parameter along a manifold, over its range, from which it is named
 
 
 def findings(

@@ -5,8 +5,6 @@ that predictions differ by the models alone. To first order the scatter needs tw
 axis of the posterior; with draws, the models drawn.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -51,32 +49,21 @@ those that are estimated from samples."""
 @record
 @dataclass(frozen=True)
 class Predicted:
-    """A prediction of a model.
+    """A prediction of a model."""
 
-    Attributes
-    ----------
-    values : arrays (places,) by key; NaN where the model cannot be solved
-    solved : whether it can
-    """
-
-    values: Arrays
-    solved: bool = True
+    values: Arrays  # arrays (places,) by key; NaN where the model cannot be solved
+    solved: bool = True  # whether it can
 
 
 @dataclass(frozen=True)
 class PredictionRunner:
-    """Runs the predictions of a study.
-
-    Attributes
-    ----------
-    file : of the study, named in messages
-    """
+    """Runs the predictions of a study."""
 
     problem: UpdatingProblem
     predictions: Sequence[Prediction]
     seed: int
     work: Executor
-    file: Path
+    file: Path  # of the study, named in messages
 
     def at_models(
         self,

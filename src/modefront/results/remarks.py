@@ -1,7 +1,5 @@
 """Findings of results, those of their analysis included, in the order of what matters."""
 
-from __future__ import annotations
-
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -30,11 +28,8 @@ ARRIVED = 1e-5
 """Distance of two optimally weighted models, over the ranges, below which they are the same: a
 hundred times the tolerance of a step, which minima that are nearly flat miss by as much."""
 
-POOR = 0.5
-"""MAC below which a pair is poor."""
-
-WIDE = 1.02
-"""Ratio of greatest to least prediction from which a spread is worth a sentence."""
+POOR = 0.5  # MAC below which a pair is poor
+WIDE = 1.02  # ratio of greatest to least prediction from which a spread is worth a sentence
 
 
 def verdict(data: Dataset) -> list[str]:

@@ -4,8 +4,6 @@ It is the tables of the page ``results.md``. A row has a name, with ``*`` where 
 dimensions; what it holds, where that is not numbers, and its unit; and its meaning.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -46,8 +44,7 @@ VARIABLES, ATTRIBUTES = _rows("variable"), _rows("attribute")
 """Variables by name, without those of predictions, and attributes, numbers or texts."""
 
 
-Values = dict[str, object]
-"""Values of variables by name."""
+Values = dict[str, object]  # values of variables by name
 
 
 def variables_of(kinds: Iterable[PredictionKind]) -> dict[str, Variable]:

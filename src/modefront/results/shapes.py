@@ -10,8 +10,6 @@ points need up to `TOLERANCE`, and coefficients c between -1 and 1. Drawn are th
 faces, of solids those of the surface. Q and C are an orthonormal basis, and the coefficients in it.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 from collections.abc import Mapping, Sequence
@@ -33,8 +31,7 @@ from modefront.results.schema import Values, described
 from modefront.rounding import TINY
 from modefront.text import Shown
 
-TOLERANCE = 1e-3
-"""Error of a shape in the basis, over its length, at most."""
+TOLERANCE = 1e-3  # error of a shape in the basis, over its length, at most
 
 
 @dataclass(frozen=True, repr=False)

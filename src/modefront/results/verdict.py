@@ -3,8 +3,6 @@
 The page ``findings/verdicts.md`` has all it can say, and of each what it means and what to do.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import chain
 from textwrap import wrap

@@ -8,8 +8,6 @@ parameters, each promises to lower -2 ln p by what its slope and the Gauss-Newto
 all others follow (Rao's score); those that promise most are freed and tried, one at a time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -41,18 +39,14 @@ advised: far above what is called noise."""
 WORSE = 1.1
 """Error of a group over that of the nominal model, from which the nominal one is better there."""
 
-TRIED = 3
-"""Fixed parameters that are tried at most."""
+TRIED = 3  # fixed parameters that are tried at most
 
 GAIN = 0.1
 """Share of its errors that a group loses without bounds, from which these are worth widening."""
 
 
-STARTS = 12
-"""Searches at most, from the most probable of the known models."""
-
-APART = 0.02
-"""Distance of two starts, over the ranges of the parameters, below which one is enough."""
+STARTS = 12  # searches at most, from the most probable of the known models
+APART = 0.02  # distance of two starts, over the ranges of the parameters, below which one is enough
 
 _TIGHT = Options(reduction=1e-17)
 """Steps end at the tolerance of the parameters, whatever f: a sum of logarithms has any size."""
@@ -119,22 +113,16 @@ def _in_problem(problem: UpdatingProblem, noise: NoiseModel, found: Solution) ->
 @record
 @dataclass(frozen=True)
 class Fit:
-    """How the most probable model fits, and what could be measured besides.
+    """How the most probable model fits, and what could be measured besides."""
 
-    Attributes
-    ----------
-    misfit, nominal : (n,) root mean square errors of the groups, and those of the nominal model,
-        over those expected
-    lack : (n,) probability, times n, of such errors of a right model; NaN where nothing tells
-    pairs : (modes,) the model mode that is most likely to be each measured one, from 1
-    candidates : further measurements
-    """
-
+    # misfit, nominal: (n,) root mean square errors of the groups, and those of the nominal model,
+    # over those expected
     misfit: Floats
     nominal: Floats
+    # (n,) probability, times n, of such errors of a right model; NaN where nothing tells
     lack: Floats
-    pairs: Floats
-    candidates: Candidates
+    pairs: Floats  # (modes,) the model mode that is most likely to be each measured one, from 1
+    candidates: Candidates  # further measurements
 
 
 def refused(misfit: Floats, nominal: Floats) -> tuple[Bools, Bools]:
@@ -150,36 +138,22 @@ def refused(misfit: Floats, nominal: Floats) -> tuple[Bools, Bools]:
 @record
 @dataclass(frozen=True)
 class Freed:
-    """The most probable model between wider bounds, or with a parameter more.
+    """The most probable model between wider bounds, or with a parameter more."""
 
-    Attributes
-    ----------
-    theta : (p,) its parameters
-    misfit : (n,) its root mean square errors over those expected
-    less : by which -2 ln p is less
-    """
-
-    theta: Floats
-    misfit: Floats
-    less: float
+    theta: Floats  # (p,) its parameters
+    misfit: Floats  # (n,) its root mean square errors over those expected
+    less: float  # by which -2 ln p is less
 
 
 @dataclass(frozen=True)
 class Inference:
-    """The posterior, and what its maximum says.
+    """The posterior, and what its maximum says."""
 
-    Attributes
-    ----------
-    draws : models drawn from the posterior
-    fit : of its maximum
-    freed : the maximum between wider bounds; None where no bound holds it
-    unfixed : name and value of the fixed parameter that is wrong, and the errors (n,) over those
-        expected with it free; None where none lowers them beyond chance
-    """
-
-    draws: Draws
-    fit: Fit
-    freed: Freed | None
+    draws: Draws  # models drawn from the posterior
+    fit: Fit  # of its maximum
+    freed: Freed | None  # the maximum between wider bounds; None where no bound holds it
+    # name and value of the fixed parameter that is wrong, and the errors (n,) over those expected
+    # with it free; None where none lowers them beyond chance
     unfixed: tuple[str, float, Floats] | None
 
     @property

@@ -7,8 +7,6 @@ doi:10.1137/1.9781611970319, chapter 6); nothing is assumed of how errors within
 each other.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -24,8 +22,7 @@ from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
 
-Source = Literal["std", "sets"]
-"""Sources of the uncertainty of the data."""
+Source = Literal["std", "sets"]  # sources of the uncertainty of the data
 
 
 @record

@@ -5,8 +5,6 @@ measurements are as exact as those that there are, :math:`\tau` by median, with 
 group of their kind; the factor of a shape is fitted.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -21,17 +19,13 @@ from modefront.work.codec import record
 @record
 @dataclass(frozen=True)
 class Candidates:
-    """Measurements that could be made.
+    """Measurements that could be made."""
 
-    Attributes
-    ----------
-    frequency : (candidates,) of the model mode to be measured at all sensors; 0 for a sensor
-    sensor : the sensor at which all measured modes are to be measured; empty for a mode
-    gain : (candidates, p) share by which the standard deviation of a parameter becomes less
-    """
-
+    # (candidates,) of the model mode to be measured at all sensors; 0 for a sensor
     frequency: Floats
+    # the sensor at which all measured modes are to be measured; empty for a mode
     sensor: tuple[str, ...]
+    # (candidates, p) share by which the standard deviation of a parameter becomes less
     gain: Floats
 
 

@@ -4,8 +4,6 @@ With data drawn again they tell how far models and fronts scatter: data sets wit
 bootstrap), values from a Gaussian of their standard deviation.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
@@ -39,26 +37,19 @@ ATTEMPTS = 1000
 
 @dataclass(frozen=True)
 class Role:
-    """Programme that a point solves.
+    """Programme that a point solves."""
 
-    Attributes
-    ----------
-    kind : an edge; the best of the others at a level of an objective; weights that are given or
-        optimal; one of the ends; a point of NBI
-    ends : labels of the ends between which a point of NBI lies, one an objective; or the end
-    worst : models up to which the ranges of the objectives reach, which stay where they are, where
-        the simplex is that of the ranges
-    equations : whether a point of NBI solves the equations of Das & Dennis
-    objective : of an edge or a level
-    tolerance : share by which a level exceeds the least value of its objective
-    """
-
+    # an edge; the best of the others at a level of an objective; weights that are given or optimal;
+    # one of the ends; a point of NBI
     kind: Kind
+    # labels of the ends between which a point of NBI lies, one an objective; or the end
     ends: tuple[str, ...] = ()
+    # models up to which the ranges of the objectives reach, which stay where they are, where the
+    # simplex is that of the ranges
     worst: Sequence[Solution] = ()
-    equations: bool = False
-    objective: int = -1
-    tolerance: float = 0.0
+    equations: bool = False  # whether a point of NBI solves the equations of Das & Dennis
+    objective: int = -1  # of an edge or a level
+    tolerance: float = 0.0  # share by which a level exceeds the least value of its objective
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,6 @@ of one half a standard deviation leaves 0.06 % of one for smooth peaks; probabil
 with the same random numbers for all models, are rough below it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,17 +16,10 @@ from modefront.optim.problem import room
 SUMMARY = ("mean", "standard deviation", "5 %", "50 %", "95 %")
 """Statistics of a sample: two moments and three quantiles."""
 
-STEP = 0.5
-"""Of a difference, in standard deviations."""
-
-LEAST = 0.05
-"""Shortest step, where bounds are near."""
-
-NEGLIGIBLE = 1e-9
-"""Part of an axis in the standard deviation of a parameter that counts as none."""
-
-BATCH = 1000
-"""Draws that are made at a time."""
+STEP = 0.5  # of a difference, in standard deviations
+LEAST = 0.05  # shortest step, where bounds are near
+NEGLIGIBLE = 1e-9  # part of an axis in the standard deviation of a parameter that counts as none
+BATCH = 1000  # draws that are made at a time
 
 TRIALS = 10_000
 """Draws for one within the bounds, at most: with fewer of these there is no sampling by trial."""
@@ -36,16 +27,10 @@ TRIALS = 10_000
 
 @dataclass(frozen=True)
 class Stencil:
-    """Models for finite differences of predictions, with the coefficients of the differences.
+    """Models for finite differences of predictions, with the coefficients of the differences."""
 
-    Attributes
-    ----------
-    theta : (m, 2, p) parameters, two an axis
-    factors : (m, 3) of the prediction in the middle and at these
-    """
-
-    theta: Floats
-    factors: Floats
+    theta: Floats  # (m, 2, p) parameters, two an axis
+    factors: Floats  # (m, 3) of the prediction in the middle and at these
 
     def slopes(self, middle: Floats, values: Floats) -> Floats:
         """Return derivatives (q, m) of predictions (q,) in the middle and (m, 2, q) around it."""

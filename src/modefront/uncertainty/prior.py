@@ -6,8 +6,6 @@ parameter is nearest to its nominal value by the further term :math:`\varepsilon
 \theta_{0 j})^2 / range_j^2`; for a parameter of normal or lognormal prior that is its own.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -26,14 +24,12 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.residuals.shape import without_negligible
 from modefront.uncertainty.noise import Source
 
-PULL = 1e-3
-"""Weight of the distance from the nominal model: a normal prior of thirty ranges."""
+PULL = 1e-3  # weight of the distance from the nominal model: a normal prior of thirty ranges
 
 USUAL = {"frequency": 0.005, "shape": 0.03}
 """Standard deviations of errors that are assumed, and said, where no one else says any."""
 
-NINETY = 1.6449
-"""Half the 90 % interval of a normal distribution, over its standard deviation."""
+NINETY = 1.6449  # half the 90 % interval of a normal distribution, over its standard deviation
 
 FARTHEST = 7.0
 """Distance from the median of a prior, in standard deviations, beyond which nobody looks."""
@@ -57,7 +53,7 @@ class NoisePrior(Checked):
     shape: Annotated[float, number("a number above 0", above=0)] | None = None
     weight: Annotated[float, number("a number of 0 or more", least=0)] = 4.0
 
-    def of(self, problem: UpdatingProblem, source: Source | None) -> NoiseModel | None:
+    def of(self, problem: UpdatingProblem, source: Source | None) -> "NoiseModel | None":
         """Return the model of the errors of a problem; None without weight.
 
         ``source`` says where errors are taken from; assumed ones where it is None or silent.
@@ -85,25 +81,15 @@ class NoisePrior(Checked):
 
 @dataclass(frozen=True)
 class NoiseModel:
-    """Residuals in units of their expected standard deviations, and the prior of their variances.
+    """Residuals over their expected standard deviations, and the prior of their variances."""
 
-    Attributes
-    ----------
-    problem : with these residuals, summed over the data sets
-    a : (n,) counts of independent errors
-    S, d : (n,) the part of J' that no model explains, and its degrees of freedom
-    level : (n,) expected variance m
-    weight : degrees of freedom nu of the prior
-    assumed : in words, which errors neither the data nor the user say; empty for none
-    """
-
-    problem: UpdatingProblem
-    a: Floats
-    S: Floats
+    problem: UpdatingProblem  # with these residuals, summed over the data sets
+    a: Floats  # (n,) counts of independent errors
+    S: Floats  # S, d: (n,) the part of J' that no model explains, and its degrees of freedom
     d: Floats
-    level: Floats
-    weight: float
-    assumed: str
+    level: Floats  # (n,) expected variance m
+    weight: float  # degrees of freedom nu of the prior
+    assumed: str  # in words, which errors neither the data nor the user say; empty for none
 
     @property
     def logs(self) -> LogSum:

@@ -34,48 +34,31 @@ from modefront.uncertainty.prior import FARTHEST, NoiseModel, Standardised
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task, seed_sequence
 
-DRAWS = 200
-"""Effective draws for intervals: the 5 % quantile is known to 0.15 standard deviations."""
+DRAWS = 200  # effective draws for intervals: the 5 % quantile is known to 0.15 standard deviations
 
 CHAINS, ROUND, LONGEST = 4, 50, 12
 """Chains, steps of a round of them, and steps at most of all chains over the draws."""
 
-WARM = 4
-"""Rounds at most in which models that no peak proposes become centres of further proposals."""
-
-AGREE = 1.05
-"""Deviation of all chains over that within them, from which they do not agree."""
-
-ACCEPTED = 0.35
-"""Share of proposals that are taken, below which steps become shorter."""
-
-APART = 1.0
-"""Distance of two peaks, in standard deviations, below which one is enough."""
-
-FAINT = 1e-3
-"""Probability of a peak over that of the greatest one, below which it is left out."""
+WARM = 4  # rounds at most in which models that no peak proposes become centres of further proposals
+AGREE = 1.05  # deviation of all chains over that within them, from which they do not agree
+ACCEPTED = 0.35  # share of proposals that are taken, below which steps become shorter
+APART = 1.0  # distance of two peaks, in standard deviations, below which one is enough
+FAINT = 1e-3  # probability of a peak over that of the greatest one, below which it is left out
 
 SMALL, SNAPSHOTS, TOGETHER = 100, 40, 5
 """Columns of a basis from which steps are taken in a smaller one, models of which the modes span
 that, and steps that are taken together: of an odd number, every second one a jump, the kinds are in
 the same order backwards."""
 
-SOLVED, STEPS = 1e-3, 12
-"""Error of the normal variables behind a model, and steps to it at most."""
+SOLVED, STEPS = 1e-3, 12  # error of the normal variables behind a model, and steps to it at most
 
 
 @dataclass(frozen=True)
 class Peak:
-    """A peak of the posterior, about which models are proposed.
+    """A peak of the posterior, about which models are proposed."""
 
-    Attributes
-    ----------
-    at : the evaluation of the standardised problem there
-    logs : -2 ln p of the squares of the residuals, with the variances integrated out
-    """
-
-    at: Evaluation
-    logs: LogSum
+    at: Evaluation  # the evaluation of the standardised problem there
+    logs: LogSum  # -2 ln p of the squares of the residuals, with the variances integrated out
 
     @cached_property
     def top(self) -> Model:
@@ -220,41 +203,26 @@ class Model:
 
 @dataclass(frozen=True)
 class Draws:
-    """Models drawn from the posterior, with what they predict.
+    """Models drawn from the posterior, with what they predict."""
 
-    Attributes
-    ----------
-    theta : (draws, p) parameters
-    frequency, mac : (draws, modes) of the pairs of measured modes that are most likely
-    settled : whether the chains agree, and are long enough for intervals
-    """
-
-    theta: Floats
+    theta: Floats  # (draws, p) parameters
+    # frequency, mac: (draws, modes) of the pairs of measured modes that are most likely
     frequency: Floats
     mac: Floats
-    settled: bool = True
+    settled: bool = True  # whether the chains agree, and are long enough for intervals
 
 
 @record
 @dataclass(frozen=True)
 class Chain:
-    """A round of a chain.
+    """A round of a chain."""
 
-    Attributes
-    ----------
-    z : (steps, p) standardised parameters
-    frequency, mac : (steps, modes)
-    s : (n,) variances at its end
-    length : b of both kinds of proposals
-    beyond : whether no peak proposes the model at its end
-    """
-
-    z: Floats
-    frequency: Floats
+    z: Floats  # (steps, p) standardised parameters
+    frequency: Floats  # frequency, mac: (steps, modes)
     mac: Floats
-    s: Floats
-    length: Floats
-    beyond: bool
+    s: Floats  # (n,) variances at its end
+    length: Floats  # b of both kinds of proposals
+    beyond: bool  # whether no peak proposes the model at its end
 
 
 def extent(count: int) -> tuple[int, int]:

@@ -20,8 +20,6 @@ the errors (compare Christodoulou & Papadimitriou 2007, Mechanical Systems and S
 4-23); docs/uncertainty.md has its covariance by Laplace's approximation.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -40,8 +38,7 @@ from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.points import SolvedPoint, edge_weights, in_order
 from modefront.work.codec import record
 
-FLAT = 1e-12
-"""Eigenvalue over the greatest one below which a direction changes no residual."""
+FLAT = 1e-12  # eigenvalue over the greatest one below which a direction changes no residual
 
 BENT = 1e-5
 """Second derivative over the greatest one below which it is none: a distance of the solution of
@@ -110,15 +107,11 @@ def level(point: Evaluation, objective: int, dv: Floats, noise: Noise) -> Condit
 
 @dataclass(frozen=True)
 class Target:
-    """The simplex of normal-boundary intersection, and its changes with the data.
+    """The simplex of normal-boundary intersection, and its changes with the data."""
 
-    Attributes
-    ----------
-    utopia, dutopia : (n,) and (sources, n) the least objectives
-    P, dP : (n, n) and (sources, n, n) the corners above them, one column each
-    """
-
+    # utopia, dutopia: (n,) and (sources, n) the least objectives
     utopia: Floats
+    # P, dP: (n, n) and (sources, n, n) the corners above them, one column each
     P: Floats
     dutopia: Floats
     dP: Floats
@@ -172,20 +165,12 @@ def boundary(
 
 @dataclass(frozen=True)
 class Scatter:
-    """Changes of a solution by each source of error, of standard deviation one.
+    """Changes of a solution by each source of error, of standard deviation one."""
 
-    Attributes
-    ----------
-    theta : (sources, p) changes of the parameters
-    J : (sources, n) changes of the objectives at the solution, of its own data
-    free : (p, d) directions that no data determine, orthonormal over the ranges
-    warnings : reasons why the linearisation may not be valid
-    """
-
-    theta: Floats
-    J: Floats
-    free: Floats
-    warnings: tuple[LinearisationWarning, ...]
+    theta: Floats  # (sources, p) changes of the parameters
+    J: Floats  # (sources, n) changes of the objectives at the solution, of its own data
+    free: Floats  # (p, d) directions that no data determine, orthonormal over the ranges
+    warnings: tuple[LinearisationWarning, ...]  # reasons why the linearisation may not be valid
 
     @property
     def covariance(self) -> Floats:
@@ -300,18 +285,11 @@ def _solve_scaled(A: Floats, b: Floats) -> Floats:
 @record
 @dataclass(frozen=True)
 class Local:
-    """What the scatter of a point follows from.
+    """What the scatter of a point follows from."""
 
-    Attributes
-    ----------
-    evaluation : with second derivatives
-    noise : of its objectives
-    slopes : derivatives (modes, p) of predicted quantities
-    """
-
-    evaluation: Evaluation
-    noise: Noise
-    slopes: Mapping[str, Floats]
+    evaluation: Evaluation  # with second derivatives
+    noise: Noise  # of its objectives
+    slopes: Mapping[str, Floats]  # derivatives (modes, p) of predicted quantities
 
 
 def front_scatter(
@@ -409,17 +387,12 @@ def _has_rival(
 
 @dataclass(frozen=True)
 class Posterior:
-    """A Gaussian approximation around the most probable model.
+    """A Gaussian approximation around the most probable model."""
 
-    Attributes
-    ----------
-    axes : (p, m) principal axes over the ranges of the parameters, one standard deviation long
-    held : (p,) parameters that a bound holds
-    free : (p, d) directions that keep their prior, orthonormal over the ranges of the parameters
-    """
-
+    # (p, m) principal axes over the ranges of the parameters, one standard deviation long
     axes: Floats
-    held: Bools
+    held: Bools  # (p,) parameters that a bound holds
+    # (p, d) directions that keep their prior, orthonormal over the ranges of the parameters
     free: Floats
 
     @property

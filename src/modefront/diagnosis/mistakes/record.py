@@ -1,7 +1,5 @@
 """A mistake as a record, and what mistakes are sought for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
@@ -15,35 +13,23 @@ from modefront.diagnosis.state import State
 from modefront.findings.record import Finding
 from modefront.modes.result import Modes
 
-RARE, USUAL, OFTEN = 0.005, 0.02, 0.05
-"""Probabilities with which a study has a mistake of a kind."""
-
-MANY = 6
-"""Names that a sentence has, at most."""
+RARE, USUAL, OFTEN = 0.005, 0.02, 0.05  # probabilities with which a study has a mistake of a kind
+MANY = 6  # names that a sentence has, at most
 
 Change: TypeAlias = Callable[[State], State]
 
 
 @dataclass(frozen=True, eq=False)
 class Mistake:
-    """A mistake that may have been made.
+    """A mistake that may have been made."""
 
-    Attributes
-    ----------
-    kind : of the catalogue of findings, which has its sentence and what mends it
-    subject : what it blames
-    change : returns a state without it
-    price : negative logarithm of the probability that a study has it
-    numbers : names and numbers of its sentence
-    moves : whether it has moved values to other sensors or modes: it is undone before others, which
-        are said of the right ones
-    """
-
-    kind: str
-    subject: tuple[str, ...]
-    change: Change
-    price: float
-    numbers: Mapping[str, Any] = field(default_factory=dict)
+    kind: str  # of the catalogue of findings, which has its sentence and what mends it
+    subject: tuple[str, ...]  # what it blames
+    change: Change  # returns a state without it
+    price: float  # negative logarithm of the probability that a study has it
+    numbers: Mapping[str, Any] = field(default_factory=dict)  # names and numbers of its sentence
+    # whether it has moved values to other sensors or modes: it is undone before others, which are
+    # said of the right ones
     moves: bool = False
 
     @property

@@ -1,7 +1,5 @@
 """Sensors that are reversed, exchanged, at another place or along another direction."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -30,8 +28,7 @@ from modefront.rounding import ACCUMULATED
 FACTORS = (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 9.81, 1 / 9.81, 2.0, 0.5)
 """Factors on the values of a sensor by another unit or sensitivity."""
 
-NEAREST = 4
-"""Places of each sensor that are tried: those where the model moves most as measured."""
+NEAREST = 4  # places of each sensor that are tried: those where the model moves most as measured
 
 OFTEN_SHARED = 2.0
 """Logarithm of how much likelier a sensor is at a wrong place where it shares it with another."""

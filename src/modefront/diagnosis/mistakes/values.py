@@ -1,7 +1,5 @@
 """Units and values of frequencies, damping and parameters; sets that disagree; foreign modes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
@@ -32,8 +30,7 @@ RAD = 2 * np.pi
 REACH = 0.25
 """Logarithm of a factor beside a known one that parameters make up for, as in a poor model."""
 
-POWERS = (1, -1, 2, -2, 3, -3, 6, -6, 9, -9)
-"""Powers of ten by which a value is off."""
+POWERS = (1, -1, 2, -2, 3, -3, 6, -6, 9, -9)  # powers of ten by which a value is off
 
 
 def frequency_factor(setting: Setting) -> Iterator[Mistake]:

@@ -22,8 +22,6 @@ Przemieniecki, "Theory of Matrix Structural Analysis", 1968; Z. Friedman, J. B. 
 doi:10.1016/0045-7949(93)90243-7.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -41,20 +39,12 @@ U, V, W, TWIST, PSI_Y, PSI_Z = range(6)
 
 @dataclass(frozen=True)
 class Axial:
-    """Axial forces N of bars and beams, and the geometric stiffness that they make.
+    """Axial forces N of bars and beams, and the geometric stiffness that they make."""
 
-    Attributes
-    ----------
-    rows : elongation (elements, n) of displacements
-    length : (elements,)
-    rigidity : EA, N of a strain that is hindered
-    unit : geometric stiffness (elements, n, n) of N = 1
-    """
-
-    rows: Floats
-    length: Floats
-    rigidity: float
-    unit: Floats
+    rows: Floats  # elongation (elements, n) of displacements
+    length: Floats  # (elements,)
+    rigidity: float  # EA, N of a strain that is hindered
+    unit: Floats  # geometric stiffness (elements, n, n) of N = 1
 
     def free_forces(self, strain: float) -> Floats:
         """Return forces (elements, n) that make the free strain."""

@@ -5,8 +5,6 @@ and omega_p = omega, exact for small motions. Warped quadrilaterals, eccentric s
 rigid end zones and eccentric masses are all this one transformation.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,16 +33,10 @@ def symmetric(K: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Ply:
-    """Plane stress and transverse shear of a material along its axes 1 and 2.
+    """Plane stress and transverse shear of a material along its axes 1 and 2."""
 
-    Attributes
-    ----------
-    D : (3, 3), stresses of strains (11, 22, engineering 12)
-    G : G_13 and G_23
-    """
-
-    D: Floats
-    G: tuple[float, float]
+    D: Floats  # (3, 3), stresses of strains (11, 22, engineering 12)
+    G: tuple[float, float]  # G_13 and G_23
 
     def turned(self, m: Floats) -> Floats:
         """Return D (elements, 3, 3) in axes in which axis 1 is along m (elements, 2)."""
@@ -123,20 +115,15 @@ class Stresses:
         K_G = int S_ab u_,a . u_,b,   (K_G)_(ni)(mi) = sum_points w g_na S_ab g_mb.
 
     Drilling rotations and rotary terms are left out.
-
-    Attributes
-    ----------
-    x : nodes of the mid-surface (elements, nodes, dim) in the axes R
-    R, D : axes (elements, dim, 3), and stresses of gradients (elements, dim, dim, dim, dim)
-    P : displacements of the nodes by the DOFs (elements, nodes, 3, n); None where they are these
-    cell, rule : shape functions and quadrature
     """
 
-    x: Floats
+    x: Floats  # nodes of the mid-surface (elements, nodes, dim) in the axes R
+    # R, D: axes (elements, dim, 3), and stresses of gradients (elements, dim, dim, dim, dim)
     R: Floats
     D: Floats
+    # displacements of the nodes by the DOFs (elements, nodes, 3, n); None where they are these
     P: Floats | None
-    cell: Cell
+    cell: Cell  # cell, rule: shape functions and quadrature
     rule: Rule
 
     def _centre(self) -> tuple[Floats, Floats]:

@@ -22,8 +22,6 @@ with da = -(v . s + d . (u_j - u_i)_across / |e|), the change of slope beside th
 Marguerre 1938). The strains of the three sides beyond those of the chords are added to B.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from modefront._typing import Floats

@@ -38,8 +38,6 @@ error of a frequency then is that of the stiffness; with linear deflections alon
 more. Rotary inertia has linear v.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -52,8 +50,7 @@ from modefront._typing import Floats
 from modefront.fem.elements.common import Ply
 from modefront.fem.elements.shapes import TRIANGLE_3, TRIANGLE_6, TRIANGLE_EDGES, gauss_simplex
 
-KAPPA = 5 / 6
-"""Shear factor of a plate."""
+KAPPA = 5 / 6  # shear factor of a plate
 
 MIDDLES = TRIANGLE_6.nodes[3:]
 """Midpoints of the sides: with equal weights, a quadrature rule of degree 2."""
@@ -85,29 +82,17 @@ class Side(NamedTuple):
 
 @dataclass(frozen=True)
 class Elements:
-    """Shells, with rows of what happens at their corners, by n DOFs.
+    """Shells, with rows of what happens at their corners, by n DOFs."""
 
-    Attributes
-    ----------
-    x : corners (elements, corners, 3), counter-clockwise
-    d : directors (elements, corners, 3)
-    U, V : displacements, and increments of the directors (elements, corners, 3, n)
-    theta : rotations about the local third axis (elements, corners, n)
-    narrow : 1 / b^2 of each side, from a corner to the next one (elements, corners)
-    m : axis 1 of the material (elements, 3), not across the shell
-    share : factor on all integrals, one or (elements, 1)
-    varied : whether the thickness is a parameter
-    """
-
-    x: Floats
-    d: Floats
-    U: Floats
+    x: Floats  # corners (elements, corners, 3), counter-clockwise
+    d: Floats  # directors (elements, corners, 3)
+    U: Floats  # U, V: displacements, and increments of the directors (elements, corners, 3, n)
     V: Floats
-    theta: Floats
-    narrow: Floats
-    m: Floats
-    share: float | Floats
-    varied: bool
+    theta: Floats  # rotations about the local third axis (elements, corners, n)
+    narrow: Floats  # 1 / b^2 of each side, from a corner to the next one (elements, corners)
+    m: Floats  # axis 1 of the material (elements, 3), not across the shell
+    share: float | Floats  # factor on all integrals, one or (elements, 1)
+    varied: bool  # whether the thickness is a parameter
 
     @cached_property
     def J(self) -> Floats:

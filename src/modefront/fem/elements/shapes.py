@@ -6,8 +6,6 @@ orders are those of VTK. Source: O. C. Zienkiewicz, R. L. Taylor, "The Finite El
 vol. 1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,22 +25,15 @@ WEDGE_EDGES = ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (
 TRIANGLE_EDGES = TETRAHEDRON_EDGES[:3]
 
 Edges = Sequence[tuple[int, int]]
-Rule = tuple[Floats, Floats]
-"""Points (points, dim) and weights of a quadrature."""
+Rule = tuple[Floats, Floats]  # points (points, dim) and weights of a quadrature
 
 
 @dataclass(frozen=True)
 class Cell:
-    """Reference cell with as many monomials as nodes.
+    """Reference cell with as many monomials as nodes."""
 
-    Attributes
-    ----------
-    nodes : (nodes, dim), corners first, then midpoints of edges
-    powers : exponents of the monomials (nodes, dim)
-    """
-
-    nodes: Floats
-    powers: Ints
+    nodes: Floats  # (nodes, dim), corners first, then midpoints of edges
+    powers: Ints  # exponents of the monomials (nodes, dim)
 
     @cached_property
     def _coefficients(self) -> Floats:

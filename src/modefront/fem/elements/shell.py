@@ -15,8 +15,6 @@ own, and the drilling rotation of one is the bending rotation of the next. Drill
 those of the membrane: one that differs from the rotation of the body is resisted.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -28,8 +26,7 @@ from modefront.fem.elements.plate import Elements, Rows, mass, shear_and_bending
 from modefront.fem.elements.shapes import SQUARE_4, TRIANGLE_3, gauss_box
 from modefront.fem.section import Material, Orthotropic
 
-FOLD = 20.0
-"""Angle in degrees between elements from which on they meet in a fold."""
+FOLD = 20.0  # angle in degrees between elements from which on they meet in a fold
 
 DIVISIONS = {3: ((0, 1, 2),), 4: ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))}
 """Corners of the triangles that make an element; in quadrilaterals, their third side is inside."""
@@ -41,8 +38,7 @@ SURFACES = {
 }
 """Cells and quadrature of shells by their number of nodes."""
 
-AT_ONCE = 1000
-"""Elements at a time, so that their rows stay in the cache of a processor."""
+AT_ONCE = 1000  # elements at a time, so that their rows stay in the cache of a processor
 
 
 def corner_normals(X: Floats) -> Floats:

@@ -12,8 +12,6 @@ curved edges, and constant and linear strains exact where edges are straight and
 middle. Source: O. C. Zienkiewicz, R. L. Taylor, "The Finite Element Method", vol. 1.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The interface of proposers: who says what to search next, and how likely that is to gain."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -15,26 +13,17 @@ from modefront.front.subproblems import Subproblem
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, begin
 
-USUAL = 10
-"""Models of a generation, and random starts that cover the box together."""
+USUAL = 10  # models of a generation, and random starts that cover the box together
 
 
 @dataclass(frozen=True)
 class Offer:
-    """A search that is proposed.
+    """A search that is proposed."""
 
-    Attributes
-    ----------
-    place : number of the subproblem that is solved; -1 where models are only evaluated
-    start : model from which it is solved
-    chance : probability that some subproblem gains
-    function : what is done with the problem and ``arguments``
-    """
-
-    place: int
-    start: Solution
-    chance: float
-    function: Callable[..., Any]
+    place: int  # number of the subproblem that is solved; -1 where models are only evaluated
+    start: Solution  # model from which it is solved
+    chance: float  # probability that some subproblem gains
+    function: Callable[..., Any]  # what is done with the problem and ``arguments``
     arguments: tuple[Any, ...]
 
 

@@ -4,8 +4,6 @@ Each child is the incumbent of a subproblem, moved by the difference of two othe
 (Storn & Price 1997, doi:10.1023/A:1008202821328) and mutated (Deb & Agrawal 1995).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -16,22 +14,15 @@ from modefront.front.archive import Outcome
 from modefront.front.proposers.base import USUAL, Offer, evaluate_all
 from modefront.front.state import State
 
-INDEX = 20.0
-"""Distribution index of mutations: the usual value."""
+INDEX = 20.0  # distribution index of mutations: the usual value
 
 
 @dataclass
 class Evolution:
-    """Proposes generations of children, until enough of them have gained nothing.
+    """Proposes generations of children, until enough of them have gained nothing."""
 
-    Attributes
-    ----------
-    rng : random numbers
-    idle : generations since the last gain
-    """
-
-    rng: np.random.Generator
-    idle: int = 0
+    rng: np.random.Generator  # random numbers
+    idle: int = 0  # generations since the last gain
 
     def offers(self, state: State, _: int) -> Iterator[Offer]:
         """Yield one generation."""

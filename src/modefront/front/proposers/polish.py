@@ -1,7 +1,5 @@
 """Polish: every incumbent is solved for from where it is."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import islice
@@ -25,13 +23,9 @@ class Polish:
     normal is solved from those that lie on their own, the nearest first, as long as that has a
     chance to gain, and one that does not meet its equations from as many as there are objectives:
     the front may go on from another side.
-
-    Attributes
-    ----------
-    idle : searches from other points since the last gain
     """
 
-    idle: int = 0
+    idle: int = 0  # searches from other points since the last gain
     _tried: set[tuple[Key, bytes]] = field(default_factory=set)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:

@@ -13,8 +13,6 @@ has the chance that is left if those before it lead to what is known. Points of 
 starts: they begin at what others have found.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -27,28 +25,20 @@ from modefront.front.state import Place, State
 from modefront.optim.sqp import Solution, Status
 from modefront.work.task import Key
 
-SURE = 2
-"""Starts that lead to a minimum, from which on it is hardly a matter of chance."""
+SURE = 2  # starts that lead to a minimum, from which on it is hardly a matter of chance
 
 
 @dataclass
 class Minima:
-    """Minima of a subproblem that random starts have led to.
+    """Minima of a subproblem that random starts have led to."""
 
-    Attributes
-    ----------
-    tries, gains : numbers of starts, and of those that gained
-    ends : minima of different values; what ended at the limit of iterations has met none
-    counts : number of starts that led to each
-    lost : number of starts that neither met a minimum nor gained
-    thetas : parameters of all starts so far, and of the next ones
-    """
-
-    tries: int = 0
+    tries: int = 0  # tries, gains: numbers of starts, and of those that gained
     gains: int = 0
+    # minima of different values; what ended at the limit of iterations has met none
     ends: list[Solution] = field(default_factory=list)
-    counts: list[int] = field(default_factory=list)
-    lost: int = 0
+    counts: list[int] = field(default_factory=list)  # number of starts that led to each
+    lost: int = 0  # number of starts that neither met a minimum nor gained
+    # parameters of all starts so far, and of the next ones
     thetas: list[Floats] = field(default_factory=list)
 
     def note(self, place: Place, solution: Solution, tolerance: float) -> bool:
@@ -92,19 +82,13 @@ def _equal(place: Place, x: Solution, y: Solution, tolerance: float) -> bool:
 
 @dataclass
 class Starts:
-    """Proposes random starts for edges and weighted models.
+    """Proposes random starts for edges and weighted models."""
 
-    Attributes
-    ----------
-    rng : random numbers
-    again : minima of a problem that is nearly the same, by the keys of subproblems, from which they
-        are solved for instead of from random models; None without one
-    minima : of each subproblem, by its key
-    """
-
-    rng: np.random.Generator
+    rng: np.random.Generator  # random numbers
+    # minima of a problem that is nearly the same, by the keys of subproblems, from which they are
+    # solved for instead of from random models; None without one
     again: Mapping[Key, Sequence[Solution]] | None = None
-    minima: dict[Key, Minima] = field(default_factory=dict)
+    minima: dict[Key, Minima] = field(default_factory=dict)  # of each subproblem, by its key
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
         """Yield random starts of each place."""

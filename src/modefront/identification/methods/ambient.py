@@ -7,8 +7,6 @@ these has is no mode of the structure.
 Harmonics of machines are taken off as sines; those that drift are too steady (`harmonics`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -47,65 +45,44 @@ REACH = 4.0
 far away contribute and colours of forces bend more over the band than the model follows: damping
 ratios of heavily damped modes in long records are off by up to two deviations."""
 
-OVERLAP = 4.0
-"""Distance over the sum of half bandwidths within which modes are fitted at once."""
-
-LEAST_LINES = 40
-"""Lines of a band, at least."""
-
-BLOCK = 0.1
-"""Width of a block of lines over the half bandwidth of the sharpest mode in the band."""
-
-MOST_TOGETHER = 5
-"""Modes that are fitted at once, at most."""
+OVERLAP = 4.0  # distance over the sum of half bandwidths within which modes are fitted at once
+LEAST_LINES = 40  # lines of a band, at least
+BLOCK = 0.1  # width of a block of lines over the half bandwidth of the sharpest mode in the band
+MOST_TOGETHER = 5  # modes that are fitted at once, at most
 
 BESIDE = 4
 """Modes on either side of a band whose forces the last fit has, at most: as many as sensors tell
 apart. With one only, what forces of their own do to the others shifts frequencies and shapes."""
 
-DAMPING = 0.002, 0.05
-"""Limits of damping ratios to start from."""
+DAMPING = 0.002, 0.05  # limits of damping ratios to start from
 
 TRIAL_STEPS = 8
 """Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
 
-HARMONIC = 1e-3
-"""Share of the modes that would be taken for harmonics by chance."""
-
-CYCLES = 10
-"""Periods of the lowest frequency in a record, at least, by default."""
+HARMONIC = 1e-3  # share of the modes that would be taken for harmonics by chance
+CYCLES = 10  # periods of the lowest frequency in a record, at least, by default
 
 HIGHEST = 0.8
 """Highest frequency over the greatest that records hold, by default: beyond it are filters."""
 
-LINES_SHOWN = 400
-"""Blocks of lines of the densities that are shown."""
+LINES_SHOWN = 400  # blocks of lines of the densities that are shown
 
 
 @dataclass(frozen=True)
 class Local:
-    """A mode in one setup.
+    """A mode in one setup."""
 
-    Attributes
-    ----------
-    omega, zeta : rad/s, damping ratio
-    phi : (sensors,) of unit norm
-    gain, freedom : 2 Delta J of the fit with the mode, and the parameters that it has more
-    covariance : of ln omega, ln zeta and phi
-    share : its greatest share in the density of a sensor, at its frequency
-    kurtosis : kappa, and its standard deviation for a mode
-    held : whether it stays whatever its gain
-    """
-
-    omega: float
+    omega: float  # omega, zeta: rad/s, damping ratio
     zeta: float
-    phi: Floats
+    phi: Floats  # (sensors,) of unit norm
+    # gain, freedom: 2 Delta J of the fit with the mode, and the parameters that it has more
     gain: float = np.inf
     freedom: float = 0.0
+    # of ln omega, ln zeta and phi
     covariance: Floats = field(default_factory=lambda: np.zeros((0, 0)))
-    share: float = np.nan
-    kurtosis: tuple[float, float] = (2.0, 1.0)
-    held: bool = False
+    share: float = np.nan  # its greatest share in the density of a sensor, at its frequency
+    kurtosis: tuple[float, float] = (2.0, 1.0)  # kappa, and its standard deviation for a mode
+    held: bool = False  # whether it stays whatever its gain
 
     @property
     def half(self) -> float:

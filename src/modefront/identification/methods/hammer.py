@@ -5,8 +5,6 @@ with common weights, of which all responses have one set of equations, then test
 of all functions, each with its own variance.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -14,7 +12,7 @@ import numpy as np
 
 from modefront._typing import Bools, Complexes, Floats
 from modefront.data.responses import FrequencyResponses
-from modefront.identification import selection
+from modefront.identification import selection, stabilisation
 from modefront.identification.modal_model import Fit, evaluate
 from modefront.identification.noise import fitted_variance, square, variance_from_differences
 from modefront.identification.problem import RESIDUALS, primitives, problem
@@ -26,25 +24,14 @@ from modefront.identification.record import (
     Rejected,
 )
 from modefront.identification.shapes import auto_mac
-from modefront.identification.stabilisation import (
-    MOST_DAMPING,
-    StabilisationDiagram,
-    diagram_of,
-    support,
-)
 from modefront.identification.statistics import mode_estimates, residuals
 
 LEAST_LINES = 20
 """Lines of a band, at least: two modes with their residual terms have twelve numbers a function."""
 
-PRINCIPAL = 48
-"""Principal responses from which the modes are chosen where there are more responses."""
-
-FEW = 0.5
-"""Share of the orders below which a mode is flagged, and phase collinearity."""
-
-VISIBLE = 1 / 3
-"""Share in the sum of all modes at its frequency below which a mode is flagged."""
+PRINCIPAL = 48  # principal responses from which the modes are chosen where there are more responses
+FEW = 0.5  # share of the orders below which a mode is flagged, and phase collinearity
+VISIBLE = 1 / 3  # share in the sum of all modes at its frequency below which a mode is flagged
 
 NEIGHBOURS = 0.05
 """Relative distance of frequencies within which modes of the same shape may be one."""
@@ -73,7 +60,7 @@ def identify(
     else:
         first = fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
     small, shared = _principal(data, first)
-    diagram, poles = diagram_of(small, shared)
+    diagram, poles = stabilisation.diagram_of(small, shared)
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
         small, shared = data, first
     task, omega, _ = problem(small, shared)
@@ -164,7 +151,7 @@ def _result(
     gain: Floats,
     omega: float,
     size: float,
-    diagram: StabilisationDiagram,
+    diagram: stabilisation.StabilisationDiagram,
 ) -> Identification:
     """Return the modes of the last fit, in which no two have one pole yet, and what each gains.
 
@@ -174,7 +161,7 @@ def _result(
     task, misfit, f = fit.task, residuals(fit), data.frequency
     estimates = _with_split(mode_estimates(fit, misfit, omega), fit, apart.model.lam * omega)
     reasons = [
-        "damped too heavily for a mode" * bool(mode.damping > MOST_DAMPING)
+        "damped too heavily for a mode" * bool(mode.damping > stabilisation.MOST_DAMPING)
         if f[0] <= mode.frequency <= f[-1]
         else "outside the band"
         for mode in estimates
@@ -185,7 +172,7 @@ def _result(
         for mode, why in zip(estimates, reasons, strict=True)
         if why
     ]
-    shares = support(diagram, fit.model.lam * omega, gain)
+    shares = stabilisation.support(diagram, fit.model.lam * omega, gain)
     evidence = _evidence(fit, f, gain / selection.needed(task), shares, estimates, kept)
     modes = [replace(estimates[k], evidence=evidence[k]) for k in kept]
     variance = size**2 / np.where(task.weight > 0, task.weight, np.nan)

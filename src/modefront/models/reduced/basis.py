@@ -14,8 +14,6 @@ changes by factors, most eigenvalues of :math:`A^{-1} C` are 1 or one of these. 
 :math:`A^{-1} C`. Source of the bounds: Parlett 1998, doi:10.1137/1.9781611971163, section 10.5.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -37,22 +35,15 @@ from modefront.work.transfer import shared
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """A basis and the model in it.
+    """A basis and the model in it."""
 
-    Attributes
-    ----------
-    pencil, factor : the full matrices, and the factor of A; lost on the way to other processes
-    theta, sigma : the parameters and the shift of A = K - sigma M
-    blocks : (N, n_i) the columns of V, some after the others
-    K, M : the matrices in the basis
-    """
-
+    # pencil, factor: the full matrices, and the factor of A; lost on the way to other processes
     pencil: Pencil
     factor: Factorisation
-    theta: Floats
+    theta: Floats  # theta, sigma: the parameters and the shift of A = K - sigma M
     sigma: float
-    blocks: tuple[Floats, ...]
-    K: DenseAffine
+    blocks: tuple[Floats, ...]  # (N, n_i) the columns of V, some after the others
+    K: DenseAffine  # K, M: the matrices in the basis
     M: DenseAffine
 
     def __getstate__(self) -> dict[str, Any]:
@@ -118,29 +109,18 @@ def residuals(pencil: Pencil, thetas: Floats, lam: Floats, X: Floats) -> Floats:
     return out
 
 
-STEPS = 30
-"""Steps, after which a full solution is better."""
-
-SLOWEST = 0.5
-"""Ratio of steps at most that what is left is extrapolated with."""
+STEPS = 30  # steps, after which a full solution is better
+SLOWEST = 0.5  # ratio of steps at most that what is left is extrapolated with
 
 
 @dataclass(frozen=True)
 class CorrectionRequest:
-    """Accuracy and size requested of an extension of the basis.
+    """Accuracy and size requested of an extension of the basis."""
 
-    Attributes
-    ----------
-    share : what is left over all that was lacking
-    shortest : length of the directions that are too short to matter, in energy
-    capacity : columns that the basis may have
-    enough : relative error of eigenvalues below which a model is left as it is
-    """
-
-    share: float
-    shortest: float
-    capacity: int
-    enough: float = 0.0
+    share: float  # what is left over all that was lacking
+    shortest: float  # length of the directions that are too short to matter, in energy
+    capacity: int  # columns that the basis may have
+    enough: float = 0.0  # relative error of eigenvalues below which a model is left as it is
 
 
 _Sought: TypeAlias = Callable[[Basis], tuple[Floats, Floats, Callable[[Ints], Floats]]]
@@ -285,26 +265,20 @@ def _together(basis: Basis) -> int:
     return max(64, 2**19 // basis.pencil.size)
 
 
-LATER = 4
-"""Gaps above the last mode in question among which the widest is taken."""
+LATER = 4  # gaps above the last mode in question among which the widest is taken
 
 
 @dataclass(frozen=True)
 class Certificate:
-    """Bounds of the errors of modes, and the lowest modes as they are known better.
+    """Bounds of the errors of modes, and the lowest modes as they are known better."""
 
-    Attributes
-    ----------
-    eigenvalue : (modes,) relative errors of the eigenvalues at most; infinite where a mode is
-        missing, or nothing is proved
-    shape : (modes,) errors of the mode shapes in the norm of M, over their length
-    lam, phi : (lowest modes,), (sensors, lowest modes) eigenvalues and mass-normalised shapes of
-        all modes that were looked at, much nearer to those of the full model; none where the
-        errors are infinite
-    """
-
+    # (modes,) relative errors of the eigenvalues at most; infinite where a mode is missing, or
+    # nothing is proved
     eigenvalue: Floats
-    shape: Floats
+    shape: Floats  # (modes,) errors of the mode shapes in the norm of M, over their length
+    # lam, phi: (lowest modes,), (sensors, lowest modes) eigenvalues and mass-normalised shapes of
+    # all modes that were looked at, much nearer to those of the full model; none where the errors
+    # are infinite
     lam: Floats = field(default_factory=lambda: np.zeros(0))
     phi: Floats = field(default_factory=lambda: np.zeros((0, 0)))
 
@@ -317,16 +291,10 @@ class Certificate:
 @shared
 @dataclass(frozen=True, eq=False)
 class Certifier:
-    """Judges the modes of a basis in the full model.
+    """Judges the modes of a basis in the full model."""
 
-    Attributes
-    ----------
-    full : the model with sparse matrices
-    basis : with the model in it
-    """
-
-    full: MatrixModel
-    basis: Basis
+    full: MatrixModel  # the model with sparse matrices
+    basis: Basis  # with the model in it
 
     @property
     def footprint(self) -> float:

@@ -1,7 +1,5 @@
 """A model that solves a sparse one a few times, and a small one in its place after that."""
 
-from __future__ import annotations
-
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -27,24 +25,16 @@ from modefront.work.transfer import shared
 SPARE = 2
 """Modes in the basis beyond those that are used, without derivatives: they may enter later."""
 
-SHARE = 0.1
-"""Remainder of a correction over all of it, where it need not be exact."""
-
-FAR = 30.0
-"""Condition of K over that of the factor up to which a snapshot has no factor of its own."""
-
-WORST = 6
-"""Models of a snapshot that are corrected at once, the worst ones."""
+SHARE = 0.1  # remainder of a correction over all of it, where it need not be exact
+FAR = 30.0  # condition of K over that of the factor up to which a snapshot has no factor of its own
+WORST = 6  # models of a snapshot that are corrected at once, the worst ones
 
 HARDLY = 1e-3
 """Length of a direction that a space of modes may lack, root mean square over some models: the
 square is an error of eigenvalues."""
 
-TOLERANCE = 1e-8
-"""Default relative error of eigenvalues."""
-
-MEMORY = 4.0
-"""Default limit of the memory of a basis in GiB."""
+TOLERANCE = 1e-8  # default relative error of eigenvalues
+MEMORY = 4.0  # default limit of the memory of a basis in GiB
 
 
 @dataclass(frozen=True)
@@ -52,18 +42,13 @@ class SnapshotRequest:
     """One model, or several together, at which a snapshot is requested.
 
     Derivatives are those of the model of which the basis knows the least.
-
-    Attributes
-    ----------
-    theta : (p,) parameters of the model, or (models, p)
-    modes : number of modes; 0 where the stiffness matrix is indefinite, and the basis is
-        to know that
-    enough : relative error of eigenvalues below which a model is left as it is, and so is one that
-        is not among the worst; 0 where all models have to be exact, and no mode may be missing
     """
 
-    theta: Floats
+    theta: Floats  # (p,) parameters of the model, or (models, p)
+    # number of modes; 0 where the stiffness matrix is indefinite, and the basis is to know that
     modes: int
+    # relative error of eigenvalues below which a model is left as it is, and so is one that is not
+    # among the worst; 0 where all models have to be exact, and no mode may be missing
     enough: float = 0.0
 
     @property
@@ -90,28 +75,19 @@ class ReducedModel:
     It is a model like any other (`modefront.models.base.Model`). The first snapshot is taken at
     the nominal parameters when it is first needed, others by `take`. The factor of the first one
     serves for all that are near enough.
-
-    Attributes
-    ----------
-    full : the model with sparse matrices
-    count : modes that are asked for; more than these are solved in full
-    nominal, lower, upper : (p,) parameters
-    tolerance : relative error of eigenvalues that is aimed at
-    memory : GiB that the basis may take; one mode is always allowed
-    spare : how many of the modes are only there to tell the others from them
-    snapshots : those in use; others may be set, which are computed when needed, and not counted
-    errors : relative ones of eigenvalues, and those of shapes, at models by the bytes of theta
     """
 
-    full: MatrixModel
-    count: int
-    nominal: Floats
+    full: MatrixModel  # the model with sparse matrices
+    count: int  # modes that are asked for; more than these are solved in full
+    nominal: Floats  # nominal, lower, upper: (p,) parameters
     lower: Floats
     upper: Floats
-    tolerance: float = TOLERANCE
-    memory: float = MEMORY
-    spare: int = 0
+    tolerance: float = TOLERANCE  # relative error of eigenvalues that is aimed at
+    memory: float = MEMORY  # GiB that the basis may take; one mode is always allowed
+    spare: int = 0  # how many of the modes are only there to tell the others from them
+    # those in use; others may be set, which are computed when needed, and not counted
     snapshots: tuple[SnapshotRequest, ...] = ()
+    # relative ones of eigenvalues, and those of shapes, at models by the bytes of theta
     errors: dict[bytes, tuple[Floats, Floats]] = field(default_factory=dict)
     _taken: tuple[tuple[SnapshotRequest, Costs, float], ...] = ()
     _basis: bases.Basis | None = None
@@ -226,7 +202,7 @@ class ReducedModel:
         spend(Costs(reduced=len(thetas)))
         return np.asarray(U[:, sizes > HARDLY * np.sqrt(len(thetas))])
 
-    def within(self, V: Floats) -> ReducedModel:
+    def within(self, V: Floats) -> "ReducedModel":
         """Return the model in the space of coordinates (columns, n) in its basis."""
         what, *matrices, sensed = self._projected()
         K, M = (replace(A, terms=V.T @ A.terms @ V) for A in matrices)

@@ -3,8 +3,6 @@
 Operation counts decide, so that digits do not depend on a clock.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -22,8 +20,7 @@ from modefront.pairing.match import Pairing, modes_needed
 SMALLEST = 100
 """Degrees of freedom from which there may be a basis; smaller models are solved in full."""
 
-LEAST, MOST = 1e-12, 1e-2
-"""Tolerances that may be asked for."""
+LEAST, MOST = 1e-12, 1e-2  # tolerances that may be asked for
 
 REDUCTION = Requirement(
     f"'auto', 'off' or a relative error of eigenvalues from {LEAST:g} to {MOST:g}",
