@@ -21,7 +21,7 @@ from modefront.front.subproblems import Least
 from modefront.identifiability.combinations import LEAST
 from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.options import share
+from modefront.models.reduced.options import seconds as in_basis
 from modefront.optim.lexicographic import Lexicographic
 from modefront.optim.sqp import Solution, begin
 from modefront.predictions import Passage, Prediction
@@ -167,8 +167,12 @@ def _search(study: Study) -> tuple[float, float] | None:
             found.append((time.process_time() - began, 1 + ends[-1].evaluations))
     if found:
         seconds, average = (float(np.mean(x)) for x in zip(*found, strict=True))
-    if is_reduced(study.problem.model) and isinstance(problem.model, MatrixModel):
-        seconds *= share(problem.model, len(problem.data.modes))
+    model, count = problem.model, len(problem.data.modes)
+    if is_reduced(study.problem.model) and isinstance(model, MatrixModel):
+        began = time.process_time()
+        model.modes(problem.start, count)
+        alone, reduced = time.process_time() - began, in_basis(model, problem.start, count)
+        seconds = average * (max(seconds / average - alone, 0.0) + reduced)
     return seconds, average
 
 
