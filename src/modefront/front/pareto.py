@@ -110,12 +110,8 @@ class _Run:
                     f"no model was found for {name}: is the model defined between the bounds?"
                 )
         target = self._between(sizes)
-        self._complete()
-        edges = self._edges()
-        weighted = [
-            Point(kind, place.incumbent, name)
-            for (kind, name, _), place in zip(self.weighted, self.places[self.n :], strict=False)
-        ]
+        self._complete("rest")
+        weighted = self._weighted()
         bests = self._reported(sizes, "last")
         points, places, beta = self._points(target, bests)
         if METHODS[self.options.method].programme is None and target is not None:
@@ -125,8 +121,14 @@ class _Run:
             points = evolve_front(self.problem, options.method, *extent, rng, self._needed)
         optimal = self._optimal(weighted, bests, points, sizes)
         arguments = (self.problem, self.a, sizes, weighted[-1].solution)
-        weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
         (iterated,) = self._run([Task(("iterated-weights",), iterate_weights, arguments)])
+        if self._overtaken():
+            self._complete("overtaken")
+            bests = self._reported(sizes, "overtaken")
+            if METHODS[self.options.method].programme is not None:
+                points, places, beta = self._points(target, bests)
+        edges, weighted = self._edges(), self._weighted()
+        weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
         method, ends = self.options.method, zip(self.problem.objectives, bests, strict=True)
         along = [Point(Kind.FRONT, x, method, i + 1) for i, x in enumerate(points)]
         return Front(
@@ -295,11 +297,29 @@ class _Run:
                 break
             yield new
 
-    def _complete(self) -> None:
+    def _weighted(self) -> list[Point]:
+        """Return the models of given and of equal weights."""
+        pairs = zip(self.weighted, self.places[self.n :], strict=False)
+        return [Point(kind, place.incumbent, name) for (kind, name, _), place in pairs]
+
+    def _overtaken(self) -> bool:
+        """Let models that were found last take the places in which they are better.
+
+        No search has started from these, so they are open.
+        """
+        out = False
+        for place in self.places:
+            best = self.state.best(place.subproblem)
+            if place.subproblem.gain(best.J, place.incumbent) > self.state.tolerance:
+                place.incumbent, out = best, True
+                self.loop.open.add(place.subproblem.key)
+        return out
+
+    def _complete(self, key: str) -> None:
         """Evaluate the derivatives of incumbents that no search has started from: at the budget."""
         rest = [x for x in self.places if x.incumbent.evaluation.derivatives is None]
         models = {x.incumbent.theta.tobytes(): x.incumbent for x in rest}
-        found = dict(zip(models, self._evaluated(("front", "rest"), models.values()), strict=True))
+        found = dict(zip(models, self._evaluated(("front", key), models.values()), strict=True))
         for place in rest:
             place.incumbent = found[place.incumbent.theta.tobytes()]
 
