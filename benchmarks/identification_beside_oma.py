@@ -168,10 +168,10 @@ def compare(seeds: Iterable[int], generator: str = "ambient_in_time") -> dict[st
             for r in set.intersection(*(set(each[k]) for each in pairs.values())):
                 squares.append(errors(test, r, modes, own[r]))
             if modes.deviations is not None:
-                true, found = np.array([*own], int), np.array([*own.values()], int)
+                true, place = np.array([*own], int), np.array([*own.values()], int)
                 f, zeta = test["f0"][true], test["zeta"][true]
-                error = np.array([modes.f[found] - f, modes.zeta[found] - zeta])
-                z.append(error / modes.deviations[:, found])
+                error = np.array([modes.f[place] - f, modes.zeta[place] - zeta])
+                z.append(error / modes.deviations[:, place])
                 count += len(modes.f) - len(own)
         held = np.mean(np.abs(np.hstack(z)) < 1.645, axis=1) if len(z) > 1 else np.full(2, np.nan)
         total, seconds = sum(map(len, pairs[name])), sum(each[1] for each in of_tests)
