@@ -21,9 +21,11 @@ from modefront.front.subproblems import Least
 from modefront.identifiability.combinations import LEAST
 from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.options import seconds as in_basis
+from modefront.models.reduced.options import stand_in
 from modefront.optim.lexicographic import Lexicographic
+from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution, begin
+from modefront.pairing.match import modes_needed
 from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
@@ -144,10 +146,7 @@ def _search(study: Study) -> tuple[float, float] | None:
     """
     problem = replace(study.problem, model=full_of(study.problem.model))
     n, p = len(problem.objectives), problem.start.size
-    for _ in range(2):  # the first time also makes what others share
-        began = time.process_time()
-        nominal = problem.evaluate(problem.start, second=True)
-        each = time.process_time() - began
+    each, nominal = _seconds(problem)
     if not nominal.feasible:
         return None
     sizes = np.maximum(nominal.J, LEAST**2 * problem.properties)
@@ -167,13 +166,21 @@ def _search(study: Study) -> tuple[float, float] | None:
             found.append((time.process_time() - began, 1 + ends[-1].evaluations))
     if found:
         seconds, average = (float(np.mean(x)) for x in zip(*found, strict=True))
-    model, count = problem.model, len(problem.data.modes)
+    model = problem.model
     if is_reduced(study.problem.model) and isinstance(model, MatrixModel):
-        began = time.process_time()
-        model.modes(problem.start, count)
-        alone, reduced = time.process_time() - began, in_basis(model, problem.start, count)
-        seconds = average * (max(seconds / average - alone, 0.0) + reduced)
+        count = modes_needed(problem.pairing, problem.data, model.size)
+        reduced = _seconds(replace(problem, model=stand_in(model, count)))[0]
+        seconds = average * (max(seconds / average - each, 0.0) + reduced)
     return seconds, average
+
+
+def _seconds(problem: UpdatingProblem) -> tuple[float, Evaluation]:
+    """Return the seconds of an evaluation of the nominal model, and that."""
+    for _ in range(2):  # the first time also makes what others share
+        began = time.process_time()
+        nominal = problem.evaluate(problem.start, second=True)
+        spent = time.process_time() - began
+    return spent, nominal
 
 
 def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
