@@ -326,6 +326,15 @@ def test_a_run_that_is_done_is_not_done_again(
     assert [path.name for path in done.glob("*.nc")] == [FILE]
 
 
+def test_what_another_program_has_kept_is_done_again(
+    modefront_: Run, study: Path, done: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session, "_program", lambda: "other")
+    interrupt_after(0, monkeypatch)
+    assert modefront_("run", study)[0] == 130
+    assert (done / FILE).exists()
+
+
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 def test_a_damaged_piece_is_done_again(
     modefront_: Run, study: Path, done: Path, whole: Path

@@ -150,7 +150,7 @@ def run(
     if folder is None:
         return Results(done(), study.problem)
     folder = Path(folder)
-    tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}"
+    tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}-{_program()}"
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
     for path in (tasks.parent, tasks):
@@ -178,6 +178,12 @@ def run(
                 note = os.path.relpath(study.origin.file.absolute(), folder.absolute())
                 write_text(tasks / NOTE, Path(note).as_posix() + "\n")
     return Results(data, study.problem)
+
+
+def _program() -> str:
+    """Return a hash of the program: results that another one has kept may not fit into a run."""
+    files = sorted(Path(__file__).parents[1].rglob("*.py"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:12]
 
 
 def worked(study: Study, work: Run) -> Dataset:
