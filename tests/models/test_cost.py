@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from modefront.linalg.affine import SparseAffine
 from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
-from modefront.models.reduced.options import SMALLEST, share
+from modefront.models.reduced.options import SMALLEST, columns, share, stand_in
 
 
 def chain(size: int, members: int) -> MatrixModel:
@@ -73,6 +74,17 @@ def test_every_model_says_which_one_is_solved_in_full_even_one_that_does_not_kno
     own: Any = Own()
     assert full_of(own) is own
     assert not is_reduced(own)
+
+
+def test_the_time_of_an_evaluation_in_a_basis_is_that_of_a_model_of_its_size() -> None:
+    model = chain(3000, 5)
+    in_full = problem(model, mf.Reduction("off"))
+    timed = replace(in_full, model=stand_in(model, 3))
+    assert timed.model.size == int(columns(model, 3))
+    assert timed.model.parameters == model.parameters
+    found = timed.evaluate(in_full.start, second=True)
+    assert found.feasible
+    assert found.J.shape == (1,)
 
 
 def test_larger_models_gain_more() -> None:

@@ -48,7 +48,7 @@ class Status(Enum):
     """How a solution ended; the value says what it means and what to do about it."""
 
     CONVERGED = "converged"
-    STALLED = "no model near it meets the equations of its point: another start"
+    STALLED = "no step leads to a model that meets the equations of the point: another start"
     JUMP = (
         "no step improves it, however short: the objectives or their slopes jump there, or end, as "
         "where a measured mode is paired with another mode of the model"
