@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives
 from modefront.optim.sqp import Solution, Status, begin
-from modefront.work.store import LONGEST, Store
+from modefront.work.store import LONG, LONGEST, Run, Store
 from modefront.work.task import Costs, Key, Task
 
 COSTS = Costs(eigenproblems=3, factorisations=2, full_time=0.1)
@@ -223,3 +223,15 @@ def test_a_write_that_is_interrupted_leaves_no_file(
     with pytest.raises(KeyboardInterrupt):
         Store(tmp_path).write(Task(("x",), len), 1, Costs())
     assert not list(tmp_path.iterdir())
+
+
+def test_a_run_waits_for_the_drive_only_after_long_tasks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waited: list[int] = []
+    monkeypatch.setattr("modefront.outputs.os.fsync", waited.append)
+    Run(Store(tmp_path)).run([Task(("short",), len, ((1, 2),))])
+    assert not waited
+    Store(tmp_path).write(Task(("long",), len), 1, Costs(), LONG)
+    assert len(waited) == 1
+    assert Store(tmp_path).read(Task(("short",), len, ((1, 2),))) is not None

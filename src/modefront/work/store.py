@@ -36,6 +36,8 @@ the study file from there."""
 CHECKSUM, LONGEST = 32, 60
 """Bytes of the checksum at the end of a file; characters of a key in its name, at most."""
 
+LONG = 1.0  # s of a task for whose result the drive is waited for; shorter ones are soon done anew
+
 
 @dataclass(frozen=True)
 class Store:
@@ -60,15 +62,15 @@ class Store:
         head = json.loads(arrays.pop("head").tobytes())
         return decode(head["result"], arrays), Costs(**head["costs"])
 
-    def write(self, task: Task[Any], result: Any, costs: Costs) -> None:
-        """Keep the result of a task, whole or not at all."""
+    def write(self, task: Task[Any], result: Any, costs: Costs, seconds: float = LONG) -> None:
+        """Keep the result of a task, whole or not at all; a long one outlasts a power failure."""
         arrays: dict[str, Any] = {}
         head = json.dumps({"result": encode(result, arrays), "costs": vars(costs)})
         content = io.BytesIO()
         np.savez(content, head=np.frombuffer(head.encode(), np.uint8), **arrays)
         path, kept = self._path(task), content.getvalue()
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_bytes(path, kept + _checksum(task, kept), lasting=True)
+        write_bytes(path, kept + _checksum(task, kept), lasting=seconds >= LONG)
 
     def _path(self, task: Task[Any]) -> Path:
         """Return a file that no other task has, whatever the characters of its key and case."""
@@ -175,7 +177,7 @@ class Run:
             self.costs[task.identity] = done.costs
             self.progress.spent.add(done.costs)
             if self.store:
-                self.store.write(task, done.result, done.costs)
+                self.store.write(task, done.result, done.costs, done.seconds)
             self.progress.end(task.stage, done.seconds)
         return [results[k] for k in range(len(tasks))]
 
