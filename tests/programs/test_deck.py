@@ -124,17 +124,69 @@ def test_a_deck_is_imported_with_jobs_of_its_own_and_comes_back_whole(tmp_path: 
     deck = tmp_path / "decks" / "floor.inp"
     deck.write_text(own.replace("*FREQUENCY, SOLVER=MATRIXSTORAGE", "*FREQUENCY\n8"))
     parameters = {"columns": "material:COLUMNS", "t": "section:PLATE", "k": "spring:SPRING"}
+    parameters |= {"E": "material:PLATE", "rho": "density:PLATE"}
     imported = mf.import_deck(deck, parameters)
     assert max(imported.errors) < 1e-10
+    names = {term.name for term in imported.terms.terms}
+    assert {"E*t", "E/t", "rho*t"} <= names
+    assert "t" not in names
     assert any("those that the program prints" in note for note in imported.notes)
     imported.write(tmp_path / "study")
     assert '\nname = "floor"\n' in (tmp_path / "study" / "study.toml").read_text()
-    theta = {"columns": 1.3, "t": 1.2, "k": 0.6}
+    theta = {"columns": 1.3, "t": 1.2, "k": 0.6, "E": 0.8, "rho": 1.1}
     write_deck(tmp_path / "study", theta, tmp_path / "decks")
     subprocess.run([str(CCX), "floor"], cwd=deck.parent, check=True, capture_output=True)
     expected = printed_frequencies(tmp_path / "decks" / "floor.dat")
     lam = model_of(imported.terms).full_modes(np.array(list(theta.values())), 8).lam
     assert np.sqrt(lam) / (2 * np.pi) == pytest.approx(expected, rel=2e-5)
+
+
+PLATE = """\
+*NODE, NSET=ALL
+1, 0, 0, 0
+2, 1, 0, 0
+3, 1, 1, 0
+4, 0, 1, 0
+*ELEMENT, TYPE=S4, ELSET=DECK
+1, 1, 2, 3, 4
+*MATERIAL, NAME=STEEL
+*ELASTIC
+2.1e11, 0.3
+*DENSITY
+7850
+*SHELL SECTION, ELSET=DECK, MATERIAL=STEEL
+0.02
+*BOUNDARY
+1, 1, 3
+2, 1, 3
+*STEP
+*FREQUENCY
+3
+*END STEP
+"""
+
+
+@needs_ccx
+def test_terms_of_a_thickness_that_are_zero_are_left_out(tmp_path: Path) -> None:
+    deck = tmp_path / "plate.inp"
+    deck.write_text(PLATE)
+    imported = mf.import_deck(deck, {"t": "section:DECK"})
+    assert [term.name for term in imported.terms.terms] == ["t", "1/t"]
+    assert max(imported.errors) < 1e-10
+
+
+@needs_ccx
+def test_what_the_program_says_of_a_deck_is_not_cut_at_a_star(tmp_path: Path) -> None:
+    deck = tmp_path / "plate.inp"
+    deck.write_text(PLATE.replace("*BOUNDARY", "*SPRING, ELSET=DECK\n*BOUNDARY"))
+    with pytest.raises(mf.InputError, match=r"found reading \*SPRING: \*SPRING card"):
+        mf.import_deck(deck, {"t": "section:DECK"})
+
+
+def test_factors_of_powers_of_ten_have_a_point(deck: Path) -> None:
+    deck.write_text(DECK.replace("4000", "4e20"))
+    text = job_text(deck, list(lines_of(deck)), {Target("spring", "ENDS"): 2.0}, stored=True)
+    assert "\n 8.e+20\n" in text
 
 
 def test_a_study_beside_its_deck_has_it_back_whole_and_no_other_one(tmp_path: Path) -> None:

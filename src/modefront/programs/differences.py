@@ -62,17 +62,24 @@ class Terms:
         every = (self.base, *self.terms)
         return {x.name: x.matrices[quantity] for x in every if quantity in x.matrices}
 
+    @property
+    def coefficients(self) -> Monomials:
+        """Coefficients of the terms without the base."""
+        return Monomials(term_exponents([x.name for x in self.terms], self.parameters))
+
 
 class Differences:
     """Matrices of a nominal run, and the differences of other runs from it.
 
-    Runs are added one after the other, so that two of them are in memory at a time.
+    Runs are added one after the other, so that two of them are in memory at a time. The names of
+    the terms that a matrix may have are given for each quantity.
     """
 
-    def __init__(self, nominal: Job, parameters: Sequence[str], terms: Sequence[str]) -> None:
-        self.parameters, self.names = tuple(parameters), tuple(terms)
+    def __init__(
+        self, nominal: Job, parameters: Sequence[str], terms: Mapping[Quantity, Sequence[str]]
+    ) -> None:
+        self.parameters, self.names = tuple(parameters), terms
         self.nominal, self.precision = nominal, nominal.precision
-        self.coefficients = Monomials(term_exponents(self.names, self.parameters))
         self._runs: list[tuple[Floats, Mapping[Quantity, Matrix]]] = []
 
     def add(self, label: str, job: Job, values: Floats) -> None:
@@ -100,27 +107,15 @@ class Differences:
         return ", ".join(f"{name} = {value:g}" for name, value in pairs if value != 1)
 
     def terms(self) -> Terms:
-        """Return base and terms.
+        """Return base and terms, those that are not zero.
 
-        Raises InputError where the runs do not determine a term, and for one without effect.
+        Raises InputError where the runs do not determine a term, and for a parameter without one.
         """
-        values = np.array([values for values, _ in self._runs]).reshape(-1, len(self.parameters))
-        c = np.array([self.coefficients.values(theta) for theta in values]) - 1.0
-        c = c.reshape(len(values), len(self.names))
-        for i, parameter in enumerate(self.parameters):
-            own = np.flatnonzero(self.coefficients.exponents[:, i] != 0)
-            if own.size and (rank := np.linalg.matrix_rank(c[:, own])) < own.size:
-                names = ", ".join(self.names[k] for k in own)
-                expected = f"at least {own.size} runs with other values for the terms {names}"
-                raise wrong(f"--parameter {parameter}", expected, f"{rank} that tell them apart")
-        if not c.size or np.linalg.matrix_rank(c) < c.shape[1]:
-            raise wrong("--parameter", f"runs that tell {c.shape[1]} terms apart", f"{len(c)}")
-        W = np.linalg.pinv(c)
-        terms: dict[str, dict[Quantity, Matrix]] = {name: {} for name in self.names}
+        terms: dict[str, dict[Quantity, Matrix]] = {}
         base: dict[Quantity, Matrix] = {}
         for quantity, A in self.nominal.matrices.items():
             noise, rest = ROUNDING * self.precision, A
-            for name, row in zip(self.names, W, strict=True):
+            for name, row in zip(self.names[quantity], self._weights(quantity), strict=True):
                 term = scipy.sparse.csr_array(A.shape)
                 for weight, (_, differences) in zip(row, self._runs, strict=True):
                     if abs(weight) > CANCELLED * np.abs(row).max():
@@ -128,20 +123,35 @@ class Differences:
                 limit = noise * np.abs(row).sum()
                 term = _above(_reduced(_above(term.tocsr(), A, limit), A, limit)[0], A, 0.0)
                 if term.nnz:
-                    terms[name][quantity] = term
+                    terms.setdefault(name, {})[quantity] = term
                     rest = rest - term
             if (rest := _above(rest.tocsr(), A, noise)).nnz:
                 base[quantity] = rest
+        idle = ~term_exponents([*terms], self.parameters).any(axis=0)
+        for name in np.array(self.parameters)[idle][:1]:
+            raise wrong(str(name), "a term of the stiffness or the mass", "zeros")
         found = []
         for name, matrices in terms.items():
-            if not matrices:
-                expected = f"a term '{name}' of the stiffness or the mass"
-                place = "--function" if name not in self.parameters else name
-                raise wrong(place, expected, "zeros")
             first: Quantity = "stiffness" if "stiffness" in matrices else "mass"
             rank = _reduced(matrices[first], self.nominal.matrices[first], noise)[1]
             found.append(Term(name, matrices, _support(matrices[first]).size, rank))
         return Terms(self.parameters, Term(BASE, base), tuple(found), self.nominal.dofs)
+
+    def _weights(self, quantity: Quantity) -> Floats:
+        """Return the weights (terms, runs) of the differences of the runs in each term."""
+        names, parameters = self.names[quantity], self.parameters
+        of = Monomials(term_exponents(names, parameters))
+        c = np.array([of.values(values) - 1.0 for values, _ in self._runs])
+        c = c.reshape(len(self._runs), len(names))
+        for i, parameter in enumerate(parameters):
+            own = np.flatnonzero(of.exponents[:, i] != 0)
+            if own.size and (rank := np.linalg.matrix_rank(c[:, own])) < own.size:
+                listed = ", ".join(names[k] for k in own)
+                expected = f"at least {own.size} runs with other values for the terms {listed}"
+                raise wrong(f"--parameter {parameter}", expected, f"{rank} that tell them apart")
+        if not c.size or np.linalg.matrix_rank(c) < c.shape[1]:
+            raise wrong("--parameter", f"runs that tell {c.shape[1]} terms apart", f"{len(c)}")
+        return np.asarray(np.linalg.pinv(c))
 
     def check(self, terms: Terms, label: str, job: Job, values: Floats) -> float:
         """Return the error of the terms at another job, over the greatest entry of the matrices.
@@ -149,7 +159,7 @@ class Differences:
         Raises InputError, which names the parameter, where the matrices are not affine.
         """
         order = matching(self.nominal, job, label)
-        shifts = self.coefficients.values(values) - 1.0
+        shifts = terms.coefficients.values(values) - 1.0
         worst = 0.0
         for quantity, A in self.nominal.matrices.items():
             E = change = (job.matrices[quantity][order][:, order] - A).tocsr()
@@ -171,9 +181,9 @@ class Differences:
         self, label: str, values: Floats, terms: Terms, quantity: Quantity, E: Matrix
     ) -> InputError:
         moved = [name for name, x in zip(self.parameters, values, strict=True) if x != 1]
-        shares = {name: _share(E, terms, quantity, self.coefficients, [name]) for name in moved}
+        shares = {name: _share(E, terms, quantity, [name]) for name in moved}
         guilty = [name for name, share in shares.items() if share >= COVERED] or moved
-        if _share(E, terms, quantity, self.coefficients, moved) < COVERED:
+        if _share(E, terms, quantity, moved) < COVERED:
             entries = scipy.sparse.coo_array(E)
             k = int(np.argmax(np.abs(entries.data)))
             place = terms.dofs.label(int(entries.row[k]))
@@ -192,12 +202,10 @@ class Differences:
         )
 
 
-def _share(
-    E: Matrix, terms: Terms, quantity: Quantity, coefficients: Monomials, names: Sequence[str]
-) -> float:
+def _share(E: Matrix, terms: Terms, quantity: Quantity, names: Sequence[str]) -> float:
     """Return the share of the squares of E within the entries of the terms of parameters."""
     columns = [terms.parameters.index(name) for name in names]
-    acting: Bools = np.asarray(coefficients.exponents[:, columns].any(axis=1))
+    acting: Bools = np.asarray(terms.coefficients.exponents[:, columns].any(axis=1))
     pattern = scipy.sparse.csr_array(E.shape)
     for term, acts in zip(terms.terms, acting, strict=True):
         if acts and quantity in term.matrices:

@@ -157,9 +157,25 @@ def import_model(
         found = suggestion(program, list(PROGRAMS))
         raise InputError(Fault("", "program", f"one of {', '.join(PROGRAMS)}", found))
 
-    nominal_path, options = Path(base), options or JobOptions()
-    names = tuple(parameters)
-    terms = _term_names(names, functions or {})
+    names = _term_names([*parameters], functions or {})
+    terms = dict.fromkeys(QUANTITIES, names)
+    return _imported(program, base, parameters, factors, terms, checks, options, modes, progress)
+
+
+# 9 arguments: those of `import_model`, and the terms of each quantity.
+def _imported(
+    program: str,
+    base: Path | str,
+    parameters: Mapping[str, JobFiles],
+    factors: Mapping[str, float | Sequence[float]] | None,
+    terms: Mapping[Quantity, Sequence[str]],
+    checks: Sequence[tuple[Path | str, Mapping[str, float]]],
+    options: JobOptions | None,
+    modes: int | None,
+    progress: Callable[[str], None],
+) -> Imported:
+    nominal_path, names = Path(base), tuple(parameters)
+    options = options or JobOptions()
     runs = _runs(parameters, factors or {}, checks)
 
     def read(path: Path, doing: str = "reading") -> Job:
@@ -343,8 +359,8 @@ FACTORS, CHECK = (2.0, 0.5, 1.5, 0.75), (1.5, 0.7, 1.3, 0.8)
 """Factors of a parameter in its jobs, as many as it has terms, and of the parameters in turn in the
 job with which the terms are compared."""
 
-THICKNESS = ("{0}", "1/{0}", "{0}^2", "{0}^3")
-"""Terms of the thickness of a shell, of which the program makes solids."""
+THICKNESS = ("*{}", "/{}", "*{}^2", "*{}^3")
+"""What the thickness of a shell, of which the program makes solids, multiplies its matrices by."""
 
 MODULI: Mapping[str, tuple[Sequence[int], ...]] = {
     "ISO": ((0,),),
@@ -362,6 +378,10 @@ KEYWORDS: Mapping[str, str] = {
     "section": "SHELL SECTION",
 }
 """Keywords that hold the numbers, by the kinds of targets."""
+
+
+OF_MATERIAL: Mapping[Quantity, str] = {"stiffness": "material", "mass": "density"}
+"""Kinds of targets that multiply the matrices of all elements of a material."""
 
 
 @dataclass(frozen=True)
@@ -389,7 +409,7 @@ class Target(NamedTuple):
 
     def of(self, line: Line) -> str:
         """Return the name that a line has where this one has its own."""
-        return line.material if self.kind in ("material", "density") else line.elset
+        return line.material if self.kind in OF_MATERIAL.values() else line.elset
 
     def columns(self, line: Line) -> Sequence[int]:
         """Return the places of the numbers in a line that it multiplies."""
@@ -442,10 +462,9 @@ def import_deck(
         raise InputError(Fault("", "--run", "a program that is installed", f"'{run}'"))
     lines = list(lines_of(path))
     targets = _targets(path, lines, parameters)
-    sections = [name for name, target in targets.items() if target.kind == "section"]
-    terms = {name: [term.format(name) for term in THICKNESS] for name in sections}
-    terms |= {name: list(each) for name, each in (functions or {}).items()}
-    factors = {name: list(FACTORS[: len(terms.get(name, (name,)))]) for name in targets}
+    terms = {x: _of_thickness(lines, targets, x) | dict(functions or {}) for x in QUANTITIES}
+    several = {name: len(each) for name, each in terms["mass"].items()}
+    factors = {name: list(FACTORS[: several.get(name, 1)]) for name in targets}
     jobs = {f"{name}-{factor:g}": {name: factor} for name in targets for factor in factors[name]}
     check = dict(zip(targets, cycle(CHECK), strict=False))
     with writing(folder):
@@ -456,15 +475,16 @@ def import_deck(
         of_targets, stored = {targets[name]: x for name, x in values.items()}, job in runs
         text = job_text(path, lines, of_targets, stored=stored)
         _run(program, folder / job, text, ".sti" if stored else ".dat")
-    imported = import_model(
+    imported = _imported(
         "calculix",
         folder / "nominal",
         {name: [folder / f"{name}-{x:g}" for x in factors[name]] for name in targets},
-        factors=factors,
-        functions=terms,
-        checks=[(folder / "check", check)],
-        modes=modes,
-        progress=progress,
+        factors,
+        {x: _term_names([*targets], each) for x, each in terms.items()},
+        [(folder / "check", check)],
+        None,
+        modes,
+        progress,
     )
     # The deck as it is; with what it includes in its place where a change is in that.
     own, text = {k: line.number for k, line in enumerate(lines, 1)}, text_of(path)
@@ -489,6 +509,22 @@ def import_deck(
         of_matrices = f"up to {100 * error:.2g} % from those of its matrices"
         note = f"the program prints {shown} Hz, {of_matrices}"
     return replace(imported, notes=(*imported.notes, note))
+
+
+def _of_thickness(
+    lines: Sequence[Line], targets: Mapping[str, Target], quantity: Quantity
+) -> dict[str, Sequence[str]]:
+    """Return the terms of thicknesses in a matrix, with the parameter of the material in each."""
+    of_material = {
+        x.name.upper(): name for name, x in targets.items() if x.kind == OF_MATERIAL[quantity]
+    }
+    out: dict[str, Sequence[str]] = {}
+    for name, target in targets.items():
+        if target.kind == "section":
+            material = next(line.material for line in lines if target.columns(line))
+            factor = of_material.get(material, "1")
+            out[name] = [f"{factor}{term.format(name)}".removeprefix("1*") for term in THICKNESS]
+    return out
 
 
 def _targets(path: Path, lines: Sequence[Line], parameters: Mapping[str, str]) -> dict[str, Target]:
@@ -522,7 +558,8 @@ def lines_of(path: Path, depth: int = 0) -> Iterator[Line]:
             yield Line(text, number=number)
         elif text.startswith("*"):
             keyword, options = keyword_of(text)
-            material = options.get("NAME", "").upper() if keyword == "MATERIAL" else line.material
+            material = options.get("MATERIAL", line.material).upper()
+            material = options.get("NAME", "").upper() if keyword == "MATERIAL" else material
             elset, kind = (options.get(x, "").upper() for x in ("ELSET", "TYPE"))
             line = Line(text, keyword, elset, kind, material, number=number)
             if keyword == "INCLUDE" and depth < DEEPEST:
@@ -548,8 +585,8 @@ def job_text(
         for target, factor in factors.items():
             for k in target.columns(line):
                 if k < len(items) and items[k].strip():
-                    items[k] = f" {fortran(items[k].strip()) * factor:.12g}"
-                    items[k] += "." * bool(re.fullmatch(r" -?\d+", items[k]))
+                    number = f" {fortran(items[k].strip()) * factor:.12g}"
+                    items[k] = re.sub(r"^( -?\d+)(e|$)", r"\1.\2", number)  # ccx wants a point
         out.append(",".join(items))
     if not found:
         raise InputError(Fault(str(path), "deck", "a step with *FREQUENCY", "none"))
@@ -566,7 +603,7 @@ def _run(program: str, job: Path, text: str, result: str) -> None:
         )
     except OSError as error:
         raise InputError(Fault(program, "--run", "a program that runs", reason(error))) from None
-    errors = re.findall(r"\*ERROR[^*]*", done.stdout)
+    errors = done.stdout.split("*ERROR", 2)[1:]
     if errors or not made.is_file() or not made.stat().st_size:
         found = one_line(errors[0] if errors else done.stdout[-400:], 400) or "nothing"
         raise InputError(Fault(str(job), "job", f"a run of {program} that writes {result}", found))
