@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -51,6 +52,7 @@ LARGE, SHOWN = 100_000, 6
 """Degrees of freedom from which on no frequencies are computed unless asked for, and how many
 frequencies otherwise."""
 
+Functions = Mapping[str, Sequence[str] | Mapping[Quantity, Sequence[str]]]
 JobFiles = Path | str | Sequence[Path | str]  # the job of a parameter, or several
 
 
@@ -119,7 +121,7 @@ def import_model(
     parameters: Mapping[str, JobFiles],
     *,
     factors: Mapping[str, float | Sequence[float]] | None = None,
-    functions: Mapping[str, Sequence[str]] | None = None,
+    functions: Functions | None = None,
     checks: Sequence[tuple[Path | str, Mapping[str, float]]] = (),
     options: JobOptions | None = None,
     modes: int | None = None,
@@ -138,7 +140,8 @@ def import_model(
     factors
         This value over the nominal one, for each job of the parameter; 2 unless given.
     functions
-        Terms of a parameter on which the matrices depend, where not linearly: ``["t", "t^3"]``.
+        Terms of a parameter on which the matrices depend, where not linearly: ``["t", "t^3"]``;
+        or those of each, ``{"stiffness": ["E*t", "E*t^3"], "mass": ["t"]}``.
     checks
         Further jobs with the factors of parameters in them, which are compared with the terms.
     options
@@ -157,25 +160,8 @@ def import_model(
         found = suggestion(program, list(PROGRAMS))
         raise InputError(Fault("", "program", f"one of {', '.join(PROGRAMS)}", found))
 
-    names = _term_names([*parameters], functions or {})
-    terms = dict.fromkeys(QUANTITIES, names)
-    return _imported(program, base, parameters, factors, terms, checks, options, modes, progress)
-
-
-# 9 arguments: those of `import_model`, and the terms of each quantity.
-def _imported(
-    program: str,
-    base: Path | str,
-    parameters: Mapping[str, JobFiles],
-    factors: Mapping[str, float | Sequence[float]] | None,
-    terms: Mapping[Quantity, Sequence[str]],
-    checks: Sequence[tuple[Path | str, Mapping[str, float]]],
-    options: JobOptions | None,
-    modes: int | None,
-    progress: Callable[[str], None],
-) -> Imported:
-    nominal_path, names = Path(base), tuple(parameters)
-    options = options or JobOptions()
+    nominal_path, options, names = Path(base), options or JobOptions(), tuple(parameters)
+    terms = {x: _term_names(names, _of_quantity(functions or {}, x)) for x in QUANTITIES}
     runs = _runs(parameters, factors or {}, checks)
 
     def read(path: Path, doing: str = "reading") -> Job:
@@ -224,6 +210,14 @@ def _imported(
         program,
         deck_text(nominal_path),
     )
+
+
+def _of_quantity(functions: Functions, quantity: Quantity) -> dict[str, Sequence[str]]:
+    """Return the terms of parameters in the matrix of a quantity."""
+    return {
+        name: each.get(quantity, (name,)) if isinstance(each, Mapping) else each
+        for name, each in functions.items()
+    }
 
 
 def _term_names(names: Sequence[str], functions: Mapping[str, Sequence[str]]) -> list[str]:
@@ -428,7 +422,7 @@ def import_deck(
     parameters: Mapping[str, str],
     *,
     run: str = "ccx",
-    functions: Mapping[str, Sequence[str]] | None = None,
+    functions: Functions | None = None,
     modes: int | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Imported:
@@ -462,9 +456,11 @@ def import_deck(
         raise InputError(Fault("", "--run", "a program that is installed", f"'{run}'"))
     lines = list(lines_of(path))
     targets = _targets(path, lines, parameters)
-    terms = {x: _of_thickness(lines, targets, x) | dict(functions or {}) for x in QUANTITIES}
-    several = {name: len(each) for name, each in terms["mass"].items()}
-    factors = {name: list(FACTORS[: several.get(name, 1)]) for name in targets}
+    terms: Functions = {**_of_thickness(lines, targets), **(functions or {})}
+    terms_of = Counter[str]()
+    for quantity in QUANTITIES:
+        terms_of |= Counter({name: len(x) for name, x in _of_quantity(terms, quantity).items()})
+    factors = {name: list(FACTORS[: terms_of[name] or 1]) for name in targets}
     jobs = {f"{name}-{factor:g}": {name: factor} for name in targets for factor in factors[name]}
     check = dict(zip(targets, cycle(CHECK), strict=False))
     with writing(folder):
@@ -475,16 +471,15 @@ def import_deck(
         of_targets, stored = {targets[name]: x for name, x in values.items()}, job in runs
         text = job_text(path, lines, of_targets, stored=stored)
         _run(program, folder / job, text, ".sti" if stored else ".dat")
-    imported = _imported(
+    imported = import_model(
         "calculix",
         folder / "nominal",
         {name: [folder / f"{name}-{x:g}" for x in factors[name]] for name in targets},
-        factors,
-        {x: _term_names([*targets], each) for x, each in terms.items()},
-        [(folder / "check", check)],
-        None,
-        modes,
-        progress,
+        factors=factors,
+        functions=terms,
+        checks=[(folder / "check", check)],
+        modes=modes,
+        progress=progress,
     )
     # The deck as it is; with what it includes in its place where a change is in that.
     own, text = {k: line.number for k, line in enumerate(lines, 1)}, text_of(path)
@@ -512,18 +507,19 @@ def import_deck(
 
 
 def _of_thickness(
-    lines: Sequence[Line], targets: Mapping[str, Target], quantity: Quantity
-) -> dict[str, Sequence[str]]:
-    """Return the terms of thicknesses in a matrix, with the parameter of the material in each."""
-    of_material = {
-        x.name.upper(): name for name, x in targets.items() if x.kind == OF_MATERIAL[quantity]
-    }
-    out: dict[str, Sequence[str]] = {}
+    lines: Sequence[Line], targets: Mapping[str, Target]
+) -> dict[str, dict[Quantity, list[str]]]:
+    """Return the terms of thicknesses in either matrix, with the parameter of their material."""
+    names = {(each.kind, each.name.upper()): name for name, each in targets.items()}
+    out: dict[str, dict[Quantity, list[str]]] = {}
     for name, target in targets.items():
         if target.kind == "section":
             material = next(line.material for line in lines if target.columns(line))
-            factor = of_material.get(material, "1")
-            out[name] = [f"{factor}{term.format(name)}".removeprefix("1*") for term in THICKNESS]
+            factors = {x: names.get((kind, material), "1") for x, kind in OF_MATERIAL.items()}
+            out[name] = {
+                x: [f"{factor}{term.format(name)}".removeprefix("1*") for term in THICKNESS]
+                for x, factor in factors.items()
+            }
     return out
 
 
