@@ -169,6 +169,7 @@ def test_rigid_body_modes_have_zero_frequency() -> None:
     ("K", "M", "message"),
     [
         ([1.0, -1.0], [1.0, 1.0], "stiffness matrix is indefinite"),
+        ([-1e-6, 5e-7, 1.0], [1.0, 1.0, 1.0], "stiffness matrix is indefinite"),
         ([1.0, 2.0], [1.0, -1.0], "mass matrix is indefinite"),
         ([1.0, 2.0], [0.0, 0.0], "no mass on its diagonal"),
         ([3000.0, 1.4e-312], [2.5, 1.0], "a stiffness vanishes"),

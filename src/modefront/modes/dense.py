@@ -167,13 +167,14 @@ def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:
     if mu.size == 0 or mu[-1] * scale * SHIFT**2 > 1:
         shift = SHIFT * scale
         mu, X = _inverse_eigensolve(K + shift * M, M)
-        if mu.size == 0:
-            raise ModelError("the stiffness matrix is indefinite")
-        elastic = mu[(mu > FINITE * mu[-1]) & (mu < (1 - RIGID) * mu[-1])]
+        greatest = mu.max(initial=0.0)
+        elastic = mu[(mu > FINITE * greatest) & (mu < (1 - RIGID) * greatest)]
         if elastic.size:
             # A shift of the size of the lowest elastic mode costs no digits of the others.
             shift = float(1 / elastic[-1] - shift)
             mu, X = _inverse_eigensolve(K + shift * M, M)
+        if mu.size == 0:
+            raise ModelError("the stiffness matrix is indefinite")
     if mu[0] < -INDEFINITE_MASS * mu[-1]:
         raise ModelError("the mass matrix is indefinite")
     mu, X = mu[::-1], X[:, ::-1]
