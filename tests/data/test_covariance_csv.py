@@ -74,5 +74,7 @@ def test_a_file_of_other_modes_is_found_by_its_variances(tmp_path: Path) -> None
     expected = "expected 0.0009, the square of its deviation, as the variance of top, found 0.0001"
     with pytest.raises(mf.InputError, match=expected):
         read(tmp_path, text, bare(std=True))
-    with pytest.raises(mf.InputError, match="shape_covariance: expected 1 x 2 x 3 x 3, found"):
+    with pytest.raises(
+        mf.InputError, match="shape_covariance: expected 2 modes x 3 sensors x 3 sensors, found"
+    ):
         bare().with_covariance(np.zeros((2, 2, 2)))

@@ -131,7 +131,7 @@ def test_arrays_make_the_same_data_as_a_file(tmp_path: Path) -> None:
         assert getattr(made, name) == getattr(read_data, name)
     for name in ("frequency", "damping", "shape", "frequency_std", "shape_std"):
         np.testing.assert_array_equal(getattr(made, name), getattr(read_data, name))
-    with pytest.raises(InputError, match="shape: expected 1 x 1 x 3, found 1 x 2"):
+    with pytest.raises(InputError, match="shape: expected 1 modes x 3 sensors, found 1 x 2"):
         modal_data(np.ones(1), np.ones((1, 2)), ("a", "b", "c"))
 
 

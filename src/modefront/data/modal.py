@@ -171,7 +171,9 @@ def _like(name: str, value: Floats | None, shape: tuple[int, ...]) -> Floats:
         return np.full(shape, np.nan)
     array = np.asarray(value, float)
     if array.shape not in (shape, shape[shape[0] == 1 :]):
-        raise wrong(name, " x ".join(map(str, shape)), " x ".join(map(str, array.shape)))
+        of = list(zip(shape, ("sets", "modes", "sensors", "sensors"), strict=False))
+        expected = " x ".join(f"{count} {axis}" for count, axis in of[shape[0] == 1 :])
+        raise wrong(name, expected, " x ".join(map(str, array.shape)))
     return array.reshape(shape)
 
 
