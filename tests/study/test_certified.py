@@ -17,13 +17,14 @@ from interruptions import interrupt_after
 from texts import two_of_each
 
 import modefront as mf
-from modefront.analysis.certified import AIM, certified_front
+from modefront._typing import Floats
+from modefront.analysis.certified import AIM, certified_best, certified_front
 from modefront.cli.main import main
 from modefront.fem import grids
 from modefront.front.front import Edge, Front
 from modefront.front.pareto import pareto_front
 from modefront.models.reduced.model import ReducedModel
-from modefront.optim.sqp import given
+from modefront.optim.sqp import Solution, given
 from modefront.results.files import read_dataset
 from modefront.study.check import check
 from modefront.study.definition import Study
@@ -355,6 +356,25 @@ def test_a_minimum_as_good_as_the_best_one_gets_a_snapshot_before_certificates(f
     theta = front.edges[0].minima[-1].theta
     assert isinstance(study.problem.model, ReducedModel)
     assert study.problem.model.errors[theta.tobytes()][0].max() <= 1e-9
+
+
+def test_the_best_model_gets_snapshots_until_it_holds_in_the_full_one(file: Path) -> None:
+    study, run = mf.load(file), Recorded()
+    problem, starts = study.problem, []
+    assert isinstance(problem.model, ReducedModel)
+    problem.model.snapshots = (problem.model.first,)
+    errors = problem.model.errors
+
+    def find(known: Sequence[Floats], work: Executor) -> list[Solution]:
+        """Find a model that the basis does not know."""
+        starts.append(known)
+        return [given(problem.evaluate(np.array([2.3, 0.5])))]
+
+    (best,) = certified_best(problem, find, [problem.start], run)
+    assert errors[best.theta.tobytes()][0].max() <= 1e-8
+    assert [name for name in run.names if name.startswith("snapshot")]
+    assert len(starts) > 1
+    assert np.array_equal(starts[1], [best.theta]), "from where it was before"
 
 
 def test_bounds_are_checked_in_the_full_model(file: Path) -> None:

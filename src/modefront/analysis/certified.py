@@ -92,21 +92,36 @@ def certified_front(
             reported = _each_once([*_of_the_front(front), *minima, *front.optimal])
             _certify(problem, model, reported, "front", here)
             needed = _each_once([*_of_the_front(front), *_rivals(problem, model, front)])
-            error = [float(_errors_of(model, x)[0].max()) for x in needed]
-            ranked = sorted(range(len(needed)), key=lambda k: -error[k])
-            wrong = [needed[k] for k in ranked if error[k] > model.tolerance][:WORST]
-            if not wrong or is_last:
-                break
-            worst = _snapshot(wrong, 0.0)
-            if not np.isfinite(max(error)):
-                worst = replace(worst, modes=max(worst.modes, _lowest(problem)))
-            last = _take(model, "worst", 1, worst, here)
-            if last is None or not last.added:
+            last = None if is_last else _mended(problem, model, needed, here)
+            if last is None:
                 break
             taken = [last]
         columns = taken[-1].columns
         known = front if max(each.error for each in taken) <= POOR else None
     return front
+
+
+def certified_best(
+    problem: UpdatingProblem,
+    find: Callable[[Sequence[Floats], Executor], list[Solution]],
+    known: Sequence[Floats],
+    work: Executor,
+) -> list[Solution]:
+    """Return the solutions to which known models (p,) lead, the first of them as `certified_front`.
+
+    ``find`` returns them, the best one first.
+    """
+    for number in range(1, ROUNDS + 1):
+        here = Within(work, turn=("best", number))
+        found = find(known, here)
+        model = _reduced(problem)
+        if model is None:
+            break
+        _certify(problem, model, found[:1], "others", here)
+        if number == ROUNDS or _mended(problem, model, found[:1], here) is None:
+            break
+        known = [solution.theta for solution in found]
+    return found
 
 
 def certify(problem: UpdatingProblem, points: Sequence[Point], work: Executor) -> None:
@@ -160,6 +175,25 @@ def _improve(
         if taken.error > POOR or taken.columns >= model.capacity:
             break
     return out
+
+
+def _mended(
+    problem: UpdatingProblem, model: ReducedModel, needed: Sequence[Solution], work: Executor
+) -> SnapshotTaken | None:
+    """Take a snapshot of the solutions with the greatest errors above the tolerance.
+
+    None is returned where there are none, or it adds nothing to the basis.
+    """
+    error = [float(_errors_of(model, x)[0].max()) for x in needed]
+    ranked = sorted(range(len(needed)), key=lambda k: -error[k])
+    wrong = [needed[k] for k in ranked if error[k] > model.tolerance][:WORST]
+    if not wrong:
+        return None
+    worst = _snapshot(wrong, 0.0)
+    if not np.isfinite(max(error)):
+        worst = replace(worst, modes=max(worst.modes, _lowest(problem)))
+    taken = _take(model, "worst", 1, worst, work)
+    return taken if taken and taken.added else None
 
 
 def _take(

@@ -12,7 +12,12 @@ from typing import Any, Unpack
 from threadpoolctl import threadpool_limits
 
 from modefront._version import __version__
-from modefront.analysis.certified import certificate_attributes, certified_front, certify
+from modefront.analysis.certified import (
+    certificate_attributes,
+    certified_best,
+    certified_front,
+    certify,
+)
 from modefront.analysis.front import analyse_front
 from modefront.datasets import Dataset
 from modefront.errors import Fault, InputError, writing
@@ -44,7 +49,7 @@ from modefront.uncertainty.prior import NoisePrior
 from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress
 from modefront.work.store import FOLDER, NOTE, Run, Store, locked
-from modefront.work.task import Task, Within
+from modefront.work.task import Task
 from modefront.work.workers import Workers, backend
 
 
@@ -204,10 +209,9 @@ def worked(study: Study, work: Run) -> Dataset:
     if noise is not None:
         minima = [x for edge in front.edges for x in edge.minima]
         known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
-        maxima = most_probable(problem, noise, known, work)
-        added = [Point(Kind.MOST_PROBABLE, maxima[0])]
-        certify(problem, added, Within(work, ("most-probable",)))
-        front = replace(front, points=[*front.points, *added])
+        find = partial(most_probable, problem, noise)
+        maxima = certified_best(problem, find, known, work)
+        front = replace(front, points=[*front.points, Point(Kind.MOST_PROBABLE, maxima[0])])
         count = max(DRAWS, study.uncertainty.draws)
         inference = infer(noise, [x.theta for x in maxima], count, seed, work)
     options = study.pareto, study.identifiability, study.uncertainty
