@@ -37,6 +37,12 @@ export interface Geometry {
   coefficient: (number | null)[][][];
 }
 
+/** A sentence, with what it means and what to do in paragraphs. */
+export interface Sentence {
+  text: string;
+  meaning: string[];
+}
+
 /** The results of one study. */
 export interface Front {
   name: string;
@@ -81,7 +87,7 @@ export interface Front {
   measuredShape: Row[][] | null;
   geometry: Geometry | null;
   predictions: Prediction[];
-  words: { heading: string; sentences: string[] }[];
+  words: { heading: string; sentences: Sentence[] }[];
 }
 
 /** All that a report shows. */

@@ -1,6 +1,6 @@
 // The page: a bar to walk along the front, and views that follow.
 
-import { read, type Report } from "./data";
+import { read, type Report, type Sentence } from "./data";
 import { h, section } from "./dom";
 import { number } from "./format";
 import { isOfPart } from "./marks";
@@ -211,20 +211,18 @@ function summary(state: State): HTMLElement {
   const several = state.report.fronts.length > 1;
   const view = section("summary", several ? front.study || front.name : "In words");
   for (const { heading, sentences } of front.words) {
-    const [first, ...rest] = sentences;
-    if (first === undefined) continue;
     if (!heading) {
-      view.append(h("div", { class: "answer" }, ...sentences.map((text) => h("p", {}, text))));
+      view.append(h("div", { class: "answer" }, ...sentences.map((each) => explained("div", each))));
       continue;
     }
-    const count = shown(sentences);
-    const list = (some: string[]): HTMLElement => h("ul", {}, ...some.map((text) => h("li", {}, text)));
+    const count = shown(sentences.map((each) => each.text));
+    const list = (some: Sentence[]): HTMLElement => h("ul", {}, ...some.map((each) => explained("li", each)));
     view.append(
       h(
         "div",
         { class: "topic" },
         h("h3", {}, heading),
-        list([first, ...rest].slice(0, count)),
+        list(sentences.slice(0, count)),
         sentences.length > count
           ? h(
               "details",
@@ -236,10 +234,17 @@ function summary(state: State): HTMLElement {
       ),
     );
   }
-  view.append(
-    h("p", { class: "note" }, "What each sentence means, and what to do: modefront show RESULTS --findings."),
-  );
+  view.append(h("p", { class: "note" }, "A sentence opens at a click: what it means, and what to do."));
   return view;
+}
+
+/** Returns a sentence that opens to what it means and what to do. */
+function explained(tag: "div" | "li", { text, meaning }: Sentence): HTMLElement {
+  if (!meaning.length) return h(tag, {}, text);
+  const parts = meaning.map((each) =>
+    each.startsWith("```") ? h("pre", {}, each.split("\n").slice(1, -1).join("\n")) : h("p", {}, each),
+  );
+  return h(tag, {}, h("details", { class: "meaning" }, h("summary", {}, text), ...parts));
 }
 
 /** Returns how many sentences of a topic are shown at once: three, fewer long ones. */

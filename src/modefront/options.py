@@ -33,7 +33,7 @@ from modefront.errors import Fault, InputError, reason, refuse, suggestion
 from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.rounding import LARGEST
 from modefront.text import NAME as LENGTH
-from modefront.text import clean
+from modefront.text import Shown, clean
 
 Schema = Mapping[str, Any]
 
@@ -347,7 +347,7 @@ def check_fields(record: Any) -> None:
         object.__setattr__(record, each.name, each.requirement.convert(plain(value)))
 
 
-class Checked:
+class Checked(Shown):
     """What frozen dataclasses of options are: they raise InputError for wrong fields."""
 
     def __post_init__(self) -> None:

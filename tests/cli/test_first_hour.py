@@ -23,7 +23,7 @@ def test_each_command_names_the_next_until_the_report(
         done.append(words[0])
         out = capsys.readouterr().out
         if done[-1] == "show":
-            assert 24 <= len(out.splitlines()) <= 40
+            assert 20 <= len(out.splitlines()) <= 30
         lines = re.findall(r"^next: modefront (.+)$", out, re.MULTILINE)
         assert len(lines) <= 1
         words = shlex.split(lines[0]) if lines else []

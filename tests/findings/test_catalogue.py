@@ -22,14 +22,14 @@ def pattern(sentence: str, many: bool) -> str:
 
 def test_the_page_has_a_sentence_and_an_example_of_every_kind() -> None:
     assert list(EXAMPLES) == list(CATALOGUE) == re.findall(r"^### (\S+)$", TEXT, re.MULTILINE)
-    assert {severity for severity, _ in CATALOGUE.values()} == set(Severity)
+    assert [*dict.fromkeys(x.heading for x in CATALOGUE.values())] == [x.value for x in Severity]
 
 
 @pytest.mark.parametrize("kind", CATALOGUE)
 def test_the_example_on_the_page_is_what_the_kind_says(kind: str) -> None:
-    sentence = CATALOGUE[kind][1]
+    sentence = CATALOGUE[kind].sentence
     assert any(re.fullmatch(pattern(sentence, many), EXAMPLES[kind]) for many in (False, True))
-    assert CATALOGUE[kind][0] is Severity.DETAIL or not re.search(
+    assert found(kind).severity is Severity.DETAIL or not re.search(
         rf"^### {kind}\n<!-- .* -->\n> .*\n\n#", TEXT, re.MULTILINE
     ), "what it means, and what to do"
 

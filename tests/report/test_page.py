@@ -195,7 +195,8 @@ def test_only_the_surface_of_solids_is_drawn() -> None:
 
 
 def test_words_say_what_was_found_and_what_is_open() -> None:
-    text = {heading: " ".join(said) for heading, said in topics(chain()).items()}
+    every = topics(chain())
+    text = {heading: " ".join(x for x, _ in said) for heading, said in every.items()}
     assert "3 measured modes in 2 groups" in text["What was studied"]
     assert "normal-boundary intersection" in text["What was studied"]
     assert text[""].startswith("Use most-probable: its errors over those expected are ")
@@ -204,6 +205,8 @@ def test_words_say_what_was_found_and_what_is_open() -> None:
     assert "k1 from" in text["What the data leave open"]
     assert "differ: peak of hammer: floor1 by" in text["What the data leave open"]
     assert "converged" in text["What to beware of"]
+    known = {heading: [bool(meaning) for _, meaning in said] for heading, said in every.items()}
+    assert all(known[""] + known["How well the best models do"] + known["What the data leave open"])
 
 
 def test_what_did_not_converge_is_named() -> None:
@@ -211,7 +214,7 @@ def test_what_did_not_converge_is_named() -> None:
     converged = data["converged"].values.copy()
     converged[2] = False
     spoiled = data.assign(converged=("point", converged))
-    messages = [text for said in topics(spoiled).values() for text in said]
+    messages = [text for said in topics(spoiled).values() for text, _ in said]
     assert f"Not converged: {data['label'].values[2]}." in messages
 
 

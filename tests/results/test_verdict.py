@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from modefront.findings.catalogue import VERDICT, page
+from modefront.findings.record import meaning_of
 from modefront.front.point import Kind
 from modefront.results.assemble import intervals
 from modefront.results.findings import _scatter
@@ -33,9 +34,11 @@ def test_the_page_has_every_sentence_and_no_other() -> None:
 @pytest.mark.parametrize("kind", VERDICT)
 def test_the_example_is_what_the_sentence_says_and_advice_follows(kind: str) -> None:
     example, _, advice = SECTIONS[kind].partition("\n")
-    parts = re.split(r"\{[a-z]+(?::[^{}]*)?\}", VERDICT[kind])
-    assert re.fullmatch(".+".join(map(re.escape, parts)), example.removeprefix("> "))
+    assert re.fullmatch(VERDICT[kind].pattern, example.removeprefix("> "))
     assert len(advice.split()) > 5
+    said = {name for name, x in VERDICT.items() if re.search(x.pattern, example)}
+    assert {kind} <= said <= {kind, "far", "worse"}, "reasons are within the sentence"
+    assert set(VERDICT[kind].meaning) <= set(meaning_of(example))
 
 
 @pytest.mark.parametrize("name", HOW_TO)

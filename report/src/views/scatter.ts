@@ -36,7 +36,7 @@ export function scatter(state: State, options: Options): { svg: SVGSVGElement; u
     const expected = front.noise[groups[axis]];
     const at = front.error[front.reference]?.[groups[axis]];
     if (expected === null || at === null || at === undefined || !Number.isFinite(expected)) return null;
-    const ends = [Math.max(isLog ? 0.01 * at : 0, at - expected / 4), at + expected / 4];
+    const ends = [Math.max(isLog ? 0.01 * at : 0, at - expected / 2), at + expected / 2];
     return ends.map((e) =>
       state.quantity === "error" ? e : fromError(front, groups[axis], e),
     ) as [number, number];

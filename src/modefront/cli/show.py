@@ -15,6 +15,7 @@ from modefront.cli.layout import BLANK, Line, Screen, number, plural
 from modefront.cli.terminal import command, say_next
 from modefront.datasets import Array, ArrayDataset, Dataset
 from modefront.findings.catalogue import Severity
+from modefront.findings.record import meaning_of
 from modefront.front.point import INTERNAL, Kind, position, preferred
 from modefront.predictions import ResultVariable
 from modefront.predictions.base import Quantity, predictions_in, quantity
@@ -23,7 +24,10 @@ from modefront.results.remarks import digest, findings_of, headlines, verdict
 from modefront.study.estimate import Estimate
 from modefront.work.task import Costs
 
-FEWEST = 3  # parameters and modes that a table keeps, however long it is
+FEWEST = 2  # rows of a kind that a table keeps, however long it is
+
+LESS: Mapping[str, str] = {"parameter": "that change{} less", "mode": "that fit{} better"}
+"""What is true of the rows that a table leaves out."""
 
 
 def models_in(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]:
@@ -31,35 +35,36 @@ def models_in(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]
 
     ``full`` is the command that prints what is left out.
     """
-    models = _first_models(data)
-    theta, f = data["theta"].values[models], data["frequency"].values[models]
-    best = models.index(position(data))
-    change = np.abs(theta[best] - theta[0]) / np.ptp(data["bounds"].values, axis=1)
-    error = np.abs(f[best] / data["measured_frequency"].values - 1)
-    parameters, modes = (np.argsort(-np.nan_to_num(x), kind="stable") for x in (change, error))
-    p, m = parameters.size, modes.size
+    models, best = _first_models(data), position(data)
+    theta, f = data["theta"].values, data["frequency"].values[best]
+    change = np.abs(theta[best] - theta[models[0]]) / np.ptp(data["bounds"].values, axis=1)
+    error, predicted = np.abs(f / data["measured_frequency"].values - 1), _predicted(data, models)
+    order = {
+        name: np.argsort(-np.nan_to_num(x), kind="stable")
+        for name, x in (("parameter", change), ("mode", error))
+    }
+    order |= {"group": np.arange(data.sizes["group"]), "prediction": np.arange(len(predicted))}
+    size = {name: len(x) for name, x in order.items()}
     while True:
-        chosen = data.isel(parameter=np.sort(parameters[:p]), mode=np.sort(modes[:m]))
-        count = len(models)
-        lines = _table(screen, chosen.isel(point=models))
-        while count > 2 and BLANK in lines:  # models that do not fit side by side
-            count -= 1
-            lines = _table(screen, chosen.isel(point=models[:count]))
-        left = [
-            (parameters.size - p, "more parameter", "that change{} less"),
-            (modes.size - m, "more mode", "that fit{} better"),
-            (len(models) - count, "edge", ""),
+        rows: dict[str, Any] = {x: np.sort(order[x][:n]) for x, n in size.items()}
+        predictions = [predicted[i] for i in rows.pop("prediction")]
+        for count in range(len(models), 0, -1):
+            chosen = data.isel(point=models[:count], **rows)
+            lines = _table(screen, chosen, [row[: count + 1] for row in predictions])
+            if count <= 2 or BLANK not in lines:  # they fit side by side
+                break
+        left = {name: len(x) - size[name] for name, x in order.items()}
+        said = [
+            f"{plural(n, f'more {name}')} {LESS.get(name, '').format('s' * (n == 1))}".rstrip()
+            for name, n in {**left, "edge": len(models) - count}.items()
+            if n
         ]
-        said = [f"{plural(n, x)} {of.format('s' * (n == 1))}".rstrip() for n, x, of in left if n]
         lines += screen.sentence(f"and {', '.join(said)}: {full}") if said else []
-        if len(lines) <= most or (p <= FEWEST and m <= FEWEST):
+        longest = max(size, key=lambda name: size[name])
+        if len(lines) <= most or size[longest] <= FEWEST:
             return lines
         # Each row that is left out saves a line at least, and names or blocks save more.
-        fewer = max((len(lines) - most) // 6, 1)
-        if p > FEWEST and (p >= m or m <= FEWEST):
-            p = max(p - fewer, FEWEST)
-        else:
-            m = max(m - fewer, FEWEST)
+        size[longest] = max(size[longest] - max((len(lines) - most) // 6, 1), FEWEST)
 
 
 def _first_models(data: Dataset) -> list[int]:
@@ -69,11 +74,26 @@ def _first_models(data: Dataset) -> list[int]:
     return list(dict.fromkeys([*nominal.tolist(), position(data), *edges.tolist()]))
 
 
-def _table(screen: Screen, data: Dataset) -> list[Line]:
-    """Return the table of models, and what explains it."""
+def _predicted(data: Dataset, models: Sequence[int]) -> list[list[str]]:
+    """Return the rows of the main quantities of predictions, of models."""
+    best = position(data)
+    return [
+        [
+            f"  {each.name}, {x.place}: {x.variable.title}",
+            *(f"{number(x.values[i], '.3g')} {_deviation(x) * (i == best)}" for i in models),
+        ]
+        for each in predictions_in(data)
+        for x in each.quantities
+        if x.variable in each.kind.ranged[:1]
+    ]
+
+
+def _table(screen: Screen, data: Dataset, predictions: Sequence[list[str]] = ()) -> list[Line]:
+    """Return the table of models, with rows of predictions, and what explains it."""
     std, explained = _deviations(data)
     bound = data["at_bound"].values if "at_bound" in data else np.zeros(data["theta"].values.shape)
-    out = screen.grid("", ["", *map(str, data["label"].values)], list(_rows(data, std, bound)))
+    rows = [*_rows(data, std, bound), *([["predictions"], *predictions] if predictions else [])]
+    out = screen.grid("", ["parameters", *map(str, data["label"].values)], rows)
     notes = [f"±: {explained}"] * bool(np.isfinite(std).any())
     notes += ["min, max: at its lower or upper bound"] * bool(bound.any())
     return [*out, *screen.sentence("; ".join(notes))] if notes else out
@@ -82,7 +102,6 @@ def _table(screen: Screen, data: Dataset) -> list[Line]:
 def _rows(data: Dataset, std: Floats, bound: Floats) -> Iterator[list[str]]:
     """Yield the cells, with headings."""
     best, measured = position(data), data["measured_frequency"].values
-    yield ["parameters"]
     for j, name in enumerate(data["parameter"].values):
         row = [f"  {name}"]
         for i, value in enumerate(data["theta"].values[:, j]):
@@ -173,28 +192,6 @@ def print_predictions(screen: Screen, data: Dataset) -> None:
                 screen.say(f"at {label}: {variable.meaning}: {', '.join(values)}")
 
 
-def predictions_in_short(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]:
-    """Return the lines of the main quantities of the first predictions, ``most`` of them.
-
-    ``full`` is the command that prints all.
-    """
-    best = position(data)
-    rows = [
-        [
-            f"{each.name}, {x.place}: {x.variable.title}",
-            f"{number(x.values[best], '.3g')} {_deviation(x)}",
-            f"{number(x.extent[0], '.3g')} to {number(x.extent[1], '.3g')}",
-        ]
-        for each in predictions_in(data)
-        for x in each.quantities
-        if x.variable in each.kind.ranged[:1]
-    ]
-    columns = ["", preferred(data.attrs), "Pareto-optimal models"]
-    out = screen.grid("predictions", columns, rows[:most])
-    rest = len(rows) - most
-    return out + (screen.sentence(f"and {rest} more: {full}") if rest > 0 else [])
-
-
 def _deviation(of: Quantity) -> str:
     """Return the standard deviation by the posterior, that of a logarithm as a factor."""
     if of.std is None:
@@ -254,13 +251,18 @@ def print_uncertainty(screen: Screen, data: Dataset) -> None:
 
 
 def print_findings_of(screen: Screen, data: Dataset) -> None:
-    """Print all findings, each with what it means and what to do."""
-    screen.say("")
+    """Print the verdict and all findings, each with what it means and what to do."""
+    said = [([text], meaning_of(text)) for text in verdict(data)]
     for _, of_kind in groupby(findings_of(data, full=True), lambda finding: finding.kind):
-        for finding in of_kind:
-            screen.say(finding, start="- ")
-        for text in finding.meaning:
-            screen.say(text, start="    ")
+        every = list(of_kind)
+        said.append(([str(finding) for finding in every], every[0].meaning))
+    screen.say("")
+    for sentences, meaning in said:
+        for sentence in sentences:
+            screen.say(sentence, start="- ")
+        for text in meaning:
+            for line in (x for x in text.splitlines() if not x.startswith("```")):
+                screen.say(line, start="    ")
 
 
 MINIMA = ("J {}", "minimum_objective", ".5g"), ("{}", "minimum_theta", ".5g")
@@ -306,8 +308,8 @@ def _print(
     screen.table(title, [*first, *titles], rows, keys=len(first))
 
 
-HEIGHT, TABLE, LEAST, PREDICTIONS = 40, 14, 4, 4
-"""Lines of the first screen, about; of it for models and for findings, at least; predictions."""
+HEIGHT, LEAST = 30, 3
+"""Lines of the first screen, about, and of it for findings, at least."""
 
 
 def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
@@ -353,29 +355,21 @@ def print_results(
         screen.say("")
     else:
         lines += [line for text in verdict(data) for line in screen.sentence(text)]
-        if "range" in data.sizes:
-            full = f"{show} --predictions"
-            lines += [BLANK, *predictions_in_short(screen, data, PREDICTIONS, full)]
-        most = max(HEIGHT - len(lines) - LEAST - 6, TABLE)
+        most = HEIGHT - len(lines) - LEAST - 4
         lines += [BLANK, *models_in(screen, data, most, f"{show} --models"), BLANK]
-        room = max(HEIGHT - len(lines) - 4, LEAST)
-        screen.show([*lines, *_findings(screen, data, room, f"{show} --findings"), BLANK])
-    if "findings" not in lists:
-        screen.say(f"what each finding means: {show} --findings")
+        room = max(HEIGHT - len(lines) - 2, LEAST)
+        screen.show([*lines, *_findings(screen, data, room, f"{show} --findings")])
     screen.say(f"all: {show} --all")
     screen.say(f"next: {command('report', folder)}")
 
 
 def _findings(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]:
-    """Return the first findings, in ``most`` lines or in those of the first one where more."""
+    """Return the first findings that fit into ``most`` lines, and the command that prints all."""
     sentences = headlines(data)
     blocks = [screen.sentence(text, start="- ") for text in sentences]
-    ends = np.cumsum([len(block) for block in blocks])
-    if ends.size and ends[-1] > most:
-        count = max(int(np.searchsorted(ends, most)), 1)
-        blocks = blocks[:count]
-        blocks.append(screen.sentence(digest(sentences, full, count)[-1], start="- "))
-    return [line for block in blocks for line in block]
+    count = int(np.searchsorted(np.cumsum([len(x) for x in blocks]), most - 1, side="right"))
+    rest = digest(sentences, full, count)[count:] or [f"what these findings mean: {full}"]
+    return [*(line for block in blocks[:count] for line in block), *screen.sentence(*rest)]
 
 
 def as_json(data: Dataset) -> str:

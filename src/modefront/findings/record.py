@@ -6,16 +6,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from modefront.findings.catalogue import CATALOGUE, Severity, page
-
-LINK = re.compile(r"\[([^]]*)\]\([^)]*\)")  # a link on the page of findings
+from modefront.findings.catalogue import CATALOGUE, VERDICT, Severity
+from modefront.text import Shown
 
 NUMBER = re.compile(r"\{([^{}|]*)\|([^{}|]*)\}")
 """Words of a sentence on one subject, and on several."""
 
 
 @dataclass(frozen=True)
-class Finding:
+class Finding(Shown):
     """What was found."""
 
     kind: str  # its name in the catalogue
@@ -30,7 +29,7 @@ class Finding:
     @property
     def severity(self) -> Severity:
         """How severe it is."""
-        return CATALOGUE[self.kind][0]
+        return Severity(CATALOGUE[self.kind].heading)
 
     def __str__(self) -> str:
         """Return the sentence: with a small letter first, and without a full stop."""
@@ -43,7 +42,7 @@ class Finding:
     @property
     def _halves(self) -> tuple[str, str]:
         """What is before the first semicolon of the sentence, and what is behind it."""
-        text = NUMBER.sub(lambda words: words[1 + self.many], CATALOGUE[self.kind][1])
+        text = NUMBER.sub(lambda words: words[1 + self.many], CATALOGUE[self.kind].sentence)
         wrong, _, remedy = text.partition("; ")
         values = {"subject": self.subject, **self.numbers}
         return wrong.format(**values), remedy.format(**values)
@@ -51,10 +50,7 @@ class Finding:
     @property
     def meaning(self) -> list[str]:
         """What it means and what to do, in paragraphs; none of a kind that says so itself."""
-        _, _, part = page("findings.md").partition(f"\n### {self.kind}\n")
-        _, _, text = part.partition("\n## ")[0].partition("\n### ")[0].partition("\n\n")
-        paragraphs = [x for x in text.split("\n\n") if x.strip() and not x.startswith("|")]
-        return [LINK.sub(r"\1", " ".join(x.split())) for x in paragraphs]
+        return CATALOGUE[self.kind].meaning
 
     def as_plain(self) -> dict[str, Any]:
         """Return the finding as JSON has it."""
@@ -68,6 +64,12 @@ class Finding:
 def found(kind: str, subject: str = "", *, many: bool = False, **numbers: Any) -> Finding:
     """Return a finding of a kind; other keywords are the numbers of its sentence."""
     return Finding(kind, subject, numbers, many)
+
+
+def meaning_of(sentence: str) -> list[str]:
+    """Return what a sentence of the verdict means and what to do, in paragraphs."""
+    kinds = {**VERDICT, "bound": CATALOGUE["bound"]}
+    return [text for x in kinds.values() if re.search(x.pattern, sentence) for text in x.meaning]
 
 
 def in_order(findings: Iterable[Finding]) -> list[Finding]:

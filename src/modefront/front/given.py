@@ -9,6 +9,7 @@ import numpy as np
 from modefront import options as opt
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, suggestion
+from modefront.text import Shown
 
 WEIGHT = opt.number("a weight above 0", above=0)
 
@@ -18,7 +19,7 @@ WEIGHTS = opt.Requirement(
 
 
 @dataclass(frozen=True)
-class Weighted:
+class Weighted(Shown):
     """Given weights of the objectives, which lead to a model of the results.
 
     Raises InputError for weights that are not numbers above 0.

@@ -6,10 +6,11 @@ from importlib.util import find_spec
 from typing import Any, Literal
 
 from modefront.families import Family
+from modefront.text import Shown
 
 
-@dataclass(frozen=True)
-class Method:
+@dataclass(frozen=True, repr=False)
+class Method(Shown):
     """A method that finds the points of a front.
 
     Attributes

@@ -8,6 +8,7 @@ from modefront.errors import Fault, refuse
 from modefront.front.methods import METHODS
 from modefront.front.simplex import size
 from modefront.options import Requirement, check_fields, number, one_of, whole
+from modefront.text import Shown
 
 MOST = 10_000  # points of a front at most
 
@@ -17,7 +18,7 @@ def _one_of_the_methods() -> Requirement:
 
 
 @dataclass(frozen=True)
-class Pareto:
+class Pareto(Shown):
     """Method, resolution and refinement of the Pareto front.
 
     Raises InputError for values that are not possible, alone or together.

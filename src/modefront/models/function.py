@@ -34,7 +34,7 @@ from modefront.models.matrices import (
 from modefront.models.parameters import Parameter
 from modefront.modes.result import FullModes, Modes
 from modefront.options import each_once
-from modefront.text import brief_model
+from modefront.text import Shown, brief_model
 from modefront.work.transfer import shared
 
 Matrix: TypeAlias = Any
@@ -148,7 +148,7 @@ class CheckedFunction:
 
 @shared
 @dataclass(frozen=True, eq=False, repr=False)
-class FunctionModel:
+class FunctionModel(Shown):
     """A model whose matrices are a function of the parameters; `function_model` makes it."""
 
     function: CheckedFunction  # returns K and M with their derivatives

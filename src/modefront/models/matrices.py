@@ -24,7 +24,7 @@ from modefront.modes import dense, sparse
 from modefront.modes.result import FullModes, Modes
 from modefront.options import NUMBER, WHOLE, any_of, array, whole
 from modefront.rounding import LARGEST, SYMMETRY
-from modefront.text import brief_model
+from modefront.text import Shown, brief_model
 from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 
@@ -57,7 +57,7 @@ def _eigenproblem() -> Iterator[None]:
 
 @shared
 @dataclass(frozen=True, eq=False, repr=False)
-class MatrixModel:
+class MatrixModel(Shown):
     """A model with affine stiffness and mass matrices, both dense or both sparse."""
 
     parameters: tuple[str, ...]  # names of the parameters

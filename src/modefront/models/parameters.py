@@ -16,6 +16,7 @@ import numpy as np
 from modefront import options
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, refuse, wrong
+from modefront.text import Shown
 
 BOUNDS = options.numbers(
     "[lower, upper], two finite numbers with lower < upper", options.PAIR, options.rising
@@ -37,7 +38,7 @@ class Prior(options.Checked):
 
 
 @dataclass(frozen=True)
-class Parameter:
+class Parameter(Shown):
     """A parameter of a model.
 
     Raises InputError for bounds of no width and for a nominal value beyond them.

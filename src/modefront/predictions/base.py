@@ -22,7 +22,7 @@ from modefront.families import Family
 from modefront.models.base import Model
 from modefront.options import TRUE_OR_FALSE, Checked, Requirement, check_fields, each_once, text
 from modefront.residuals.problem import UpdatingProblem
-from modefront.text import NAME, clean
+from modefront.text import NAME, Shown, clean
 
 Contents = Literal["number", "count", "truth", "text"]  # types of values of a variable
 
@@ -148,8 +148,8 @@ class NumericalCheck(Checked):
     label: ResultVariable
 
 
-@dataclass(frozen=True)
-class PredictionKind:
+@dataclass(frozen=True, repr=False)
+class PredictionKind(Shown):
     """Table, result variables and wording of all predictions of a class.
 
     Raises InputError for values that are not possible, alone or together.

@@ -17,6 +17,7 @@ from modefront.predictions import system as modal
 from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVariable, Setting
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import ACCUMULATED, WRITTEN
+from modefront.text import Shown
 
 STEPS_A_PERIOD = 20  # time steps in the shortest period, where the step is not given
 MOST_STEPS = 10**6  # time steps at most: convolutions of more fill the memory
@@ -62,7 +63,7 @@ FILTER = options.nested("a table { frequency, damping }, a Kanai-Tajimi filter",
 
 # 15 fields: the keys of a table of a study file.
 @dataclass(frozen=True)
-class Passage:
+class Passage(Shown):
     """First-passage probabilities at several levels.
 
     Raises InputError for values that are not possible, alone or together.

@@ -37,6 +37,7 @@ from modefront.models.base import Model
 from modefront.predictions import system as modal
 from modefront.predictions.base import PredictionKind, ResultVariable, Setting
 from modefront.residuals.problem import UpdatingProblem
+from modefront.text import Shown
 
 ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2, "absolute accelerance": 2}
 """The power s of iω, by the response that is set against the load."""
@@ -205,7 +206,7 @@ BAND = options.numbers(
 
 
 @dataclass(frozen=True)
-class PeakResponse:
+class PeakResponse(Shown):
     """Peaks of the frequency response of several outputs to one input.
 
     Raises InputError for values that are not possible, alone or together.

@@ -24,6 +24,7 @@ from modefront._version import __version__
 from modefront.datasets import Dataset
 from modefront.errors import Fault, InputError, writing
 from modefront.findings.catalogue import Severity
+from modefront.findings.record import meaning_of
 from modefront.front.methods import METHODS
 from modefront.front.point import front_points, position
 from modefront.outputs import write_text
@@ -157,7 +158,10 @@ def _front(name: str, data: Dataset, arrays: _Arrays) -> dict[str, Any]:
             for x in each.quantities
             if x.variable.ranged
         ],
-        "words": [{"heading": x, "sentences": said} for x, said in topics(data).items()],
+        "words": [
+            {"heading": x, "sentences": [{"text": text, "meaning": why} for text, why in said]}
+            for x, said in topics(data).items()
+        ],
     }
 
 
@@ -216,23 +220,24 @@ def _prediction(of: RecordedPrediction, x: Quantity) -> dict[str, Any]:
     }
 
 
-def topics(data: Dataset) -> dict[str, tuple[str, ...]]:
-    """Return the sentences on each question by its heading, which the first answer has none of."""
+def topics(data: Dataset) -> dict[str, list[tuple[str, list[str]]]]:
+    """Return the sentences on each question by its heading, which the first answer has none of.
+
+    Each has what it means and what to do, in paragraphs.
+    """
     found = findings_of(data)
 
-    def of(*severities: Severity) -> tuple[str, ...]:
-        return tuple(
-            f"{text[:1].upper()}{text[1:]}".rstrip(".") + "."
-            for text in (str(x) for x in found if x.severity in severities)
-        )
+    def of(*severities: Severity) -> list[tuple[str, list[str]]]:
+        chosen = ((str(x), x.meaning) for x in found if x.severity in severities)
+        return [(f"{text[:1].upper()}{text[1:]}".rstrip(".") + ".", why) for text, why in chosen]
 
-    failed = of(Severity.FAILURE) or ("All models that were solved for converged.",)
-    every = {
-        "": tuple(verdict(data)),
+    failed = of(Severity.FAILURE) or [("All models that were solved for converged.", [])]
+    every: dict[str, list[tuple[str, list[str]]]] = {
+        "": [(text, meaning_of(text)) for text in verdict(data)],
         "How well the best models do": of(Severity.FIT),
-        "What to beware of": (*failed, *of(Severity.CAUTION)),
+        "What to beware of": [*failed, *of(Severity.CAUTION)],
         "What the data leave open": of(Severity.OPEN),
-        "What was studied": (_study(data),),
+        "What was studied": [(_study(data), [])],
     }
     return {heading: sentences for heading, sentences in every.items() if sentences}
 

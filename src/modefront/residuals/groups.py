@@ -11,6 +11,7 @@ from modefront.options import WHOLE, Requirement, any_of, array, plain, whole
 from modefront.residuals.base import Member, ResidualKind, Scale, Stack
 from modefront.residuals.frequency import FrequencyKind
 from modefront.residuals.shape import ShapeKind
+from modefront.text import Shown
 
 NEEDED = ("name", "plural", "usable_std", "measured", "has_usable_std", "members", "stack")
 """What a kind has, see `ResidualKind`."""
@@ -39,7 +40,7 @@ MODE_NUMBERS = Requirement(
 
 
 @dataclass(frozen=True, init=False)
-class Group:
+class Group(Shown):
     """An objective J_i: the sum of the squares of the residuals of its members.
 
     Each kind of residual (`KINDS`) is a keyword that names its measured modes:

@@ -38,13 +38,14 @@ from modefront.pairing.match import (
 )
 from modefront.residuals.base import Member, ModeErrors, Stack
 from modefront.residuals.groups import Group
+from modefront.text import Shown
 from modefront.work.transfer import Shared, is_shared, shared
 
 
 # 11 fields: model and data, limits of the parameters, and how both are compared.
 @shared
 @dataclass(frozen=True)
-class UpdatingProblem:
+class UpdatingProblem(Shown):
     """Objectives of a model, measured data and groups; `updating_problem` makes it.
 
     What the solvers see of it is `modefront.optim.problem.Problem`. Raises ValueError for a group

@@ -57,7 +57,8 @@ def digest(sentences: Sequence[str], where: str, most: int | None = MOST) -> lis
     rest = 0 if most is None else len(sentences) - most
     if rest <= 0:
         return list(sentences)
-    return [*sentences[:most], f"and {rest} more finding{'s' * (rest > 1)}: {where}"]
+    more = f"and {rest} more finding" if most else f"{rest} finding"
+    return [*sentences[:most], f"{more}{'s' * (rest > 1)}: {where}"]
 
 
 def findings_of(data: Dataset, *, full: bool = False) -> list[Finding]:

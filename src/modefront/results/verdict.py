@@ -76,7 +76,7 @@ def _unjudged(data: Dataset) -> Iterator[str]:
 
 
 def _say(kind: str, **values: Any) -> str:
-    return VERDICT[kind].format(**values)
+    return VERDICT[kind].sentence.format(**values)
 
 
 def _use(data: Dataset) -> str:

@@ -20,6 +20,7 @@ from modefront.predictions import Prediction
 from modefront.predictions.ranges import SLACK
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.schema import variables_of
+from modefront.text import Shown
 from modefront.uncertainty.noise import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 
@@ -39,7 +40,7 @@ class Origin:
 
 # 12 fields: the problem, where it was read, and each table of options.
 @dataclass(frozen=True)
-class Study:
+class Study(Shown):
     """A problem with the options of its solution.
 
     Raises InputError with all options that contradict the problem or one another.

@@ -21,6 +21,7 @@ from modefront.models.base import Model
 from modefront.models.geometry import Geometry, axis_name
 from modefront.models.matrices import MatrixModel
 from modefront.options import NAME, Table, any_of, closed, keys, text, whole
+from modefront.text import Shown
 
 FILE = text("the name of a file of modal data")
 COVARIANCE = text("the name of a file of covariances of shapes, in CSV")
@@ -31,8 +32,8 @@ PLACE = any_of(
 )
 
 
-@dataclass(frozen=True)
-class DataReader:
+@dataclass(frozen=True, repr=False)
+class DataReader(Shown):
     """A reader of files of modal data, besides those in CSV and UFF.
 
     Attributes

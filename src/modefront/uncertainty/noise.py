@@ -20,6 +20,7 @@ from modefront.modes.result import Modes
 from modefront.options import check_fields, whole
 from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
+from modefront.text import Shown
 from modefront.work.codec import record
 
 Source = Literal["std", "sets"]  # sources of the uncertainty of the data
@@ -44,7 +45,7 @@ def available(data: ModalData) -> tuple[Source, ...]:
 
 
 @dataclass(frozen=True)
-class Uncertainty:
+class Uncertainty(Shown):
     """Source of the errors of the data, and samples of data and models.
 
     Raises InputError for values that are not possible, alone or together.

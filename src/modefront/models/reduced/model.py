@@ -18,7 +18,7 @@ from modefront.models.reduced import basis as bases
 from modefront.modes import dense
 from modefront.modes.result import FullModes, Modes
 from modefront.modes.sparse import lowest
-from modefront.text import brief_model
+from modefront.text import Shown, brief_model
 from modefront.work.task import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
 
@@ -69,7 +69,7 @@ _Projected: TypeAlias = tuple[tuple[SnapshotRequest, ...], DenseAffine, DenseAff
 # 13 fields: eight describe the basis, five are its state.
 @shared
 @dataclass(eq=False, repr=False)
-class ReducedModel:
+class ReducedModel(Shown):
     """A sparse model in the basis of its modes and their derivatives at some parameters.
 
     It is a model like any other (`modefront.models.base.Model`). The first snapshot is taken at

@@ -13,10 +13,11 @@ from modefront.fem.structure import AXES, DIRECTION, DIRECTIONS, NAMED
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable
 from modefront.models.matrices import DOF, WEIGHTED, SensorSpec
+from modefront.text import Shown
 
 
-@dataclass(frozen=True)
-class ModelKind:
+@dataclass(frozen=True, repr=False)
+class ModelKind(Shown):
     """A kind of model that a study file can name.
 
     Attributes
