@@ -329,9 +329,13 @@ def test_a_run_that_is_done_is_not_done_again(
 def test_what_another_program_has_kept_is_done_again(
     modefront_: Run, study: Path, done: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    assert "by another version" not in modefront_("run", study)[2]
+    (kept,) = (done / "tasks").glob("*-*")
     monkeypatch.setattr(session, "_program", lambda: "other")
     interrupt_after(0, monkeypatch)
-    assert modefront_("run", study)[0] == 130
+    status, _, err = modefront_("run", study)
+    assert status == 130
+    assert f"not taken over, and may be deleted: {kept}, by another version" in err
     assert (done / FILE).exists()
 
 

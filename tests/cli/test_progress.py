@@ -19,7 +19,7 @@ from modefront.front.subproblems import Least
 from modefront.optim.sqp import Solution
 from modefront.study.estimate import SHORT, TIMED, duration, estimate
 from modefront.study.examples import write_example
-from modefront.work.progress import State, listening, note, note_iteration, together
+from modefront.work.progress import State, listening, note, note_iteration
 from modefront.work.task import Costs
 
 
@@ -115,12 +115,12 @@ def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Pat
     assert 20 < few < 85 < many < 1000, "a run makes about 85 searches"
     assert not short.plan.other, "with weight = 0 there is no posterior to draw from"
     least, most = short.range
-    assert few * short.plan.search < least < most < many * short.plan.search, "not all at an end"
+    assert few * short.plan.search <= least < most < many * short.plan.search, "not all long"
     assert "searches of" in short.text
     started = estimate(study, 10.0)  # seconds until the study was read
     assert started is not None
     before, after = np.subtract(started.range, started.plan.seconds)
-    assert before > 10.0
+    assert before == pytest.approx(10.0)
     assert after < 20.0
     small = estimate(replace(study, search=Search(evaluations=100)))
     assert small is not None
@@ -150,10 +150,3 @@ def test_predictions_are_timed_with_few_samples(tmp_path: Path) -> None:
 
 def test_durations_are_in_the_unit_that_suits_them() -> None:
     assert [duration(x) for x in (0.0123, 0.5, 45.0, 240.0)] == ["12 ms", "0.5 s", "45 s", "4 min"]
-
-
-def test_parts_that_take_from_one_to_four_seconds_are_not_all_short_or_long_at_once() -> None:
-    assert np.allclose(together([(1.0, 4.0)]), (1.0, 4.0))
-    assert np.allclose(together([(1.0, 4.0)] * 4), (6.0, 12.0))
-    assert np.allclose(together([(3.0, 3.0), (0.0, np.inf)]), (3.0, np.inf))
-    assert together([]) == (0.0, 0.0)

@@ -350,10 +350,11 @@ def test_the_time_left_follows_a_plan() -> None:
     assert 2.0 + 0.5 * 9.0 < least < most < 8.0 + 2 * 9.0, "edges have ended, three tasks are left"
 
 
-def test_parts_are_not_all_short_or_long_at_once() -> None:
+def test_parts_are_all_short_and_not_all_long_at_once() -> None:
     assert together([]) == (0.0, 0.0)
     assert together([(1.0, 9.0)]) == pytest.approx((1.0, 9.0))
-    assert together([(1.0, 9.0)] * 4) == pytest.approx((12 - 4.0, 12 + 12.0))
+    assert together([(1.0, 9.0)] * 4) == pytest.approx((4.0, 12 + 12.0))
+    assert together([(3.0, 3.0), (0.0, np.inf)]) == (3.0, np.inf)
 
 
 def test_of_a_stage_that_was_kept_in_part_the_least_is_not_known() -> None:

@@ -174,9 +174,12 @@ def run(
         from modefront.results.remarks import not_converged, uncertified
         from modefront.study.estimate import SHORT, estimate
         from modefront.study.file import load
+        from modefront.study.session import of_another_program
         from modefront.study.session import run as run_study
 
         loaded = load(study)
+        for path in of_another_program(loaded, directory):
+            say(f"not taken over, and may be deleted: {path}, by another version", err=True)
         if refine is not None:
             try:
                 loaded = replace(loaded, pareto=replace(loaded.pareto, refined=refine))

@@ -16,6 +16,7 @@ from threadpoolctl import threadpool_limits
 
 from modefront.errors import InputError, ModelError
 from modefront.front.proposers.base import USUAL
+from modefront.front.search import EDGES
 from modefront.front.simplex import default_points, size
 from modefront.front.subproblems import Least
 from modefront.identifiability.combinations import LEAST
@@ -36,7 +37,7 @@ from modefront.work.task import seed_sequence, uncounted
 
 NEAR = 0.4, 2.0  # time of a search from a known model over that of one from anywhere, from and to
 SHORT = 30.0  # seconds up to which no advice on a shorter run is given
-STEP = 2.0, 6.0  # evaluations of a step from one draw of the posterior to the next, from and to
+STEP = 3.0, 5.0  # evaluations of a step from one draw of the posterior to the next, from and to
 
 ENDS = 20
 """Steps to the end of a range at a model, with a slack: each takes derivatives by differences."""
@@ -169,8 +170,7 @@ def _search(study: Study) -> tuple[float, float] | None:
     model = problem.model
     if is_reduced(study.problem.model) and isinstance(model, MatrixModel):
         count = modes_needed(problem.pairing, problem.data, model.size)
-        reduced = _seconds(replace(problem, model=stand_in(model, count)))[0]
-        seconds = average * (max(seconds / average - each, 0.0) + reduced)
+        seconds = average * _seconds(replace(problem, model=stand_in(model, count)))[0]
     return seconds, average
 
 
@@ -190,7 +190,7 @@ def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
         return (count * NEAR[0], count * NEAR[1]), text
 
     n, pareto, points = len(study.problem.groups), study.pareto, _points(study)
-    edges, budget = n + len(study.weighted) + 1, study.search.evaluations / evaluations
+    edges, budget = n + len(study.weighted) + 1, EDGES * study.search.evaluations / evaluations
     # The starts N after which w(w + 1) / N(N - 1) is the doubt, of one minimum and of usual ones.
     few, many = ((1 + np.sqrt(1 + 4 * w * (w + 1) / study.search.doubt)) / 2 for w in (1, USUAL))
     text = f"fewer evaluations of the search ([search] evaluations, now {study.search.evaluations})"

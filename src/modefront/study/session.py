@@ -155,7 +155,7 @@ def run(
     if folder is None:
         return Results(done(), study.problem)
     folder = Path(folder)
-    tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}-{_program()}"
+    tasks = _tasks(study, folder)
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
     for path in (tasks.parent, tasks):
@@ -183,6 +183,17 @@ def run(
                 note = os.path.relpath(study.origin.file.absolute(), folder.absolute())
                 write_text(tasks / NOTE, Path(note).as_posix() + "\n")
     return Results(data, study.problem)
+
+
+def of_another_program(study: Study, folder: Path) -> list[Path]:
+    """Return what other versions of the program have kept of a study's work, and this one not."""
+    name = f"{study.work[:12]}-"
+    kept = sorted((folder / FOLDER).glob(f"{name}*")) if study.work else []
+    return kept if kept and not _tasks(study, folder).exists() else []
+
+
+def _tasks(study: Study, folder: Path) -> Path:
+    return folder / FOLDER / f"{study.work[:12]}-{__version__}-{_program()}"
 
 
 def _program() -> str:

@@ -29,14 +29,14 @@ of those before, from and to."""
 
 
 def together(spans: Iterable[Span]) -> Span:
-    """Return the seconds of several independent parts, which are not all short, or long, at once.
+    """Return the seconds of several independent parts, which are not all long at once.
 
-    Geometric middles add up, and so do the squares of the distances of the ends from them.
+    Most parts take little more than their least, so these add up. To the other end, geometric
+    middles do, and the squares of the distances of the ends from them.
     """
     least, most = np.array([*spans, (0.0, 0.0)]).T
     middle = np.sqrt(least * np.where(np.isfinite(most), most, least))
-    low, high = middle.sum() - np.linalg.norm(middle - least), np.linalg.norm(most - middle)
-    return float(low), float(middle.sum() + high)
+    return float(least.sum()), float(middle.sum() + np.linalg.norm(most - middle))
 
 
 @dataclass(frozen=True)
