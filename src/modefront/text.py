@@ -2,9 +2,11 @@
 
 import codecs
 import html
+import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
+from operator import methodcaller
 from pathlib import Path
 from typing import Any
 
@@ -101,6 +103,13 @@ def _spell(error: UnicodeError) -> tuple[str, int]:
 
 
 codecs.register_error(SPELL, _spell)
+
+
+def json_of(values: Any, constants: Mapping[str, Any] | None = None, **form: Any) -> str:
+    """Return JSON: of arrays lists, and null for what is no number, or what ``constants`` has."""
+    text = json.dumps(values, default=methodcaller("tolist"))
+    known = json.loads(text, parse_constant=(constants or {}).get)
+    return json.dumps(known, allow_nan=False, **form)
 
 
 LINE, MOST = 96, 18  # characters of a line, and lines of fields

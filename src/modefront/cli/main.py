@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ import click
 from modefront._version import __version__
 from modefront.cli.terminal import complain, prepare, say, say_next, usage
 from modefront.errors import InputError, UnfinishedError, reason
-from modefront.text import one_line
+from modefront.text import json_of, one_line
 
 PATH = click.Path(path_type=Path)
 
@@ -253,12 +253,12 @@ def show(
 @click.option("--all", "every", is_flag=True, help="All parameters and predictions.")
 def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
     """Set the results in several DIRECTORIES side by side."""
-    from modefront.cli.show import comparison_as_json, print_comparison
+    from modefront.cli.show import print_comparison
     from modefront.results.compare import compare as compare_results
 
     comparison = compare_results(directories)
     if form == "json":
-        print(comparison_as_json(comparison))
+        print(json_of(asdict(comparison), indent=1))
     else:
         print_comparison(comparison, every=every)
 

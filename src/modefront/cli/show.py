@@ -1,8 +1,7 @@
 """Results and comparisons in the terminal, an overview or full lists, and as JSON."""
 
-import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -22,6 +21,7 @@ from modefront.predictions.base import Quantity, predictions_in, quantity
 from modefront.results.compare import Comparison, Spread, short_names
 from modefront.results.remarks import digest, findings_of, headlines, verdict
 from modefront.study.estimate import Estimate
+from modefront.text import json_of
 from modefront.work.task import Costs
 
 FEWEST = 2  # rows of a kind that a table keeps, however long it is
@@ -331,13 +331,14 @@ def print_summary(data: Dataset, folder: Path, costs: Costs) -> None:
     whole = command("show", folder, "--findings")
     for line in [*said, *failures] if said else digest(headlines(data), whole):
         screen.say(line, start="  ")
-    spent = f"this time: {costs.eigenproblems} full eigensolutions in {costs.full_time:.3g} s"
-    if costs.corrected:
-        spent += f", {costs.corrected} corrected in {costs.corrected_time:.3g} s"
-    if costs.reduced:
-        spent += f", {costs.reduced} reduced in {costs.reduced_time:.3g} s"
-        spent += f", {costs.certificates} certificates in {costs.certificate_time:.3g} s"
-    screen.say(spent)
+    spent = {
+        "full eigensolutions": (costs.eigenproblems, costs.full_time),
+        "corrected": (costs.corrected, costs.corrected_time),
+        "reduced": (costs.reduced, costs.reduced_time),
+        "certificates": (costs.certificates, costs.certificate_time),
+    }
+    said = [f"{count} {what} in {s:.3g} s" for what, (count, s) in spent.items() if count]
+    screen.say(f"this time: {', '.join(said) or 'nothing was solved'}")
     say_next("show", folder)
 
 
@@ -385,12 +386,7 @@ def as_json(data: Dataset) -> str:
         "remarks": [str(finding) for finding in found],
         "findings": [finding.as_plain() for finding in found],
     }
-    return json.dumps(as_plain(sections), indent=1)
-
-
-def as_plain(values: Any) -> Any:
-    """Return what JSON has: null for what is no number."""
-    return json.loads(json.dumps(values), parse_constant=lambda _: None)
+    return json_of(sections, indent=1)
 
 
 SHOWN = 6  # parameters, and predictions, that are printed unless all are asked for
@@ -446,8 +442,3 @@ def _cell(value: object) -> str:
         ends = f"{_cell(value.least)} to {_cell(value.greatest)}"
         return f"{_cell(value.reference)} ({ends})"
     return number(value, ".4g", "") if isinstance(value, float) else str(value)
-
-
-def comparison_as_json(comparison: Comparison) -> str:
-    """Return a comparison as JSON; what is not a number becomes null."""
-    return json.dumps(as_plain(asdict(comparison)), indent=1)

@@ -1,8 +1,5 @@
 """The report of an identification: one HTML file to look at, and to choose poles in."""
 
-import base64
-import gzip
-import json
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +7,12 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront._version import __version__
-from modefront.identification.modal_test import IdentifiedTest, known
+from modefront.identification.modal_test import IdentifiedTest
 from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
 from modefront.identification.stabilisation import complex_indicators, multivariate_indicators
-from modefront.reports.page import page_of, write_html
+from modefront.reports.page import packed, page_of, write_html
+from modefront.text import json_of
 
 MOST_LINES, MOST_FUNCTIONS = 600, 40
 """Lines of a curve: more are not seen; functions of a data set, the greatest residuals first."""
@@ -27,14 +25,13 @@ def write_identification(test: IdentifiedTest, path: Path) -> Path:
         "version": __version__,
         "warnings": test.warnings,
         "chosen": {
-            "keep": list(test.test.chosen.keep),
-            "drop": list(test.test.chosen.drop),
-            "seed": list(test.test.chosen.seeds),
+            "keep": test.test.chosen.keep,
+            "drop": test.test.chosen.drop,
+            "seed": test.test.chosen.seeds,
         },
         "sets": [{"name": name} | _set(test, k) for k, name in enumerate(test.names)],
     }
-    text = json.dumps(report, allow_nan=False).encode()
-    data = base64.b64encode(gzip.compress(text, mtime=0)).decode("ascii")
+    data = packed(json_of(report).encode())
     write_html(page_of(test.test.name, data, "identification.js"), path)
     return path
 
@@ -53,7 +50,7 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
     shapes = np.array([mode.shape.complex_shape for mode in each.modes])
     mac: list[Floats] = list(auto_mac(shapes)) if each.modes else []
     return {
-        "band": list(each.band),
+        "band": each.band,
         "quantity": data.quantity,
         "modes": [
             {
@@ -63,11 +60,11 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
                 "frequencyStd": mode.frequency_std,
                 "damping": mode.damping,
                 "dampingStd": mode.damping_std,
-                "evidence": known(mode.evidence.gain),
-                "orders": known(mode.evidence.support),
-                "seen": known(mode.evidence.visibility),
+                "evidence": mode.evidence.gain,
+                "orders": mode.evidence.support,
+                "seen": mode.evidence.visibility,
                 "collinearity": mode.shape.collinearity,
-                "flags": list(mode.evidence.flags),
+                "flags": mode.evidence.flags,
                 "shape": _rounded(mode.shape.shape),
             }
             for mode, number in zip(each.modes, test.numbers[k], strict=True)
@@ -75,17 +72,17 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
         "poles": {
             "frequency": _rounded(diagram.frequency[inside], 7),
             "damping": _rounded(diagram.damping[inside]),
-            "order": diagram.order[inside].tolist(),
-            "stable": diagram.stable[inside].astype(int).tolist(),
+            "order": diagram.order[inside],
+            "stable": diagram.stable[inside].astype(int),
         },
         "lines": _rounded(data.frequency[kept], 7),
         "complexIndicators": [_logarithms(row[kept]) for row in complex_indicators(data)],
         "multivariateIndicators": [_rounded(row) for row in multivariate],
         "functions": _functions(each, kept),
         "mac": [_rounded(row, 3) for row in mac],
-        "sensors": list(each.responses),
-        "positions": positions.tolist(),
-        "directions": directions.tolist(),
+        "sensors": each.responses,
+        "positions": positions,
+        "directions": directions,
     }
 
 
@@ -125,5 +122,5 @@ def _logarithms(power: Floats) -> list[int | None]:
     return [int(x) if np.isfinite(x) else None for x in level]
 
 
-def _rounded(values: Floats, digits: int = 4) -> list[float | None]:
-    return [float(f"{x:.{digits}g}") if np.isfinite(x) else None for x in values.tolist()]
+def _rounded(values: Floats, digits: int = 4) -> list[float]:
+    return [float(f"{x:.{digits}g}") for x in values.tolist()]

@@ -9,11 +9,9 @@ import base64
 import gzip
 import hashlib
 import html
-import json
 import re
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
-from operator import methodcaller
 from pathlib import Path
 from typing import Any
 
@@ -31,11 +29,11 @@ from modefront.outputs import write_text
 from modefront.predictions.base import Quantity, RecordedPrediction, predictions_in
 from modefront.results.compare import read_together, short_names
 from modefront.results.remarks import findings_of, verdict
+from modefront.text import json_of
 
 CONSTANTS = {"NaN": None, "Infinity": 10**400, "-Infinity": -(10**400)}
 """What JSON has for numbers of which it has no word; JavaScript reads such integers as infinity."""
 
-LISTED = methodcaller("tolist")  # what makes lists and numbers of those of NumPy
 LARGEST = 32767  # of a 16-bit integer
 
 CITE = (
@@ -68,11 +66,13 @@ def payload(results: Sequence[tuple[str, Dataset]]) -> tuple[str, str]:
         "cite": [text.format(version=__version__) for text in CITE],
         "fronts": fronts,
     }
-    known = json.loads(json.dumps(report, default=LISTED), parse_constant=CONSTANTS.get)
-    text = json.dumps(known, separators=(",", ":"), allow_nan=False).encode()
-    content = len(text).to_bytes(4, "little") + text + arrays.content
-    packed = gzip.compress(content, 9, mtime=0)
-    return title, base64.b64encode(packed).decode("ascii")
+    text = json_of(report, CONSTANTS, separators=(",", ":")).encode()
+    return title, packed(len(text).to_bytes(4, "little") + text + arrays.content)
+
+
+def packed(content: bytes) -> str:
+    """Return content as a page carries it."""
+    return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode("ascii")
 
 
 class _Arrays:

@@ -10,6 +10,7 @@ import numpy as np
 from modefront._typing import Bools
 from modefront.datasets import Dataset
 from modefront.findings.catalogue import Severity
+from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found, from_text, in_order
 from modefront.front.point import Kind, front_points, preferred
 from modefront.optim.problem import at_bounds
@@ -256,16 +257,14 @@ def _pairs(data: Dataset, most: int) -> Iterator[Finding]:
 
 
 def _at_bounds(data: Dataset, most: int) -> Iterator[Finding]:
-    """Yield which parameters are at a bound and where, of more than ``most`` only how many."""
+    """Yield which parameters are at a bound and where, the first ``most`` of them."""
     at_bound = at_bounds(data["theta"].values, *data["bounds"].values.T) != 0
     held = np.flatnonzero(at_bound.any(axis=0))
     names = data["parameter"].values[held]
-    if held.size > most:
-        yield found("many-at-bounds", ", ".join(names[:most]), parameters=int(held.size))
-    elif held.size:
+    if held.size:
         at = zip(names, held, strict=True)
         named = [f"{name} ({places(data, at_bound[:, j])})" for name, j in at]
-        yield found("at-bounds", "; ".join(named))
+        yield found("at-bounds", enumeration(named, most))
 
 
 def _ranges(data: Dataset) -> Iterator[Finding]:
