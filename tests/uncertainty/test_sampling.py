@@ -282,8 +282,11 @@ def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
     assert np.linalg.eigvalsh(peak.precision(np.ones(1))).min() > 0
 
 
-def test_steps_in_a_poor_basis_leave_draws_exact(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Steps are those of a posterior whose mean is off by one of its standard deviations."""
+@pytest.mark.parametrize(("mean", "std", "count"), [(0.2, 0.2, 300), (0.9, 0.05, 50)])
+def test_draws_in_a_poor_basis_are_weighted(
+    mean: float, std: float, count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Chains are those of a posterior off by half a standard deviation, or far away."""
 
     def line(theta: Floats, mean: float, std: float) -> Residuals:
         x, _ = theta
@@ -291,11 +294,12 @@ def test_steps_in_a_poor_basis_leave_draws_exact(monkeypatch: pytest.MonkeyPatch
 
     exact, poor = (
         replace(noise_of(partial(line, mean=m, std=s), [0, 0], [1, 1], [1.0]), weight=1e8)
-        for m, s in ((0.1, 0.2), (0.3, 0.15))
+        for m, s in ((0.1, 0.2), (mean, std))
     )
-    for name, value in (("_nearer", lambda *_: poor), ("ROUND", 20), ("TOGETHER", 3)):
-        monkeypatch.setattr(f"modefront.uncertainty.sampling.{name}", value)
-    draws = draw_models(exact, [np.array([0.1, 0.5])], 100, 8, IMMEDIATE).theta
-    known = scipy.stats.truncnorm(-0.5, 4.5, loc=0.1, scale=0.2)
-    assert scipy.stats.kstest(draws[:, 0], known.cdf).pvalue > 0.01
-    assert scipy.stats.kstest(draws[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01
+    monkeypatch.setattr("modefront.uncertainty.sampling._nearer", lambda *_: poor)
+    found = draw_models(exact, [np.array([0.1, 0.5])], count, 8, IMMEDIATE)
+    assert found.settled == (std == 0.2)
+    if found.settled:
+        known = scipy.stats.truncnorm(-0.5, 4.5, loc=0.1, scale=0.2)
+        assert scipy.stats.kstest(found.theta[:, 0], known.cdf).pvalue > 0.01
+        assert scipy.stats.kstest(found.theta[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01

@@ -10,9 +10,9 @@ centres of further proposals. Chains go on until they agree and the effective sa
 (Vehtari et al. 2021, doi:10.1214/20-BA1221). They end at half of their length at most where none of
 their halves is worth more than one draw.
 
-Where modes are those of a reduced basis, steps are taken in a smaller one, and several of them
-together are taken or not by what the basis itself says (Liu 2001, *Monte Carlo Strategies in
-Scientific Computing*, section 9.4.3): a poor one makes chains slow, and draws no less exact.
+Where modes are those of a reduced basis, chains are those of a smaller one, and draws are weighted
+by what the basis itself says of them (Liu 2001, *Monte Carlo Strategies in Scientific Computing*,
+section 2.5): a poor one leaves fewer of them, and these no less exact.
 """
 
 from __future__ import annotations
@@ -45,10 +45,9 @@ ACCEPTED = 0.35  # share of proposals that are taken, below which steps become s
 APART = 1.0  # distance of two peaks, in standard deviations, below which one is enough
 FAINT = 1e-3  # probability of a peak over that of the greatest one, below which it is left out
 
-SMALL, SNAPSHOTS, TOGETHER = 100, 40, 5
-"""Columns of a basis from which steps are taken in a smaller one, models of which the modes span
-that, and steps that are taken together: of an odd number, every second one a jump, the kinds are in
-the same order backwards."""
+SMALL, SNAPSHOTS = 100, 40
+"""Columns of a basis from which steps are taken in a smaller one, and models whose modes span it
+at first."""
 
 SOLVED, STEPS = 1e-3, 12  # error of the normal variables behind a model, and steps to it at most
 
@@ -187,10 +186,6 @@ class Model:
         of_s = (logs.a / 2 + 1) * np.log(self.s) + b / (2 * self.s)
         return float(-of_s.sum() - self.found.J[-1] / 2)
 
-    def excess(self, true: Evaluation, logs: LogSum) -> float:
-        """Return ln p of the model with the residuals of another evaluation, over its own."""
-        return Model(true, self.s).log_posterior(logs) - self.log_posterior(logs)
-
     def newton(self, b: float) -> tuple[Floats, Floats]:
         """Return mean (p,) and precision (p, p) of proposals nearby: the stochastic Newton method.
 
@@ -218,8 +213,6 @@ class Chain:
     """A round of a chain."""
 
     z: Floats  # (steps, p) standardised parameters
-    frequency: Floats  # frequency, mac: (steps, modes)
-    mac: Floats
     s: Floats  # (n,) variances at its end
     length: Floats  # b of both kinds of proposals
     beyond: bool  # whether no peak proposes the model at its end
@@ -244,12 +237,12 @@ def draw_models(
     They are as many as asked for, and as the chains have steps at most. Chains have ``rounds`` at
     most; None for as many as so many effective draws may take.
     """
-    stage, target = "sample-posterior", Standardised(noise.problem)
+    stage = "sample-posterior"
     tasks = [Task((stage, "peak", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
     peaks = _mixture(noise, work.run(tasks))
     work.expect({stage: 3 * CHAINS})
     chains: list[Chain | None] = [None] * CHAINS
-    kept: list[list[Chain]] = []
+    kept: list[Floats] = []
     rng = np.random.default_rng(seed_sequence(seed, stage, "near"))
     around = [peaks[k].top.newton(1.0) for k in rng.choice(len(peaks), SNAPSHOTS)]
     near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), 0, work)
@@ -260,7 +253,7 @@ def draw_models(
             Task(
                 (stage, k + 1, turn + 1),
                 _advanced,
-                (noise, near, peaks, chain, warm),
+                (near, peaks, chain, warm),
                 seed_sequence(seed, stage, k + 1, turn + 1),
             )
             for k, chain in enumerate(chains)
@@ -270,48 +263,72 @@ def draw_models(
         if warm:
             beyond = [x.z[-1] for x in found if x.beyond]
             tasks = [
-                Task((stage, "beyond", turn + 1, k + 1), target.evaluate, (z,))
+                Task((stage, "beyond", turn + 1, k + 1), Standardised(noise.problem).evaluate, (z,))
                 for k, z in enumerate(beyond)
             ]
             more = _mixture(noise, work.run(tasks))
             peaks, warm = [*peaks, *more], bool(more) and turn + 1 < WARM
-            if near:
-                z = _joined(found, "z")
-                near = _nearer(noise, z, turn + 1, work)
+            if near is not noise:
+                some = np.vstack([x.z[:: CHAINS * ROUND // SNAPSHOTS] for x in found])
+                near = _nearer(noise, some, turn + 1, work)
             continue
-        kept.append(found)
-        ratio, size = agreement(np.array([_joined(x, "z") for x in zip(*kept, strict=True)]))
+        kept.append(np.array([x.z for x in found]))
+        ratio, size = agreement(np.concatenate(kept, axis=1))
         settled = ratio < AGREE and size >= count / 2
         stuck = 2 * len(kept) >= rounds and size <= 2 * CHAINS
         if stuck or len(kept) == rounds or (settled and size >= count):
             break
         more_rounds = np.ceil(len(kept) * max(count / size - 1, 0.0))  # effective draws add up
         work.expect({stage: CHAINS * int(np.clip(more_rounds, 1, rounds - len(kept)))})
-    every = [x for chain in zip(*kept, strict=True) for x in chain]
+    z = np.concatenate(kept, axis=1).reshape(-1, near.problem.start.size)
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
-    last = len(every) * ROUND - 1
-    order = rng.permutation(np.linspace(0, last, min(count, last + 1)).round().astype(int))
-    z, frequency, mac = (_joined(every, x)[order] for x in ("z", "frequency", "mac"))
-    return Draws(np.array([target.theta(x)[0] for x in z]), frequency, mac, settled)
+    order = np.linspace(0, len(z) - 1, min(count, len(z))).round().astype(int)
+    z = rng.permutation(z[order])
+    parts = [
+        Task((stage, "draws", k + 1), _weighed, (noise, near, part))
+        for k, part in enumerate(np.array_split(z, CHAINS))
+    ]
+    theta, frequency, mac, weight = map(np.concatenate, zip(*work.run(parts), strict=True))
+    share = softmax(weight)
+    settled &= bool(size >= len(z) * (share @ share) * count / 2)
+    # of equal weights, each draw once
+    chosen = np.searchsorted(np.cumsum(share), (np.arange(len(z)) + 0.5) / len(z))
+    return Draws(theta[chosen], frequency[chosen], mac[chosen], settled)
 
 
-def _nearer(noise: NoiseModel, z: Floats, turn: int, work: Executor) -> NoiseModel | None:
+def _weighed(noise: NoiseModel, near: NoiseModel, z: Floats) -> tuple[Floats, ...]:
+    """Return parameters (n, p), paired frequencies and MAC values, and weights (n,) of draws.
+
+    z (n, p) are standardised parameters from the posterior ``near`` this one. A weight is the
+    logarithm of this one over it.
+    """
+    theta = np.array([Standardised(noise.problem).theta(x)[0] for x in z])
+    there = [near.problem.evaluate(x, derivatives=False) for x in theta]
+    here = there
+    if near is not noise:
+        here = [noise.problem.evaluate(x, derivatives=False) for x in theta]
+    pairs = list(zip(there, here, strict=True))
+    frequency, mac = (
+        np.array([(y.quantities or x.quantities).get(name, ()) for x, y in pairs])
+        for name in ("frequency", "mac")
+    )
+    weight = [(noise.logs.value(x.J) - noise.logs.value(y.J)) / 2 for x, y in pairs]
+    return theta, frequency, mac, np.array(weight)
+
+
+def _nearer(noise: NoiseModel, z: Floats, turn: int, work: Executor) -> NoiseModel:
     """Return the posterior in the space of the modes at standardised parameters z (models, p).
 
-    None where the model is not a reduced one, its basis is small, or this space is not much less.
+    The same where the model is not a reduced one, its basis is small, or this space not much less.
     """
     problem = noise.problem
     if not isinstance(problem.model, ReducedModel):
-        return None
+        return noise
     theta = np.array([Standardised(problem).theta(x)[0] for x in z])
     (V,) = work.run([Task(("sample-posterior", "space", turn), problem.model.space, (theta,))])
     if len(V) < SMALL or 2 * V.shape[1] > len(V):
-        return None
+        return noise
     return replace(noise, problem=replace(problem, model=problem.model.within(V)))
-
-
-def _joined(rounds: Sequence[Chain], name: str) -> Floats:
-    return np.concatenate([getattr(x, name) for x in rounds])
 
 
 def _peak(noise: NoiseModel, theta: Floats) -> Evaluation:
@@ -340,7 +357,6 @@ def _mixture(noise: NoiseModel, found: Sequence[Evaluation]) -> list[Peak]:
 
 def _advanced(
     noise: NoiseModel,
-    near: NoiseModel | None,
     peaks: Sequence[Peak],
     chain: Chain | None,
     warm: bool,
@@ -348,46 +364,23 @@ def _advanced(
     rng: np.random.Generator,
 ) -> Chain:
     """Return the next round of a chain; a warm-up adapts the lengths of steps."""
-    target, logs = Standardised((near or noise).problem), noise.logs
-    of = Sampler(target, logs, peaks)
+    target = Standardised(noise.problem)
+    of = Sampler(target, noise.logs, peaks)
     length = np.ones(2) if chain is None or warm else chain.length
     if chain is None:
         top = peaks[rng.choice(len(peaks))].top
         z, s = top.z, top.s
     else:
         z, s = chain.z[-1], chain.s
-    here = Model(target.evaluate(z), s)
-    exact = Standardised(noise.problem)
-    true = exact.evaluate(z, derivatives=False) if near else here.found
-    out, new = [], here
-    every = TOGETHER if near else 1
-    for t in range(ROUND if warm else ROUND * every):
+    here, out = Model(target.evaluate(z), s), []
+    for t in range(ROUND):
         jumps = len(peaks) > 1 and t % 2 == 1
-        new, chances = of.after(new, length, jumps, near is not None and rng.random() < 0.5, rng)
+        here, chances = of.after(here, length, jumps, rng)
+        out.append(here.z)
         if warm:
             better = np.array([0.0 if jumps else chances[0] - ACCEPTED, chances[1] - ACCEPTED])
             length = np.minimum(length * np.exp(better / np.sqrt(1 + t / 4)), 1.0)
-        if (t + 1) % every:
-            continue
-        if near is None:
-            here, true = new, new.found
-        else:
-            at = true if new.found is here.found else exact.evaluate(new.z, derivatives=False)
-            change = new.excess(at, logs) - here.excess(true, logs)
-            here, true = (new, at) if rng.random() < np.exp(min(change, 0.0)) else (here, true)
-            new = here
-        out.append(true)
-    frequency, mac = (
-        np.array([x.quantities.get(name, ()) for x in out]) for name in ("frequency", "mac")
-    )
-    return Chain(
-        np.array([x.theta for x in out]),
-        frequency,
-        mac,
-        here.s,
-        length,
-        not np.isfinite(of.densities(here)[1]),
-    )
+    return Chain(np.array(out), here.s, length, not np.isfinite(of.densities(here)[1]))
 
 
 @dataclass(frozen=True)
@@ -398,23 +391,17 @@ class Sampler:
     logs: LogSum
     peaks: Sequence[Peak]
 
-    # 6 arguments: where from, how far, and in which order.
     def after(
-        self, here: Model, b: Floats, jumps: bool, backwards: bool, rng: np.random.Generator
+        self, here: Model, b: Floats, jumps: bool, rng: np.random.Generator
     ) -> tuple[Model, tuple[float, float]]:
         """Return the model after both kinds of steps of lengths b (2,), and their probabilities.
 
-        The variances are drawn between them. In an order by chance, they are reversible together.
+        The variances are drawn between them.
         """
-        far = near = 0.0
-        for k in (2, 1, 0) if backwards else (0, 1, 2):
-            if k == 0:
-                here, far = self.across(here, 1.0 if jumps else float(b[0]), jumps, rng)
-            elif k == 1:
-                scale = here.found.J[:-1] + self.logs.floor
-                here = Model(here.found, scale / rng.chisquare(self.logs.a))
-            else:
-                here, near = self.nearby(here, float(b[1]), rng)
+        here, far = self.across(here, 1.0 if jumps else float(b[0]), jumps, rng)
+        scale = here.found.J[:-1] + self.logs.floor
+        here = Model(here.found, scale / rng.chisquare(self.logs.a))
+        here, near = self.nearby(here, float(b[1]), rng)
         return here, (far, near)
 
     def across(

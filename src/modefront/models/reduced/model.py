@@ -29,9 +29,9 @@ SHARE = 0.1  # remainder of a correction over all of it, where it need not be ex
 FAR = 30.0  # condition of K over that of the factor up to which a snapshot has no factor of its own
 WORST = 6  # models of a snapshot that are corrected at once, the worst ones
 
-HARDLY = 1e-3
-"""Length of a direction that a space of modes may lack, root mean square over some models: the
-square is an error of eigenvalues."""
+HARDLY = 3e-3
+"""Length of a direction that a space of modes may lack, root mean square over some models: a tenth
+of a usual error of shapes; the square is an error of eigenvalues."""
 
 TOLERANCE = 1e-8  # default relative error of eigenvalues
 MEMORY = 4.0  # default limit of the memory of a basis in GiB
@@ -194,10 +194,11 @@ class ReducedModel(Shown):
         """Return coordinates (columns, n) in the basis that span its modes at some parameters.
 
         Directions in which modes of unit energy have less than `HARDLY`, root mean square, are left
-        out.
+        out, and spare modes.
         """
         _, K, M, _ = self._projected()
-        X = [dense.decompose(K.at(x), M.at(x), self.count).X[:, : self.count] for x in thetas]
+        used = self.first.modes
+        X = [dense.decompose(K.at(x), M.at(x), used).X[:, :used] for x in thetas]
         U, sizes, _ = np.linalg.svd(np.hstack(X), full_matrices=False)
         spend(Costs(reduced=len(thetas)))
         return np.asarray(U[:, sizes > HARDLY * np.sqrt(len(thetas))])
