@@ -46,26 +46,26 @@ def test_a_further_mode_narrows_as_if_it_had_been_measured(priors: bool) -> None
     before, after = noise_of(2, 3, priors), noise_of(3, 3, priors)
     found = before.problem.evaluate(THETA)
     further = candidates(before, found)
-    assert further.sensor == ("",)
-    assert further.frequency == pytest.approx(after.problem.data.frequency[:, 2])
+    assert further["candidate_sensor"] == [""]
+    assert further["candidate_frequency"] == pytest.approx(after.problem.data.frequency[:, 2])
     w = before.logs.gradient(found.J)
     precision = 1 / (0.3 * THETA) ** 2 if priors else np.full(3, 12 / 2.7**2)
     expected = 1 - deviations(after, w, precision) / deviations(before, w, precision)
     assert expected.max() > 0.1
-    assert further.gain[0] == pytest.approx(expected, rel=1e-6)
+    assert further["candidate_gain"][0] == pytest.approx(expected, rel=1e-6)
 
 
 def test_a_further_sensor_narrows_as_if_it_had_been_there() -> None:
     before, after = noise_of(3, 2), noise_of(3, 3)
     found = before.problem.evaluate(THETA)
     further = candidates(before, found)
-    assert further.sensor == (before.problem.model.sensors[2],)
-    assert further.frequency.tolist() == [0.0]
+    assert further["candidate_sensor"] == [before.problem.model.sensors[2]]
+    assert further["candidate_frequency"].tolist() == [0.0]
     w = before.logs.gradient(found.J)
     # One component of three was the greatest: expected errors are those over it.
     tau = np.median(0.02 * np.abs(after.problem.model.modes(THETA, 3).phi).max(axis=0))
     assert tau > 0
     precision = np.full(3, 12 / 2.7**2)
     expected = 1 - deviations(after, w, precision) / deviations(before, w, precision)
-    assert further.gain[0] == pytest.approx(expected, rel=0.3)
-    assert further.gain.min() >= 0
+    assert further["candidate_gain"][0] == pytest.approx(expected, rel=0.3)
+    assert further["candidate_gain"].min() >= 0

@@ -26,7 +26,6 @@ from modefront.uncertainty.scatter import (
     level,
     optimal_weights,
     scatter,
-    simplex,
 )
 
 TIGHT = Options(step=1e-11, reduction=0.0, iterations=200)
@@ -188,10 +187,8 @@ def test_points_of_the_front_follow_their_edges(
         columns.append(scatter(problem, point, np.eye(n)[i], given_weights(noise), noise).J)
     E, dE = np.array([edge.J for edge in edges]).T, np.stack(columns, axis=2)
     noise, point = case.noise(computed.theta), point_of(problem, computed)
-    target = simplex(E, dE)
-    if ranges:
-        target = simplex(E, dE, E[range(3), [2, 2, 1]])
-    w, conditions = boundary(point, computed.weights, target, place, noise)
+    top = E[range(3), [2, 2, 1]] if ranges else None
+    w, conditions = boundary(point, computed.weights, E, dE, place, noise, top=top)
     result = scatter(problem, point, w, conditions, noise)
     ahead, behind = (
         [solved(case.moved(m, s * by).problem())[1] for m in range(5 * n)] for s in (1, -1)

@@ -26,7 +26,6 @@ from modefront.uncertainty.scatter import (
     given_weights,
     optimal_weights,
     scatter,
-    simplex,
     with_neighbours,
 )
 
@@ -109,8 +108,7 @@ def of_corners(beta: Floats, std: float) -> Scatter:
     assert result.converged
     E = np.array([edge.J for edge in edges]).T
     point, chosen = point_at(problem, result.theta.tolist()), noise(result.theta)
-    moving = simplex(E, np.stack(dE, axis=2))
-    found = boundary(point, result.weights, moving, beta, chosen)
+    found = boundary(point, result.weights, E, np.stack(dE, axis=2), beta, chosen)
     assert found is not None
     w, conditions = found
     return scatter(problem, point, w, conditions, chosen)

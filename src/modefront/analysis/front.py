@@ -1,7 +1,7 @@
 """Front analysis: the identifiable part of a front, equivalent models, uncertainty."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.noise import Noise, Source, Uncertainty, noise
-from modefront.uncertainty.points import Role, SolvedPoint, edge_weights, redraw, solve_again
+from modefront.uncertainty.points import Role, SolvedPoint, edge_weights, solve_again
 from modefront.uncertainty.scatter import (
     Local,
     Posterior,
@@ -89,7 +89,7 @@ def analyse_front(
         scatter = with_neighbours(front, solved, alone, a, sizes)
         seeds = [(b, seed_sequence(seed, "bootstrap", b)) for b in range(1, samples + 1)]
         again = (problem, solved, sizes, source)
-        tasks = [Task(("bootstrap", b), _replicate, again, each) for b, each in seeds]
+        tasks = [Task(("bootstrap", b), solve_again, again, each) for b, each in seeds]
         replicates = work.run(tasks)
     return FrontAnalysis(
         points,
@@ -271,17 +271,3 @@ def _local(
     if source is not None:
         errors = noise(problem, modes, pairs, source)
     return Local(point, errors, problem.slopes_at(modes, pairs))
-
-
-def _replicate(
-    problem: UpdatingProblem,
-    points: Sequence[SolvedPoint],
-    sizes: Floats,
-    source: Source,
-    *,
-    rng: np.random.Generator,
-) -> Mapping[str, Solution]:
-    """Return the points solved again with data drawn again, by label."""
-    again = replace(problem, data=redraw(problem.data, source, rng))
-    solved = solve_again(again, points, problem.properties, sizes)
-    return {point.label: x for point, x in zip(points, solved, strict=True)}

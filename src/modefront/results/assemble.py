@@ -293,29 +293,22 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     """
     draws, fit, widths = inference.draws, inference.fit, prior_widths(noise.problem)
     freed, unfixed = inference.freed, inference.unfixed
-    settled = draws.settled and not np.any(refused(fit.misfit, fit.nominal))
+    settled = draws.settled and not np.any(refused(fit["misfit"], fit["nominal_misfit"]))
     (side,) = data["at_bound"].values[data["kind"].values == Kind.MOST_PROBABLE.value]
     interval = intervals(draws.theta, side, data["bounds"].values)
     share = (interval[:, 2] - interval[:, 0]) / widths
-    place = np.where(
-        (share < DETERMINED) & settled & ~(fit.lack < CHANCE).any(), 0, np.where(share > OPEN, 2, 1)
-    )
+    known = (share < DETERMINED) & (settled and not (fit["lack_of_fit"] < CHANCE).any())
+    place = np.where(known, 0, np.where(share > OPEN, 2, 1))
     values = {
+        **fit,
         "sample_theta": draws.theta,
         "interval": interval,
         "trust": np.array(TRUST)[place],
         "prior_width": widths,
-        "misfit": fit.misfit,
-        "nominal_misfit": fit.nominal,
-        "lack_of_fit": fit.lack,
-        "likely_mode": fit.pairs,
         "posterior_std": draws.theta.std(axis=0, ddof=1),
         "posterior_covariance": np.atleast_2d(np.cov(draws.theta, rowvar=False)),
         "posterior_frequency_std": summary(draws.frequency)[1],
         "posterior_mac_std": summary(draws.mac)[1],
-        "candidate_frequency": fit.candidates.frequency,
-        "candidate_sensor": list(fit.candidates.sensor),
-        "candidate_gain": fit.candidates.gain,
     }
     attributes: dict[str, Any] = {"assumed": noise.assumed, "settled": int(settled)}
     if freed is not None:

@@ -8,9 +8,10 @@ parameters, each promises to lower -2 ln p by what its slope and the Gauss-Newto
 all others follow (Rao's score); those that promise most are freed and tried, one at a time.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.special import chdtri, fdtrc
@@ -22,7 +23,7 @@ from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.optim.problem import Evaluation, at_bounds
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
-from modefront.uncertainty.planning import Candidates, candidates
+from modefront.uncertainty.planning import candidates
 from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.uncertainty.scatter import Posterior
@@ -110,21 +111,6 @@ def _in_problem(problem: UpdatingProblem, noise: NoiseModel, found: Solution) ->
     return replace(found, evaluation=evaluation, weights=w)
 
 
-@record
-@dataclass(frozen=True)
-class Fit:
-    """How the most probable model fits, and what could be measured besides."""
-
-    # misfit, nominal: (n,) root mean square errors of the groups, and those of the nominal model,
-    # over those expected
-    misfit: Floats
-    nominal: Floats
-    # (n,) probability, times n, of such errors of a right model; NaN where nothing tells
-    lack: Floats
-    pairs: Floats  # (modes,) the model mode that is most likely to be each measured one, from 1
-    candidates: Candidates  # further measurements
-
-
 def refused(misfit: Floats, nominal: Floats) -> tuple[Bools, Bools]:
     """Return the groups (n,) that forbid a model: far from the data, or worse than the nominal one.
 
@@ -150,7 +136,7 @@ class Inference:
     """The posterior, and what its maximum says."""
 
     draws: Draws  # models drawn from the posterior
-    fit: Fit  # of its maximum
+    fit: Mapping[str, Any]  # how its maximum fits, as values of results
     freed: Freed | None  # the maximum between wider bounds; None where no bound holds it
     # name and value of the fixed parameter that is wrong, and the errors (n,) over those expected
     # with it free; None where none lowers them beyond chance
@@ -163,7 +149,7 @@ class Inference:
         lam, V = np.linalg.eigh(np.cov(self.draws.theta, rowvar=False).reshape(p, p))
         moved = lam > np.finfo(float).eps * lam.max(initial=0.0)
         axes = V[:, moved] * np.sqrt(lam[moved])
-        return Posterior(axes, np.zeros(p, dtype=np.bool_), np.zeros((p, 0)))
+        return Posterior(axes, np.zeros((p, 0)))
 
 
 def infer(
@@ -176,22 +162,27 @@ def infer(
     theta = maxima[0]
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
     (free,) = work.run([Task(("most-probable", "freed"), freed, (noise, theta))])
-    rounds = 1 if np.any(refused(fit.misfit, fit.nominal)) else None
+    rounds = 1 if np.any(refused(fit["misfit"], fit["nominal_misfit"])) else None
     return Inference(
         draw_models(noise, maxima, count, seed, work, rounds),
         fit,
         free,
-        unfixed(noise, theta, fit.misfit, work),
+        unfixed(noise, theta, fit["misfit"], work),
     )
 
 
-def _fit(noise: NoiseModel, theta: Floats) -> Fit:
-    """Return how a model fits."""
+def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
+    """Return how a model fits, and what could be measured besides, as values of results."""
     problem = noise.problem
     found, nominal = problem.evaluate(theta), problem.evaluate(problem.start, derivatives=False)
     misfit, before = (noise.over_expected(x.J) for x in (found, nominal))
-    further = candidates(noise, found)
-    return Fit(misfit, before, lack_of_fit(noise, found), found.quantities["paired_mode"], further)
+    return {
+        "misfit": misfit,
+        "nominal_misfit": before,
+        "lack_of_fit": lack_of_fit(noise, found),
+        "likely_mode": found.quantities["paired_mode"],
+        **candidates(noise, found),
+    }
 
 
 def lack_of_fit(noise: NoiseModel, found: Evaluation) -> Floats:

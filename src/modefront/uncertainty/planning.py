@@ -6,31 +6,22 @@ group of their kind; the factor of a shape is fitted.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.optim.problem import Evaluation
 from modefront.uncertainty.prior import NoiseModel
-from modefront.work.codec import record
 
 
-@record
-@dataclass(frozen=True)
-class Candidates:
-    """Measurements that could be made."""
+def candidates(noise: NoiseModel, evaluation: Evaluation) -> dict[str, Any]:
+    """Return what could be measured besides the data, as values of results.
 
-    # (candidates,) of the model mode to be measured at all sensors; 0 for a sensor
-    frequency: Floats
-    # the sensor at which all measured modes are to be measured; empty for a mode
-    sensor: tuple[str, ...]
-    # (candidates, p) share by which the standard deviation of a parameter becomes less
-    gain: Floats
-
-
-def candidates(noise: NoiseModel, evaluation: Evaluation) -> Candidates:
-    """Return what could be measured besides the data; ``evaluation`` is most probable."""
+    That are a model mode at all sensors, by its frequency, or all measured modes at a further
+    sensor, and the shares (candidates, p) by which the standard deviation of a parameter becomes
+    less. ``evaluation`` is most probable.
+    """
     problem = noise.problem
     span = problem.upper - problem.lower
     C = np.linalg.inv(noise.precision(evaluation) * np.outer(span, span))
@@ -41,7 +32,11 @@ def candidates(noise: NoiseModel, evaluation: Evaluation) -> Candidates:
         X = C @ R.T
         less = np.einsum("jr,jr->j", np.linalg.solve(np.eye(len(R)) + R @ X, X.T).T, X)
         gain[k] = 1 - np.sqrt(np.maximum(1 - less / np.diag(C), 0.0))
-    return Candidates(np.array([f for f, *_ in found]), tuple(name for _, name, _ in found), gain)
+    return {
+        "candidate_frequency": np.array([f for f, *_ in found]),
+        "candidate_sensor": [name for _, name, _ in found],
+        "candidate_gain": gain,
+    }
 
 
 def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float, str, Floats]]:

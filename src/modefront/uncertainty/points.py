@@ -18,6 +18,7 @@ from modefront.front.subproblems import Point, near_best
 from modefront.optim.problem import Problem
 from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
 from modefront.optim.sqp import Solution, begin, solve
+from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.noise import Source
 
 Kind = Literal["edge", "level", "weights", "optimal", "end", "boundary"]
@@ -74,17 +75,23 @@ def in_order(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
 
 
 def solve_again(
-    problem: Problem, points: Sequence[SolvedPoint], a: Floats, sizes: Floats
-) -> list[Solution]:
-    """Return the points of a problem with other data, each solved from where it was.
+    problem: UpdatingProblem,
+    points: Sequence[SolvedPoint],
+    sizes: Floats,
+    source: Source,
+    *,
+    rng: np.random.Generator,
+) -> dict[str, Solution]:
+    """Return the points with data drawn again, by label, each solved from where it was.
 
-    ``a`` (n,) counts the measured properties and ``sizes`` (n,) are typical sizes of the
-    objectives. A point of which the ends do not span a simplex any more is infeasible.
+    ``sizes`` (n,) are typical ones of the objectives. A point of which the ends do not span a
+    simplex any more is infeasible.
     """
+    again = replace(problem, data=redraw(problem.data, source, rng))
     solved: dict[str, Solution] = {}
     for point in in_order(points):
-        solved[point.label] = _again(problem, point, solved, a, sizes)
-    return [solved[point.label] for point in points]
+        solved[point.label] = _again(again, point, solved, problem.properties, sizes)
+    return solved
 
 
 def _again(

@@ -53,13 +53,9 @@ def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stenci
         central, aside = min(STEP, up, down), min(STEP, max(up, down) / 2)
         if max(central, aside) < LEAST:
             return None
-        if central >= aside:
-            steps = np.array([central, -central])
-            factors[k] = np.array([0.0, 1.0, -1.0]) / (2 * central)
-        else:
-            steps = side * np.array([aside, 2 * aside])
-            factors[k] = side * np.array([-3.0, 4.0, -1.0]) / (2 * aside)
-        points[k] = np.clip(theta + steps[:, None] * direction, lower, upper)
+        a, b = (central, -central) if central >= aside else (side * aside, 2 * side * aside)
+        factors[k] = -(a + b) / (a * b), b / (a * (b - a)), -a / (b * (b - a))
+        points[k] = np.clip(theta + np.array([[a], [b]]) * direction, lower, upper)
     return Stencil(points, factors)
 
 

@@ -283,17 +283,24 @@ def draw_models(
     z = np.concatenate(kept, axis=1).reshape(-1, near.problem.start.size)
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
     order = np.linspace(0, len(z) - 1, min(count, len(z))).round().astype(int)
-    z = rng.permutation(z[order])
-    parts = [
-        Task((stage, "draws", k + 1), _weighed, (noise, near, part))
+    draws, share = _counted(noise, near, rng.permutation(z[order]), work)
+    return replace(draws, settled=settled and size * share >= count / 2)
+
+
+def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> tuple[Draws, float]:
+    """Return draws from the posterior ``near`` this one, each as often as its weight says.
+
+    z (n, p) are their standardised parameters. Returned is also what share of them counts.
+    """
+    tasks = [
+        Task(("sample-posterior", "draws", k + 1), _weighed, (noise, near, part))
         for k, part in enumerate(np.array_split(z, CHAINS))
     ]
-    theta, frequency, mac, weight = map(np.concatenate, zip(*work.run(parts), strict=True))
-    share = softmax(weight)
-    settled &= bool(size >= len(z) * (share @ share) * count / 2)
+    *values, weight = map(np.concatenate, zip(*work.run(tasks), strict=True))
+    w = softmax(weight)
     # of equal weights, each draw once
-    chosen = np.searchsorted(np.cumsum(share), (np.arange(len(z)) + 0.5) / len(z))
-    return Draws(theta[chosen], frequency[chosen], mac[chosen], settled)
+    chosen = np.searchsorted(np.cumsum(w), (np.arange(len(z)) + 0.5) / len(z))
+    return Draws(*(x[chosen] for x in values)), float(1 / (w @ w) / len(z))
 
 
 def _weighed(noise: NoiseModel, near: NoiseModel, z: Floats) -> tuple[Floats, ...]:

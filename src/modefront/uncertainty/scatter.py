@@ -105,50 +105,33 @@ def level(point: Evaluation, objective: int, dv: Floats, noise: Noise) -> Condit
     return _open(is_held[:, None] * point.dJ, (~is_held).astype(float), f)
 
 
-@dataclass(frozen=True)
-class Target:
-    """The simplex of normal-boundary intersection, and its changes with the data."""
-
-    # utopia, dutopia: (n,) and (sources, n) the least objectives
-    utopia: Floats
-    # P, dP: (n, n) and (sources, n, n) the corners above them, one column each
-    P: Floats
-    dutopia: Floats
-    dP: Floats
-
-
-def simplex(E: Floats, dE: Floats, top: Floats | None = None) -> Target:
-    """Return the simplex between edges, or that of the ranges up to ``top`` (n,), which stay.
-
-    E (n, n) has a column an edge, which changes by dE (sources, n, n).
-    """
-    utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
-    if top is None:
-        return Target(utopia, E - utopia[:, None], dutopia, dE - dutopia[:, :, None])
-    return Target(utopia, np.diag(top - utopia), dutopia, -dutopia[:, :, None] * np.eye(top.size))
-
-
-# 6 arguments: those of the problem, and what is solved.
+# 8 arguments: those of the problem, and what is solved.
 def boundary(
     point: Evaluation,
     w: Floats,
-    target: Target,
+    E: Floats,
+    dE: Floats,
     beta: Floats,
     noise: Noise,
     equations: bool = False,
+    top: Floats | None = None,
 ) -> tuple[Floats, Conditions]:
     """Return the weights in their right size and the conditions of a point of NBI.
 
-    ``beta`` (n,) is the point of the simplex that it was projected from, by the ``equations`` of
-    Das & Dennis or with bounds.
+    ``E`` (n, n) has a column an edge, which changes by ``dE`` (sources, n, n). ``beta`` (n,) is the
+    point of their simplex, or of that of the ranges up to ``top`` (n,), which stay, that it was
+    projected from, by the ``equations`` of Das & Dennis or with bounds.
     """
-    n = target.P.sum(axis=1)
-    dn = target.dP.sum(axis=2)
+    utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
+    P, dP = E - utopia[:, None], dE - dutopia[:, :, None]
+    if top is not None:
+        P, dP = np.diag(top - utopia), -dutopia[:, :, None] * np.eye(top.size)
+    n, dn = P.sum(axis=1), dP.sum(axis=2)
     active = np.ones(n.size, dtype=np.bool_) if equations else active_bounds(w * n)
     w = w / (w[active] @ n[active])
-    above = point.J - target.utopia - target.P @ beta  # n c
+    above = point.J - utopia - P @ beta  # n c
     tau = float((above / n)[active].mean())
-    moved = target.dutopia + target.dP @ (beta + tau) - noise.J
+    moved = dutopia + dP @ (beta + tau) - noise.J
     f = np.where(active, moved, -RHO * dn / n**2)
     e = np.where(active, n, 0.0)[:, None]
     h = -(dn[:, active] @ w[active])[:, None]
@@ -330,7 +313,7 @@ def front_scatter(
                 E = np.array([ends[label][0] for label in role.ends]).T
                 dE = np.stack([ends[label][1] for label in role.ends], axis=2)
                 top = np.array([x.J[i] for i, x in enumerate(role.worst)]) if role.worst else None
-                w, conditions = boundary(point, w, simplex(E, dE, top), beta, noise, role.equations)
+                w, conditions = boundary(point, w, E, dE, beta, noise, role.equations, top)
             case _:
                 continue
         out[text] = scatter(problem, point, w, conditions, noise)
@@ -391,7 +374,6 @@ class Posterior:
 
     # (p, m) principal axes over the ranges of the parameters, one standard deviation long
     axes: Floats
-    held: Bools  # (p,) parameters that a bound holds
     # (p, d) directions that keep their prior, orthonormal over the ranges of the parameters
     free: Floats
 
@@ -422,4 +404,4 @@ def laplace(problem: Problem, evaluation: Evaluation, a: Floats) -> Posterior | 
     lam, V = np.linalg.eigh(half)
     if lam.size and lam[0] <= 0:
         return None
-    return Posterior(B @ V / np.sqrt(lam), held, span[:, None] * free)
+    return Posterior(B @ V / np.sqrt(lam), span[:, None] * free)
