@@ -108,6 +108,7 @@ def test_a_parameter_pressed_against_a_bound_is_given() -> None:
     A, y = regression(np.random.default_rng(0), 40)
     problem = squares(lambda theta: [(A @ theta - y, A)], [-5, -5], [0.9, 5], 1)
     point, posterior = found_at(problem, np.array([40.0]))
+    assert posterior.held.tolist() == [True, False]
     assert posterior.covariance[0].tolist() == [0, 0]
     assert posterior.covariance[1, 1] == pytest.approx(
         point.J[0] / 40 / (A[:, 1] @ A[:, 1]), rel=1e-6

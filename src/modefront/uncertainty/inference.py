@@ -149,7 +149,7 @@ class Inference:
         lam, V = np.linalg.eigh(np.cov(self.draws.theta, rowvar=False).reshape(p, p))
         moved = lam > np.finfo(float).eps * lam.max(initial=0.0)
         axes = V[:, moved] * np.sqrt(lam[moved])
-        return Posterior(axes, np.zeros((p, 0)))
+        return Posterior(axes, np.zeros(p, dtype=np.bool_), np.zeros((p, 0)))
 
 
 def infer(

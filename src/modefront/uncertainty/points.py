@@ -81,7 +81,7 @@ def solve_again(
     source: Source,
     *,
     rng: np.random.Generator,
-) -> dict[str, Solution]:
+) -> Mapping[str, Solution]:
     """Return the points with data drawn again, by label, each solved from where it was.
 
     ``sizes`` (n,) are typical ones of the objectives. A point of which the ends do not span a

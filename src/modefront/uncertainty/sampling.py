@@ -296,11 +296,13 @@ def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> 
         Task(("sample-posterior", "draws", k + 1), _weighed, (noise, near, part))
         for k, part in enumerate(np.array_split(z, CHAINS))
     ]
-    *values, weight = map(np.concatenate, zip(*work.run(tasks), strict=True))
+    parts = zip(*work.run(tasks), strict=True)
+    theta, frequency, mac, weight = (np.concatenate(x) for x in parts)
     w = softmax(weight)
     # of equal weights, each draw once
     chosen = np.searchsorted(np.cumsum(w), (np.arange(len(z)) + 0.5) / len(z))
-    return Draws(*(x[chosen] for x in values)), float(1 / (w @ w) / len(z))
+    draws = Draws(theta[chosen], frequency[chosen], mac[chosen])
+    return draws, float(1 / (w @ w) / len(z))
 
 
 def _weighed(noise: NoiseModel, near: NoiseModel, z: Floats) -> tuple[Floats, ...]:

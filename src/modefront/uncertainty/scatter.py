@@ -374,6 +374,7 @@ class Posterior:
 
     # (p, m) principal axes over the ranges of the parameters, one standard deviation long
     axes: Floats
+    held: Bools  # (p,) parameters that a bound holds
     # (p, d) directions that keep their prior, orthonormal over the ranges of the parameters
     free: Floats
 
@@ -404,4 +405,4 @@ def laplace(problem: Problem, evaluation: Evaluation, a: Floats) -> Posterior | 
     lam, V = np.linalg.eigh(half)
     if lam.size and lam[0] <= 0:
         return None
-    return Posterior(B @ V / np.sqrt(lam), span[:, None] * free)
+    return Posterior(B @ V / np.sqrt(lam), held, span[:, None] * free)
