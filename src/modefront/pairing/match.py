@@ -13,6 +13,7 @@ import numpy as np
 
 from modefront._typing import Complexes, Floats, Ints
 from modefront.data.modal import ModalData
+from modefront.optim.scalarisation import LogSum
 from modefront.options import Checked, number, whole
 from modefront.rounding import TINY
 
@@ -59,11 +60,23 @@ def modes_needed(pairing: Pairing, data: ModalData, size: int) -> int:
     return min(size, max(max(data.modes), len(data.modes) + pairing.spare))
 
 
-def match(pairing: Pairing, data: ModalData, frequency: Floats, phi: Floats) -> Pairs:
+# 6 arguments: the measured modes and the model's, and what is least with the pairs.
+def match(
+    pairing: Pairing,
+    data: ModalData,
+    frequency: Floats,
+    phi: Floats,
+    squares: Floats | None = None,
+    likelihood: LogSum | None = None,
+) -> Pairs:
     """Pair every measured mode with a model mode.
 
-    ``frequency`` (modes,) in Hz and ``phi`` (sensors, modes) are the model's. Raises ValueError
-    where there are fewer model modes than measured ones.
+    ``frequency`` (modes,) in Hz and ``phi`` (sensors, modes) are the model's. With the squares of
+    the residuals of each pair (groups, measured modes, modes), ``likelihood``, a concave function
+    of their sums over the pairs, is least: its linearisation lies above it, and is a sum over
+    pairs, so that the assignment that is best for it lowers the function, until none does. It
+    begins at the pairs by MAC and by frequency. Raises ValueError where there are fewer model modes
+    than measured ones.
     """
     m, q = len(data.modes), frequency.size
     values = mean_mac(data, phi)
@@ -72,13 +85,26 @@ def match(pairing: Pairing, data: ModalData, frequency: Floats, phi: Floats) -> 
         return Pairs(index, values[np.arange(m), index])
     if q < m:
         raise ValueError(f"{m} measured modes cannot be paired with {q} model modes")
-    cost = 1 - values
-    if pairing.window is not None or np.isnan(values).any():
-        distance = log_ratio(data, frequency)
-        cost = np.where(np.isnan(values), distance, cost)
-        if pairing.window is not None:
-            cost = cost + OUTSIDE * (distance > np.log(pairing.window))
-    index = assigned(cost)
+    distance, outside = log_ratio(data, frequency), np.zeros((m, q))
+    if pairing.window is not None:
+        outside = np.where(distance > np.log(pairing.window), OUTSIDE, 0.0)
+    cost = np.where(np.isnan(values), distance, 1 - values)
+    index = assigned(cost + outside)
+    if squares is not None and likelihood is not None:
+        silent = np.asarray(~squares.any(axis=(0, 2)))[:, None]
+        rest = np.where(silent, cost, 0.0)
+        found, starts = [], [index, assigned(distance + outside)]
+        for index in starts[: 1 + (starts[0] != starts[1]).any()]:
+            value = np.inf
+            while True:
+                J = squares[:, np.arange(m), index].sum(axis=1)
+                if (now := likelihood.value(J)) >= value:
+                    break
+                value, kept = now, index
+                w = likelihood.gradient(J)
+                index = assigned(np.tensordot(w, squares, axes=1) + rest + w.max() * outside)
+            found.append((value, kept))
+        index = min(found, key=lambda x: x[0])[1]
     return Pairs(index, values[np.arange(m), index])
 
 

@@ -25,17 +25,7 @@ from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
 from modefront.optim.scalarisation import LogSum
-from modefront.pairing.match import (
-    OUTSIDE,
-    Pairing,
-    Pairs,
-    assigned,
-    log_ratio,
-    mac_slopes,
-    match,
-    mean_mac,
-    modes_needed,
-)
+from modefront.pairing.match import Pairing, Pairs, mac_slopes, match, modes_needed
 from modefront.residuals.base import Member, ModeErrors, Stack
 from modefront.residuals.groups import Group
 from modefront.text import Shown
@@ -179,38 +169,11 @@ class UpdatingProblem(Shown):
         """Return the model's modes at ``theta`` and which of them belong to the measured ones."""
         count = modes_needed(self.pairing, self.data, self.model.size)
         modes = self.model.modes(theta, count, derivatives=derivatives)
-        pairs = match(self.pairing, self.data, modes.frequency, modes.phi)
+        squares, m = None, len(self.data.modes)
         if self.likelihood is not None and self.pairing.method == "mac":
-            pairs = self._most_likely(self.likelihood, modes, pairs)
-        return modes, pairs
-
-    def _most_likely(self, likelihood: LogSum, modes: Modes, by_mac: Pairs) -> Pairs:
-        """Return the pairs with which a concave function of the objectives is least.
-
-        Its linearisation lies above it, and is a sum over pairs: the assignment that is best for it
-        lowers the function, until none does. It begins at the pairs by MAC and by frequency.
-        """
-        m = len(self.data.modes)
-        squares = np.array([sum(stack.squares(modes, m) for stack in row) for row in self._stacks])
-        distance, values = log_ratio(self.data, modes.frequency), mean_mac(self.data, modes.phi)
-        outside = np.zeros(distance.shape)
-        if self.pairing.window is not None:
-            outside = np.where(distance > np.log(self.pairing.window), OUTSIDE, 0.0)
-        silent = np.asarray(~squares.any(axis=(0, 2)))[:, None]
-        rest = np.where(silent, np.where(np.isnan(values), distance, 1 - values), 0.0)
-        found, starts = [], [by_mac.index, assigned(distance + outside)]
-        for index in starts[: 1 + (starts[0] != starts[1]).any()]:
-            value = np.inf
-            while True:
-                J = squares[:, np.arange(m), index].sum(axis=1)
-                if (now := likelihood.value(J)) >= value:
-                    break
-                value, kept = now, index
-                w = likelihood.gradient(J)
-                index = assigned(np.tensordot(w, squares, axes=1) + rest + w.max() * outside)
-            found.append((value, kept))
-        index = min(found, key=lambda x: x[0])[1]
-        return Pairs(index, values[np.arange(m), index])
+            squares = np.array([sum(x.squares(modes, m) for x in row) for row in self._stacks])
+        seen = modes.frequency, modes.phi
+        return modes, match(self.pairing, self.data, *seen, squares, self.likelihood)
 
     def residuals(self, theta: Floats) -> tuple[Residual, ...]:
         """Return the residual vector of each group, with derivatives.
