@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from modefront.errors import InputError as InputError
     from modefront.errors import ModelError as ModelError
     from modefront.errors import UnfinishedError as UnfinishedError
-    from modefront.front.given import Weighted as Weighted
     from modefront.front.methods import Method as Method
     from modefront.front.options import Pareto as Pareto
+    from modefront.front.options import Weighted as Weighted
     from modefront.front.search import Search as Search
     from modefront.identifiability.combinations import Identifiability as Identifiability
     from modefront.identifiability.combinations import combinations as combinations

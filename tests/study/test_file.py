@@ -10,8 +10,7 @@ import scipy.io
 import scipy.sparse
 
 import modefront as mf
-from modefront.front.given import Weighted
-from modefront.front.options import Pareto
+from modefront.front.options import Pareto, Weighted
 from modefront.front.search import Search
 from modefront.models.base import Model
 from modefront.models.chain import chain

@@ -1,13 +1,27 @@
-"""Options of the Pareto front."""
+"""Options of the Pareto front, and weights that the user gives."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, TypedDict
 
-from modefront.errors import Fault, refuse
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.errors import Fault, refuse, suggestion
 from modefront.front.methods import METHODS
 from modefront.front.simplex import size
-from modefront.options import Requirement, check_fields, number, one_of, whole
+from modefront.options import (
+    ABOVE_ZERO,
+    TABLE,
+    Requirement,
+    check_fields,
+    number,
+    one_of,
+    shown,
+    table_of,
+    text,
+    whole,
+)
 from modefront.text import Shown
 
 MOST = 10_000  # points of a front at most
@@ -83,3 +97,48 @@ class ParetoOptions(TypedDict, total=False):
     population: int
     evaluations: int
     refined: float | None
+
+
+WEIGHT = number("a weight above 0", above=0)
+
+WEIGHTS = Requirement(
+    "a table of weights, group = weight above 0", TABLE, entries=table_of(ABOVE_ZERO)
+)
+
+
+@dataclass(frozen=True)
+class Weighted(Shown):
+    """Given weights of the objectives, which lead to a model of the results.
+
+    Raises InputError for weights that are not numbers above 0.
+
+    Attributes
+    ----------
+    name : label of the model that minimises sum w_i J_i
+    weights : w_i, above 0, by the name of each group
+    """
+
+    name: Annotated[str, text("a label for the model found with these weights")]
+    weights: Annotated[Mapping[str, float], WEIGHTS]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        refuse(
+            Fault("", f"weights {group}", WEIGHT.expected, shown(weight))
+            for group, weight in self.weights.items()
+            if not WEIGHT.holds(weight)
+        )
+
+    def faults(self, groups: Sequence[str]) -> Iterator[Fault]:
+        """Yield names of groups that there are not, and groups without a weight."""
+        for group in self.weights:
+            if group not in groups:
+                found = suggestion(group, groups)
+                yield Fault("", f"weights {group}", "the name of a group", found)
+        for group in groups:
+            if group not in self.weights:
+                yield Fault("", f"weights {group}", WEIGHT.expected, "nothing")
+
+    def of(self, groups: Sequence[str]) -> Floats:
+        """Return the weights in the order of the groups, shape (groups,)."""
+        return np.array([self.weights[group] for group in groups], dtype=float)

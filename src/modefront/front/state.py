@@ -102,7 +102,8 @@ class State:
             if solution.feasible:
                 own = place.subproblem.gain(solution.J, place.incumbent)
                 gain = max(gain, own)
-                if self._replaces(solution, own, place, is_incumbent):
+                first = (solution.converged or is_incumbent) and not place.closed
+                if own > 0 or (first and own > -self.tolerance):
                     place.incumbent, is_incumbent = solution, True
             # a search that was cut off while it gained goes on from there
             ended = solution.status is not Status.EXHAUSTED or own <= self.tolerance
@@ -113,11 +114,6 @@ class State:
             for j in self.behind(values.min(axis=0)):
                 gain = max(gain, self._challenge(self.places[j], models[best[j]]))
         return gain
-
-    def _replaces(self, solution: Solution, gain: float, place: Place, is_incumbent: bool) -> bool:
-        """Return whether a solution of a place, from its incumbent or not, takes that place."""
-        first = (solution.converged or is_incumbent) and not place.closed
-        return gain > 0 or (gain > -self.tolerance and first)
 
     def behind(self, values: Floats) -> list[int]:
         """Return the places whose incumbents may be behind models of such values (places,).

@@ -75,7 +75,7 @@ class Lexicographic:
         is a model on the way to one, at the limit of iterations.
         """
         i = self.objective
-        best = _solved(problem, self.programme(0.0), replace(start, evaluations=0), options)
+        best = solve(problem, self.programme(0.0), start, options)
         above = best.feasible and self.level(best.J[i]) > (1 + TIE) * self.level(least)
         alone = self.sizes.size == 1 or not best.feasible
         unfinished = best.status is Status.EXHAUSTED
@@ -93,20 +93,26 @@ class Lexicographic:
     def _end(self, problem: Problem, epsilon: float, start: Solution, options: Options) -> Solution:
         """Return the limit of the path of minimisers from an epsilon on.
 
-        Each but the first ones is solved for from the limit that those before it tell.
+        Each but the first ones is solved for from the limit that those before it tell, as exactly
+        as the share of the others asks for.
         """
-        start = replace(start, evaluations=0)
-        coarse = ahead = _solved(problem, self.programme(epsilon), start, _along(epsilon, options))
+
+        def minimiser(start: Solution) -> Solution:
+            enough = replace(options, step=Options().step, reduction=SHARE * epsilon)
+            return solve(problem, self.programme(epsilon), start, enough)
+
+        coarse = ahead = minimiser(start)
+        spent = coarse.evaluations
         while True:
             epsilon /= RATIO
-            spent = replace(ahead, evaluations=coarse.evaluations)
-            fine = _solved(problem, self.programme(epsilon), spent, _along(epsilon, options))
+            fine = minimiser(ahead)
             theta = fine.theta + (fine.theta - coarse.theta) / (RATIO - 1)
             limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper), second=True)
-            fine = replace(fine, evaluations=fine.evaluations + 1)
+            spent += fine.evaluations + 1
             if not limit.feasible or epsilon <= EXACT or self._equal(limit.J, ahead.J):
                 closer = limit.feasible and limit.J[self.objective] <= fine.J[self.objective]
-                return replace(fine, evaluation=limit if closer else fine.evaluation)
+                best = limit if closer else fine.evaluation
+                return replace(fine, evaluation=best, evaluations=spent)
             coarse, ahead = fine, replace(fine, evaluation=limit)
 
     def _equal(self, J: Floats, other: Floats) -> bool:
@@ -119,14 +125,3 @@ class Lexicographic:
         return weighted(
             np.eye(self.sizes.size)[self.objective] / self.sizes + epsilon * self.others
         )
-
-
-def _along(epsilon: float, options: Options) -> Options:
-    """Return options of a minimiser on the path: as exact as the share of the others asks for."""
-    return replace(options, step=Options().step, reduction=SHARE * epsilon)
-
-
-def _solved(problem: Problem, programme: Linear, start: Solution, options: Options) -> Solution:
-    """Return the minimum below a start, with the evaluations of both."""
-    solution = solve(problem, programme, start, options)
-    return replace(solution, evaluations=start.evaluations + solution.evaluations)

@@ -21,7 +21,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.optim.problem import Evaluation, Problem
-from modefront.optim.qp import QuadraticProgramme, QuadraticStep, solve_qp
+from modefront.optim.qp import QuadraticProgramme, solve_qp
 from modefront.optim.scalarisation import Scalarisation
 
 PENALTY = 10.0  # penalty at least; it hardly changes the evaluations that a solution takes
@@ -102,8 +102,8 @@ class Linearised:
 
     def step(
         self, H: Floats, radius: float, kappa: Floats | None
-    ) -> tuple[QuadraticProgramme, QuadraticStep, Floats]:
-        """Return the quadratic programme, its solution, and the multipliers (m,) there.
+    ) -> tuple[QuadraticProgramme, Floats, list[int], Floats]:
+        """Return the quadratic programme, its solution `solve_qp`, and the multipliers (m,) there.
 
         ``H`` (n, p, p) are second derivatives of the objectives with respect to theta. B takes the
         multipliers ``kappa`` of the step before; where there is none, those of another step.
@@ -113,22 +113,18 @@ class Linearised:
         lo = np.maximum((self.problem.lower - theta) / self.span, -radius)
         hi = np.minimum((self.problem.upper - theta) / self.span, radius)
         curved = dJ.T @ self.programme.hessian(self.evaluation.J) @ dJ
-
-        def with_curvature(B: Floats) -> QuadraticProgramme:
-            return QuadraticProgramme(B, self.g, lo, hi, self.dy, self.y)
-
         m = self.y.size
         passes = 2 if kappa is None and m else 1
         kappa = np.full(m, 1 / max(m, 1)) if kappa is None else kappa
         for _ in range(passes):
             w = slopes(self.programme, self.evaluation.J, kappa)
-            qp = with_curvature(weighted(w, H) * span + curved)
-            step = solve_qp(qp)
+            B = weighted(w, H) * span + curved
+            qp = QuadraticProgramme(B, self.g, lo, hi, self.dy, self.y)
+            s, active = solve_qp(qp)
             if m:
-                free = (qp.lo - step.s < 0) & (qp.hi - step.s > 0)
-                kappa = np.maximum(qp.multipliers(step.s, step.active, free), 0.0)
+                kappa = np.maximum(qp.multipliers(s, active, (lo < s) & (s < hi)), 0.0)
                 kappa = kappa / kappa.sum()
-        return qp, step, kappa
+        return qp, s, active, kappa
 
     def slope(self, kappa: Floats) -> Floats:
         """Return the slope of the Lagrangian, shape (p,)."""

@@ -64,16 +64,11 @@ class QuadraticProgramme:
         return kappa
 
 
-@dataclass(frozen=True)
-class QuadraticStep:
-    """A step s (p,) and the active functions, the base first."""
+def solve_qp(qp: QuadraticProgramme) -> tuple[Floats, list[int]]:
+    """Return the solution s (p,), near it where B is not convex, and the active functions.
 
-    s: Floats
-    active: list[int]
-
-
-def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
-    """Return the solution; near it, where B is not convex."""
+    The base is the first of them.
+    """
     lo, hi = qp.lo, qp.hi
     s = np.zeros(lo.size)
     free = (s > lo) & (s < hi)
@@ -107,7 +102,7 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
         if not wrong.any():
             break
         free = free | wrong
-    return QuadraticStep(s, active)
+    return s, active
 
 
 def _projected(qp: QuadraticProgramme, s: Floats, d: Floats) -> Floats | None:

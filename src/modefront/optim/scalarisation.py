@@ -6,7 +6,6 @@ Most have no maximum (m = 0). A constraint is one whose slope is `STEEP`: an exa
 """
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -38,23 +37,6 @@ class Rows:
 def no_rows(objectives: int) -> Rows:
     """Return no functions of so many objectives."""
     return Rows(np.zeros((0, objectives)), np.zeros(0))
-
-
-class Scalarisation(Protocol):
-    """A smooth function of the objectives, and a maximum of linear ones."""
-
-    @property
-    def maximised(self) -> Rows:
-        """C J - d, of which the greatest value is minimised together with f; may be empty."""
-
-    def value(self, J: Floats) -> float:
-        """Return f."""
-
-    def gradient(self, J: Floats) -> Floats:
-        """Return df/dJ, shape (n,)."""
-
-    def hessian(self, J: Floats) -> Floats:
-        """Return d2f/dJ2, shape (n, n)."""
 
 
 @dataclass(frozen=True)
@@ -111,6 +93,11 @@ class LogSum:
     def hessian(self, J: Floats) -> Floats:
         """Return -a / (J + b)**2 on the diagonal."""
         return np.diag(-self.a / np.maximum(J + self.floor, LEAST) ** 2)
+
+
+Scalarisation = Linear | LogSum
+"""A smooth function f of the objectives and a maximum of linear ones, minimised together: ``value``
+returns f, ``gradient`` df/dJ (n,), ``hessian`` d2f/dJ2 (n, n), and ``maximised`` is C J - d."""
 
 
 def weighted(w: Floats) -> Linear:

@@ -26,7 +26,7 @@ import scipy.linalg
 
 from modefront._typing import Floats
 from modefront.optim.linearised import PENALTY, Linearised, Merit, length, slopes
-from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.problem import Evaluation, Problem, room
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
 from modefront.optim.second import learned_from
@@ -153,15 +153,15 @@ def solve(
             ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
             return Solution(evaluation, local.df, ended, count)
         H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
-        qp, step, kappa = local.step(H, radius, kappa)
-        s, w = step.s, slopes(programme, evaluation.J, kappa)
+        qp, s, active, kappa = local.step(H, radius, kappa)
+        w = slopes(programme, evaluation.J, kappa)
         far = length(s)
         held = far >= radius
         proposal = proposal if held else far
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
         if still and not escaped:
-            escaped, s = True, _off_the_saddle(qp, local.slope(kappa), step.active)
+            escaped, s = True, _off_the_saddle(qp, local.slope(kappa), active)
             still, far = not s.any(), length(s)
         status: Status | None = None
         if still:
@@ -217,11 +217,11 @@ def _second_step(
     if not new.exact:
         return new, 0
     local = Linearised(problem, merit.programme, new)
-    _, step, _ = local.step(H, radius, None)
-    promised = merit.at(replace(new, J=local.promised(step.s)))
+    _, s, *_ = local.step(H, radius, None)
+    promised = merit.at(replace(new, J=local.promised(s)))
     if not promised < min(merit.at(here), merit.at(new)):
         return new, 0
-    return min(new, local.after(step.s), key=merit.at), 1
+    return min(new, local.after(s), key=merit.at), 1
 
 
 def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:
@@ -242,12 +242,6 @@ def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) ->
         v = Z @ V[:, 0]
         v[np.abs(v) < SADDLE] = 0.0
         v *= -1.0 if slope[free] @ v > 0 else 1.0
-        ahead, behind = _longest(v, lo[free], hi[free]), _longest(-v, lo[free], hi[free])
-        s[free] = 0.5 * (ahead if ahead.any() else behind)
+        ahead, behind = (room(0 * v, side * v, lo[free], hi[free]) for side in (1, -1))
+        s[free] = 0.5 * v * (ahead or -behind)
     return s
-
-
-def _longest(v: Floats, lo: Floats, hi: Floats) -> Floats:
-    """Return the longest step along a direction within the box."""
-    bound, moving = np.where(v > 0, hi, lo), v != 0
-    return np.asarray(v * np.min(bound[moving] / v[moving]))

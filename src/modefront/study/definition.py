@@ -8,9 +8,8 @@ from typing import Annotated
 
 from modefront.errors import Fault, noted, refuse
 from modefront.findings.record import Finding
-from modefront.front.given import Weighted
 from modefront.front.methods import METHODS
-from modefront.front.options import Pareto
+from modefront.front.options import Pareto, Weighted
 from modefront.front.point import Kind, label
 from modefront.front.search import Search
 from modefront.identifiability.combinations import Identifiability

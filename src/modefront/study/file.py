@@ -20,8 +20,8 @@ from modefront.errors import Fault, InputError, ModelError, refuse, wrong
 from modefront.families import Family
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found
-from modefront.front.given import Weighted
 from modefront.front.methods import METHODS
+from modefront.front.options import Weighted
 from modefront.models.base import Model, full_of
 from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter

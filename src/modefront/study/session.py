@@ -22,9 +22,8 @@ from modefront.analysis.front import analyse_front
 from modefront.datasets import Dataset
 from modefront.errors import Fault, InputError, writing
 from modefront.front.front import Front
-from modefront.front.given import Weighted
 from modefront.front.indicators import coverage
-from modefront.front.options import Pareto, ParetoOptions
+from modefront.front.options import Pareto, ParetoOptions, Weighted
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, Point
 from modefront.front.search import Search
