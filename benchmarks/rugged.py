@@ -36,7 +36,7 @@ from modefront.front.indicators import REFERENCE, hypervolume
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives
+from modefront.optim.problem import Evaluation
 from modefront.work.task import Costs, counted, spend
 
 Derivatives = tuple[Floats, Floats, Floats]
@@ -72,7 +72,7 @@ class Case:
         """Return the objectives, and their derivatives if wanted."""
         spend(Costs(eigenproblems=1))
         J, dJ, H = self.function(theta)
-        return Evaluation(theta, J, ObjectiveDerivatives(dJ, H) if derivatives else None)
+        return Evaluation(theta, J, dJ, H) if derivatives else Evaluation(theta, J)
 
 
 # ---- problems ----------------------------------------------------------------------------------

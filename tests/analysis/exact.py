@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
+from modefront.optim.problem import Evaluation, Residual, infeasible
 from modefront.work.task import Costs, spend
 
 TINY = 1e-30
@@ -51,8 +51,7 @@ class Squares:
         if is_exact:
             steps = 1j * TINY * np.eye(theta.size)
             H = np.stack([_sums(self.function(theta + s))[1].imag / TINY for s in steps], axis=2)
-        slopes = ObjectiveDerivatives(dJ, H, is_exact)
-        return Evaluation(theta, J, slopes, residuals=residuals)
+        return Evaluation(theta, J, dJ, H, is_exact, residuals=residuals)
 
 
 def _sums(residuals: Residuals) -> tuple[Floats, Floats]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives, infeasible
+from modefront.optim.problem import Evaluation, infeasible
 from modefront.work.task import Costs, spend
 
 Derivatives = tuple[Floats, Floats, Floats]
@@ -33,7 +33,7 @@ class Known:
         J, dJ, H = self.function(theta)
         if not np.isfinite(J).all():
             return infeasible(theta, len(self.objectives))
-        return Evaluation(theta, J, ObjectiveDerivatives(dJ, H) if derivatives else None)
+        return Evaluation(theta, J, dJ, H) if derivatives else Evaluation(theta, J)
 
 
 def box(

@@ -35,7 +35,7 @@ from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind
 from modefront.front.simplex import size
 from modefront.front.subproblems import RHO
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives
+from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution
 
 Function = Callable[[Floats], Derivatives]
@@ -300,8 +300,7 @@ class Switching:
         c, centre, floor = ((1.0, 0.8, 0.0), (2.0, 0.4, 0.05))[piece]
         J, dJ = c * (x - centre) ** 2 + floor, 2 * c * (x - centre)
         H = np.full((1, 1, 1), 2 * c)
-        slopes = ObjectiveDerivatives(np.array([[dJ]]), H)
-        return Evaluation(theta, np.array([J]), slopes)
+        return Evaluation(theta, np.array([J]), np.array([[dJ]]), H)
 
 
 def test_the_least_of_one_objective_behind_a_jump_is_found() -> None:

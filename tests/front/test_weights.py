@@ -19,7 +19,7 @@ from modefront.front.weights import (
     optimal_minimum,
     regular,
 )
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives
+from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum, weighted
 from modefront.optim.sqp import Solution, begin, solve
 
@@ -57,7 +57,7 @@ def test_a_minimum_is_accepted_by_its_own_curvature(
     """Second derivatives of I along x are 4 c - 2; along y nothing changes where d is 0."""
     problem = quadratic(curvature)
     there = problem.evaluate(np.zeros(2))
-    exact = replace(there, derivatives=ObjectiveDerivatives(there.dJ, there.H, exact=True))
+    exact = replace(there, exact=True)
     found = begin(exact)
     assert is_minimum(problem, found.evaluation, ONES) == holds
     assert len(accepted(problem, [found], ONES, ONES)) == holds

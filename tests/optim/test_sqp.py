@@ -11,7 +11,7 @@ from problems import Derivatives, Known, bowls, box, circles, curved, sphere
 
 from modefront._typing import Floats
 from modefront.optim.linearised import Merit, projected, surplus
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives
+from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import Scalarisation, achievement, below, weighted
 from modefront.optim.second import learned_from
 from modefront.optim.sqp import Options, Solution, Status, begin, solve
@@ -146,9 +146,7 @@ def test_second_derivatives_of_quadratic_objectives_are_learned(seed: int, p: in
     assume(np.linalg.cond(full).max() < 1e3)
 
     def evaluation(theta: Floats) -> Evaluation:
-        return Evaluation(
-            theta, np.zeros(n), ObjectiveDerivatives(full @ theta, np.zeros((n, p, p)))
-        )
+        return Evaluation(theta, np.zeros(n), full @ theta, np.zeros((n, p, p)))
 
     S, position = np.zeros((n, p, p)), evaluation(rng.normal(size=p))
     for step in np.linalg.qr(rng.normal(size=(p, p)))[0]:
@@ -168,7 +166,8 @@ def test_learned_second_derivatives_do_not_depend_on_the_units_of_parameters() -
             Evaluation(
                 u * unit,
                 np.zeros(2),
-                ObjectiveDerivatives(full @ u / unit, np.stack([np.diag(unit**-2.0)] * 2)),
+                full @ u / unit,
+                np.stack([np.diag(unit**-2.0)] * 2),
             )
             for u in np.random.default_rng(1).normal(size=(3, 3))
         ]
@@ -183,7 +182,7 @@ def test_only_what_adds_to_known_second_derivatives_shrinks_with_them() -> None:
     s = np.array([1.0, 0.0])
 
     def at(theta: Floats, slope: Floats, H: Floats) -> Evaluation:
-        return Evaluation(theta, np.zeros(1), ObjectiveDerivatives(slope[None], H[None]))
+        return Evaluation(theta, np.zeros(1), slope[None], H[None])
 
     for H, kept in ((np.zeros((2, 2)), 1.0), (np.diag([0.0, 1.0]), 0.0)):
         S = np.diag([1.0, 1.0])[None]

@@ -23,5 +23,5 @@ def test_a_wrapped_problem_differs_in_its_evaluations_alone() -> None:
     assert wrapped.upper.tolist() == [2.0, 3.0]
     assert wrapped.start.tolist() == problem.start.tolist()
     assert wrapped.evaluate(theta).J.tolist() == (2 * problem.evaluate(theta).J).tolist()
-    assert wrapped.evaluate(theta, derivatives=False).derivatives is None
+    assert not wrapped.evaluate(theta, derivatives=False).derivatives
     assert Wrapped(problem, doubled, ("a", "b")).objectives == ("a", "b")

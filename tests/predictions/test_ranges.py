@@ -7,7 +7,7 @@ import pytest
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual
+from modefront.optim.problem import Evaluation, Problem, Residual
 from modefront.predictions.ranges import Sampled, extreme
 
 LOWER, UPPER = np.array([0.5, 0.5, 0.5]), np.array([2.0, 2.0, 2.0])
@@ -31,10 +31,10 @@ class Ratios:
         r.append(np.array([y / z - 1.0]) if self.known > 1 else np.array([x / y - 1.1]))
         dr.append(np.array([[0.0, 1 / z, -y / z**2]]) if self.known > 1 else dr[0][:1])
         parts = [Residual(a, b) for a, b in zip(r, dr, strict=True)]
-        slopes = ObjectiveDerivatives(
-            np.array([2 * x.r @ x.dr for x in parts]), np.array([2 * x.dr.T @ x.dr for x in parts])
-        )
-        return Evaluation(theta, np.array([x.r @ x.r for x in parts]), slopes, residuals=parts)
+        J = np.array([x.r @ x.r for x in parts])
+        dJ = np.array([2 * x.r @ x.dr for x in parts])
+        H = np.array([2 * x.dr.T @ x.dr for x in parts])
+        return Evaluation(theta, J, dJ, H, residuals=parts)
 
 
 def along(problem: Problem, q: Any, thetas: Floats, slack: float = 0.0) -> tuple[float, float]:
@@ -80,9 +80,9 @@ class Known:
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:
         r = [theta - end for end in self.ends]
-        slopes = ObjectiveDerivatives(2 * np.array(r), 2 * np.array([np.eye(3)] * 2), exact=True)
+        J, H = np.array([x @ x for x in r]), 2 * np.array([np.eye(3)] * 2)
         parts = tuple(Residual(x, np.eye(3)) for x in r)
-        return Evaluation(theta, np.array([x @ x for x in r]), slopes, residuals=parts)
+        return Evaluation(theta, J, 2 * np.array(r), H, exact=True, residuals=parts)
 
 
 def test_between_points_the_front_is_solved_for() -> None:
@@ -113,9 +113,7 @@ class Branches:
             for depth, at, w in wells:
                 u = (x - at) / w
                 row -= depth * np.exp(-u * u) * np.array([1, -2 * u / w, (4 * u * u - 2) / w**2])
-        return Evaluation(
-            theta, J[:, 0], ObjectiveDerivatives(J[:, 1:2], J[:, 2:, None], exact=True)
-        )
+        return Evaluation(theta, J[:, 0], J[:, 1:2], J[:, 2:, None], exact=True)
 
 
 def test_a_branch_of_which_one_model_is_known_is_followed_to_its_end() -> None:

@@ -23,7 +23,7 @@ from modefront.front.point import Kind, of_kind
 from modefront.front.search import Search
 from modefront.front.state import distinct_points
 from modefront.identifiability.combinations import Identifiability
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives
+from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.results.assemble import lattice_values
 from modefront.results.remarks import findings_of
@@ -50,7 +50,7 @@ class Bowls:
     ) -> Evaluation:
         del derivatives
         J, dJ, H = on_a_line(theta)
-        return Evaluation(theta, J, ObjectiveDerivatives(dJ, H))
+        return Evaluation(theta, J, dJ, H)
 
 
 SEARCH = Search(doubt=0.5)

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives
+from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.work.store import LONG, LONGEST, Run, Store
 from modefront.work.task import Costs, Key, Task
@@ -22,9 +22,7 @@ COSTS = Costs(eigenproblems=3, factorisations=2, full_time=0.1)
 
 def solution(J: float = 0.3) -> Solution:
     theta, objective = np.array([0.1, -0.0]), np.array([J, np.inf])
-    position = Evaluation(
-        theta, objective, ObjectiveDerivatives(np.zeros((2, 2)), np.full((2, 2, 2), np.nan))
-    )
+    position = Evaluation(theta, objective, np.zeros((2, 2)), np.full((2, 2, 2), np.nan))
     return replace(begin(position), status=Status.STALLED)
 
 

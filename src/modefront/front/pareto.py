@@ -317,7 +317,7 @@ class _Run:
 
     def _complete(self, key: str) -> None:
         """Evaluate the derivatives of incumbents that no search has started from: at the budget."""
-        rest = [x for x in self.places if x.incumbent.evaluation.derivatives is None]
+        rest = [x for x in self.places if not x.incumbent.evaluation.derivatives]
         models = {x.incumbent.theta.tobytes(): x.incumbent for x in rest}
         found = dict(zip(models, self._evaluated(("front", key), models.values()), strict=True))
         for place in rest:

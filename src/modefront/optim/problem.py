@@ -51,20 +51,9 @@ class Residual:
 
 @record
 @dataclass(frozen=True)
-class ObjectiveDerivatives:
-    """Derivatives dJ (n, p) and H (n, p, p), the second ones if ``exact``, else a part of them."""
-
-    dJ: Floats
-    H: Floats
-    exact: bool = False
-
-
-@record
-@dataclass(frozen=True)
 class Evaluation:
-    r"""The objectives at one point.
+    r"""The objectives at one point, with derivatives where these are requested and defined.
 
-    ``derivatives`` is None where they were not requested, or the objectives are not defined.
     ``quantities`` are what the problem wants kept with it; ``residuals`` are the vectors r_i, one
     an objective, of objectives that are sums of squares, :math:`J_i = \|r_i\|^2`. They are empty
     where the objectives are no such sums, or no derivatives were asked for.
@@ -72,7 +61,9 @@ class Evaluation:
 
     theta: Floats
     J: Floats
-    derivatives: ObjectiveDerivatives | None = None
+    dJ: Floats = field(default_factory=lambda: np.zeros((0, 0)))  # (n, p), or empty
+    H: Floats = field(default_factory=lambda: np.zeros((0, 0, 0)))  # (n, p, p), or empty
+    exact: bool = False  # whether H are the second derivatives, and not only a part of them
     quantities: Mapping[str, Floats] = field(default_factory=dict)
     residuals: Sequence[Residual] = ()
 
@@ -82,19 +73,9 @@ class Evaluation:
         return all(map(isfinite, self.J.tolist()))
 
     @property
-    def dJ(self) -> Floats:
-        """Derivatives of the objectives, (n, p); raises ValueError where there are none."""
-        return self._known.dJ
-
-    @property
-    def H(self) -> Floats:
-        """Second derivatives or a part of them, (n, p, p); raises ValueError without any."""
-        return self._known.H
-
-    @property
-    def exact(self) -> bool:
-        """Whether the second derivatives are known, and not only a part of them."""
-        return self.derivatives is not None and self.derivatives.exact
+    def derivatives(self) -> bool:
+        """Whether it has derivatives."""
+        return len(self.dJ) > 0
 
     @property
     def gauss_newton(self) -> Floats:
@@ -102,12 +83,6 @@ class Evaluation:
         if not self.residuals:
             return self.H
         return np.array([2 * each.dr.T @ each.dr for each in self.residuals])
-
-    @property
-    def _known(self) -> ObjectiveDerivatives:
-        if self.derivatives is None:
-            raise ValueError("expected an evaluation with derivatives, found one without")
-        return self.derivatives
 
 
 def infeasible(theta: Floats, objectives: int) -> Evaluation:

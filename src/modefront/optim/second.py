@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem
+from modefront.optim.problem import Evaluation, Problem
 
 STEP = 3e-4
 """Step of the differences, over the range of a parameter: balances their errors, 1e-7 by higher
@@ -43,8 +43,7 @@ def with_second_order(problem: Problem, evaluation: Evaluation) -> Evaluation | 
             return None
         columns.append((ahead.dJ - behind.dJ) / (2 * h.sum()))
     H = np.stack(columns, axis=2)
-    H = (H + H.transpose(0, 2, 1)) / 2
-    return replace(evaluation, derivatives=ObjectiveDerivatives(evaluation.dJ, H, exact=True))
+    return replace(evaluation, H=(H + H.transpose(0, 2, 1)) / 2, exact=True)
 
 
 def learned_from(S: Floats, before: Evaluation, after: Evaluation, span: Floats) -> Floats:

@@ -136,7 +136,7 @@ def solve(
     if not start.feasible:
         return replace(start, status=Status.INFEASIBLE, evaluations=0)
     evaluation, count = start.evaluation, -1
-    if evaluation.derivatives is None:
+    if not evaluation.derivatives:
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
     S = evaluation.H - evaluation.gauss_newton
     trusted, escaped = evaluation.exact, False

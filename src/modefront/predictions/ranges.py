@@ -29,7 +29,6 @@ from modefront.front.subproblems import RHO
 from modefront.optim.lexicographic import EXACT, RANK, TIE
 from modefront.optim.problem import (
     Evaluation,
-    ObjectiveDerivatives,
     Problem,
     Wrapped,
     infeasible,
@@ -191,10 +190,8 @@ class Equivalent:
                 H = np.zeros((n - 1, theta.size, theta.size))
                 along = np.linalg.svd(rows @ dr)[2][n - 1 :].T
             dq = self._slopes(q, theta, along) / size
-            slopes = ObjectiveDerivatives(
-                np.vstack([dc, dq]), np.concatenate([H, np.zeros((1, theta.size, theta.size))])
-            )
-            return Evaluation(theta, np.append(c, value), slopes)
+            H = np.concatenate([H, np.zeros((1, theta.size, theta.size))])
+            return Evaluation(theta, np.append(c, value), np.vstack([dc, dq]), H)
 
         return evaluation
 

@@ -23,7 +23,7 @@ from modefront.models.parameters import Parameter, Prior, in_order, parameters_o
 from modefront.models.reduced.model import ReducedModel
 from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
+from modefront.optim.problem import Evaluation, Residual, infeasible
 from modefront.optim.scalarisation import LogSum
 from modefront.pairing.match import Pairing, Pairs, mac_slopes, match, modes_needed
 from modefront.residuals.base import Member, ModeErrors, Stack
@@ -142,28 +142,25 @@ class UpdatingProblem(Shown):
             modes, pairs = self.modes(theta, derivatives=derivatives)
         except ModelError:
             return infeasible(theta, len(self.groups))
-        residuals: tuple[Residual, ...] = ()
-        slopes = rest = None
-        if derivatives:
-            if second:
-                residuals, rest = self._with_curvature(modes, pairs)
-            else:
-                residuals = self.residuals_at(modes, pairs)
-            H = np.array([2 * residual.dr.T @ residual.dr for residual in residuals])
-            slopes = ObjectiveDerivatives(
-                np.array([2 * residual.r @ residual.dr for residual in residuals]),
-                H if rest is None else H + rest,
-                rest is not None,
-            )
-        vectors = [x.r for x in residuals] if residuals else self.vectors(modes, pairs)
-        J = np.array([r @ r for r in vectors])
         quantities = {
             "frequency": modes.frequency[pairs.index],
             "mac": pairs.mac,
             "paired_mode": pairs.index + 1.0,
             "coincident": modes.coincident[pairs.index].astype(float),
         }
-        return Evaluation(theta, J, slopes, quantities, residuals)
+        if not derivatives:
+            J = np.array([r @ r for r in self.vectors(modes, pairs)])
+            return Evaluation(theta, J, quantities=quantities)
+        if second:
+            residuals, rest = self._with_curvature(modes, pairs)
+        else:
+            residuals, rest = self.residuals_at(modes, pairs), None
+        J = np.array([x.r @ x.r for x in residuals])
+        dJ = np.array([2 * x.r @ x.dr for x in residuals])
+        H = np.array([2 * x.dr.T @ x.dr for x in residuals])
+        if rest is not None:
+            H += rest
+        return Evaluation(theta, J, dJ, H, rest is not None, quantities, residuals)
 
     def modes(self, theta: Floats, *, derivatives: bool = True) -> tuple[Modes, Pairs]:
         """Return the model's modes at ``theta`` and which of them belong to the measured ones."""

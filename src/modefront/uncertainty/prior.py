@@ -15,7 +15,7 @@ from scipy.special import ndtr, ndtri
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
+from modefront.optim.problem import Evaluation, Problem, Residual, Wrapped
 from modefront.optim.scalarisation import LogSum
 from modefront.options import Checked, number
 from modefront.residuals.base import NEGLIGIBLE
@@ -150,16 +150,13 @@ class Distance:
         found = problem.evaluate(theta, derivatives=derivatives, second=second)
         r, dr, d2r = self.residuals(theta)
         J = np.append(found.J, r @ r if found.feasible else np.inf)
-        if found.derivatives is None:
+        if not found.derivatives:
             return replace(found, J=J)
         curved = dr**2 + r * d2r if found.exact else dr**2
-        slopes = ObjectiveDerivatives(
-            np.vstack([found.dJ, 2 * r * dr]),
-            np.concatenate([found.H, 2 * np.diag(curved)[None]]),
-            found.exact,
-        )
+        dJ = np.vstack([found.dJ, 2 * r * dr])
+        H = np.concatenate([found.H, 2 * np.diag(curved)[None]])
         residuals = (*found.residuals, Residual(r, np.diag(dr)))
-        return replace(found, J=J, derivatives=slopes, residuals=residuals)
+        return replace(found, J=J, dJ=dJ, H=H, residuals=residuals)
 
 
 @dataclass(eq=False)
@@ -231,13 +228,10 @@ class Standardised:
             *(Residual(x.r, x.dr * slope) for x in found.residuals),
             Residual(theta, np.eye(theta.size)),
         )
-        slopes = ObjectiveDerivatives(
-            np.array([2 * x.r @ x.dr for x in residuals]),
-            np.array([2 * x.dr.T @ x.dr for x in residuals]),
-        )
-        return Evaluation(
-            theta, np.append(found.J, theta @ theta), slopes, found.quantities, residuals
-        )
+        dJ = np.array([2 * x.r @ x.dr for x in residuals])
+        H = np.array([2 * x.dr.T @ x.dr for x in residuals])
+        J = np.append(found.J, theta @ theta)
+        return Evaluation(theta, J, dJ, H, False, found.quantities, residuals)
 
 
 def prior_widths(problem: UpdatingProblem) -> Floats:
