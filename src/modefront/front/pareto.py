@@ -103,30 +103,27 @@ class _Run:
             anchors.append(Weights(w, ("weights", kind.value, name), EXACT * float(w @ sizes)))
         self.state.add(anchors)
         self._search("edges", EDGES, self.starts)
-        for place in self.places:
+        for place in self.state.places:
             if not place.incumbent.feasible:
                 name = " ".join(str(part) for part in place.subproblem.key if part)
                 raise UnfinishedError(
                     f"no model was found for {name}: is the model defined between the bounds?"
                 )
         target = self._between(sizes)
-        self._complete("rest")
-        weighted = self._weighted()
-        bests = self._reported(sizes, "last")
-        points, places, beta = self._points(target, bests)
-        if METHODS[self.options.method].programme is None and target is not None:
-            options = self.options
+        options, evolved = self.options, None
+        if METHODS[options.method].programme is None and target is not None:
             rng = np.random.default_rng(seed_sequence(self.seed, options.method))
             extent = (options.population, options.evaluations)
-            points = evolve_front(self.problem, options.method, *extent, rng, self._needed)
-        optimal = self._optimal(weighted, bests, points, sizes)
-        arguments = (self.problem, self.a, sizes, weighted[-1].solution)
+            evolved = evolve_front(self.problem, options.method, *extent, rng, self._needed)
+        bests = self._reported(sizes, "last")
+        optimal = self._optimal(bests, evolved or self._points(target, bests)[0], sizes)
+        arguments = (self.problem, self.a, sizes, self._weighted()[-1].solution)
         (iterated,) = self._run([Task(("iterated-weights",), iterate_weights, arguments)])
-        if self._overtaken():
-            self._complete("overtaken")
-            bests = self._reported(sizes, "overtaken")
-            if METHODS[self.options.method].programme is not None:
-                points, places, beta = self._points(target, bests)
+        self._complete()
+        bests = self._reported(sizes, "end")
+        points, places, beta = self._points(target, bests)
+        if evolved is not None:
+            points = evolved
         edges, weighted = self._edges(), self._weighted()
         weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
         method, ends = self.options.method, zip(self.problem.objectives, bests, strict=True)
@@ -159,25 +156,25 @@ class _Run:
         """Return what the search had not finished at its budget, as labels; once for all points."""
         names: dict[Key, str] = {("edge", x): label(Kind.EDGE, x) for x in self.problem.objectives}
         names |= {("weights", k.value, x): label(k, x) for k, x, _ in self.weighted}
-        left = self.loop.open
+        left = self.loop.open | {x.subproblem.key for x in self.state.places if not x.closed}
         more = ("points between the edges",) * bool(left - names.keys())
         more += ("what follows from the points",) * self.cut
         return (*(text for key, text in names.items() if key in left), *more)
 
-    def _needed(self, tasks: Sequence[Task[Any]]) -> list[Any]:
-        """Return the results of tasks, whatever they cost."""
-        return [outcome.result for outcome in self.state.run(tasks)]
-
     def _run(self, tasks: Sequence[Task[Any]]) -> list[Any]:
         """Return the results of tasks, None where the evaluations of one were spent."""
-        outcomes = self.state.run(tasks, self.search.evaluations - self.state.evaluations)
-        self.cut |= any(outcome.spent for outcome in outcomes)
-        return [outcome.result for outcome in outcomes]
+        return self._needed(tasks, self.search.evaluations - self.state.evaluations)
 
-    @property
-    def places(self) -> list[Place]:
-        """The places of all subproblems: edges and weighted models come first."""
-        return self.state.places
+    def _needed(self, tasks: Sequence[Task[Any]], most: int | None = None) -> list[Any]:
+        """Return the results of tasks, whatever they cost unless there are ``most`` evaluations.
+
+        Their models compete; no search has started from those that take a place, which is open.
+        """
+        outcomes = self.state.run(tasks, most)
+        for outcome in outcomes:
+            self.cut |= outcome.spent
+            self.state.tell(-1, None, outcome)
+        return [outcome.result for outcome in outcomes]
 
     def _sizes(self) -> Floats:
         """Return the typical size of each objective, (n,), of random models, unless it is known."""
@@ -225,14 +222,14 @@ class _Run:
         """
         if not is_flat(bests, sizes):
             return []
-        if not any(x.subproblem.key[0] == "others" for x in self.places):
+        if not any(x.subproblem.key[0] == "others" for x in self.state.places):
             new = []
             for i, name in enumerate(self.problem.objectives):
                 w = np.where(np.arange(self.n) == i, TIE, 1.0) / sizes
                 new.append(Weights(w, ("others", name), EXACT * self.n))
             self.state.add(new)
             self._search("ranges", POINTS, self.starts)
-        others = (x.incumbent for x in self.places if x.subproblem.key[0] == "others")
+        others = (x.incumbent for x in self.state.places if x.subproblem.key[0] == "others")
         models = [*bests, *others]
         return [max(models, key=lambda x: float(x.J[i])) for i in range(self.n)]
 
@@ -250,11 +247,13 @@ class _Run:
 
     def _drop_points(self) -> None:
         """Take the points of a front away."""
-        self.state.keep([x for x in self.places if x.subproblem.key[0] not in ("point", "sweep")])
+        self.state.keep(
+            [x for x in self.state.places if x.subproblem.key[0] not in ("point", "sweep")]
+        )
 
     def _lattice(self) -> list[tuple[Place, LatticePoint]]:
         """Return the places of the points of the lattice, with their subproblems."""
-        pairs = ((x, x.subproblem) for x in self.places)
+        pairs = ((x, x.subproblem) for x in self.state.places)
         return [(x, point) for x, point in pairs if isinstance(point, LatticePoint)]
 
     def _apart(self, target: Payoff, asked: int, step: float) -> Iterator[list[tuple[int, ...]]]:
@@ -299,27 +298,14 @@ class _Run:
 
     def _weighted(self) -> list[Point]:
         """Return the models of given and of equal weights."""
-        pairs = zip(self.weighted, self.places[self.n :], strict=False)
+        pairs = zip(self.weighted, self.state.places[self.n :], strict=False)
         return [Point(kind, place.incumbent, name) for (kind, name, _), place in pairs]
 
-    def _overtaken(self) -> bool:
-        """Let models that were found last take the places in which they are better.
-
-        No search has started from these, so they are open.
-        """
-        out = False
-        for place in self.places:
-            best = self.state.best(place.subproblem)
-            if place.subproblem.gain(best.J, place.incumbent) > self.state.tolerance:
-                place.incumbent, out = best, True
-                self.loop.open.add(place.subproblem.key)
-        return out
-
-    def _complete(self, key: str) -> None:
+    def _complete(self) -> None:
         """Evaluate the derivatives of incumbents that no search has started from: at the budget."""
-        rest = [x for x in self.places if not x.incumbent.evaluation.derivatives]
+        rest = [x for x in self.state.places if not x.incumbent.evaluation.derivatives]
         models = {x.incumbent.theta.tobytes(): x.incumbent for x in rest}
-        found = dict(zip(models, self._evaluated(("front", key), models.values()), strict=True))
+        found = dict(zip(models, self._evaluated(("front",), models.values()), strict=True))
         for place in rest:
             place.incumbent = found[place.incumbent.theta.tobytes()]
 
@@ -331,7 +317,7 @@ class _Run:
     def _edges(self) -> list[Edge]:
         """Return the edge of each objective with its other minima."""
         out = []
-        for k, place in enumerate(self.places[: self.n]):
+        for k, place in enumerate(self.state.places[: self.n]):
             known = self.starts.of(place)
             ends = sorted(known.ends, key=lambda x: float(x.J[k]))
             minima = self.state.distinct([place.incumbent, *ends])
@@ -359,7 +345,7 @@ class _Run:
             corner = within and max(point.place) == sum(point.place)
             best = bests[int(np.argmax(point.place))] if corner else x.incumbent
             solutions.append(replace(best, beta=point.beta))
-        sweep = [x for x in self.places if x.subproblem.key[0] == "sweep"]
+        sweep = [x for x in self.state.places if x.subproblem.key[0] == "sweep"]
         rows = [np.array(x.subproblem.key[1:], dtype=float) for x in sweep]
         beta = [point.beta for _, point in lattice] + [row / row.sum() for row in rows]
         solutions += [x.incumbent for x in sweep]
@@ -371,11 +357,11 @@ class _Run:
     def _reported(self, sizes: Floats, turn: int | str) -> list[Solution]:
         """Return the edges, those within the tolerance that are best in the others if wanted."""
         names = self.problem.objectives
-        bests = [place.incumbent for place in self.places[: self.n]]
+        bests = [place.incumbent for place in self.state.places[: self.n]]
         tolerance = self.options.tolerance
         if tolerance == 0:
             return bests
-        starts = [place.incumbent for place in self.places]
+        starts = [place.incumbent for place in self.state.places]
         tasks = []
         for i, name in enumerate(names):
             arguments = (self.problem, bests[i], i, tolerance, sizes, starts)
@@ -397,13 +383,13 @@ class _Run:
 
     def _optimal(
         self,
-        models: Sequence[Point],
         bests: Sequence[Solution],
         points: Sequence[Solution],
         sizes: Floats,
     ) -> list[Solution]:
         """Return the regular minima of the optimally weighted residuals, each once, best first."""
-        starts = [*(x.solution for x in models), *bests, *least_along(points, self.a, sizes)]
+        weighted = [x.solution for x in self._weighted()]
+        starts = [*weighted, *bests, *least_along(points, self.a, sizes)]
         tasks = [
             Task(("optimal-weights", k + 1), optimal_minimum, (self.problem, self.a, sizes, x))
             for k, x in enumerate(starts)

@@ -89,10 +89,10 @@ class State:
         for model in outcome.models:
             self.archive.add(model.J, model)
 
-    def tell(self, k: int, start: Solution, outcome: Outcome) -> float:
+    def tell(self, k: int, start: Solution | None, outcome: Outcome) -> float:
         """Let what a search led to compete; return the greatest gain of a subproblem.
 
-        It is a solution of the place ``k``, or of none where that is -1.
+        It is a solution of the place ``k`` from a start, or of none where that is -1.
         """
         solution: Solution | None = outcome.result
         gain = 0.0
@@ -108,7 +108,7 @@ class State:
             # a search that was cut off while it gained goes on from there
             ended = solution.status is not Status.EXHAUSTED or own <= self.tolerance
             place.closed = place.closed or (is_incumbent and ended)
-        if len(outcome.J):
+        if self.places and len(outcome.J):
             values = self.orders.value(outcome.J[:, None])
             best, models = values.argmin(axis=0), outcome.models
             for j in self.behind(values.min(axis=0)):
