@@ -1,7 +1,7 @@
 """Every model that was evaluated competes: the nondominated ones of all evaluations of a search."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,6 @@ from modefront._typing import Floats
 from modefront.optim.problem import Evaluation, Problem, SpentError, Wrapped
 from modefront.optim.sqp import Solution, begin
 from modefront.work.codec import record
-from modefront.work.task import Task
 
 
 @dataclass
@@ -86,8 +85,3 @@ def recorded(
         spent = True
     thetas = np.array(archive.models).reshape(-1, problem.lower.size)
     return Outcome(result, thetas, archive.J, count, spent)
-
-
-def limited(task: Task[Any], most: int | None) -> Task[Outcome]:
-    """Return a task on a problem, its first argument, with the evaluations that it may make."""
-    return replace(task, function=recorded, arguments=(task.function, most, *task.arguments))

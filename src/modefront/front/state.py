@@ -1,13 +1,13 @@
 """The state of a search: an incumbent for each subproblem, and all that is known of models."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.front.archive import Archive, Outcome, limited
+from modefront.front.archive import Archive, Outcome, recorded
 from modefront.front.dominance import SAME
 from modefront.front.subproblems import Order, Subproblem, together
 from modefront.optim.problem import Problem
@@ -78,7 +78,11 @@ class State:
         All models are archived.
         """
         share = None if most is None else max(most, 0) // max(len(tasks), 1)
-        outcomes = self.work.run([limited(task, share) for task in tasks])
+        recording = [
+            replace(task, function=recorded, arguments=(task.function, share, *task.arguments))
+            for task in tasks
+        ]
+        outcomes: list[Outcome] = self.work.run(recording)
         for outcome in outcomes:
             self.note(outcome)
         return outcomes
@@ -111,18 +115,12 @@ class State:
         if self.places and len(outcome.J):
             values = self.orders.value(outcome.J[:, None])
             best, models = values.argmin(axis=0), outcome.models
-            for j in self.behind(values.min(axis=0)):
+            known = self.orders.value(np.array([x.incumbent.J for x in self.places]))
+            # Among equals in its objective, an edge has an order of its own; weights are few too.
+            ahead = (values.min(axis=0) < known) | (self.orders.greatest == 0)
+            for j in np.flatnonzero(ahead).tolist():
                 gain = max(gain, self._challenge(self.places[j], models[best[j]]))
         return gain
-
-    def behind(self, values: Floats) -> list[int]:
-        """Return the places whose incumbents may be behind models of such values (places,).
-
-        Those of edges and weights, of which there are few, may always be: among equals in its
-        objective, an edge has an order of its own.
-        """
-        known = self.orders.value(np.array([x.incumbent.J for x in self.places]))
-        return np.flatnonzero((values < known) | (self.orders.greatest == 0)).tolist()
 
     def _challenge(self, place: Place, solution: Solution) -> float:
         """Let a model compete for a place; return the gain where it had been solved, else 0.
@@ -137,17 +135,12 @@ class State:
         place.incumbent = solution
         return gain if was_closed else 0.0
 
-    def is_new(self, solution: Solution, known: Sequence[Solution]) -> bool:
-        """Return whether a solution is another model than all known ones."""
-        thetas = np.array([x.theta for x in known]).reshape(-1, self.span.size)
-        apart = np.abs((thetas - solution.theta) / self.span).max(axis=1)
-        return bool((apart > DISTINCT).all())
-
     def distinct(self, solutions: Iterable[Solution]) -> list[Solution]:
         """Return solutions in their order, without those of models that are among them already."""
         out: list[Solution] = []
         for x in solutions:
-            if self.is_new(x, out):
+            apart = (np.abs((x.theta - y.theta) / self.span).max() for y in out)
+            if all(distance > DISTINCT for distance in apart):
                 out.append(x)
         return out
 

@@ -175,8 +175,3 @@ class Linearised:
 def weighted(w: Floats, H: Floats) -> Floats:
     """Return sum_i w_i H_i for w (n,) and H (n, p, p)."""
     return np.asarray((w[None] @ H.reshape(len(H), -1)).reshape(H.shape[1:]))
-
-
-def length(s: Floats) -> float:
-    """Return the greatest component; 0 of nothing."""
-    return float(np.abs(s).max()) if s.size else 0.0

@@ -25,7 +25,7 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Floats
-from modefront.optim.linearised import PENALTY, Linearised, Merit, length, slopes
+from modefront.optim.linearised import PENALTY, Linearised, Merit, slopes
 from modefront.optim.problem import Evaluation, Problem, room
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
@@ -155,14 +155,14 @@ def solve(
         H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
         qp, s, active, kappa = local.step(H, radius, kappa)
         w = slopes(programme, evaluation.J, kappa)
-        far = length(s)
+        far = float(np.abs(s).max())
         held = far >= radius
         proposal = proposal if held else far
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
         if still and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(kappa), active)
-            still, far = not s.any(), length(s)
+            still, far = not s.any(), float(np.abs(s).max())
         status: Status | None = None
         if still:
             status = Status.CONVERGED
