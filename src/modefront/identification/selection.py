@@ -192,13 +192,10 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
         L = np.vstack([model.L, fit.found.L[new]])
         trial, _ = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
         gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise[new])
-        before, after = model.lam, trial.model.lam
-        stays = [
-            (alike(x, after) > ALONE).sum() > (alike(x, before) > ALONE).sum() for x in lam[new]
-        ]
         if len(trial.model) > len(model) or gained > needed(task):
-            fit = trial
-        blocked = np.append(blocked, lam[new][~np.array(stays)])
+            fit, blocked = trial, blocked[:0]
+        else:
+            blocked = np.append(blocked, lam[new])
     return fit
 
 
