@@ -6,11 +6,12 @@ which all responses of a reference share, and correlation of neighbouring lines,
 padding.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 import scipy.fft
+import scipy.linalg as la
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
@@ -18,7 +19,7 @@ from modefront.identification.modal_model import Fit, columns
 from modefront.identification.noise import square
 from modefront.identification.problem import CHUNK, Problem, gram
 from modefront.identification.record import MOST_COVARIED, ModeEstimate, Residuals
-from modefront.identification.shapes import TINY, RealShape, real_shape, real_shapes
+from modefront.identification.shapes import TINY, real_shape, real_shapes
 
 SIGNIFICANT = 3.0  # standard errors beyond which a correlation of the residuals is one
 SILENT = 1e-3  # probability that a response that holds nothing but noise is taken for one that does
@@ -108,99 +109,66 @@ def _force(fit: Fit) -> Floats:
 
 def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEstimate]:
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
-    model = fit.model
+    model, n = fit.model, 2 * len(fit.model)
     pole = [k for k, _, v in model.alphas if v is None]
     shapes = [real_shape(phi) for phi in model.phi]
     for r, s in model.pairs:
         shapes[r], shapes[s] = real_shapes(model.phi[[r, s]])
-    inverse, follows = fit.inverted(fit.observed), fit.Z - fit.inverse @ fit.U
-    linear, alpha = _roots_of_responses(fit, residuals)
-    C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
+    inverse, follows = fit.inverted(fit.observed), (fit.Z - fit.inverse @ fit.U)[:, :n]
+    Q = _covariances(fit, residuals)
+    own, C = Q[:, :n, :n], inverse @ Q[:, n:, n:].sum(axis=0) @ inverse
     whole = model.phi.shape[1] <= MOST_COVARIED
-    products = np.matmul if whole else lambda a, b: np.vecdot(a, b.T)
     spread = []
     for r, shape in enumerate(shapes):
         rows = slice(2 * r, 2 * r + 2)
-        answer = shape.differential(_as_complex(follows[:, rows] @ inverse))
-        direct = _as_complex(linear[:, rows])
-        spread.append(_shape_covariance(shape, direct, answer, alpha, products))
-    for steps, phi in _force_influence(fit, residuals.force, inverse, follows):
+        moved = follows[:, rows].reshape(2 * len(Q), -1)
+        cross = (Q[:, rows, n:] @ inverse).reshape(moved.shape) @ moved.T
+        both = la.block_diag(*own[:, rows, rows]) + moved @ C @ moved.T - cross - cross.T
+        half = shape.differential(both[::2] + 1j * both[1::2]).T
+        covariance = shape.differential(half[::2] + 1j * half[1::2])
+        spread.append(covariance if whole else covariance.diagonal().copy())
+    for steps, c in _force_influence(fit, residuals.force, inverse, follows):
         C = C + steps @ steps.T
         for r, shape in enumerate(shapes):
-            change = shape.differential(phi[:, r])
-            spread[r] += products(change, change.T)
+            change = shape.differential(c[:, 2 * r] + 1j * c[:, 2 * r + 1])
+            spread[r] += change @ change.T if whole else np.vecdot(change, change)
     scale, hertz = max(residuals.chi2, 1.0), omega / (2 * np.pi)
-    gone = ~fit.task.weight.any(axis=(0, 2)) | _silent(model.phi, linear, scale)
+    gone = ~fit.task.weight.any(axis=(0, 2)) | _silent(model.phi, scale * own)
     out = []
-    for r, each in enumerate(spread):
-        each *= scale
-        each[gone] = np.nan
+    for r, covariance in enumerate(spread):
+        covariance *= scale
+        covariance[gone] = np.nan
         if whole:
-            each[:, gone] = np.nan
-        lam, own = model.lam[r], C[2 * pole[r] :, 2 * pole[r] :][:2, :2] * scale
+            covariance[:, gone] = np.nan
+        lam, of_pole = model.lam[r], C[2 * pole[r] :, 2 * pole[r] :][:2, :2] * scale
         size = float(abs(lam))
         df = np.array([lam.real, lam.imag]) / size
-        both = np.array([df, np.array([-1 / size, 0.0]) + lam.real / size**2 * df])
-        f_std, zeta_std = np.sqrt(np.einsum("ka,ab,kb->k", both, own, both)).tolist()
+        two = np.array([df, np.array([-1 / size, 0.0]) + lam.real / size**2 * df])
+        f_std, zeta_std = np.sqrt(np.einsum("ka,ab,kb->k", two, of_pole, two)).tolist()
         known = complex(lam) * omega, size * hertz, float(-lam.real) / size, f_std * hertz, zeta_std
-        std = np.sqrt(np.maximum(each.diagonal() if whole else each, 0.0))
-        covariance = each if whole else None
+        std = np.sqrt(np.maximum(covariance.diagonal() if whole else covariance, 0.0))
         rest = shapes[r], std, model.L[r]
-        out.append(ModeEstimate(*known, *rest, shape_covariance=covariance))
+        kept = covariance if whole else None
+        out.append(ModeEstimate(*known, *rest, shape_covariance=kept))
     return out
 
 
-def _silent(phi: Complexes, linear: Floats, scale: float) -> Bools:
+def _silent(phi: Complexes, covariance: Floats) -> Bools:
     """Return which responses show nothing that noise would not make of all shapes, (responses,).
 
-    ``linear`` are the roots of the covariance of their components, up to the ``scale``.
+    ``covariance`` is that of their components, real and imaginary.
     """
     c = np.stack([phi.real, phi.imag], axis=1).reshape(-1, phi.shape[1]).T[..., None]
-    covariance = scale * linear @ linear.swapaxes(1, 2)
     size = c.swapaxes(1, 2) @ np.linalg.pinv(covariance, hermitian=True) @ c
     out: Bools = size[:, 0, 0] < chi2.isf(SILENT, c.shape[1])
     return out
 
 
-def _shape_covariance(
-    shape: RealShape,
-    direct: Complexes,
-    answer: Floats,
-    alpha: Floats,
-    products: Callable[[Floats, Floats], Floats],
-) -> Floats:
-    r"""Return the covariance of a real shape by independent errors of each response.
+def _covariances(fit: Fit, residuals: Residuals) -> Floats:
+    """Return covariances of what independent errors dy of each response do, one matrix each.
 
-    Errors of response i change its own component by ``direct[i]``, (errors,), and the nonlinear
-    parameters by ``alpha[i]``, (alphas, errors), which change the shape by ``-answer``,
-    (responses, alphas). By the equations of `modefront.identification.shapes`, what i does to
-    component k is :math:`\delta_{ik} a_i - (U U^T)_{ki} a_i + y_k\,\mathrm{d}\theta_i -
-    \mathrm{answer}_k \alpha_i`: its products are summed over i at once, or their diagonal.
-    """
-    u, y = shape.shape, shape.complex_shape.imag
-    a = shape.turn * direct / shape.norm
-    theta = (u[:, None] * a.imag + y[:, None] * a.real) / max(1 - float(y @ y), TINY)
-    inside = shape.plane[:, :, None] * a.real[:, None]
-    causes = np.concatenate([inside, theta[:, None], alpha], axis=1)
-    effects = np.column_stack([-shape.plane, y, -answer])
-    flat = causes.transpose(1, 0, 2).reshape(effects.shape[1], -1)
-    own = np.vecdot(causes, a.real[:, None])  # (responses, causes), by a response's own error
-    out = products(effects @ (flat @ flat.T) + own, effects.T) + products(effects, own.T)
-    power = np.vecdot(a.real, a.real)
-    return out + (np.diag(power) if out.ndim == 2 else power)
-
-
-def _as_complex(pairs: Floats) -> Complexes:
-    """Return (n, ...) complex from (n, 2, ...) real and imaginary parts."""
-    out: Complexes = pairs[:, 0] + 1j * pairs[:, 1]
-    return out
-
-
-def _roots_of_responses(fit: Fit, residuals: Residuals) -> tuple[Floats, Floats]:
-    """Return the effects of independent errors of each response, as roots of their covariance.
-
-    (responses, 2 modes, errors): G^-1 Phi^T dy of the shapes; (responses, alphas, errors):
-    D_perp^T dy. Noise of the force is taken out of the variance: it is not independent.
+    They are those of G^-1 Phi^T dy, (2 modes), and D_perp^T dy, (alphas). Noise of the force is
+    taken out of the variance: it is not independent.
     """
     task, n = fit.task, len(fit.model)
     E, T, X = columns(fit)
@@ -219,29 +187,25 @@ def _roots_of_responses(fit: Fit, residuals: Residuals) -> tuple[Floats, Floats]
     P = np.zeros((*M.shape[:3], 2 * n + X.shape[3]))
     P[:, :, :first, : 2 * n] = T[:, None] @ fit.inverse[:, :, : 2 * n]
     P[..., 2 * n :] = X
-    Q = (P.swapaxes(2, 3) @ (M @ P)).sum(axis=0) / 2
-    scale = np.sqrt(np.maximum(np.einsum("iaa->ia", Q), np.finfo(float).tiny))
-    value, vector = np.linalg.eigh(Q / scale[:, :, None] / scale[:, None, :])
-    roots = scale[:, :, None] * vector * np.sqrt(np.maximum(value, 0))[:, None, :]
-    return roots[:, : 2 * n], roots[:, 2 * n :]
+    out: Floats = (P.swapaxes(2, 3) @ (M @ P)).sum(axis=0) / 2
+    return out
 
 
 def _force_influence(
     fit: Fit, force: Floats, inverse: Floats, follows: Floats
-) -> Iterator[tuple[Floats, Complexes]]:
+) -> Iterator[tuple[Floats, Floats]]:
     """Yield changes of alpha and of the shapes by independent errors of the force, in portions.
 
-    The changes of the shapes are (responses, modes, errors).
+    Those of the shapes are (responses, 2 modes, errors).
     """
-    n = len(fit.model)
+    n = follows.shape[1]
     E, T, X = columns(fit)
     first, H = T.shape[1], fit.functions
     for j in np.flatnonzero(force).tolist():
-        for y in _force_products(fit.task, E, H[j], j, force[j]):
+        for products in _force_products(fit.task, E, H[j], j, force[j]):
+            y = np.concatenate([products.real, products.imag], axis=2)
             alpha = inverse @ np.einsum("iqa,iqk->ak", X[j], y, optimize=True)
-            c = fit.inverse[:, : 2 * n] @ (T[j].T @ y[:, :first]) - follows[:, : 2 * n] @ alpha
-            parts = np.concatenate([c.real, c.imag], axis=2)
-            yield np.hstack([alpha.real, alpha.imag]), parts[:, ::2] + 1j * parts[:, 1::2]
+            yield alpha, fit.inverse[:, :n] @ (T[j].T @ y[:, :first]) - follows @ alpha
 
 
 def _force_products(
