@@ -32,7 +32,7 @@ import numpy as np
 
 from modefront._typing import Complexes, Floats
 from modefront.data.impact import Windows, impact_responses
-from modefront.data.responses import FrequencyResponses, frequency_responses, joined
+from modefront.data.responses import FrequencyResponses, frequency_responses
 from modefront.identification.methods.hammer import identify
 from modefront.identification.record import Identification
 
@@ -124,7 +124,7 @@ def recorded(structure: Structure, level: float, rng: np.random.Generator) -> Fr
         H=np.concatenate([part.H for part in parts]),
         variance=np.concatenate([part.variance for part in parts if part.variance is not None]),
         references=tuple(map(str, structure.references)),
-        force_noise=joined([part.force_noise for part in parts]),
+        force_noise=tuple(noise for part in parts for noise in part.force_noise),
     )
 
 

@@ -154,7 +154,7 @@ def test_a_fault_far_down_a_long_file_is_found_by_its_line(tmp_path: Path) -> No
     rows[25_000] = "25001,x,2.0"
     path.write_text("\n".join(["frequency,a_re,a_im", *rows]))
     with pytest.raises(InputError, match=r"line 25002, column 'a_re'.*found 'x'"):
-        read_test_csv(path, "a")
+        read_test_csv(path)
 
 
 def test_a_pair_that_was_hit_once_is_weighted_too(tmp_path: Path) -> None:
@@ -183,13 +183,13 @@ def test_a_table_that_ends_within_its_last_number_is_refused(tmp_path: Path, end
     rows = [f"{f:.9g},{np.sin(f):.9g},{np.cos(f):.9g}" for f in np.arange(1.0, 9.0)]
     text = "\n".join(["frequency,a_re,a_im", *rows]) + "\n" * ended
     path.write_text(text)
-    right = read_test_csv(path, "b")
+    right = read_test_csv(path)
     for lost in range(1 + ended, 10):
         path.write_text(text[:-lost])
         with pytest.raises(InputError, match="last line: expected whole lines to the end"):
-            read_test_csv(path, "b")
+            read_test_csv(path)
     path.write_text(text.rstrip("\n"))
-    np.testing.assert_array_equal(read_test_csv(path, "b").channels[0].H, right.channels[0].H)
+    np.testing.assert_array_equal(read_test_csv(path).channels[0].H, right.channels[0].H)
 
 
 @pytest.mark.parametrize(

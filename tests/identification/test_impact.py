@@ -93,11 +93,10 @@ def test_the_noise_of_the_force_is_measured_after_the_impact() -> None:
         for b in range(0, 200, 4)
     ]
     errors = np.array([part.data.H[0, 0, 1:-1] - 1 for part in parts])
-    noise = parts[0].data.force_noise
-    assert noise is not None
+    (noise,) = parts[0].data.force_noise
     assert np.mean(np.abs(errors) ** 2) == pytest.approx(np.mean(noise.deviation**2), rel=0.2)
-    assert noise.times[0][[0, -1]] == pytest.approx([-4 / 64, 0.25], abs=2 / 64)
+    assert noise.times[[0, -1]] == pytest.approx([-4 / 64, 0.25], abs=2 / 64)
     step = 64 / 256
-    rho = np.sum(noise.share[0] * np.exp(-2j * np.pi * step * noise.times[0]))
+    rho = np.sum(noise.share * np.exp(-2j * np.pi * step * noise.times))
     near = np.mean(errors[:, 1:] * errors[:, :-1].conj()) / np.mean(np.abs(errors) ** 2)
     assert abs(near - rho) < 0.05

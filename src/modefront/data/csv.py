@@ -404,8 +404,8 @@ PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))
 LISTED = 5  # faults that are listed of one file
 
 
-def read_test_csv(path: Path, reference: str, columns: Mapping[str, str] | None = None) -> Contents:
-    """Return the functions or the blow of one file.
+def read_test_csv(path: Path, columns: Mapping[str, str] | None = None) -> Contents:
+    """Return the functions or the blow of one file, which does not say their reference.
 
     ``columns`` maps names of the file to those above: of a column, or of a response without the
     endings of its columns. Raises InputError with what is wrong.
@@ -413,7 +413,6 @@ def read_test_csv(path: Path, reference: str, columns: Mapping[str, str] | None 
     own, values = read_numbers(path, "a file of frequency response functions or records")
     endings = (*dict.fromkeys(end for pair in PAIRS for end in pair), COHERENCE)
     header, used = renamed(own, columns or {}, endings)
-    unused = frozenset((columns or {}).keys() - used)
     column, file = dict(zip(header, values.T, strict=True)), str(path)
     said = [(repr(x), "each column once", "another") for x, n in Counter(header).items() if n > 1]
     if TIME in header and FREQUENCY not in header:
@@ -424,8 +423,8 @@ def read_test_csv(path: Path, reference: str, columns: Mapping[str, str] | None 
             said.append(("", "columns of at least one response", ", ".join(header)))
         _refuse_columns(path, said)
         records = {name: np.nan_to_num(column[name], nan=0.0) for name in names}  # empty columns
-        blow = Blow(file, "columns", reference, column[TIME], column[FORCE], records)
-        return Contents(blows=(blow,), unused=unused)
+        blow = Blow(file, "columns", "", column[TIME], column[FORCE], records)
+        return Contents(blows=(blow,), used=frozenset(used))
     forms, more = _forms(header)
     _refuse_columns(path, said + more)
     channels = []
@@ -435,14 +434,14 @@ def read_test_csv(path: Path, reference: str, columns: Mapping[str, str] | None 
             Channel(
                 file,
                 f"columns {name + pair[0]!r} and {name + pair[1]!r}",
-                reference,
+                "",
                 name,
                 column[FREQUENCY],
                 _function(path, name, pair, (column[name + pair[0]], column[name + pair[1]])),
                 coherence=None if coherence is None or np.isnan(coherence).any() else coherence,
             )
         )
-    return Contents(tuple(channels), unused=unused)
+    return Contents(tuple(channels), used=frozenset(used))
 
 
 def _refuse_columns(path: Path, said: Sequence[Said]) -> None:

@@ -119,7 +119,7 @@ def impact_responses(
         variance=_variance(H, X, Y)[None] if len(X) > 1 else None,
     )
     noise = _force_noise(force, window, X, t)
-    data = replace(data, decay=decay, force_noise=noise)
+    data = replace(data, decay=decay, force_noise=(noise,))
     size = max(y.shape[-1] // 20, 1)
     parts = y[..., : y.shape[-1] // size * size].reshape(*y.shape[:2], -1, size)
     rms = np.sqrt(np.mean(parts**2, axis=(0, 3)))
@@ -167,7 +167,7 @@ def _force_noise(force: Floats, window: Floats, X: Complexes, t: Floats) -> Forc
     kept = energy[0] > 1e-4 * energy[0].max()
     times = t[kept] - t[np.abs(force[0]).argmax()]
     share = energy[0, kept] / energy[0, kept].sum()
-    return ForceNoise(np.sqrt(np.nan_to_num(variance))[None], (times,), (share,))
+    return ForceNoise(np.sqrt(np.nan_to_num(variance)), times, share)
 
 
 def _over(a: Complexes | Floats, b: Complexes | Floats) -> Complexes:
@@ -238,21 +238,16 @@ class Contents:
 
     channels: tuple[Channel, ...] = ()  # channels, blows: functions, and records
     blows: tuple[Blow, ...] = ()
-    # what of the map of columns of a set names none of the file
-    unused: frozenset[str] = frozenset()
+    used: frozenset[str] = frozenset()  # what of the map of columns of a set names one of the file
 
 
-Functions = tuple[Sequence[Channel], list[str], float, Mapping[str, ForceNoise | None]]
-"""Functions; which blows are left out and why, and what has not died out; the decay of the
-exponential window in 1/s; and the noise of each reference, None where it was hit for several
-measurements."""
+def averaged_blows(
+    blows: Sequence[Blow], windows: Windows
+) -> tuple[list[Channel], list[str], float]:
+    """Return the functions of all references, warnings, and the decay of the window in 1/s.
 
-
-def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Functions:
-    """Return the functions of all references.
-
-    ``quantity`` is that of the test file, or empty. Raises InputError where records do not fit, or
-    no blow of a reference is left.
+    Warnings are on blows that are left out, and on what has not died out. Raises InputError where
+    records do not fit, or no blow of a reference is left.
     """
     first, faults = blows[0].time, list[Fault]()
     for blow in blows:
@@ -271,11 +266,9 @@ def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Fu
     for blow in blows:
         groups.setdefault((blow.reference, tuple(blow.responses)), []).append(blow)
     channels, warnings = list[Channel](), list[str]()
-    noise: dict[str, ForceNoise | None] = {}
-    for (reference, _), group in groups.items():
+    for group in groups.values():
         result = _averaged(group, windows)
-        channels += _channels(group[0], result, quantity)
-        noise[reference] = None if reference in noise else result.data.force_noise
+        channels += _channels(group[0], result.data)
         warnings += [
             f"{blow.file}: {blow.place}: the blow is left out: {why}"
             for blow, why in zip(group, result.left_out, strict=True)
@@ -285,7 +278,7 @@ def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Fu
             left = f"responses still have {worst:.0%} of their size at the end of the record"
             advice = "[impact] exponential takes a shorter time constant"
             warnings.append(f"{group[0].file}: {left}: expect errors of leakage; {advice}")
-    return channels, warnings, result.data.decay, noise
+    return channels, warnings, result.data.decay
 
 
 def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
@@ -307,14 +300,15 @@ def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
         raise InputError(Fault(first.file, place, expected, found)) from None
 
 
-def _channels(first: Blow, averaged: ImpactResponses, quantity: str) -> list[Channel]:
-    data, still = averaged.data, np.zeros(len(averaged.data.frequency), complex)
-    variance = [None] * len(averaged.coherence) if data.variance is None else data.variance[0]
-    coherence = variance if data.variance is None else averaged.coherence
-    known = dict(zip(data.responses, zip(data.H[0], coherence, variance, strict=True), strict=True))
-    out = []
+def _channels(first: Blow, data: FrequencyResponses) -> list[Channel]:
+    """Return the functions of all responses; of those that do not move, they are zero."""
+    out, still = [], np.zeros(len(data.frequency), complex)
     for name in dict.fromkeys([*data.responses, *first.responses]):
-        H, *scatter = known.get(name, (still,))
         where = first.file, f"response {name!r}", first.reference, name
-        out.append(Channel(*where, data.frequency, H, first.quantity or quantity, *scatter))
+        H, variance = still, None
+        if name in data.responses:
+            k = data.responses.index(name)
+            H, variance = data.H[0, k], None if data.variance is None else data.variance[0, k]
+        parts = data.frequency, H, first.quantity, None, variance, data.force_noise[0]
+        out.append(Channel(*where, *parts))
     return out

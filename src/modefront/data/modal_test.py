@@ -13,8 +13,8 @@ import numpy as np
 from modefront import options as opt
 from modefront._typing import Floats
 from modefront.data.csv import COLUMNS, read_numbers, read_test_csv, renamed
-from modefront.data.impact import EVEN, TIME, Contents, Functions, Windows, averaged_blows
-from modefront.data.responses import EXPECTED, ORDERS, DataSet, assemble, joined
+from modefront.data.impact import EVEN, TIME, Blow, Windows, averaged_blows
+from modefront.data.responses import EXPECTED, ORDERS, Channel, DataSet, assemble
 from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import is_universal, read_functions, read_uff
 from modefront.errors import Fault, InputError, noted, refuse, suggestion
@@ -238,18 +238,15 @@ def read_test(path: Path) -> ModalTest:
     """Return the test of a test file, a universal file or a CSV file; raises InputError."""
     if path.suffix.lower() == ".toml":
         return _from_toml(path)
-    known, notes = SetFiles(path.stem, (path,)), list[str]()
-    if is_universal(path):
-        contents = read_uff(path)
-    elif path.suffix.lower() == ".csv":
-        contents = read_test_csv(path, "reference")
-        known = replace(known, quantity="accelerance")
+    known, notes = SetFiles(path.stem, (path,), references=("",)), list[str]()
+    if path.suffix.lower() == ".csv" and not is_universal(path):
+        known = replace(known, references=("reference",), quantity="accelerance")
         notes = [f"{path}: the file does not say its quantity: taken for accelerance"]
-    else:
+    elif not is_universal(path):
         expected = "a universal file (.uff), a CSV file (.csv) or a test file (.toml)"
         found = "no such file" if not path.exists() else "none of these"
         raise wrong(path, expected, found)
-    data_set = _assembled([contents], known, opt.Table(str(path), "", {}, []))
+    data_set = _data_set(opt.Table(str(path), "", {}, []), known)
     data_set = replace(data_set, warnings=(*notes, *data_set.warnings))
     return ModalTest(path.stem, None, None, (data_set,))
 
@@ -342,33 +339,30 @@ def _setups(root: opt.Table, sets: Sequence[SetFiles]) -> tuple[Records, ...]:
 
 
 def _data_set(root: opt.Table, known: SetFiles) -> DataSet:
-    contents = []
+    """Return one data set with the names of the test file, at the side that has the sensors."""
+    channels, blows, used = list[Channel](), list[Blow](), set[str]()
     for file, reference in zip(known.files, known.references, strict=True):
         with noted(root.faults):
-            contents.append(_contents(file, reference, known.columns))
-    for unused in sorted(frozenset.intersection(*(x.unused for x in contents or [Contents()]))):
-        expected = "a column of the CSV files of the set"
-        root.fault(f"[[set]] {known.name!r} columns", expected, repr(unused))
+            found = read_uff(file) if is_universal(file) else read_test_csv(file, known.columns)
+            channels += [replace(x, reference=reference or x.reference) for x in found.channels]
+            blows += [replace(x, reference=reference or x.reference) for x in found.blows]
+            used |= found.used
     refuse(root.faults)
-    return _assembled(contents, known, root)
-
-
-def _contents(path: Path, reference: str, columns: Mapping[str, str]) -> Contents:
-    if not is_universal(path):
-        return read_test_csv(path, reference, columns)
-    found = read_uff(path)
-    if not reference:
-        return replace(found, unused=frozenset(columns))
-    return Contents(
-        tuple(replace(channel, reference=reference) for channel in found.channels),
-        tuple(replace(blow, reference=reference) for blow in found.blows),
-        frozenset(columns),
-    )
-
-
-def _assembled(contents: Sequence[Contents], known: SetFiles, root: opt.Table) -> DataSet:
-    """Return one data set with the names of the test file, at the side that has the sensors."""
-    channels, warnings, decay, force_noise = _functions(contents, known, root)
+    place = f"[[set]] {known.name!r}"
+    for unused in sorted(known.columns.keys() - used):
+        root.fault(f"{place} columns", "a column of the CSV files of the set", repr(unused))
+    if channels and blows:
+        root.fault(place, "either functions or records of blows", "both")
+    elif channels and known.windows:
+        made = "frequency response functions: 'window' in their [[set]] says how they were made"
+        root.fault(place, "records of blows in time, for [impact]", made)
+    elif blows and known.decay:
+        made = "records of blows: [impact] has their windows"
+        root.fault(place, "functions, for 'window'", made)
+    refuse(root.faults)
+    warnings, decay = list[str](), known.decay
+    if blows:
+        channels, warnings, decay = averaged_blows(blows, known.windows or Windows())
     responses = {channel.response for channel in channels}
     references = {channel.reference for channel in channels}
     names, turned = known.channels, len(references) > len(responses) == 1
@@ -376,9 +370,8 @@ def _assembled(contents: Sequence[Contents], known: SetFiles, root: opt.Table) -
         plain = {channel.replace("-", "") for channel in names}
         turned = len(plain & references) > len(plain & responses)
         labels = sorted(references if turned else responses)
-        missing = sorted(plain.difference(labels))
         expected = "a channel of the files: " + ", ".join(labels[:8])
-        for label in missing:
+        for label in sorted(plain.difference(labels)):
             root.fault(f"[sensors] {names.get(label, '')}", expected, suggestion(label, labels))
         refuse(root.faults)
     named = []
@@ -387,27 +380,5 @@ def _assembled(contents: Sequence[Contents], known: SetFiles, root: opt.Table) -
         reference, other = channel_name(channel.reference, names)
         H = sign * other * channel.H
         named.append(replace(channel, reference=reference, response=response, H=H))
-    out = assemble(named, known.quantity, known.name, turned)
-    noise = {channel_name(label, names)[0]: each for label, each in force_noise.items()}
-    # Where they are turned, each point of the hammer, now a response, has noise of its own.
-    of_all = None if turned else joined([noise.get(label) for label in out.data.references])
-    data = replace(out.data, decay=decay, force_noise=of_all)
-    return DataSet(known.name, data, (*warnings, *out.warnings))
-
-
-def _functions(contents: Sequence[Contents], known: SetFiles, root: opt.Table) -> Functions:
-    channels = [channel for content in contents for channel in content.channels]
-    blows = [blow for content in contents for blow in content.blows]
-    wrong = None
-    if channels and blows:
-        wrong = "either functions or records of blows", "both"
-    elif channels and known.windows:
-        found = "frequency response functions: 'window' in their [[set]] says how they were made"
-        wrong = "records of blows in time, for [impact]", found
-    elif blows and known.decay:
-        wrong = "functions, for 'window'", "records of blows: [impact] has their windows"
-    if wrong:
-        raise InputError(Fault(root.file, f"[[set]] {known.name!r}", *wrong))
-    if not blows:
-        return channels, [], known.decay, {}
-    return averaged_blows(blows, known.windows or Windows(), known.quantity)
+    out = assemble(named, known.quantity, known.name, turned, decay)
+    return replace(out, warnings=(*warnings, *out.warnings))

@@ -21,31 +21,21 @@ ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}
 """Number of differentiations of the displacement in each quantity."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ForceNoise:
     r"""Noise of the force channel, the same for all responses of a reference.
 
-    The functions of reference j are multiplied by :math:`1 - \varepsilon_j(f)` with
+    Its functions are multiplied by :math:`1 - \varepsilon(f)` with
 
-    .. math:: E[\varepsilon_j(f)\,\varepsilon_j^*(f')] = \sigma_j(f)\,\sigma_j(f')
-              \sum_m p_{jm} e^{-2\pi\mathrm{i}(f - f') t_{jm}},\qquad \sum_m p_{jm} = 1:
+    .. math:: E[\varepsilon(f)\,\varepsilon^*(f')] = \sigma(f)\,\sigma(f')
+              \sum_m p_m e^{-2\pi\mathrm{i}(f - f') t_m},\qquad \sum_m p_m = 1:
 
     where a force window is short, the errors are smooth over frequency.
     """
 
-    deviation: Floats  # (references, lines) sigma
-    times: tuple[Floats, ...]  # (samples,) of each reference, t in s from the impact
-    share: tuple[Floats, ...]  # (samples,) of each reference, p
-
-
-def joined(parts: Sequence[ForceNoise | None]) -> ForceNoise | None:
-    """Return the noise of all references; None where that of one is not known."""
-    known = [part for part in parts if part is not None]
-    if not known or len(known) < len(parts):
-        return None
-    times = tuple(t for part in known for t in part.times)
-    share = tuple(p for part in known for p in part.share)
-    return ForceNoise(np.concatenate([part.deviation for part in known]), times, share)
+    deviation: Floats  # (lines,) sigma
+    times: Floats  # (samples,) t in s from the impact
+    share: Floats  # (samples,) p
 
 
 @dataclass(frozen=True)
@@ -62,7 +52,8 @@ class FrequencyResponses:
     # where the number of blows is not known
     scaled: bool = False
     decay: float = 0.0  # what an exponential window added to the decay rate of every pole, in 1/s
-    force_noise: ForceNoise | None = None  # noise of the force channel, where it is known
+    # noise of the force at each reference, where it is known for all of them
+    force_noise: tuple[ForceNoise, ...] = ()
 
     def __post_init__(self) -> None:
         """Raise ValueError where the arrays do not fit."""
@@ -87,9 +78,8 @@ class FrequencyResponses:
 
     def lines(self, kept: Bools) -> "FrequencyResponses":
         """Return the lines that are kept, (lines,)."""
-        noise, variance = self.force_noise, self.variance
-        noise = noise and replace(noise, deviation=noise.deviation[:, kept])
-        variance = None if variance is None else variance[..., kept]
+        variance = None if self.variance is None else self.variance[..., kept]
+        noise = tuple(replace(x, deviation=x.deviation[kept]) for x in self.force_noise)
         f, H = self.frequency[kept], self.H[..., kept]
         return replace(self, frequency=f, H=H, variance=variance, force_noise=noise)
 
@@ -170,6 +160,7 @@ class Channel:
     quantity: str = ""  # what it is; empty where the file does not say
     coherence: Floats | None = None  # (lines,), or None
     variance: Floats | None = None  # (lines,) of the mean, where it is known, or None
+    noise: ForceNoise | None = None  # of the force of the blows, where it is known
 
     def fault(self, expected: str, found: str) -> Fault:
         """Return the fault of the function."""
@@ -189,11 +180,14 @@ class DataSet:
     warnings: tuple[str, ...]
 
 
-def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool) -> DataSet:
+def assemble(
+    channels: Sequence[Channel], quantity: str, name: str, turned: bool, decay: float
+) -> DataSet:
     """Return one data set from its channels.
 
     ``quantity`` is what the test file says, or empty; ``turned`` makes the points of the hammer
-    the responses, by reciprocity. Raises InputError with everything that is wrong.
+    the responses, by reciprocity; ``decay`` is that of an exponential window. Raises InputError
+    with everything that is wrong.
     """
     quantity = _quantity(channels, quantity)
     if turned:
@@ -218,6 +212,10 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     )
     dead = (np.nan_to_num(H) == np.nan_to_num(H[..., :1])).all(axis=(0, 3))
     H[:, dead] = np.nan
+    # Where they are turned, each point of the hammer, now a response, has noise of its own, as has
+    # each measurement of a reference that was hit for several ones.
+    noises = [{x.noise for x in channels if x.reference == each} for each in references]
+    noise = tuple(x for each in noises for x in each if x and len(each) == 1 and not turned)
     data = frequency_responses(
         frequency,
         H if blows > 1 else H[0],
@@ -227,6 +225,8 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
         coherence=coherence,
         variance=variance,
     )
+    noise = noise if len(noise) == len(references) else ()
+    data = replace(data, decay=decay, force_noise=noise)
     warnings = [
         *_units(name, frequency, data.H, groups, dead),
         *_reciprocity(name, data, turned),

@@ -31,8 +31,8 @@ class Problem:
     weight: Floats
     order: int  # q
     decay: float = 0.0  # what an exponential window has decayed by at the end of the record, d T
-    # noise of the force channel, where it is known; times in the unit of 1 / s
-    force_noise: ForceNoise | None = None
+    # noise of the force at each reference, where it is known; times in the unit of 1 / s
+    force_noise: tuple[ForceNoise, ...] = ()
 
     @cached_property
     def count(self) -> int:
@@ -73,10 +73,8 @@ def problem(data: FrequencyResponses, variance: Floats) -> tuple[Problem, float,
     s = (2j * np.pi * data.frequency + data.decay) / omega
     H: Complexes = np.ascontiguousarray(np.where(used, data.H, 0) / size)
     lag = data.decay / float(np.median(np.diff(data.frequency)))
-    order, noise = ORDERS[data.quantity], data.force_noise
-    if noise is not None:
-        noise = replace(noise, times=tuple(t * omega for t in noise.times))
-    return Problem(s, H, weight, order, lag, noise), omega, size
+    noise = tuple(replace(x, times=x.times * omega) for x in data.force_noise)
+    return Problem(s, H, weight, ORDERS[data.quantity], lag, noise), omega, size
 
 
 def primitives(task: Problem, lam: Complexes, squares: bool = True) -> Complexes:

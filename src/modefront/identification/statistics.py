@@ -33,8 +33,8 @@ def residuals(fit: Fit) -> Residuals:
     task, r = fit.task, fit.residual
     size = np.where(task.weight > 0, square(task.H), 0).sum(axis=2)
     share = np.sqrt(square(r).sum(axis=2) / np.where(size > 0, size, np.nan))
-    noise = task.force_noise
-    force = _force(fit) if noise is None else np.mean(noise.deviation**2, axis=1)
+    known = np.array([np.mean(x.deviation**2) for x in task.force_noise])
+    force = known if task.force_noise else _force(fit)
     return Residuals(fit.misfit, _correlation(task, r), force, share)
 
 
@@ -176,7 +176,7 @@ def _covariances(fit: Fit, residuals: Residuals) -> Floats:
     if residuals.force.any():
         variance = residuals.force[:, None]
         if task.force_noise:
-            variance = task.force_noise.deviation**2
+            variance = np.array([x.deviation**2 for x in task.force_noise])
         share = variance[:, None] * weight * square(fit.functions)
         weight = weight * np.maximum(1 - share, 0)
     alone = replace(task, weight=weight)
@@ -217,22 +217,21 @@ def _force_products(
     samples closer than lines of the band can tell apart are taken together.
     """
     weighted = task.weight[j] * H
-    noise = task.force_noise
-    if noise is None:
+    if not task.force_noise:
         portion = max(CHUNK // max(weighted.shape[0] * len(E), 1), 1)
         for start in range(0, len(task.s), portion):
             lines = slice(start, start + portion)
             yield E[:, lines].conj() * (np.sqrt(b / 2) * weighted[:, None, lines])
         return
-    f = task.s.imag
-    step = max(np.pi / (f[-1] - f[0]), float(np.ptp(noise.times[j])) / MOST_TIMES)
-    bins = np.floor((noise.times[j] - noise.times[j].min()) / step).astype(int)
-    share = np.bincount(bins, noise.share[j])
+    f, noise = task.s.imag, task.force_noise[j]
+    step = max(np.pi / (f[-1] - f[0]), float(np.ptp(noise.times)) / MOST_TIMES)
+    bins = np.floor((noise.times - noise.times.min()) / step).astype(int)
+    share = np.bincount(bins, noise.share)
     kept = share > 0
-    times = np.bincount(bins, noise.share[j] * noise.times[j])[kept] / share[kept]
+    times = np.bincount(bins, noise.share * noise.times)[kept] / share[kept]
     share = share[kept]
     for start in range(0, len(times), TOGETHER):
         part = slice(start, start + TOGETHER)
-        error = noise.deviation[j][:, None] * np.exp(-1j * np.outer(f, times[part]))
+        error = noise.deviation[:, None] * np.exp(-1j * np.outer(f, times[part]))
         error = error * np.sqrt(share[part] / 2)
         yield (weighted[:, None] * E.conj()) @ error
