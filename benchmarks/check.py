@@ -33,11 +33,11 @@ from modefront.data.modal import ModalData
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.search import diagnose
 from modefront.findings.record import Finding
+from modefront.linalg.small import mac
 from modefront.models.chain import chain
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
-from modefront.pairing.match import mac
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem
 

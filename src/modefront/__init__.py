@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from modefront.identifiability.combinations import Identifiability as Identifiability
     from modefront.identifiability.combinations import combinations as combinations
     from modefront.identification.modal_test import identify as identify
+    from modefront.linalg.small import mac as mac
     from modefront.models.chain import chain as chain
     from modefront.models.files import read_matrix as read_matrix
     from modefront.models.function import function_model as function_model
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from modefront.models.parameters import Prior as Prior
     from modefront.models.reduced.options import Reduction as Reduction
     from modefront.pairing.match import Pairing as Pairing
-    from modefront.pairing.match import mac as mac
     from modefront.predictions import Passage as Passage
     from modefront.predictions import PeakResponse as PeakResponse
     from modefront.predictions import Prediction as Prediction

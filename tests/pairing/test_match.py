@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from modefront._typing import Floats
 from modefront.data.modal import modal_data
-from modefront.pairing.match import Pairing, mac, mac_slopes, match, mean_mac, modes_needed
+from modefront.linalg.small import mac
+from modefront.pairing.match import Pairing, mac_slopes, match, mean_mac, modes_needed
 
 
 @given(st.integers(0, 2**31), st.booleans())

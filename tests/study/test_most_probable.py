@@ -15,7 +15,7 @@ from two_masses import STUDY
 
 import modefront as mf
 from modefront.cli.show import as_json
-from modefront.pairing.match import mac
+from modefront.linalg.small import mac
 from modefront.results.verdict import with_verdict
 from modefront.study.examples import write_example
 from modefront.uncertainty.inference import wider

@@ -7,7 +7,6 @@ from modefront.cli.layout import Screen
 from modefront.cli.terminal import say, say_next
 from modefront.errors import UnfinishedError
 from modefront.identification.modal_test import IdentifiedTest, identify, writable
-from modefront.identification.sets import CombinedModes
 
 MOST_FINDINGS = 8  # lines of what to look at; a file beside holds all
 
@@ -30,7 +29,8 @@ def run_identify(
     chosen = {key: by_hand[key] or () for key in ("keep", "drop", "seeds")}
     test = identify(path, band, **chosen)
     screen = Screen.of_output()
-    written = [] if test.modes is None else test.write(output)
+    found = bool(test.modes.data.modes)
+    written = test.write(output) if found else []
     if figures is not None:
         from modefront.plots import figures as figures_of
         from modefront.plots import write_figures
@@ -41,8 +41,8 @@ def run_identify(
         from modefront.reports.identification import write_identification
 
         written.append(write_identification(test, report))
-    if test.modes is not None:
-        _print_modes(screen, test, test.modes)
+    if found:
+        _print_modes(screen, test)
     more = len(test.warnings) > MOST_FINDINGS
     for text in test.warnings[: MOST_FINDINGS - more]:
         say(f"warning: {text}", err=True)
@@ -51,7 +51,7 @@ def run_identify(
         say(f'and {rest} more warnings: "warnings" in …-identification.json', err=True)
     for file in written:
         say(f"wrote {file}")
-    if test.modes is None:
+    if not found:
         raise UnfinishedError("no mode was found in the band: is it right? --seed places modes")
     if report is None and figures is None:
         said = ["--band", *(f"{x:.15g}" for x in band)] if band else []
@@ -63,8 +63,8 @@ def run_identify(
         say(f'next: [data] file = "{output}" in study.toml, then modefront check study.toml')
 
 
-def _print_modes(screen: Screen, test: IdentifiedTest, modes: CombinedModes) -> None:
-    rows = []
+def _print_modes(screen: Screen, test: IdentifiedTest) -> None:
+    rows, modes = [], test.modes
     for k, name in enumerate(test.names):
         for r, number in enumerate(modes.index[k]):
             if number < 0:

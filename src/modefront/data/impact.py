@@ -249,13 +249,13 @@ def averaged_blows(
     Warnings are on blows that are left out, and on what has not died out. Raises InputError where
     records do not fit, or no blow of a reference is left.
     """
-    first, faults = blows[0].time, list[Fault]()
+    time, faults = blows[0].time, list[Fault]()
     for blow in blows:
         steps = np.diff(blow.time)
         if len(steps) < 2 or steps.min() <= 0 or np.ptp(steps) > EVEN * steps.mean():
             faults.append(Fault(blow.file, blow.place, "a time axis of even steps", "another"))
-        elif len(blow.time) != len(first) or abs(np.ptp(blow.time) / np.ptp(first) - 1) > EVEN:
-            pair = blow.time, first
+        elif len(blow.time) != len(time) or abs(np.ptp(blow.time) / np.ptp(time) - 1) > EVEN:
+            pair = blow.time, time
             here, there = (f"{len(t)} samples over {np.ptp(t):.6g} s" for t in pair)
             expected = f"records of {there}, as in {blows[0].file}"
             faults.append(Fault(blow.file, blow.place, expected, here))
@@ -267,8 +267,13 @@ def averaged_blows(
         groups.setdefault((blow.reference, tuple(blow.responses)), []).append(blow)
     channels, warnings = list[Channel](), list[str]()
     for group in groups.values():
-        result = _averaged(group, windows)
-        channels += _channels(group[0], result.data)
+        result, first = _averaged(group, windows), group[0]
+        data, (noise,) = result.data, result.data.force_noise
+        for k, name in enumerate(data.responses):
+            variance = None if data.variance is None else data.variance[0, k]
+            place = first.file, f"response {name!r}", first.reference, name
+            values = data.frequency, data.H[0, k], first.quantity
+            channels.append(Channel(*place, *values, variance=variance, noise=noise))
         warnings += [
             f"{blow.file}: {blow.place}: the blow is left out: {why}"
             for blow, why in zip(group, result.left_out, strict=True)
@@ -277,20 +282,22 @@ def averaged_blows(
         if (worst := result.remaining.max()) > 0.05:  # more leaks
             left = f"responses still have {worst:.0%} of their size at the end of the record"
             advice = "[impact] exponential takes a shorter time constant"
-            warnings.append(f"{group[0].file}: {left}: expect errors of leakage; {advice}")
+            warnings.append(f"{first.file}: {left}: expect errors of leakage; {advice}")
     return channels, warnings, result.data.decay
 
 
 def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
+    """Return the functions of blows at one reference, which are 0 where a response is still."""
     first = blows[0]
-    names = tuple(x for x in first.responses if any(np.ptp(blow.responses[x]) for blow in blows))
-    place = f"blows at {first.reference!r}"
-    if not names:
+    place, names = f"blows at {first.reference!r}", tuple(first.responses)
+    records = np.array([[blow.responses[name] for name in names] for blow in blows])
+    moving = np.ptp(records, axis=2).any(axis=0)
+    if not moving.any():
         raise InputError(Fault(first.file, place, "a response that moves", "none"))
     try:
-        return impact_responses(
+        out = impact_responses(
             np.array([blow.force for blow in blows]),
-            np.array([[blow.responses[name] for name in names] for blow in blows]),
+            records * moving[:, None],
             (len(first.time) - 1) / float(np.ptp(first.time)),
             windows=windows,
             responses=names,
@@ -298,17 +305,5 @@ def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
     except ValueError as error:
         expected, _, found = str(error).removeprefix("expected ").partition(", found none: ")
         raise InputError(Fault(first.file, place, expected, found)) from None
-
-
-def _channels(first: Blow, data: FrequencyResponses) -> list[Channel]:
-    """Return the functions of all responses; of those that do not move, they are zero."""
-    out, still = [], np.zeros(len(data.frequency), complex)
-    for name in dict.fromkeys([*data.responses, *first.responses]):
-        where = first.file, f"response {name!r}", first.reference, name
-        H, variance = still, None
-        if name in data.responses:
-            k = data.responses.index(name)
-            H, variance = data.H[0, k], None if data.variance is None else data.variance[0, k]
-        parts = data.frequency, H, first.quantity, None, variance, data.force_noise[0]
-        out.append(Channel(*where, *parts))
-    return out
+    H: Complexes = np.where(moving[:, None], out.data.H, 0)
+    return replace(out, data=replace(out.data, H=H))

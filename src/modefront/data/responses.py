@@ -74,14 +74,11 @@ class FrequencyResponses:
     def within(self, low: float, high: float) -> "FrequencyResponses":
         """Return the lines of a band in Hz, its limits included, without the line at zero."""
         f = self.frequency
-        return self.lines((f >= low) & (f <= high) & (f > 0))
-
-    def lines(self, kept: Bools) -> "FrequencyResponses":
-        """Return the lines that are kept, (lines,)."""
+        kept = (f >= low) & (f <= high) & (f > 0)
         variance = None if self.variance is None else self.variance[..., kept]
         noise = tuple(replace(x, deviation=x.deviation[kept]) for x in self.force_noise)
-        f, H = self.frequency[kept], self.H[..., kept]
-        return replace(self, frequency=f, H=H, variance=variance, force_noise=noise)
+        H = self.H[..., kept]
+        return replace(self, frequency=f[kept], H=H, variance=variance, force_noise=noise)
 
 
 # 8 arguments: the parts of measured functions, the optional ones by keyword.
@@ -181,7 +178,7 @@ class DataSet:
 
 
 def assemble(
-    channels: Sequence[Channel], quantity: str, name: str, turned: bool, decay: float
+    channels: Sequence[Channel], quantity: str, name: str, turned: bool, decay: float = 0.0
 ) -> DataSet:
     """Return one data set from its channels.
 
@@ -228,9 +225,9 @@ def assemble(
     noise = noise if len(noise) == len(references) else ()
     data = replace(data, decay=decay, force_noise=noise)
     warnings = [
-        *_units(name, frequency, data.H, groups, dead),
+        *_units(name, data, groups, dead),
         *_reciprocity(name, data, turned),
-        *_driving_points(H, frequency, quantity, groups),
+        *_driving_points(data, groups),
     ]
     return DataSet(name, data, tuple(warnings))
 
@@ -266,19 +263,17 @@ def _quantity(channels: Sequence[Channel], declared: str) -> str:
     return known
 
 
-def _units(
-    name: str, frequency: Floats, mean: Complexes, groups: _Groups, dead: Bools
-) -> Iterator[str]:
+def _units(name: str, data: FrequencyResponses, groups: _Groups, dead: Bools) -> Iterator[str]:
     """Warn of an axis in rad/s, of dead channels, and of functions far from the others in size.
 
     Dead (references, responses) are those that are zero, or one number at all lines.
     """
-    if looks_like_circular(frequency):
+    if looks_like_circular(data.frequency):
         yield (
             f"set {name!r}: the frequency axis looks like rad/s: its lines are "
-            f"{frequency[1] - frequency[0]:.6g} apart, 2π times a round number; expected Hz"
+            f"{np.diff(data.frequency)[0]:.6g} apart, 2π times a round number; expected Hz"
         )
-    size = np.sqrt(np.mean(np.abs(np.where(np.isfinite(mean), mean, 0)) ** 2, axis=2))
+    size = np.sqrt(np.mean(np.abs(np.where(data.measured, data.H, 0)) ** 2, axis=2))
     living = size[~dead & (size > 0)]
     middle = float(np.median(living)) if len(living) else 0.0
     stray, gone = list[str](), dict[tuple[str, str], list[str]]()
@@ -296,14 +291,12 @@ def _units(
     yield from stray
 
 
-def _driving_points(
-    H: Complexes, frequency: Floats, quantity: str, groups: _Groups
-) -> Iterator[str]:
+def _driving_points(data: FrequencyResponses, groups: _Groups) -> Iterator[str]:
     """Yield where a driving point gives energy back: its mobility has a negative real part."""
-    lines = frequency > 0
-    s = 2j * np.pi * frequency[lines]
+    lines = data.frequency > 0
+    to_mobility = (2j * np.pi * data.frequency[lines]) ** (1 - ORDERS[data.quantity])
     for (j, i), (first, *_) in groups.items():
-        power = (H[0, j, i, lines] * s ** (1 - ORDERS[quantity])).real
+        power = (data.H[j, i, lines] * to_mobility).real
         driven = first.reference == first.response and np.isfinite(power).all()
         if driven and power.sum() < -0.5 * np.abs(power).sum():
             yield (

@@ -30,7 +30,6 @@ Sources: Golub & Pereyra 1973, doi:10.1137/0710036; El-Kafafy, De Troyer, Peeter
 Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
 """
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -148,7 +147,8 @@ class Fit:
             )
             for p in (2, 3)
         )
-        out = _rows(self.U).T @ _rows(self.Z - self.inverse @ self.U / 2)
+        both = (0, 1), (0, 1)
+        out = np.tensordot(self.U, self.Z - self.inverse @ self.U / 2, both)
         out = self.information + out + out.T
         pole = [k for k, _, v in model.alphas if v is None]
         for k, r, v in model.alphas:
@@ -204,7 +204,8 @@ def evaluate(
     TM = T.transpose(0, 2, 1)[:, None] @ M[..., :first, :]  # (references, responses, linear, Q)
     G = (TM[..., :first] @ T[:, None]).sum(axis=0)
     inverse = _inverse(G)
-    c = _best(inverse, T, _project(task, E[:first], None)[0])
+    nothing = np.zeros((*task.H.shape[:2], 0))
+    c = _best(inverse, T, _project(task, E[:first], nothing)[0])
     rho, cost = _project(task, E, np.einsum("jqa,ia->jiq", T, c))
     # a second round takes back what the normal equations lost; it is small, so that its changes of
     # rho and of the cost are exact to rounding
@@ -228,7 +229,7 @@ def evaluate(
         for k in range(2):
             cross += part[..., row[:, k]] * coefficient[j, :, None, :, k]
     Z = inverse @ cross
-    information = direct - _rows(cross).T @ _rows(Z)
+    information = direct - np.tensordot(cross, Z, ((0, 1), (0, 1)))
     slope = (rho[..., row] * coefficient).sum(axis=(0, 1, 3))
     cost -= float(np.sum(lost * right))
     return Fit(task, model, cost, -slope, information, inverse, Z, rho, direct.diagonal())
@@ -264,11 +265,6 @@ def thinned(fit: Fit, lam: Complexes) -> Problem:
     out = replace(task, s=s, weight=weight)
     H = synthesise(out, fit.model) + mean
     return replace(out, H=np.where(weight > 0, H, 0))
-
-
-def _rows(values: Floats) -> Floats:
-    """Return a matrix with the last axis as columns, of which there may be none."""
-    return values.reshape(math.prod(values.shape[:-1]), values.shape[-1])
 
 
 def _best(inverse: Floats, T: Floats, rho: Floats) -> Floats:
@@ -309,14 +305,12 @@ def maximise(
     return replace(fit, evaluations=evaluations, converged=converged)
 
 
-def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[Floats, float]:
+def _project(task: Problem, E: Complexes, coefficients: Floats) -> tuple[Floats, float]:
     """Return the weighted products of residuals with the primitives, and the cost.
 
-    The residuals are those of combinations of the first primitives, or the data themselves.
+    The residuals are those of combinations of the first primitives.
     """
-    r = task.H
-    if coefficients is not None:
-        r = r - combined(coefficients, E[: coefficients.shape[-1]])
+    r = task.H - combined(coefficients, E[: coefficients.shape[-1]])
     weighted = task.weight * r
     rho: Floats = weighted.view(float) @ E.view(float).T
     return rho, float(np.vdot(r, weighted).real)

@@ -43,25 +43,25 @@ class IdentifiedTest(Shown):
     ----------
     test : its functions and options
     identified : modes of each data set
-    modes : of all sets under common numbers; None where there are none
+    modes : of all sets under common numbers
     numbers : of the modes of each set in the table without choices by hand; 0 for those that only
         seeds have
     """
 
     test: ModalTest
     identified: tuple[Identification, ...]
-    modes: CombinedModes | None
+    modes: CombinedModes
     numbers: tuple[tuple[int, ...], ...]
 
     @property
     def names(self) -> list[str]:
         """Names of the data sets; an ambient test is one."""
-        return [self.test.name] if self.test.setups else [part.name for part in self.test.sets]
+        return list(self.modes.data.sets)
 
     @cached_property
     def data(self) -> ModalData:
         """The modal data that studies read; raises UnfinishedError where no mode was found."""
-        if self.modes is None:
+        if not self.modes.data.modes:
             raise UnfinishedError("no mode was found in the band")
         return self.modes.data
 
@@ -71,7 +71,7 @@ class IdentifiedTest(Shown):
         modes = [
             f"mode {r + 1} of set {name!r}: {'; '.join(each.modes[k].evidence.flags)}"
             for name, each, of_set in zip(
-                self.names, self.identified, self.modes.index if self.modes else (), strict=False
+                self.names, self.identified, self.modes.index, strict=True
             )
             for r, k in enumerate(of_set)
             if k >= 0 and each.modes[k].evidence.flags
@@ -79,7 +79,7 @@ class IdentifiedTest(Shown):
         spread = [
             f"mode {r}: the sets differ by more than their own standard deviations: "
             f"{f:.2g} Hz, damping {100 * zeta:.2g} % between sets are included"
-            for r, (f, zeta) in enumerate(self.modes.spread if self.modes else (), 1)
+            for r, (f, zeta) in enumerate(self.modes.spread, 1)
             if f or zeta
         ]
         read = [text for part in self.test.sets for text in part.warnings]
@@ -94,7 +94,7 @@ class IdentifiedTest(Shown):
             for text in _warnings(identification)
         ]
         long = any(x.values.shape[1] > 60 * LONG * x.rate for x in self.test.setups)
-        ambient = [NARROW] if long and self.modes is not None else []
+        ambient = [NARROW] if long and self.modes.data.modes else []
         return modes + spread + read + ambient + fitted
 
     def write(self, path: Path | str) -> list[Path]:
@@ -121,7 +121,7 @@ class IdentifiedTest(Shown):
             if clashing:
                 expected = "names of sensors that are no columns of modal data"
                 raise InputError(Fault("sensors", repr(clashing[0]), expected, "a reserved name"))
-            write_csv(path, self.data, self.modes.damping_std if self.modes else None)
+            write_csv(path, self.data, self.modes.damping_std)
             if self.data.shape_covariance is not None:
                 written.append(path.with_name(path.stem + "-covariance.csv"))
                 write_covariance(written[-1], self.data)
@@ -141,11 +141,10 @@ class IdentifiedTest(Shown):
     def __repr__(self) -> str:
         """Return the modes, a line each, and the first warnings."""
         out = [f"{self.test.name}: {len(self.names)} data set{'s' * (len(self.names) != 1)}"]
-        if self.modes is not None:
-            columns = zip(self.data.mean_frequency, self.data.mean_damping, strict=True)
-            lines = [f"  mode {r}: {f:.5g} Hz, {z:.2%}" for r, (f, z) in enumerate(columns, 1)]
-            more = [f"  and {len(lines) - 12} more"] * (len(lines) > 12)
-            out += [*lines[:12], *more]
+        data = self.modes.data
+        columns = zip(data.mean_frequency, data.mean_damping, strict=True)
+        lines = [f"  mode {r}: {f:.5g} Hz, {z:.2%}" for r, (f, z) in enumerate(columns, 1)]
+        out += [*lines[:12], *[f"  and {len(lines) - 12} more"] * (len(lines) > 12)]
         warnings = self.warnings
         out += [f"warning: {text}" for text in warnings[:NAMED]]
         rest = len(warnings) - NAMED
@@ -186,32 +185,24 @@ def identify(
     keep, drop = keep or read.chosen.keep, drop or read.chosen.drop
     seeds = seeds or read.chosen.seeds
     read = replace(read, chosen=ByHand(tuple(keep), tuple(drop), tuple(seeds)))
-    _check_band(path, read, band)
-    low, high = band or (ambient.default_band(read.setups) if read.setups else (0.0, np.inf))
-    inside = [part.data.within(low, high).frequency for part in read.sets]
-    ends = np.array(
-        [[f[0], f[-1]] for f in inside] or [[low, min([high, *(x.rate / 2 for x in read.setups)])]]
-    )
+    low, high = _ends(path, read, band)
     for f in seeds:
-        if not ends.min() <= f <= ends.max():
-            expected = f"frequencies of the lines, {ends.min():g} to {ends.max():g} Hz"
+        if not low <= f <= high:
+            expected = f"frequencies of the lines, {low:g} to {high:g} Hz"
             raise wrong(path, expected, f"{f:g}", "--seed")
     with threadpool_limits(1, user_api="blas"):  # threads wait for each other on small matrices
         identified = _identified(read, band, seeds)
         table = _identified(read, band) if seeds else identified
-    names = IdentifiedTest(read, (), None, ()).names
-    index: Sequence[Sequence[int]] = [()] * len(names)
-    if any(each.modes for each in table):
-        index = combine(names, table).index
-        for option, numbers in (("--keep", keep), ("--drop", drop)):
-            for number in numbers:
-                if not 1 <= number <= len(index[0]):
-                    expected = f"numbers of modes, from 1 to {len(index[0])}"
-                    raise wrong(path, expected, str(number), option)
+    names = [read.name] if read.setups else [part.name for part in read.sets]
+    index = combine(names, table).index
+    for option, numbers in (("--keep", keep), ("--drop", drop)):
+        for number in numbers if index[0] else ():
+            if not 1 <= number <= len(index[0]):
+                expected = f"numbers of modes, from 1 to {len(index[0])}"
+                raise wrong(path, expected, str(number), option)
     parts = [_chosen(*each, read.chosen) for each in zip(identified, table, index, strict=True)]
-    left = tuple(each for each, _ in parts)
-    modes = combine(names, left) if any(each.modes for each in left) else None
-    return IdentifiedTest(read, left, modes, tuple(numbers for _, numbers in parts))
+    left, numbered = zip(*parts, strict=True)
+    return IdentifiedTest(read, left, combine(names, left), numbered)
 
 
 def _identified(
@@ -260,7 +251,9 @@ def writable(path: Path | str) -> Path:
     return path
 
 
-def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -> None:
+def _ends(path: Path, test: ModalTest, band: tuple[float, float] | None) -> tuple[float, float]:
+    """Return the ends of the lines within a band in Hz; raises InputError where they are few."""
+    ends = list[float]()
     for setup in test.setups:
         low, high = band or ambient.default_band(test.setups)
         high = min(high, setup.rate / 2)
@@ -268,6 +261,7 @@ def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -
             expected = f"a band of {ambient.LEAST_LINES} lines of set {setup.name!r} at least"
             reach = f"{low:g} to {high:g} Hz of {setup.duration:g} s at {setup.rate:g} per s"
             raise wrong(path, expected, reach, "band")
+        ends += low, high
     for data_set in test.sets:
         f, inside = data_set.data.frequency, data_set.data.within(*(band or (0.0, np.inf)))
         if (count := len(inside.frequency)) < hammer.LEAST_LINES:
@@ -277,6 +271,8 @@ def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -
         if not np.nan_to_num(inside.H).any():
             zeros = f"zeros in set {data_set.name!r}"
             raise wrong(path, "functions that are not zero", zeros, "band")
+        ends += inside.frequency[[0, -1]].tolist()
+    return min(ends), max(ends)
 
 
 def _warnings(identification: Identification) -> list[str]:

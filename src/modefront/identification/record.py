@@ -81,7 +81,6 @@ class FittedFunctions:
 
     data: FrequencyResponses  # the functions within the band
     synthesised: Complexes  # functions of the model, of the shape of ``data.H``
-    variance: Floats  # the variance that weighted the data
     residuals: Residuals  # what the residuals say
     residual_terms: int  # number of residual terms on either side of the band
 

@@ -25,7 +25,8 @@ from modefront.identification.modal_model import (
 from modefront.identification.noise import square
 from modefront.identification.problem import Problem
 from modefront.identification.scan import alike
-from modefront.identification.shapes import auto_mac, plane_basis
+from modefront.identification.shapes import plane_basis
+from modefront.linalg.small import mac
 
 FALSE = 1e-3  # expected number of modes in a band that noise alone makes
 MOST_ROUNDS = 20  # rounds in which poles are added, at most
@@ -137,7 +138,9 @@ def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
         lam, least = fit.model.lam, needed(fit.task)
         if count is not None:
             least = np.sort(gain)[::-1][count - 1] if count < len(gain) else -np.inf
-        gone = with_weak(np.zeros(len(lam), bool), gain, least, lam)
+        gone = np.zeros(len(lam), bool)
+        for r in gain.argsort()[: np.sum(gain < least)]:  # neighbours may stand for the same mode
+            gone[r] = (alike(lam[r], lam[gone]) < ALONE).all()
         needless = gone.any()
         if not needless:
             double = doubles(lam, fit.model.phi, gain, fit)
@@ -159,21 +162,11 @@ def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
     return fit, gain
 
 
-def with_weak(gone: Bools, gain: Floats, least: float, lam: Complexes) -> Bools:
-    """Return which modes go, with those that gain less than ``least``, the weakest first.
-
-    One of some neighbours goes alone: they may stand for one and the same mode.
-    """
-    for r in gain.argsort()[: np.sum(gain < least)]:
-        gone[r] |= (alike(lam[r], lam[gone]) < ALONE).all()
-    return gone
-
-
 def grow(fit: Fit, count: int | None = None) -> Fit:
     """Return the fit with the modes that stand out of its residuals, until none does.
 
-    A pole that is not needed after all is not tried again. Where the ``count`` of modes is given,
-    as many are tried as lack.
+    A pole that is not needed after all is tried again only in another fit. Where the ``count`` of
+    modes is given, as many are tried as lack.
     """
     blocked: Complexes = np.zeros(0, complex)
     for _ in range(MOST_ROUNDS):
@@ -263,7 +256,7 @@ def doubles(poles: Complexes, shapes: Complexes, strength: Floats, fit: Fit | No
     """
     half = CLOSEST * np.maximum.outer(-poles.real, -poles.real)
     near = np.abs(poles[:, None] - poles) < half
-    double: Bools = near & (auto_mac(shapes) > SAME) & (strength[:, None] < strength)
+    double: Bools = near & (mac(shapes.T, shapes.T) > SAME) & (strength[:, None] < strength)
     if fit is not None:
         for r, s in np.argwhere(double):
             double[r, s] = not _differ(fit, r, s)

@@ -78,17 +78,3 @@ def plane_basis(phi: Complexes) -> Complexes:
     B: Complexes = plane @ np.linalg.pinv(phi)
     x = (B @ phi).real
     return np.asarray(np.linalg.solve(np.linalg.cholesky(x @ x.T), B), complex)
-
-
-def auto_mac(phi: Complexes) -> Floats:
-    """Return the MAC between all shapes of one set, (modes, modes); ``phi`` is (modes, responses).
-
-    >>> auto_mac(np.array([[1, 1j], [2, 2j], [1, -1j]])).round(12)
-    array([[1., 1., 0.],
-           [1., 1., 0.],
-           [0., 0., 1.]])
-    """
-    inner = np.abs(phi.conj() @ phi.T) ** 2
-    norms = np.sum(np.abs(phi) ** 2, axis=1)
-    out: Floats = inner / np.maximum(np.outer(norms, norms), np.finfo(float).tiny)
-    return out

@@ -15,6 +15,7 @@ from modefront._typing import Bools, Complexes, Floats, Ints
 from modefront.data.responses import ORDERS, FrequencyResponses
 from modefront.identification import lscf
 from modefront.identification.lscf import Poles
+from modefront.linalg.small import mac
 
 MOST_POLES = 160  # poles at the highest order: some four for each of forty modes
 MOST_ORDERS = 25  # orders of a diagram; more add no information to clusters of poles
@@ -71,7 +72,7 @@ def diagram_of(data: FrequencyResponses, variance: Floats) -> tuple[Stabilisatio
     for order in orders:
         p = lscf.poles(sums, order, omega[0], rate, data.decay)
         good = -p.value.real < MOST_DAMPING * np.abs(p.value)
-        kept.append(Poles(order, p.value[good], p.participation[good]))
+        kept.append(Poles(p.value[good], p.participation[good]))
     s: Complexes = np.asarray(1j * omega + data.decay, complex)
     # shapes are taken from every n-th line, and from those next to poles
     lines: Bools = np.arange(len(s)) % -(-len(s) // SHAPE_LINES) == 0
@@ -119,10 +120,7 @@ def shapes_of(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:
 def _distances(a: Complexes, psi_a: Complexes, b: Complexes, psi_b: Complexes) -> Floats:
     """Return d of every pole of one list and every pole of another."""
     size = np.maximum(np.abs(a)[:, None], np.abs(b)[None])
-    inner = np.abs(psi_a.conj() @ psi_b.T) ** 2
-    norms = np.outer(np.sum(np.abs(psi_a) ** 2, axis=1), np.sum(np.abs(psi_b) ** 2, axis=1))
-    mac = inner / np.maximum(norms, np.finfo(float).tiny)
-    out: Floats = np.abs(a[:, None] - b[None]) / size + np.maximum(1 - mac, 0)
+    out: Floats = np.abs(a[:, None] - b) / size + np.maximum(1 - mac(psi_a.T, psi_b.T), 0)
     return out
 
 
@@ -141,7 +139,7 @@ def _clusters(diagram: StabilisationDiagram, psi: Complexes) -> Poles:
         if len(np.unique(diagram.order[members])) >= LEAST_ORDERS:
             chosen.append(int(members[np.abs(poles - middle).argmin()]))
     chosen.sort(key=lambda k: diagram.pole[k].imag)
-    return Poles(0, diagram.pole[chosen], diagram.participation[chosen])
+    return Poles(diagram.pole[chosen], diagram.participation[chosen])
 
 
 def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) -> Floats:

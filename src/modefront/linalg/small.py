@@ -1,4 +1,4 @@
-"""Decompositions of small matrices, straight from LAPACK.
+"""Decompositions of small matrices, straight from LAPACK, and the MAC.
 
 Of matrices of some ten rows, numpy's functions of the same name take more time to look at their
 arguments than to decompose them. Here these are real, and results have the same digits.
@@ -7,7 +7,7 @@ arguments than to decompose them. Here these are real, and results have the same
 import numpy as np
 import scipy.linalg
 
-from modefront._typing import Floats
+from modefront._typing import Complexes, Floats
 
 _lapack = scipy.linalg.lapack
 
@@ -54,3 +54,32 @@ def lstsq(A: Floats, b: Floats) -> Floats:
     if failed:
         raise np.linalg.LinAlgError("singular values did not converge")
     return np.asarray(x[:n])
+
+
+def mac(phi: Floats | Complexes, psi: Floats | Complexes) -> Floats:
+    r"""Return the MAC of each column of ``phi`` with each column of ``psi``.
+
+    .. math:: \mathrm{MAC} = |\varphi^H \psi|^2 / (\varphi^H \varphi\; \psi^H \psi)
+
+    Source: Allemang, Sound and Vibration 37 (8), 2003, equation 2.
+
+    Parameters
+    ----------
+    phi
+        Mode shapes (sensors, modes), real or complex, in any scale.
+    psi
+        Other mode shapes (sensors, other modes).
+
+    Returns
+    -------
+    Floats
+        MAC values (modes, other modes), from 0 to 1; 0 where a shape vanishes at all sensors.
+
+    Examples
+    --------
+    >>> mac(np.array([[1.0], [1.0j]]), np.array([[1.0, 1.0], [1.0j, -1.0j]])).round(6).tolist()
+    [[1.0, 0.0]]
+    """
+    cross = np.abs(phi.conj().T @ psi) ** 2
+    norm = np.outer((np.abs(phi) ** 2).sum(axis=0), (np.abs(psi) ** 2).sum(axis=0))
+    return np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from modefront._typing import Complexes, Floats, Ints
+from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
 from modefront.optim.scalarisation import LogSum
 from modefront.options import Checked, number, whole
@@ -154,32 +154,3 @@ def mac_slopes(data: ModalData, pairs: Pairs, phi: Floats, dphi: Floats) -> Floa
     norm = squares * b**2
     out = np.divide(2 * c * (b * dc - c * half), norm, out=np.zeros(dc.shape), where=norm > 0)
     return np.asarray(out.sum(axis=0) / sets)
-
-
-def mac(phi: Floats | Complexes, psi: Floats | Complexes) -> Floats:
-    r"""Return the MAC of each column of ``phi`` with each column of ``psi``.
-
-    .. math:: \mathrm{MAC} = |\varphi^H \psi|^2 / (\varphi^H \varphi\; \psi^H \psi)
-
-    Source: Allemang, Sound and Vibration 37 (8), 2003, equation 2.
-
-    Parameters
-    ----------
-    phi
-        Mode shapes (sensors, modes), real or complex, in any scale.
-    psi
-        Other mode shapes (sensors, other modes).
-
-    Returns
-    -------
-    Floats
-        MAC values (modes, other modes), from 0 to 1; 0 where a shape vanishes at all sensors.
-
-    Examples
-    --------
-    >>> mac(np.array([[1.0], [1.0j]]), np.array([[1.0, 1.0], [1.0j, -1.0j]])).round(6).tolist()
-    [[1.0, 0.0]]
-    """
-    cross = np.abs(phi.conj().T @ psi) ** 2
-    norm = np.outer((np.abs(phi) ** 2).sum(axis=0), (np.abs(psi) ** 2).sum(axis=0))
-    return np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from modefront.identification.record import Identification
-from modefront.identification.shapes import auto_mac
 from modefront.identification.stabilisation import complex_indicators, multivariate_indicators
+from modefront.linalg.small import mac
 from modefront.plots.canvas import COLOURS, Picture, panels, picture, plain, single
 
 MOST_PANELS, SHORT = 12, 40
@@ -88,13 +88,14 @@ def _functions(identification: Identification) -> Picture:
 
 def _auto_mac(identification: Identification) -> Picture:
     figure, axes = single(3.6, 3.2)
-    mac = auto_mac(np.array([mode.shape.complex_shape for mode in identification.modes]))
+    shapes = np.array([mode.shape.complex_shape for mode in identification.modes]).T
+    values = mac(shapes, shapes)
     ticks = [f"{mode.frequency:.4g}" for mode in identification.modes]
-    image = axes.imshow(mac, vmin=0, vmax=1, cmap="Blues")
+    image = axes.imshow(values, vmin=0, vmax=1, cmap="Blues")
     axes.grid(False)
     axes.set_xticks(range(len(ticks)), ticks, rotation=90)
     axes.set_yticks(range(len(ticks)), ticks)
-    for (r, s), value in np.ndenumerate(mac):
+    for (r, s), value in np.ndenumerate(values):
         colour = "white" if value > 0.5 else "black"  # legible on the dark end of the scale
         axes.text(s, r, f"{value:.2f}", ha="center", va="center", fontsize=6, color=colour)
     axes.set(title="auto-MAC", xlabel="frequency in Hz", ylabel="frequency in Hz")

@@ -9,8 +9,8 @@ from modefront._typing import Floats
 from modefront._version import __version__
 from modefront.identification.modal_test import IdentifiedTest
 from modefront.identification.record import Identification
-from modefront.identification.shapes import auto_mac
 from modefront.identification.stabilisation import complex_indicators, multivariate_indicators
+from modefront.linalg.small import mac
 from modefront.reports.page import packed, page_of, write_html
 from modefront.text import json_of
 
@@ -47,8 +47,8 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
     has_phase = bool(np.any(np.nan_to_num(data.H).imag))
     multivariate = multivariate_indicators(data)[:, kept] if has_phase else np.zeros((0, 0))
     positions, directions = _places(test, each)
-    shapes = np.array([mode.shape.complex_shape for mode in each.modes])
-    mac: list[Floats] = list(auto_mac(shapes)) if each.modes else []
+    shapes = np.array([mode.shape.complex_shape for mode in each.modes]).T
+    rows: list[Floats] = list(mac(shapes, shapes)) if each.modes else []
     return {
         "band": each.band,
         "quantity": data.quantity,
@@ -79,7 +79,7 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
         "complexIndicators": [_logarithms(row[kept]) for row in complex_indicators(data)],
         "multivariateIndicators": [_rounded(row) for row in multivariate],
         "functions": _functions(each, kept),
-        "mac": [_rounded(row, 3) for row in mac],
+        "mac": [_rounded(row, 3) for row in rows],
         "sensors": each.responses,
         "positions": positions,
         "directions": directions,

@@ -163,7 +163,7 @@ def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDia
     diagram, all_poles = diagram_of(data, variance)
     f = np.abs(all_poles.value) / (2 * np.pi)
     inside = (f >= low) & (f <= high)
-    poles = Poles(0, lam := all_poles.value[inside], all_poles.participation[inside])
+    poles = Poles(lam := all_poles.value[inside], all_poles.participation[inside])
     s: Complexes = np.asarray(2j * np.pi * data.frequency + data.decay)
     psi = shapes_of(poles, data.H, s, 0) * records.values.std(axis=1)
     zeta = np.clip(-lam.real / np.abs(lam), *DAMPING)
@@ -508,6 +508,4 @@ def _functions(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FittedFunc
     data = FrequencyResponses(f, density, "receptance", ("spectral density",), sensors)
     nothing = np.full(density.shape[:2], np.nan)
     residuals = Residuals(1.0, np.ones(1, complex), np.zeros(1), nothing)
-    return FittedFunctions(
-        data, np.full(density.shape, np.nan, complex), nothing[..., None], residuals, 0
-    )
+    return FittedFunctions(data, np.full(density.shape, np.nan, complex), residuals, 0)

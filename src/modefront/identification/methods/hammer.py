@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from modefront._typing import Bools, Complexes, Floats
+from modefront._typing import Bools, Floats
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import selection, stabilisation
 from modefront.identification.modal_model import Fit, evaluate
@@ -23,8 +23,8 @@ from modefront.identification.record import (
     ModeEstimate,
     Rejected,
 )
-from modefront.identification.shapes import auto_mac
 from modefront.identification.statistics import mode_estimates, residuals
+from modefront.linalg.small import mac
 
 LEAST_LINES = 20
 """Lines of a band, at least: two modes with their residual terms have twelve numbers a function."""
@@ -159,7 +159,15 @@ def _result(
     """
     fit = selection.paired(apart)
     task, misfit, f = fit.task, residuals(fit), data.frequency
-    estimates = _with_split(mode_estimates(fit, misfit, omega), fit, apart.model.lam * omega)
+    estimates = mode_estimates(fit, misfit, omega)
+    for pair in map(list, fit.model.pairs):  # the data do not exclude the poles apart
+        of_pair = apart.model.lam[pair]
+        ratios = of_pair.real / np.abs(of_pair)
+        splits = np.ptp(np.abs(of_pair)) * omega / (4 * np.pi), np.ptp(ratios) / 2
+        for r in pair:
+            own = estimates[r].frequency_std, estimates[r].damping_std
+            f_std, zeta_std = np.hypot(own, splits).tolist()
+            estimates[r] = replace(estimates[r], frequency_std=f_std, damping_std=zeta_std)
     reasons = [
         "damped too heavily for a mode" * bool(mode.damping > stabilisation.MOST_DAMPING)
         if f[0] <= mode.frequency <= f[-1]
@@ -175,9 +183,8 @@ def _result(
     shares = stabilisation.support(diagram, fit.model.lam * omega, gain)
     evidence = _evidence(fit, f, gain / selection.needed(task), shares, estimates, kept)
     modes = [replace(estimates[k], evidence=evidence[k]) for k in kept]
-    variance = size**2 / np.where(task.weight > 0, task.weight, np.nan)
     terms = len(RESIDUALS) // 2
-    functions = FittedFunctions(data, fit.functions * size, variance, misfit, terms)
+    functions = FittedFunctions(data, fit.functions * size, misfit, terms)
     return Identification(
         data.responses,
         (float(f[0]), float(f[-1])),
@@ -190,25 +197,6 @@ def _result(
     )
 
 
-def _with_split(estimates: Sequence[ModeEstimate], fit: Fit, lam: Complexes) -> list[ModeEstimate]:
-    """Return estimates of which those of pairs deviate by half the difference of their poles, too.
-
-    The poles ``lam`` in rad/s are those apart: the data do not exclude them.
-    """
-    out = list(estimates)
-    for pair in fit.model.pairs:
-        size = np.abs(lam[list(pair)])
-        split = float(np.ptp(size)) / (4 * np.pi)
-        of_damping = float(np.ptp(lam[list(pair)].real / size)) / 2
-        for r in pair:
-            out[r] = replace(
-                out[r],
-                frequency_std=float(np.hypot(out[r].frequency_std, split)),
-                damping_std=float(np.hypot(out[r].damping_std, of_damping)),
-            )
-    return out
-
-
 # 6 arguments: what speaks for a mode, and its neighbours.
 def _evidence(
     fit: Fit,
@@ -219,7 +207,7 @@ def _evidence(
     kept: Sequence[int],
 ) -> list[Evidence]:
     """Return what speaks for every mode; only those that are ``kept`` are neighbours."""
-    visible, mac = _visibility(fit), auto_mac(fit.model.phi)
+    visible, alike = _visibility(fit), mac(fit.model.phi.T, fit.model.phi.T)
     spacing = float(np.median(np.diff(frequency)))
     out = []
     for r, mode in enumerate(estimates):
@@ -242,9 +230,9 @@ def _evidence(
                 continue
             if other.pole == mode.pole:
                 flags.append("one of a pair: both shapes are a basis of a plane")
-            elif len(fit.model.phi[r]) > 1 and mac[r, k] > selection.SAME:
+            elif len(fit.model.phi[r]) > 1 and alike[r, k] > selection.SAME:
                 flags.append(
-                    f"shape of {other.frequency:.5g} Hz (MAC {mac[r, k]:.2f}): one peak split in "
+                    f"shape of {other.frequency:.5g} Hz (MAC {alike[r, k]:.2f}): one peak split in "
                     "two, or sensors that cannot tell them apart"
                 )
             elif len(fit.task.H) == 1 and apart < max(half, other.damping * other.frequency):
