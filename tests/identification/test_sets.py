@@ -47,7 +47,7 @@ def test_close_modes_that_a_set_turns_in_their_plane_keep_one_number_each() -> N
             _set([5.01, 5.06], _turned(plane, degrees)),
             _set([5.02], _turned(plane, degrees / 2)[1:]),
         ]
-        groups = mode_groups(sets, SENSORS)
+        groups = mode_groups(sets)
         assert len(groups) == 2
         assert sorted(len(group) for group in groups) == [2, 3]
 
@@ -55,13 +55,13 @@ def test_close_modes_that_a_set_turns_in_their_plane_keep_one_number_each() -> N
 def test_shapes_choose_among_close_modes() -> None:
     plane = np.linalg.qr(np.random.default_rng(1).standard_normal((4, 2)))[0].T
     sets = [_set([5.0, 5.05], plane), _set([5.02, 5.03], plane[::-1])]
-    assert mode_groups(sets, SENSORS) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
+    assert mode_groups(sets) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
 
 
 def test_damping_chooses_among_close_modes_of_turned_shapes() -> None:
     plane = np.linalg.qr(np.random.default_rng(1).standard_normal((4, 2)))[0].T
     sets = [_set([5, 5], plane, (0.025, 0.006)), _set([5, 5], _turned(plane, 40), (0.006, 0.025))]
-    assert mode_groups(sets, SENSORS) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
+    assert mode_groups(sets) == [{0: 0, 1: 1}, {0: 1, 1: 0}]
 
 
 @pytest.mark.parametrize(("std", "groups"), [(0.01, 2), (0.4, 1)])
@@ -72,10 +72,10 @@ def test_shapes_that_data_do_not_tell_apart_are_of_one_mode(std: float, groups: 
         names, (mode,) = _set([5.0], phi)
         C = std**2 * (np.eye(4) - np.outer(phi, phi))
         sets.append((names, [replace(mode, shape_covariance=C)]))
-    assert len(mode_groups(sets, SENSORS)) == groups
+    assert len(mode_groups(sets)) == groups
 
 
 def test_shapes_outside_the_plane_and_modes_apart_are_others() -> None:
     basis = np.linalg.qr(np.random.default_rng(2).standard_normal((4, 4)))[0].T
     sets = [_set([5.0, 5.05], basis[:2]), _set([5.0, 5.5], basis[[2, 0]])]
-    assert len(mode_groups(sets, SENSORS)) == 4
+    assert len(mode_groups(sets)) == 4

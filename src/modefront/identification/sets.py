@@ -47,7 +47,7 @@ class CombinedModes:
 def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> CombinedModes:
     """Return the modes of several data sets under common numbers, by frequency."""
     sensors = tuple(dict.fromkeys(name for each in identifications for name in each.responses))
-    groups = mode_groups([(each.responses, each.modes) for each in identifications], sensors)
+    groups = mode_groups([(each.responses, each.modes) for each in identifications])
     K, R, S = len(identifications), len(groups), len(sensors)
     index = tuple(tuple(group.get(k, -1) for group in groups) for k in range(K))
     f, z, f_std, z_std = (np.full((K, R), np.nan) for _ in range(4))
@@ -63,7 +63,12 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
             phi[k, r, places] = np.where(np.isfinite(mode.shape_std), mode.shape.shape, np.nan)
             if C is not None and mode.shape_covariance is not None:
                 C[k, r][np.ix_(places, places)] = mode.shape_covariance
-    paired = _pairs(identifications, index)
+    paired = dict[int, int]()  # the other mode of each one of a pair, in the first set that has it
+    for each, of_set in zip(identifications, index, strict=True):
+        for pair in each.pairs:
+            r, s = (of_set.index(k) for k in pair)
+            if r not in paired and s not in paired:
+                paired |= {r: s, s: r}
     spread = np.zeros((R, 2))
     for r in range(R):
         spread[r] = between(f[:, r], f_std[:, r]), between(z[:, r], z_std[:, r])
@@ -85,19 +90,6 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
     return CombinedModes(data, z_std, spread, index)
 
 
-def _pairs(
-    identifications: Sequence[Identification], index: Sequence[Sequence[int]]
-) -> dict[int, int]:
-    """Return the other mode of each one that is of a pair in a set, the first set that has it."""
-    out: dict[int, int] = {}
-    for each, of_set in zip(identifications, index, strict=True):
-        for pair in each.pairs:
-            r, s = (of_set.index(k) for k in pair)
-            if r not in out and s not in out:
-                out |= {r: s, s: r}
-    return out
-
-
 def between(x: Floats, std: Floats) -> float:
     """Return tau, the standard deviation between sets; 0 where they agree.
 
@@ -117,18 +109,10 @@ def between(x: Floats, std: Floats) -> float:
     return float(np.sqrt((Q - freedom) / (weight.sum() - np.sum(weight**2) / weight.sum())))
 
 
-def _at(values: Floats, names: Sequence[str], sensors: Sequence[str]) -> Floats:
-    out = np.full((len(sensors), *values.shape[1:]), np.nan)
-    out[[sensors.index(name) for name in names]] = values
-    return out
-
-
 ModesOfSet = tuple[Sequence[str], Sequence[ModeEstimate]]  # sensors and modes of one set
 
 
-def mode_groups(
-    sets: Sequence[ModesOfSet], sensors: Sequence[str], least: float = LEAST_MAC
-) -> list[dict[int, int]]:
+def mode_groups(sets: Sequence[ModesOfSet], least: float = LEAST_MAC) -> list[dict[int, int]]:
     """Return, for every mode of the structure, which mode of each set it is.
 
     All modes of a set are assigned at once, to as many modes of the sets before as agree, and by
@@ -138,9 +122,7 @@ def mode_groups(
     for k, own in enumerate(sets):
         score = np.zeros((len(own[1]), len(groups)))
         for r, g in np.ndindex(score.shape):
-            score[r, g] = max(
-                _agreement(own, r, sets[j], s, sensors, least) for j, s in groups[g].items()
-            )
+            score[r, g] = max(_agreement(own, r, sets[j], s, least) for j, s in groups[g].items())
         rows, columns = linear_sum_assignment(score, maximize=True)
         known = {int(r): int(g) for r, g in zip(rows, columns, strict=True) if score[r, g] > 0}
         groups += [{} for _ in range(len(own[1]) - len(known))]
@@ -150,9 +132,7 @@ def mode_groups(
     return sorted(groups, key=lambda x: np.mean([sets[k][1][r].frequency for k, r in x.items()]))
 
 
-def _agreement(
-    of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, sensors: Sequence[str], least: float
-) -> float:
+def _agreement(of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, least: float) -> float:
     """Return one more than the squared correlation of modes, 0 where they cannot be the same.
 
     It is that of shapes at common sensors, the MAC, times that of poles: close modes differ in
@@ -164,6 +144,9 @@ def _agreement(
     x, y = of_a[1][a], of_b[1][b]
     half = [mode.damping * mode.frequency for mode in (x, y)]
     reach = max(WIDTH * np.hypot(x.frequency_std, y.frequency_std), *half, 0.005 * x.frequency)
+    common = [name for name in of_a[0] if name in of_b[0]]
+    if abs(x.frequency - y.frequency) > reach or not common:
+        return 0.0
     shapes, planes = [], []
     for mode, own, (names, modes) in zip((x, y), half, (of_a, of_b), strict=True):
         close = [
@@ -171,12 +154,10 @@ def _agreement(
             for each in modes
             if abs(each.frequency - mode.frequency) <= each.damping * each.frequency + own
         ]
-        shapes.append(_at(mode.shape.plane, names, sensors))
-        planes.append(_at(np.hstack(close), names, sensors))
-    both = np.isfinite(np.hstack(shapes)).all(axis=1)
-    if abs(x.frequency - y.frequency) > reach or not both.any():
-        return 0.0
-    own_a, own_b, plane_a, plane_b = (la.orth(each[both]) for each in (*shapes, *planes))
+        places = [names.index(name) for name in common]
+        shapes.append(la.orth(mode.shape.plane[places]))
+        planes.append(la.orth(np.hstack(close)[places]))
+    (own_a, own_b), (plane_a, plane_b) = shapes, planes
 
     def mac(first: Floats, second: Floats) -> float:
         return float(np.linalg.norm(first.T @ second, 2) ** 2) if first.size * second.size else 0.0

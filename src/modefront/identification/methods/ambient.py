@@ -362,7 +362,7 @@ def _groups(setups: Sequence[_Setup], least: float = 0.0) -> list[dict[int, int]
         )
         for each in setups
     ]
-    return mode_groups(local, _sensors(setups), least)
+    return mode_groups(local, least)
 
 
 def _sensors(setups: Sequence[_Setup]) -> tuple[str, ...]:
@@ -374,19 +374,16 @@ def _completed(k: int, setups: Sequence[_Setup], groups: Sequence[dict[int, int]
 
     With the pole known, a mode needs less. Neighbours that were fitted without it are fitted again.
     """
-    own, tried = setups[k], [_tried(setups[k], setups, group) for group in groups if k not in group]
-    modes = [*own.modes, *tried]
-    return _fitted(own, modes, FALSE, last=True, first=len(own.modes)) if tried else own
-
-
-def _tried(setup: _Setup, setups: Sequence[_Setup], group: dict[int, int]) -> Local:
-    """Return the mode of other setups as a start in this one."""
-    known = [(setups[k], setups[k].modes[number]) for k, number in group.items()]
-    omega = float(np.mean([mode.omega for _, mode in known]))
-    first, mode = known[0]
-    shape = dict(zip(first.records.sensors, mode.phi, strict=True))
-    phi = np.array([shape.get(name, 0.0) for name in setup.records.sensors])
-    return replace(_seeded(setup.lines, omega, phi), zeta=mode.zeta)
+    own, modes = setups[k], list(setups[k].modes)
+    for group in (group for group in groups if k not in group):
+        known = [(setups[j], setups[j].modes[number]) for j, number in group.items()]
+        omega = float(np.mean([mode.omega for _, mode in known]))
+        first, mode = known[0]
+        shape = dict(zip(first.records.sensors, mode.phi, strict=True))
+        phi = np.array([shape.get(name, 0.0) for name in own.records.sensors])
+        modes.append(replace(_seeded(own.lines, omega, phi), zeta=mode.zeta))
+    first_new = len(own.modes)
+    return _fitted(own, modes, FALSE, last=True, first=first_new) if modes[first_new:] else own
 
 
 def _combined(
