@@ -103,19 +103,32 @@ def poles(sums: Moments, p: int, shift: float, rate: float, decay: float = 0.0) 
     normal = M[rest, rest] / np.outer(scale[rest], scale[rest])
     right = -M[rest, :n_in] / scale[rest, None]
     alpha = la.lstsq(normal, right, lapack_driver="gelsd")[0] / scale[rest, None]
-    # sum_m z^m L A_m = 0 with A_0 = I: a companion matrix in 1/z, of whose vectors L is the head
+    # sum_m z^m A_m v = 0 with A_0 = I: a companion matrix in 1/z
     companion = np.zeros((p * n_in, p * n_in), complex)
     companion[n_in:, :-n_in] = np.eye((p - 1) * n_in)
-    companion[:n_in] = -np.hstack(list(alpha.reshape(p, n_in, n_in).swapaxes(1, 2)))
-    inverse, vector = la.eig(companion)
-    there = np.abs(inverse) > np.finfo(float).eps
-    inverse, left = inverse[there], vector[:n_in, there].T
+    companion[:n_in] = -np.hstack(list(alpha.reshape(p, n_in, n_in)))
+    inverse = la.eigvals(companion)
+    inverse = inverse[np.abs(inverse) > np.finfo(float).eps]
     middle = np.pi * ARC
     angle = np.angle(np.exp(1j * (-np.angle(inverse) - middle))) + middle
     value = -np.log(np.abs(inverse)) / rate + 1j * (shift + angle / rate)
     good = (value.real < -decay / 2) & (value.imag > 0)
     if decay:
         value.real = np.minimum(value.real + decay, -LEAST_DAMPING * np.abs(value))
-    order = np.flatnonzero(good)[np.argsort(value[good].imag)]
-    greatest = np.abs(left[order]).argmax(axis=1)
-    return Poles(value[order], left[order] / left[order, greatest][:, None])
+    participation = _participation(alpha.reshape(p, n_in, n_in), 1 / inverse[good])
+    order = np.argsort(value[good].imag)
+    return Poles(value[good][order], participation[order])
+
+
+def _participation(A: Complexes, z: Complexes) -> Complexes:
+    """Return the left null vectors of A(z), (poles, references), greatest entry 1.
+
+    Near a pole, B A^-1 is a column times this row. ``A`` holds A_1 ... A_p; A_0 is I.
+    """
+    p, n_in = A.shape[:2]
+    if n_in == 1:
+        return np.ones((len(z), 1), complex)
+    total = np.eye(n_in) + np.einsum("km,mij->kij", z[:, None] ** np.arange(1, p + 1), A)
+    left: Complexes = np.linalg.svd(total)[0][:, :, -1].conj()
+    greatest = np.abs(left).argmax(axis=1)
+    return left / left[np.arange(len(left)), greatest][:, None]
