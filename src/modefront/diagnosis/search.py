@@ -31,8 +31,9 @@ EITHER = 3  # explanations that the data cannot tell apart and that are named ne
 WINDOW = 1.5  # window of frequencies that is advised
 LEFT = 1.0  # difference of costs that fits leave
 
-MIXED = CLEAR + LEFT
-"""Price of an explanation in which mistakes are said of values that are moved later."""
+MIXED = LEFT
+"""Price of an explanation in which mistakes are said of values that are moved later: where both
+orders fit alike, the one that moves them first is said first."""
 
 SEEN = 0.02  # increase of a MAC value that is worth its name
 
@@ -86,8 +87,8 @@ def is_mixed(mistakes: Sequence[Mistake]) -> bool:
 
 
 def key_of(mistakes: Sequence[Mistake]) -> object:
-    """Return what tells an explanation from others."""
-    return frozenset((*each.claim, str(each.numbers)) for each in mistakes), is_mixed(mistakes)
+    """Return what tells an explanation from others; of two orders, one is known."""
+    return frozenset((*each.claim, str(each.numbers)) for each in mistakes)
 
 
 def undone(state: State, mistakes: Iterable[Mistake]) -> State:
@@ -134,13 +135,19 @@ class Search:
             kinds[one.kind].append(one)
         found = [one for some in kinds.values() for one in self._alike(some, setting)]
         states = [one.change(old.state) for one in found]
+        tried = [(one, (*old.mistakes, one)) for one in found]
+        if any(one.moves for one in old.mistakes):  # it may be said of the values as they are given
+            tried += [(one, (one, *old.mistakes)) for one in found]
+            states += [undone(self.fits.plain, mistakes) for _, mistakes in tried[len(found) :]]
         # Parameters have made up for mistakes: what one costs where these are says little.
-        costs = self.fits.ahead(states, [old.point.x] * len(states)) + [x.price for x in found]
-        claims: dict[tuple[str, ...], list[Mistake]] = {}
+        costs = self.fits.ahead(states, [old.point.x] * len(states))
+        costs += [one.price + MIXED * is_mixed(mistakes) for one, mistakes in tried]
+        claims: dict[tuple[str, ...], dict[object, tuple[Mistake, ...]]] = {}
         for k in np.argsort(costs, kind="stable").tolist():
-            claims.setdefault(found[k].claim, []).append(found[k])
-        added = [one for some in list(claims.values())[:FITTED] for one in some[:VARIANTS]]
-        self.fit([(*old.mistakes, one) for one in added], old)
+            one, mistakes = tried[k]
+            claims.setdefault(one.claim, {}).setdefault(key_of(mistakes), mistakes)
+        best = list(claims.values())[:FITTED]
+        self.fit([x for some in best for x in list(some.values())[:VARIANTS]], old)
 
     def _alike(self, some: list[Mistake], setting: Setting) -> list[Mistake]:
         """Return mistakes; of many, those without which modes are most like those of the model."""

@@ -9,7 +9,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.diagnosis.evidence import Points
-from modefront.diagnosis.state import State
+from modefront.diagnosis.state import NOTHING, State
 from modefront.findings.record import Finding
 from modefront.modes.result import Modes
 
@@ -76,12 +76,15 @@ def changed(
     """Return the change of some values of a part of the state, for a cost.
 
     They become what a function makes of them, or are divided by a factor, of which NaN leaves out.
+    Of values that are left out nothing is known.
     """
 
     def change(state: State) -> State:
         values = getattr(state, part).copy()
+        count = np.isfinite(values).sum()
         values[place] = new(values[place]) if callable(new) else values[place] / new
+        lost = NOTHING * (count - np.isfinite(values).sum())
         parts: Any = {part: values}
-        return replace(state, left_out=state.left_out + cost, **parts)
+        return replace(state, left_out=state.left_out + cost + lost, **parts)
 
     return change

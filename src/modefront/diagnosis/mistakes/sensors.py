@@ -19,7 +19,7 @@ from modefront.diagnosis.mistakes.record import (
     changed,
     one_of,
 )
-from modefront.diagnosis.state import NOTHING, State, loss
+from modefront.diagnosis.state import State, loss
 from modefront.diagnosis.state import SHAPE as NOISE
 from modefront.findings.knowledge import enumeration
 from modefront.models.geometry import ALONG, Geometry, axis_name
@@ -29,6 +29,8 @@ FACTORS = (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 9.81, 1 / 9.81, 2.0, 0.5)
 """Factors on the values of a sensor by another unit or sensitivity."""
 
 NEAREST = 4  # places of each sensor that are tried: those where the model moves most as measured
+
+COPIED = 0.5  # share of studies with the same digits twice in which they are a copy
 
 OFTEN_SHARED = 2.0
 """Logarithm of how much likelier a sensor is at a wrong place where it shares it with another."""
@@ -105,8 +107,8 @@ def copied_sensor(setting: Setting) -> Iterator[Mistake]:
     for s, t in same:
         sets = setting.state.seen[:, :, s].sum(axis=0)
         of_model, of_noise = (sets > 0).sum(), np.maximum(sets - 1, 0).sum()
-        usual = np.log(SHAPE) * of_model + np.log(NOISE) * of_noise + NOTHING * sets.sum()
-        change, price = changed("shape", np.s_[..., s], np.nan, usual), one_of(OFTEN, len(same))
+        usual = np.log(SHAPE) * of_model + np.log(NOISE) * of_noise
+        change, price = changed("shape", np.s_[..., s], np.nan, usual), one_of(COPIED, len(same))
         numbers, subject = {"sensor": names[s], "other": names[t]}, sorted((names[s], names[t]))
         yield Mistake("copied-sensor", tuple(subject), change, price, numbers)
 

@@ -209,7 +209,7 @@ def odd_value(setting: Setting) -> Iterator[Mistake]:
                 other, value = f[known]
             numbers: dict[str, Any] = {"mode": mode, "who": who, "look": look, "f": float(value)}
             numbers |= {"other": float(other), "percent": float(100 * (value / other - 1))}
-            change = changed(part, np.s_[k, r], np.nan, count[k] * (NOTHING + np.log(wrong)))
+            change = changed(part, np.s_[k, r], np.nan, count[k] * np.log(wrong))
             yield Mistake(f"odd-{part}", tuple(subject), change, price, numbers)
 
 
