@@ -20,7 +20,7 @@ from modefront.pairing.match import match
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
-PROMISING, FITTED, VARIANTS = 100, 10, 2
+PROMISING, FITTED, VARIANTS = 100, 10, 3
 """Mistakes of each kind of which costs are looked at, claims by which an explanation is extended,
 and mistakes of a claim that are fitted."""
 
@@ -140,7 +140,8 @@ class Search:
             tried += [(one, (one, *old.mistakes)) for one in found]
             states += [undone(self.fits.plain, mistakes) for _, mistakes in tried[len(found) :]]
         # Parameters have made up for mistakes: what one costs where these are says little.
-        costs = self.fits.ahead(states, [old.point.x] * len(states))
+        xs = (old.point.x, 0 * old.point.x)
+        costs = np.min([self.fits.ahead(states, [x] * len(states)) for x in xs], axis=0)
         costs += [one.price + MIXED * is_mixed(mistakes) for one, mistakes in tried]
         claims: dict[tuple[str, ...], dict[object, tuple[Mistake, ...]]] = {}
         for k in np.argsort(costs, kind="stable").tolist():
@@ -172,8 +173,10 @@ class Search:
             fewer = list(combinations(best.mistakes, max(len(best.mistakes) - 1, 0)))
             self.fit([some for some in fewer if key_of(some) not in self.known], best)
             # What one explains may be hidden by another one, so that it is not worth its price.
-            alone = [x for x in self.bests().values() if len(x.mistakes) == 1]
-            alone = [x for x in alone if x.point.cost < plain.point.cost - LEFT][:BEAM]
+            gaining = [x for x in self.known.values() if x.point.cost < plain.point.cost - LEFT]
+            alone = sorted((x for x in gaining if len(x.mistakes) == 1), key=COST)
+            most = list(dict.fromkeys(x.claims for x in alone))[:BEAM]
+            alone = [x for x in alone if x.claims in most]
             level = [*(each.mistakes for each in alone), best.mistakes, *fewer]
             keys = [key_of(some) for some in level if len(some) < MOST]
             new = [key for key in keys if key in self.known and key not in extended]

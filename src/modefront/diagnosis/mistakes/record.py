@@ -60,9 +60,10 @@ class Setting:
 
     @property
     def measured(self) -> list[int]:
-        """Sensors with data."""
-        known: list[int] = np.flatnonzero(self.state.known.any(axis=0)).tolist()
-        return known
+        """Sensors with data, as they are given or in the state."""
+        known = self.state.known.any(axis=0) | np.isfinite(self.names.shape).any(axis=(0, 1))
+        sensors: list[int] = np.flatnonzero(known).tolist()
+        return sensors
 
 
 def one_of(probability: float, count: float) -> float:

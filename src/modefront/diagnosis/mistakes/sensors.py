@@ -102,7 +102,8 @@ def copied_sensor(setting: Setting) -> Iterator[Mistake]:
     same = [
         (s, t)
         for s, t in permutations(setting.measured, 2)
-        if np.array_equal(shape[:, :, s], shape[:, :, t], equal_nan=True) and shape[..., s].any()
+        if np.array_equal(shape[:, :, s], shape[:, :, t], equal_nan=True)
+        and np.nan_to_num(shape[..., s]).any()
     ]
     for s, t in same:
         sets = setting.state.seen[:, :, s].sum(axis=0)
