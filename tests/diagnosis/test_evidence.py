@@ -13,7 +13,7 @@ from modefront._typing import Floats
 from modefront.data.modal import ModalData, modal_data
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.evidence import Fits, step
-from modefront.diagnosis.mistakes.record import Setting
+from modefront.diagnosis.mistakes.record import Explanation
 from modefront.diagnosis.mistakes.values import other_quantity
 from modefront.diagnosis.state import SPREAD, State, median, scaled
 from modefront.models.chain import chain
@@ -158,6 +158,5 @@ def test_values_that_scatter_little_are_no_more_probable_as_eigenvalues() -> Non
     fits = Fits(compare(UpdatingProblem(model, data, groups, one / 5, 5 * one, one)))
     (point,) = fits.at([fits.plain], [np.zeros(1)])
     assert point is not None
-    setting = Setting(fits.plain, point, modes, modes.frequency, data, model.parameters)
-    for mistake in other_quantity(setting):
+    for mistake in other_quantity(Explanation(fits, (), fits.plain, point, 0.0)):
         assert mistake.change(fits.plain).noise > fits.plain.noise - 1e-6

@@ -28,7 +28,7 @@ from modefront.diagnosis.state import State, loss, ratio, scaled, stacked
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, first_axis
 from modefront.models.base import Model
-from modefront.models.geometry import Geometry
+from modefront.models.geometry import chain_geometry
 from modefront.models.matrices import MatrixModel
 from modefront.modes.result import Modes
 from modefront.pairing.match import assigned
@@ -180,17 +180,6 @@ def unlikeness(states: Sequence[State], modes: Modes) -> Floats:
     return np.asarray(cost.min(axis=-1).sum(axis=(-2, -1)))
 
 
-def places(model: MatrixModel) -> Geometry:
-    """Return where sensors are: of nodes that move along a single axis, degrees of freedom."""
-    if model.geometry is not None and len(model.geometry.axes) > 1:
-        return model.geometry
-    (n, N), dof = model.selection.shape, np.arange(model.size)
-    motion = scipy.sparse.csr_array((np.ones(N), (3 * dof, dof)), shape=(3 * N, N))
-    directions = np.column_stack([model.selection.sum(axis=1), np.zeros((n, 2))])
-    greatest = abs(model.selection).argmax(axis=1)
-    return Geometry(np.zeros((N, 3)), (), motion, greatest, directions)
-
-
 class Fits:
     """Costs and fits of explanations of a comparison, of which ``plain`` is without mistakes.
 
@@ -199,14 +188,17 @@ class Fits:
     """
 
     def __init__(self, comparison: Comparison) -> None:
-        problem, matrices, data = comparison.problem, comparison.matrices, comparison.data
+        self.comparison, problem, data = comparison, comparison.problem, comparison.data
+        matrices = comparison.matrices
         count = min(problem.model.size, comparison.frequency.size)
         model: Model = problem.model
         geometry, rows = None, np.eye(len(data.sensors))
         basis = rows
         if matrices is not None:
             model, basis = in_space_of_modes(matrices, count, problem)
-            geometry, rows = places(matrices), matrices.selection @ basis
+            geometry, rows = matrices.geometry, matrices.selection @ basis
+            if geometry is None or len(geometry.axes) == 1:
+                geometry = chain_geometry(matrices.size, matrices.selection)
         std = ratio(data.frequency_std, data.frequency)
         start, ends = problem.start, np.stack([problem.lower, problem.upper])
         positive, size = ends[0] > 0, np.where(start == 0, ends[1] - ends[0], np.abs(start))
@@ -290,11 +282,10 @@ def in_space_of_modes(
                 shapes.append(matrices.full_modes(theta, count).Phi)
         V, size, _ = np.linalg.svd(np.hstack(shapes), full_matrices=False)
         V = V[:, size > 1e-7 * size[0]]
-    every = scipy.sparse.eye_array(V.shape[1], format="csr")
-    parts: dict[str, Any] = {"sensors": (), "outputs": {}, "base": {}, "geometry": None}
-    sparse = matrices.sparse()
+    sparse, parts = matrices.sparse(), dict[str, Any]()
     for name in ("stiffness", "mass"):
         A = getattr(sparse, name)
         terms = A.project([V], V)
         parts[name] = DenseAffine((terms + terms.transpose(0, 2, 1)) / 2, A.coefficients)
+    every = scipy.sparse.eye_array(V.shape[1], format="csr")
     return replace(matrices, selection=every, **parts), V

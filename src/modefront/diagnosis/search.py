@@ -2,17 +2,17 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from itertools import combinations, pairwise
+from dataclasses import replace
+from itertools import chain, combinations, pairwise
 from operator import attrgetter
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.diagnosis.comparison import Comparison, of_few_sets
-from modefront.diagnosis.evidence import ENOUGH, Fits, Points, point, unlikeness
+from modefront.diagnosis.evidence import ENOUGH, Fits, point, unlikeness
 from modefront.diagnosis.mistakes import sensors, values
-from modefront.diagnosis.mistakes.record import Mistake, Setting
+from modefront.diagnosis.mistakes.record import Claims, Explanation, Mistake
 from modefront.diagnosis.state import State
 from modefront.findings.record import Finding, found
 from modefront.pairing.match import match
@@ -25,7 +25,8 @@ PROMISING, FITTED, VARIANTS = 100, 10, 3
 and mistakes of a claim that are fitted."""
 
 BEAM, MOST = 6, 6
-"""Single mistakes to which others are added, before the best explanation is, and most mistakes."""
+"""Single claims to which others are added, before they are to the best explanation, and most
+mistakes."""
 
 EITHER = 3  # explanations that the data cannot tell apart and that are named nevertheless, at most
 WINDOW = 1.5  # window of frequencies that is advised
@@ -37,7 +38,7 @@ orders fit alike, the one that moves them first is said first."""
 
 SEEN = 0.02  # increase of a MAC value that is worth its name
 
-MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
+MISTAKES: Sequence[Callable[[Explanation], Iterator[Mistake]]] = (
     values.frequency_factor,
     values.other_quantity,
     values.set_factor,
@@ -58,32 +59,23 @@ MISTAKES: Sequence[Callable[[Setting], Iterator[Mistake]]] = (
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
 
+USUAL, OFTEN = 0.02, 0.05
+PROBABILITY = defaultdict(
+    lambda: USUAL,
+    {"frequency-factor": OFTEN, "reversed-sensor": OFTEN, "wrong-direction": OFTEN}
+    | {"odd-frequency": OFTEN, "odd-shape": OFTEN, "far-from-model": OFTEN, "damping": OFTEN}
+    | {"other-quantity": 0.005, "copied-sensor": 0.5},
+)
+"""Probability with which a study has a mistake of a kind; with the same digits twice, a copy."""
+
 FOREIGN = ("foreign-mode", "outside-model")  # kinds that leave out all of a mode
-
-Claims = frozenset[tuple[str, ...]]
-
-
-@dataclass(frozen=True, eq=False)
-class Explanation:
-    """Assumed mistakes, the state without them, the end of a fit, and C there with the prices."""
-
-    mistakes: tuple[Mistake, ...]
-    state: State
-    point: Points
-    cost: float
-
-    @property
-    def claims(self) -> Claims:
-        """What is claimed."""
-        return frozenset(each.claim for each in self.mistakes)
-
 
 COST = attrgetter("cost")
 
 
-def is_mixed(mistakes: Sequence[Mistake]) -> bool:
-    """Return whether values are moved to their sensors after others were said of these."""
-    return any(b.moves > a.moves for a, b in pairwise(mistakes))
+def mixed(mistakes: Sequence[Mistake]) -> float:
+    """Return the price of moving values to their sensors after others were said of these."""
+    return MIXED * any(b.moves > a.moves for a, b in pairwise(mistakes))
 
 
 def key_of(mistakes: Sequence[Mistake]) -> object:
@@ -102,7 +94,7 @@ class Search:
     """Explanations of a comparison that were fitted, each with its best fit, as ``known``."""
 
     def __init__(self, comparison: Comparison) -> None:
-        self.comparison, self.fits = comparison, Fits(comparison)
+        self.fits = Fits(comparison)
         self.known: dict[object, Explanation] = {}
 
     def fit(self, several: Sequence[tuple[Mistake, ...]], near: Explanation | None = None) -> None:
@@ -115,8 +107,8 @@ class Search:
         ends = self.fits.fitted(states, [xs[i][k] for k, i in enumerate(best)])
         for mistakes, state, at in zip(several, states, ends, strict=True):
             if at is not None:
-                cost, key = float(at.cost) + MIXED * is_mixed(mistakes), key_of(mistakes)
-                new = Explanation(mistakes, state, at, cost + sum(x.price for x in mistakes))
+                cost = float(at.cost) + sum(x.price for x in mistakes) + mixed(mistakes)
+                key, new = key_of(mistakes), Explanation(self.fits, mistakes, state, at, cost)
                 self.known[key] = min(self.known.get(key, new), new, key=COST)
 
     def _same(self, states: Iterable[State], near: Explanation) -> list[Floats]:
@@ -126,37 +118,36 @@ class Search:
 
     def extend(self, old: Explanation) -> None:
         """Fit the most promising explanations with a mistake more."""
-        modes = self.fits.modes(old.state.theta(old.point.x).tobytes())
-        assert modes is not None
-        of, parameters = self.comparison, self.comparison.problem.model.parameters
-        setting = Setting(old.state, old.point, modes, of.frequency, of.data, parameters)
         kinds = defaultdict(list)
-        for one in (x for find in MISTAKES for x in find(setting) if x.claim not in old.claims):
+        for one in chain.from_iterable(find(old) for find in MISTAKES):
             kinds[one.kind].append(one)
-        found = [one for some in kinds.values() for one in self._alike(some, setting)]
-        states = [one.change(old.state) for one in found]
-        tried = [(one, (*old.mistakes, one)) for one in found]
-        if any(one.moves for one in old.mistakes):  # it may be said of the values as they are given
-            tried += [(one, (one, *old.mistakes)) for one in found]
-            states += [undone(self.fits.plain, mistakes) for _, mistakes in tried[len(found) :]]
+        some = []
+        for kind, every in kinds.items():
+            price = float(np.log(len(every) / PROBABILITY[kind]))
+            new = [replace(x, price=x.price + price) for x in every if x.claim not in old.claims]
+            some += self._alike(new, old)
+        tried = [((*old.mistakes, one), one) for one in some]
+        states = [one.change(old.state) for one in some]
+        if any(each.moves for each in old.mistakes):  # it may be said of the values as given
+            tried += [((one, *old.mistakes), one) for one in some]
+            states += [undone(self.fits.plain, mistakes) for mistakes, _ in tried[len(some) :]]
         # Parameters have made up for mistakes: what one costs where these are says little.
-        xs = (old.point.x, 0 * old.point.x)
-        costs = np.min([self.fits.ahead(states, [x] * len(states)) for x in xs], axis=0)
-        costs += [one.price + MIXED * is_mixed(mistakes) for one, mistakes in tried]
+        xs = ([x] * len(states) for x in (old.point.x, 0 * old.point.x))
+        costs = np.min([self.fits.ahead(states, x) for x in xs], axis=0)
+        costs += [one.price + mixed(mistakes) for mistakes, one in tried]
         claims: dict[tuple[str, ...], dict[object, tuple[Mistake, ...]]] = {}
-        for k in np.argsort(costs, kind="stable").tolist():
-            one, mistakes = tried[k]
+        for mistakes, one in (tried[k] for k in np.argsort(costs, kind="stable")):
             claims.setdefault(one.claim, {}).setdefault(key_of(mistakes), mistakes)
         best = list(claims.values())[:FITTED]
-        self.fit([x for some in best for x in list(some.values())[:VARIANTS]], old)
+        self.fit([x for each in best for x in list(each.values())[:VARIANTS]], old)
 
-    def _alike(self, some: list[Mistake], setting: Setting) -> list[Mistake]:
+    def _alike(self, some: list[Mistake], old: Explanation) -> list[Mistake]:
         """Return mistakes; of many, those without which modes are most like those of the model."""
         together = self.fits.together
         if len(some) <= PROMISING:
             return some
         unlike = [
-            unlikeness([x.change(setting.state) for x in some[k : k + together]], setting.modes)
+            unlikeness([x.change(old.state) for x in some[k : k + together]], old.modes)
             for k in range(0, len(some), together)
         ]
         costs = np.concatenate(unlike)
@@ -176,8 +167,7 @@ class Search:
             gaining = [x for x in self.known.values() if x.point.cost < plain.point.cost - LEFT]
             alone = sorted((x for x in gaining if len(x.mistakes) == 1), key=COST)
             most = list(dict.fromkeys(x.claims for x in alone))[:BEAM]
-            alone = [x for x in alone if x.claims in most]
-            level = [*(each.mistakes for each in alone), best.mistakes, *fewer]
+            level = [*(x.mistakes for x in alone if x.claims in most), best.mistakes, *fewer]
             keys = [key_of(some) for some in level if len(some) < MOST]
             new = [key for key in keys if key in self.known and key not in extended]
             if new:
@@ -193,53 +183,42 @@ class Search:
             if min(map(COST, self.known.values())) > best.cost - ENOUGH:
                 return best
 
-    def bests(self) -> dict[Claims, Explanation]:
-        """Return the best explanation of each set of claims, the best one first."""
-        out: dict[Claims, Explanation] = {}
-        for each in sorted(self.known.values(), key=COST):
-            out.setdefault(each.claims, each)
-        return out
-
     def named(self, best: Explanation) -> dict[Mistake, Finding]:
         """Return the mistakes of the best explanation without which no other one comes near it.
 
         Another one is no rival that has more mistakes and fits no better: all sensors but one
         reversed are the same as that one, as a mode shape has no sign.
         """
-        out, bests, most = {}, self.bests(), best.point.cost - LEFT
+        out: dict[Mistake, Finding] = {}
+        bests: dict[Claims, Explanation] = {}
+        for each in sorted(self.known.values(), key=COST):
+            bests.setdefault(each.claims, each)
+        count, most = len(best.mistakes), best.point.cost - LEFT
+        rivals = [x for x in bests.values() if len(x.mistakes) <= count or x.point.cost <= most]
         for one in best.mistakes:
-            rest = best.claims - {one.claim}
-            rivals = [
-                each
-                for each in bests.values()
-                if one.claim not in each.claims
-                and (len(each.mistakes) <= len(best.mistakes) or each.point.cost <= most)
-            ]
+            rest, without = (
+                best.claims - {one.claim},
+                [x for x in rivals if one.claim not in x.claims],
+            )
             swaps = {
                 other.claim: other.finding
-                for each in rivals
-                if each.cost - best.cost < CLEAR
-                and each.claims > rest
-                and len(each.claims) == len(best.claims)
+                for each in without
+                if each.cost - best.cost < CLEAR and each.claims > rest
                 for other in each.mistakes
-                if other.claim not in rest
+                if other.claim not in rest and len(each.mistakes) == count
             }
-            costs = [each.cost for each in rivals if not each.claims & swaps.keys()]
+            costs = [each.cost for each in without if not each.claims & swaps.keys()]
             gain = min(costs, default=np.inf) - best.cost
             if len(swaps) < EITHER and gain >= CLEAR:
-                evidence = self._evidence(bests.get(rest, bests[frozenset()]), best)
+                # The MAC value that changes most shows it, where one does.
+                before = bests.get(rest, bests[frozenset()]).point.mac
+                r = int(np.argmax(np.nan_to_num(best.point.mac - before)))
+                text = " (without, MAC {} is {:.2f} after a fit, and not {:.2f})"
+                mode, after = best.data.modes[r], best.point.mac[r]
+                evidence = text.format(mode, after, before[r]) * bool(after - before[r] >= SEEN)
                 others = tuple(swaps.values())
                 out[one] = replace(one.finding, others=others, evidence=evidence, gain=float(gain))
         return out
-
-    def _evidence(self, without: Explanation, best: Explanation) -> str:
-        """Return how the MAC value changes that gains most by a mistake, where one does."""
-        before, after = without.point.mac, best.point.mac
-        r = int(np.argmax(np.nan_to_num(after - before)))
-        if not after[r] - before[r] >= SEEN:
-            return ""
-        mode = self.comparison.data.modes[r]
-        return f" (without, MAC {mode} is {after[r]:.2f} after a fit, and not {before[r]:.2f})"
 
 
 def diagnose(comparison: Comparison) -> list[Finding]:
@@ -254,7 +233,11 @@ def diagnose(comparison: Comparison) -> list[Finding]:
 
 def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]:
     """Yield the pairs without some mistakes that a window mends, if they are clearly better."""
-    rule, data, fits = search.comparison.problem.pairing, search.comparison.data, search.fits
+    rule, data, fits = (
+        search.fits.comparison.problem.pairing,
+        search.fits.comparison.data,
+        search.fits,
+    )
     state = undone(fits.plain, [one for one in named if one.kind not in FOREIGN])
     modes = fits.modes(state.start.tobytes())
     if rule.method == "order" or modes is None:

@@ -1,4 +1,4 @@
-"""A mistake as a record, and what mistakes are sought for."""
+"""A mistake as a record, and several of them as an explanation of the data."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -8,15 +8,15 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.diagnosis.evidence import Points
+from modefront.diagnosis.evidence import Fits, Points
 from modefront.diagnosis.state import NOTHING, State
 from modefront.findings.record import Finding
 from modefront.modes.result import Modes
 
-RARE, USUAL, OFTEN = 0.005, 0.02, 0.05  # probabilities with which a study has a mistake of a kind
 MANY = 6  # names that a sentence has, at most
 
 Change: TypeAlias = Callable[[State], State]
+Claims = frozenset[tuple[str, ...]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,8 +26,9 @@ class Mistake:
     kind: str  # of the catalogue of findings, which has its sentence and what mends it
     subject: tuple[str, ...]  # what it blames
     change: Change  # returns a state without it
-    price: float  # negative logarithm of the probability that a study has it
     numbers: Mapping[str, Any] = field(default_factory=dict)  # names and numbers of its sentence
+    # negative logarithm of its probability; as it is yielded, among the mistakes of its kind
+    price: float = 0.0
     # whether it has moved values to other sensors or modes: it is undone before others, which are
     # said of the right ones
     moves: bool = False
@@ -44,31 +45,38 @@ class Mistake:
 
 
 @dataclass(frozen=True, eq=False)
-class Setting:
-    """What mistakes are sought for: a state, with names of its sets, modes, sensors and parameters.
+class Explanation:
+    """Assumed mistakes, the state without them, the end of a fit, and C there with the prices."""
 
-    ``point`` is the state beside the model with these ``modes``, at fitted parameters; ``nominal``
-    are the frequencies of the nominal model, which sentences name.
-    """
-
+    fits: Fits
+    mistakes: tuple[Mistake, ...]
     state: State
     point: Points
-    modes: Modes
-    nominal: Floats
-    names: ModalData
-    parameters: tuple[str, ...]
+    cost: float
+
+    @property
+    def claims(self) -> Claims:
+        """What is claimed."""
+        return frozenset(each.claim for each in self.mistakes)
+
+    @property
+    def data(self) -> ModalData:
+        """The measured modes as they are given, with the names of sets, modes and sensors."""
+        return self.fits.comparison.data
+
+    @property
+    def modes(self) -> Modes:
+        """The modes of the model at the fitted parameters."""
+        modes = self.fits.modes(self.state.theta(self.point.x).tobytes())
+        assert modes is not None
+        return modes
 
     @property
     def measured(self) -> list[int]:
         """Sensors with data, as they are given or in the state."""
-        known = self.state.known.any(axis=0) | np.isfinite(self.names.shape).any(axis=(0, 1))
+        known = self.state.known.any(axis=0) | np.isfinite(self.data.shape).any(axis=(0, 1))
         sensors: list[int] = np.flatnonzero(known).tolist()
         return sensors
-
-
-def one_of(probability: float, count: float) -> float:
-    """Return the price of one of ``count`` mistakes, one of which a study has so often."""
-    return float(np.log(max(count, 1) / probability))
 
 
 def changed(

@@ -10,17 +10,9 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.diagnosis.evidence import OF_MODEL, SHAPE
-from modefront.diagnosis.mistakes.record import (
-    MANY,
-    OFTEN,
-    USUAL,
-    Mistake,
-    Setting,
-    changed,
-    one_of,
-)
-from modefront.diagnosis.state import State, loss
+from modefront.diagnosis.mistakes.record import MANY, Explanation, Mistake, changed
 from modefront.diagnosis.state import SHAPE as NOISE
+from modefront.diagnosis.state import State, loss
 from modefront.findings.knowledge import enumeration
 from modefront.models.geometry import ALONG, Geometry, axis_name
 from modefront.rounding import ACCUMULATED
@@ -29,8 +21,6 @@ FACTORS = (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 9.81, 1 / 9.81, 2.0, 0.5)
 """Factors on the values of a sensor by another unit or sensitivity."""
 
 NEAREST = 4  # places of each sensor that are tried: those where the model moves most as measured
-
-COPIED = 0.5  # share of studies with the same digits twice in which they are a copy
 
 OFTEN_SHARED = 2.0
 """Logarithm of how much likelier a sensor is at a wrong place where it shares it with another."""
@@ -49,16 +39,14 @@ def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
     return [(every, "all data"), *of_sets]
 
 
-def wrong_factor(setting: Setting) -> Iterator[Mistake]:
+def wrong_factor(old: Explanation) -> Iterator[Mistake]:
     """Yield sensors that are reversed, or in other units."""
-    where, names = parts(setting.names.sets), setting.names.sensors
-    count = len(where) * len(setting.measured)
-    prices = one_of(USUAL, len(FACTORS) * count), one_of(OFTEN, count)
-    for (sets, name), s, factor in product(where, setting.measured, (-1.0, *FACTORS)):
+    where, names = parts(old.data.sets), old.data.sensors
+    for (sets, name), s, factor in product(where, old.measured, (-1.0, *FACTORS)):
         kind = "reversed-sensor" if factor < 0 else "sensor-factor"
         numbers = {"sensor": names[s], "where": name, "factor": factor}
         change = partial(_rescaled, sets=sets, s=s, factor=factor)
-        yield Mistake(kind, (names[s], name), change, prices[factor < 0], numbers)
+        yield Mistake(kind, (names[s], name), change, numbers)
 
 
 def _rescaled(state: State, sets: list[int], s: int, factor: float) -> State:
@@ -74,18 +62,16 @@ def _rescaled(state: State, sets: list[int], s: int, factor: float) -> State:
     return replace(new, left_out=state.left_out + units)
 
 
-def exchanged_sensors(setting: Setting) -> Iterator[Mistake]:
+def exchanged_sensors(old: Explanation) -> Iterator[Mistake]:
     """Yield pairs of sensors, in all data sets or some."""
-    where, names = parts(setting.names.sets), setting.names.sensors
-    pairs = list(combinations(setting.measured, 2))
-    price = one_of(USUAL, len(where) * len(pairs))
-    for (s, t), (sets, name) in product(pairs, where):
+    where, names = parts(old.data.sets), old.data.sensors
+    for (s, t), (sets, name) in product(combinations(old.measured, 2), where):
         order = np.arange(len(names))
         order[[s, t]] = t, s
         numbers = {"sensors": enumeration((names[s], names[t])), "where": name}
         change = changed("shape", sets, partial(_arranged, order=order))
         subject = names[s], names[t], name
-        yield Mistake("exchanged-sensors", subject, change, price, numbers, True)
+        yield Mistake("exchanged-sensors", subject, change, numbers, moves=True)
 
 
 def _arranged(shape: Floats, order: Ints) -> Floats:
@@ -93,42 +79,42 @@ def _arranged(shape: Floats, order: Ints) -> Floats:
     return np.where(order < 0, np.nan, shape[..., order])
 
 
-def copied_sensor(setting: Setting) -> Iterator[Mistake]:
+def copied_sensor(old: Explanation) -> Iterator[Mistake]:
     """Yield sensors that have the values of another one, digit by digit.
 
     A copy says nothing on its own: its values cost as much as those that fit as well as is usual.
     """
-    shape, names = setting.state.shape, setting.names.sensors
+    shape, names = old.state.shape, old.data.sensors
     same = [
         (s, t)
-        for s, t in permutations(setting.measured, 2)
+        for s, t in permutations(old.measured, 2)
         if np.array_equal(shape[:, :, s], shape[:, :, t], equal_nan=True)
         and np.nan_to_num(shape[..., s]).any()
     ]
     for s, t in same:
-        sets = setting.state.seen[:, :, s].sum(axis=0)
+        sets = old.state.seen[:, :, s].sum(axis=0)
         of_model, of_noise = (sets > 0).sum(), np.maximum(sets - 1, 0).sum()
         usual = np.log(SHAPE) * of_model + np.log(NOISE) * of_noise
-        change, price = changed("shape", np.s_[..., s], np.nan, usual), one_of(COPIED, len(same))
+        change = changed("shape", np.s_[..., s], np.nan, usual)
         numbers, subject = {"sensor": names[s], "other": names[t]}, sorted((names[s], names[t]))
-        yield Mistake("copied-sensor", tuple(subject), change, price, numbers)
+        yield Mistake("copied-sensor", tuple(subject), change, numbers)
 
 
-def shifted_values(setting: Setting) -> Iterator[Mistake]:
+def shifted_values(old: Explanation) -> Iterator[Mistake]:
     """Yield rows of shapes, or all, in which a value is lost or too many, and the rest moved."""
-    names, (K, _, n) = setting.names, setting.state.shape.shape
+    names, (K, _, n) = old.data, old.state.shape.shape
     where: dict[str, tuple[slice, slice]] = {"all data": np.s_[:, :]}
     for k, name in enumerate(names.sets):
         where |= {f"set {name}": np.s_[k : k + 1, :]} if K > 1 else {}
         for r, mode in enumerate(names.modes):
             where[f"mode {mode}" + f" of set {name}" * (K > 1)] = np.s_[k : k + 1, r : r + 1]
-    price, every = one_of(USUAL, 2 * n * len(where)), np.arange(n)
+    every = np.arange(n)
     for (name, rows), start in product(where.items(), range(n - 1)):
         lost, too_many = np.insert(every[:-1], start, -1), np.append(np.delete(every, start), -1)
         for what, order in (("lost", lost), ("too many", too_many)):
             numbers = {"where": name, "sensor": names.sensors[start], "what": what}
             change = changed("shape", rows, partial(_arranged, order=order))
-            yield Mistake("shifted-values", (name,), change, price, numbers, True)
+            yield Mistake("shifted-values", (name,), change, numbers, moves=True)
 
 
 def _relocated(state: State, sensors: Sequence[int], **changed: Any) -> State:
@@ -143,50 +129,48 @@ def _relocated(state: State, sensors: Sequence[int], **changed: Any) -> State:
     return replace(state, geometry=geometry, rows=rows)
 
 
-def wrong_place(setting: Setting) -> Iterator[Mistake]:
+def wrong_place(old: Explanation) -> Iterator[Mistake]:
     """Yield sensors at other nodes, directions kept; in a chain, at other degrees of freedom."""
-    state, geometry, names = setting.state, setting.state.geometry, setting.names.sensors
+    state, geometry, names = old.state, old.state.geometry, old.data.sensors
     if geometry is None:
         return
     given, along = geometry.sensor_nodes, geometry.sensor_directions
     can = np.diff(geometry.motion.indptr).reshape(-1, 3) > 0  # nodes x axes
-    there = {s: np.flatnonzero(can[:, along[s] != 0].any(axis=1)) for s in setting.measured}
+    there = {s: np.flatnonzero(can[:, along[s] != 0].any(axis=1)) for s in old.measured}
     there = {s: nodes[nodes != given[s]] for s, nodes in there.items()}
-    price = one_of(USUAL, max(map(len, there.values()), default=0) * len(there))
-    shapes = geometry.displacement(state.basis @ setting.modes.phi[:, setting.point.pairs])
-    shapes *= setting.point.beta[:, None, None]
+    shapes = geometry.displacement(state.basis @ old.modes.phi[:, old.point.pairs])
+    shapes *= old.point.beta[:, None, None]
     x = np.where(state.known, state.mean, np.nan)
     for s, nodes in there.items():
-        r = (shapes[:, nodes] @ along[s] - x[:, [s]]) / (setting.point.sigma * state.motion[s])
+        r = (shapes[:, nodes] @ along[s] - x[:, [s]]) / (old.point.sigma * state.motion[s])
         cost = loss(np.nan_to_num(r), OF_MODEL).sum(axis=0)
         apart, size = np.abs(state.rows - state.rows[s]).max(axis=1), np.abs(state.rows[s]).max()
         others = [names[t] for t in np.flatnonzero(apart <= ACCUMULATED * size) if t != s]
         too = f", where the model has {enumeration(others, MANY)} too" if others else ""
-        less = OFTEN_SHARED * bool(others)
+        price = np.log(max(len(nodes) / NEAREST, 1)) - OFTEN_SHARED * bool(others)
         for k in nodes[np.argsort(cost, kind="stable")[:NEAREST]].tolist():
             numbers = {"sensor": names[s], "place": _place(geometry, k), "too": too}
             numbers["given"] = _place(geometry, given[s])
             change = partial(_relocated, sensors=[s], sensor_nodes=k)
-            yield Mistake("wrong-place", (names[s],), change, price - less, numbers)
+            yield Mistake("wrong-place", (names[s],), change, numbers, float(price))
 
 
 def _place(geometry: Geometry, k: int) -> str:
-    if len(geometry.axes) == 1:
-        return f"degree of freedom {k}"
+    if len(geometry.axes) == 1:  # a chain, above the ground
+        return f"degree of freedom {k - 1}"
     return f"({', '.join(f'{x:.4g}' for x in geometry.nodes[k])})"
 
 
-def wrong_direction(setting: Setting) -> Iterator[Mistake]:
+def wrong_direction(old: Explanation) -> Iterator[Mistake]:
     """Yield other directions: of single sensors, of all along an axis, of two axes exchanged."""
-    geometry = setting.state.geometry
+    geometry = old.state.geometry
     if geometry is None or len(geometry.axes) == 1:
         return
-    given, axes, names = geometry.sensor_directions, geometry.axes, setting.names.sensors
+    given, axes, names = geometry.sensor_directions, geometry.axes, old.data.sensors
     along = np.where(np.abs(given).max(axis=1) > ALONG, np.abs(given).argmax(axis=1), -1)
     members = {a: np.flatnonzero(along == a).tolist() for a in axes}
-    single, several = one_of(OFTEN, 2 * len(axes) * len(setting.measured)), one_of(OFTEN, 12)
 
-    def turned(price: float, some: list[int], new: Floats) -> Mistake:
+    def turned(some: list[int], new: Floats) -> Mistake:
         before, after = (list(dict.fromkeys(map(axis_name, x))) for x in (given[some], new))
         numbers = {
             "sensors": enumeration([names[s] for s in some], MANY),
@@ -197,26 +181,26 @@ def wrong_direction(setting: Setting) -> Iterator[Mistake]:
         }
         change = partial(_relocated, sensors=some, sensor_directions=new)
         subject = tuple(names[s] for s in some)
-        return Mistake("wrong-direction", subject, change, price, numbers)
+        return Mistake("wrong-direction", subject, change, numbers)
 
     for (a, b), sign in product(permutations(axes, 2), (1.0, -1.0)):
         some, new = members[a], sign * np.eye(3)[b] * given[members[a], a, None]
-        yield from (turned(single, [s], x[None]) for s, x in zip(some, new, strict=True))
+        yield from (turned([s], x[None]) for s, x in zip(some, new, strict=True))
         if len(some) > 1:
-            yield turned(several, some, new)
+            yield turned(some, new)
         if a < b and sign > 0 and some and members[b]:
             both, swap = some + members[b], np.eye(3)
             swap[[a, b]] = swap[[b, a]]
-            yield turned(several, both, given[both] @ swap)
+            yield turned(both, given[both] @ swap)
 
 
-def counted_from_one(setting: Setting) -> Iterator[Mistake]:
+def counted_from_one(old: Explanation) -> Iterator[Mistake]:
     """Yield all sensors at the node, or the degree of freedom, before their own."""
-    geometry = setting.state.geometry
+    geometry = old.state.geometry
     if geometry is None or (geometry.sensor_nodes == 0).any():
         return
-    if geometry.sensor_directions.any(axis=1).all():
-        every, nodes = list(range(geometry.sensor_nodes.size)), geometry.sensor_nodes - 1
-        what = "degrees of freedom" if len(geometry.axes) == 1 else "nodes"
+    every, nodes = list(range(geometry.sensor_nodes.size)), geometry.sensor_nodes - 1
+    what = "degrees of freedom" if len(geometry.axes) == 1 else "nodes"
+    if abs(geometry.weights(nodes, geometry.sensor_directions)).sum(axis=1).all():
         change = partial(_relocated, sensors=every, sensor_nodes=nodes)
-        yield Mistake("counted-from-one", (what,), change, one_of(USUAL, 1), {"what": what})
+        yield Mistake("counted-from-one", (what,), change, {"what": what})

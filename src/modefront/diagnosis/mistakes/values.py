@@ -10,16 +10,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.diagnosis.evidence import FREQUENCY, RIGID, log_frequencies, mac_values, point
-from modefront.diagnosis.mistakes.record import (
-    MANY,
-    OFTEN,
-    RARE,
-    USUAL,
-    Mistake,
-    Setting,
-    changed,
-    one_of,
-)
+from modefront.diagnosis.mistakes.record import MANY, Explanation, Mistake, changed
 from modefront.diagnosis.state import NOTHING, State, median
 from modefront.findings.catalogue import UNITS
 from modefront.findings.knowledge import enumeration
@@ -33,56 +24,56 @@ REACH = 0.25
 POWERS = (1, -1, 2, -2, 3, -3, 6, -6, 9, -9)  # powers of ten by which a value is off
 
 
-def frequency_factor(setting: Setting) -> Iterator[Mistake]:
+def frequency_factor(old: Explanation) -> Iterator[Mistake]:
     """Yield known factors on all frequencies, and others that pairs, or modes in order, show."""
-    known, price = np.log([factor for factor, _, _ in UNITS]), one_of(OFTEN, len(UNITS))
-    found, logs, shown = [(price, *unit) for unit in UNITS], setting.state.logs, set()
-    measured, f = np.flatnonzero(np.isfinite(logs)), setting.modes.frequency
+    known = np.log([factor for factor, _, _ in UNITS])
+    found, logs, shown = [(0.0, *unit) for unit in UNITS], old.state.logs, set()
+    measured, f = np.flatnonzero(np.isfinite(logs)), old.modes.frequency
     elastic, ascending = np.log(f[f > RIGID * f.max()]), np.sort(logs[measured])
     if measured.size and elastic.size:
-        of_pairs = np.median((logs - log_frequencies(f)[setting.point.pairs])[measured])
+        of_pairs = np.median((logs - log_frequencies(f)[old.point.pairs])[measured])
         in_order = np.median(ascending[: elastic.size] - elastic[: measured.size])
         shown = {round(float(x), 4) for x in (of_pairs, in_order, *ascending[0] - elastic[:3])}
     for log in sorted(shown):
         if np.abs(known - log).min() >= REACH:
             looks = f"stiffness over mass is off by {np.exp(2 * log):.3g}"
             mend = "check units, sections and masses, or the nominal values of the parameters"
-            found.append((one_of(OFTEN, len(UNITS) ** 3), float(np.exp(log)), looks, mend))
+            found.append((2 * np.log(len(UNITS)), float(np.exp(log)), looks, mend))
     for price, factor, looks, mend in found:
         numbers = {"factor": factor, "looks": looks, "mend": mend}
         change = changed("frequency", ..., factor)
-        yield Mistake("frequency-factor", ("frequencies",), change, price, numbers)
+        yield Mistake("frequency-factor", ("frequencies",), change, numbers, price)
 
 
 QUANTITIES = {"periods in s": (1.0, -1.0), "eigenvalues in (rad/s)²": (1 / RAD, 0.5)}
 """Quantities that are no frequencies, with the factor a and the power b of f = a g^b of each."""
 
 
-def other_quantity(setting: Setting) -> Iterator[Mistake]:
+def other_quantity(old: Explanation) -> Iterator[Mistake]:
     """Yield quantities that are no frequencies.
 
     Scatter of ln g is that of ln f over b, and its density that of ln f times b.
     """
-    known, f = np.flatnonzero(np.isfinite(setting.state.logs)), setting.state.frequency
+    known, f = np.flatnonzero(np.isfinite(old.state.logs)), old.state.frequency
     for quantity, (a, b) in QUANTITIES.items() if known.size else ():
-        given, cost = np.exp(setting.state.logs[known[0]]), -np.log(abs(b)) * np.isfinite(f).sum()
-        numbers: dict[str, Any] = {"quantity": quantity, "mode": setting.names.modes[known[0]]}
+        given, cost = np.exp(old.state.logs[known[0]]), -np.log(abs(b)) * np.isfinite(f).sum()
+        numbers: dict[str, Any] = {"quantity": quantity, "mode": old.data.modes[known[0]]}
         numbers |= {"given": float(given), "better": float(_power(given, a, b))}
         change = changed("frequency", ..., partial(_power, a=a, b=b), cost)
-        yield Mistake("other-quantity", ("frequencies",), change, one_of(RARE, 1), numbers)
+        yield Mistake("other-quantity", ("frequencies",), change, numbers)
 
 
 def _power(g: Floats, a: float, b: float) -> Floats:
     return a * g**b
 
 
-def damping_in_percent(setting: Setting) -> Iterator[Mistake]:
+def damping_in_percent(old: Explanation) -> Iterator[Mistake]:
     """Yield damping over 100."""
-    known = setting.state.damping[np.isfinite(setting.state.damping)]
+    known = old.state.damping[np.isfinite(old.state.damping)]
     if known.size:
         numbers = {"least": float(known.min()), "greatest": float(known.max())}
         change = changed("damping", ..., 100.0)
-        yield Mistake("damping", ("damping",), change, one_of(OFTEN, 1), numbers)
+        yield Mistake("damping", ("damping",), change, numbers)
 
 
 SLIPS, FAR = (10.0, 0.1, 100.0, 0.01, 2.0, 0.5), 4.0
@@ -90,44 +81,42 @@ SLIPS, FAR = (10.0, 0.1, 100.0, 0.01, 2.0, 0.5), 4.0
 range in which others are."""
 
 
-def wrong_frequency(setting: Setting) -> Iterator[Mistake]:
+def wrong_frequency(old: Explanation) -> Iterator[Mistake]:
     """Yield known factors on the frequency of each mode, and the one that the model has.
 
-    Of the latter nothing is known: its price is the range that it may be in over the width of a
-    normal distribution.
+    Of the latter nothing is known: it is as many as the widths of normal distributions in the range
+    that it may be in.
     """
-    modes, logs, f = setting.names.modes, setting.state.logs, setting.modes.frequency
-    known = one_of(OFTEN, len(SLIPS) * len(modes))
-    unknown = one_of(OFTEN, FAR / (FREQUENCY * np.sqrt(2 * np.pi)) * len(modes))
+    modes, logs, f = old.data.modes, old.state.logs, old.modes.frequency
+    unknown = float(np.log(FAR / (FREQUENCY * np.sqrt(2 * np.pi)) / len(SLIPS)))
     for r in np.flatnonzero(np.isfinite(logs)).tolist():
-        found = [(known, factor, f", and {1 / factor:g} times it would fit") for factor in SLIPS]
-        q, mac = int(setting.point.pairs[r]), setting.point.mac[r]
+        found = [(0.0, factor, f", and {1 / factor:g} times it would fit") for factor in SLIPS]
+        q, mac = int(old.point.pairs[r]), old.point.mac[r]
         found.append((unknown, float(np.exp(logs[r] - log_frequencies(f)[q])), ""))
         alike = "" if np.isnan(mac) else f" (MAC {mac:.2f})"
-        numbers = {"model": q + 1, "f": float(setting.nominal[q]), "alike": alike}
+        numbers = {"model": q + 1, "f": float(old.fits.comparison.frequency[q]), "alike": alike}
         numbers["measured"] = float(np.exp(logs[r]))
         for price, factor, looks in found:
             change, said = changed("frequency", np.s_[:, r], factor), numbers | {"looks": looks}
-            yield Mistake("far-from-model", (str(modes[r]),), change, price, said)
+            yield Mistake("far-from-model", (str(modes[r]),), change, said, price)
 
 
-def wrong_nominal_value(setting: Setting) -> Iterator[Mistake]:
+def wrong_nominal_value(old: Explanation) -> Iterator[Mistake]:
     """Yield powers of ten on each parameter that is changed by factors, and on its bounds."""
-    start, names = setting.state.start, setting.parameters
-    price = one_of(USUAL, len(POWERS) * len(names))
-    for j, power in product(np.flatnonzero(setting.state.unit == 0).tolist(), POWERS):
+    start, names = old.state.start, old.fits.comparison.problem.model.parameters
+    for j, power in product(np.flatnonzero(old.state.unit == 0).tolist(), POWERS):
         numbers = {"name": names[j], "given": float(start[j]), "better": start[j] * 10.0**power}
         change = changed("start", j, 10.0**-power)
-        yield Mistake("nominal-value", (names[j],), change, price, numbers)
+        yield Mistake("nominal-value", (names[j],), change, numbers)
 
 
 LOOKS = {RAD: ": rad/s for Hz", 1 / RAD: ": Hz for rad/s", 60.0: ": per minute for Hz"}
 """Causes of factors on the frequencies of a set."""
 
 
-def set_factor(setting: Setting) -> Iterator[Mistake]:
+def set_factor(old: Explanation) -> Iterator[Mistake]:
     """Yield the median ratio of the frequencies of each set to those of the others."""
-    f, sets = setting.state.frequency, setting.names.sets
+    f, sets = old.state.frequency, old.data.sets
     for k, name in enumerate(sets if len(sets) > 1 else ()):
         ratios = np.log(f[k]) - median(np.log(np.delete(f, k, axis=0)))
         if np.isfinite(ratios).sum() < 2:
@@ -144,19 +133,18 @@ def set_factor(setting: Setting) -> Iterator[Mistake]:
             else "the structure differed (mass, temperature, supports): update with one of the "
             "sets, or say by frequency_std how far frequencies scatter",
         }
-        change, price = changed("frequency", k, factor), one_of(USUAL, len(sets))
-        yield Mistake("set-factor", (name,), change, price, numbers)
+        yield Mistake("set-factor", (name,), changed("frequency", k, factor), numbers)
 
 
 PARTS = ("frequency", "damping", "shape", "std")
 
 
-def other_numbers(setting: Setting) -> Iterator[Mistake]:
+def other_numbers(old: Explanation) -> Iterator[Mistake]:
     """Yield the numbering of the modes of each set that makes it most like the others.
 
     Modes without anything in common keep their numbers.
     """
-    state, sets, modes = setting.state, setting.names.sets, setting.names.modes
+    state, sets, modes = old.state, old.data.sets, old.data.modes
     for k, name in enumerate(sets if len(sets) > 1 else ()):
         rest = replace(state, **{x: np.delete(getattr(state, x), k, axis=0) for x in PARTS})
         mac = mac_values(state.psi[k], state.seen[k], rest.mean.T)
@@ -172,7 +160,7 @@ def other_numbers(setting: Setting) -> Iterator[Mistake]:
             others = enumeration([*sets[:k], *sets[k + 1 :]], 2)
             numbers = {"set": name, "other": others, "modes": wrong, "of": right}
             change = partial(_renumbered, k=k, index=index)
-            yield Mistake("set-numbers", (name,), change, one_of(USUAL, len(sets)), numbers, True)
+            yield Mistake("set-numbers", (name,), change, numbers, moves=True)
 
 
 def _renumbered(state: State, k: int, index: Ints) -> State:
@@ -186,13 +174,12 @@ WRONG = {"frequency": 0.2, "shape": 1.0}
 """Scale of values that are wrong: of logarithms of frequencies, and of shapes."""
 
 
-def odd_value(setting: Setting) -> Iterator[Mistake]:
+def odd_value(old: Explanation) -> Iterator[Mistake]:
     """Yield the frequency and the shape of each mode in each of several sets.
 
     Of two sets nobody knows which one is wrong: both blame the mode.
     """
-    sets, modes, state = setting.names.sets, setting.names.modes, setting.state
-    price = one_of(OFTEN, len(sets) * len(modes))
+    sets, modes, state = old.data.sets, old.data.modes, old.state
     for (part, wrong), (r, mode) in product(WRONG.items(), enumerate(modes)):
         count = np.isfinite(getattr(state, part)[:, r].reshape(len(sets), -1)).sum(axis=1)
         known, f = np.flatnonzero(count).tolist(), state.frequency[:, r]
@@ -210,18 +197,17 @@ def odd_value(setting: Setting) -> Iterator[Mistake]:
             numbers: dict[str, Any] = {"mode": mode, "who": who, "look": look, "f": float(value)}
             numbers |= {"other": float(other), "percent": float(100 * (value / other - 1))}
             change = changed(part, np.s_[k, r], np.nan, count[k] * np.log(wrong))
-            yield Mistake(f"odd-{part}", tuple(subject), change, price, numbers)
+            yield Mistake(f"odd-{part}", tuple(subject), change, numbers)
 
 
-def foreign_mode(setting: Setting) -> Iterator[Mistake]:
+def foreign_mode(old: Explanation) -> Iterator[Mistake]:
     """Yield modes that the model does not have, or has not so high."""
-    modes, of_model = setting.names.modes, setting.modes.frequency
-    price = one_of(USUAL, len(modes))
-    for r, f in enumerate(np.exp(setting.state.logs).tolist()):
+    modes, of_model = old.data.modes, old.modes.frequency
+    for r, f in enumerate(np.exp(old.state.logs).tolist()):
         numbers = {"mode": modes[r], "at": "" if np.isnan(f) else f" at {f:.4g} Hz", "measured": f}
         numbers |= {"modes": of_model.size, "highest": float(of_model.max())}
         kind = "outside-model" if f > of_model.max() else "foreign-mode"
-        yield Mistake(kind, (str(modes[r]),), partial(_foreign, r=r), price, numbers)
+        yield Mistake(kind, (str(modes[r]),), partial(_foreign, r=r), numbers)
 
 
 def _foreign(state: State, r: int) -> State:
@@ -233,14 +219,16 @@ def _foreign(state: State, r: int) -> State:
     return replace(new, left_out=state.left_out + cost)
 
 
-def later_mode(setting: Setting) -> Iterator[Mistake]:
+def later_mode(old: Explanation) -> Iterator[Mistake]:
     """Yield measured modes that are like model modes beyond those among which pairs are sought."""
-    state, own, f = setting.state, setting.point, setting.modes.frequency
-    free = point(replace(state, candidates=np.array(f.size)), own.x, setting.modes)
+    state, own, f = old.state, old.point, old.modes.frequency
+    free = point(replace(state, candidates=np.array(f.size)), own.x, old.modes)
     for r in np.flatnonzero(free.pairs >= state.candidates).tolist():
-        later, modes = int(free.pairs[r]) + 1, setting.names.modes
-        numbers = {"later": later, "f": float(setting.nominal[later - 1])}
+        later, modes = int(free.pairs[r]) + 1, old.data.modes
+        numbers = {"later": later, "f": float(old.fits.comparison.frequency[later - 1])}
         numbers |= {"mac": free.mac[r], "best": own.mac[r], "spare": later - len(modes)}
-        change = partial(replace, candidates=np.array(later))
-        price = one_of(USUAL, f.size - float(state.candidates))
-        yield Mistake("beyond-candidates", (str(modes[r]),), change, price, numbers)
+        change, price = (
+            partial(replace, candidates=np.array(later)),
+            np.log(f.size - state.candidates),
+        )
+        yield Mistake("beyond-candidates", (str(modes[r]),), change, numbers, float(price))
