@@ -12,7 +12,7 @@ from modefront._typing import Floats
 from modefront.diagnosis.comparison import Comparison, of_few_sets
 from modefront.diagnosis.evidence import ENOUGH, Fits, point, unlikeness
 from modefront.diagnosis.mistakes import sensors, values
-from modefront.diagnosis.mistakes.record import Claims, Explanation, Mistake
+from modefront.diagnosis.mistakes.record import Explanation, Mistake
 from modefront.diagnosis.state import State
 from modefront.findings.record import Finding, found
 from modefront.pairing.match import match
@@ -189,34 +189,31 @@ class Search:
         Another one is no rival that has more mistakes and fits no better: all sensors but one
         reversed are the same as that one, as a mode shape has no sign.
         """
-        out: dict[Mistake, Finding] = {}
-        bests: dict[Claims, Explanation] = {}
-        for each in sorted(self.known.values(), key=COST):
-            bests.setdefault(each.claims, each)
-        count, most = len(best.mistakes), best.point.cost - LEFT
-        rivals = [x for x in bests.values() if len(x.mistakes) <= count or x.point.cost <= most]
+        out, count, most = dict[Mistake, Finding](), len(best.mistakes), best.point.cost - LEFT
+        known = sorted(self.known.values(), key=COST)
+        rivals = [x for x in known if len(x.mistakes) <= count or x.point.cost <= most]
+        near = [x for x in rivals if x.cost - best.cost < CLEAR and len(x.mistakes) == count]
         for one in best.mistakes:
-            rest, without = (
-                best.claims - {one.claim},
-                [x for x in rivals if one.claim not in x.claims],
-            )
-            swaps = {
-                other.claim: other.finding
-                for each in without
-                if each.cost - best.cost < CLEAR and each.claims > rest
-                for other in each.mistakes
-                if other.claim not in rest and len(each.mistakes) == count
-            }
-            costs = [each.cost for each in without if not each.claims & swaps.keys()]
+            rest = best.claims - {one.claim}
+            # What may be instead, and of it, and of the mistake itself, what is better.
+            firsts, swaps = dict[tuple[str, ...], Mistake](), dict[str, Mistake]()
+            for x in (x for each in near if each.claims >= rest for x in each.mistakes):
+                if x.claim not in rest:
+                    firsts.setdefault(x.claim, x)
+                    swaps.setdefault(str(x.finding), x)
+            costs = [x.cost for x in rivals if not x.claims & firsts.keys()]
             gain = min(costs, default=np.inf) - best.cost
-            if len(swaps) < EITHER and gain >= CLEAR:
+            if len(firsts) <= EITHER and gain >= CLEAR:
+                said = list(dict.fromkeys((*firsts.values(), *swaps.values())))[:EITHER]
+                others = tuple(x.finding for x in said if x is not one)
                 # The MAC value that changes most shows it, where one does.
-                before = bests.get(rest, bests[frozenset()]).point.mac
-                r = int(np.argmax(np.nan_to_num(best.point.mac - before)))
-                text = " (without, MAC {} is {:.2f} after a fit, and not {:.2f})"
-                mode, after = best.data.modes[r], best.point.mac[r]
-                evidence = text.format(mode, after, before[r]) * bool(after - before[r] >= SEEN)
-                others = tuple(swaps.values())
+                without = next(x for x in known if x.claims in (rest, frozenset()))
+                before, after = without.point.mac, best.point.mac
+                r = int(np.argmax(np.nan_to_num(after - before)))
+                text = (
+                    f" (without, MAC {best.data.modes[r]} is {after[r]:.2f} after a fit, and not "
+                )
+                evidence = f"{text}{before[r]:.2f})" * bool(after[r] - before[r] >= SEEN)
                 out[one] = replace(one.finding, others=others, evidence=evidence, gain=float(gain))
         return out
 

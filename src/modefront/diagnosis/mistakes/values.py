@@ -82,17 +82,19 @@ range in which others are."""
 
 
 def wrong_frequency(old: Explanation) -> Iterator[Mistake]:
-    """Yield known factors on the frequency of each mode, and the one that the model has.
+    """Yield known factors on the frequency of each mode, and others that the model has.
 
-    Of the latter nothing is known: it is as many as the widths of normal distributions in the range
-    that it may be in.
+    Of the latter nothing is known: each is as many as the widths of normal distributions in the
+    range that it may be in.
     """
     modes, logs, f = old.data.modes, old.state.logs, old.modes.frequency
     unknown = float(np.log(FAR / (FREQUENCY * np.sqrt(2 * np.pi)) / len(SLIPS)))
     for r in np.flatnonzero(np.isfinite(logs)).tolist():
         found = [(0.0, factor, f", and {1 / factor:g} times it would fit") for factor in SLIPS]
         q, mac = int(old.point.pairs[r]), old.point.mac[r]
-        found.append((unknown, float(np.exp(logs[r] - log_frequencies(f)[q])), ""))
+        log = logs[r] - log_frequencies(f)[q]
+        if np.abs(log - np.log(SLIPS)).min() >= REACH:
+            found.append((unknown, float(np.exp(log)), ""))
         alike = "" if np.isnan(mac) else f" (MAC {mac:.2f})"
         numbers = {"model": q + 1, "f": float(old.fits.comparison.frequency[q]), "alike": alike}
         numbers["measured"] = float(np.exp(logs[r]))
