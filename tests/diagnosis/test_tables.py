@@ -1,8 +1,9 @@
-"""Mistakes of tables of shapes: copied columns, other units, lost cells."""
+"""Mistakes of tables of shapes: copied columns, other units, lost cells, and two of them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,10 +11,27 @@ import pytest
 from modefront._typing import Floats
 from modefront.data.modal import modal_data
 from modefront.diagnosis.comparison import compare
+from modefront.diagnosis.evidence import Fits
+from modefront.diagnosis.mistakes.record import Explanation, changed
+from modefront.diagnosis.mistakes.sensors import shifted_values
 from modefront.diagnosis.search import diagnose
+from modefront.diagnosis.state import NOTHING
+from modefront.findings.record import Finding
 from modefront.models.chain import chain
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem
+
+
+def problem_of(*spoil: Callable[[Floats], None]) -> UpdatingProblem:
+    """Return a study of eight floors with shapes (5, 8) in which something is wrong."""
+    names = ["k1"] * 4 + ["k2"] * 4
+    model = chain(["k1", "k2"], [1.0] * 8, [2000.0] * 8, stiffness_parameters=names)
+    modes, rng = model.modes(np.array([1.1, 0.9]), 5, derivatives=False), np.random.default_rng(3)
+    shape = modes.phi.T * (1 + 0.02 * rng.standard_normal((5, 8)))
+    for each in spoil:
+        each(shape)
+    data, one = modal_data(modes.frequency, shape, model.sensors), np.ones(2)
+    return UpdatingProblem(model, data, (Group("f", frequency="all"),), one / 5, 5 * one, one)
 
 
 def pasted(shape: Floats) -> None:
@@ -26,6 +44,18 @@ def of_another_unit(shape: Floats) -> None:
 
 def with_a_lost_cell(shape: Floats) -> None:
     shape[1, 2:-1], shape[1, -1] = shape[1, 3:].copy(), np.nan
+
+
+def with_lost_cells(shape: Floats) -> None:
+    shape[:, 2:-1], shape[:, -1] = shape[:, 3:].copy(), np.nan
+
+
+def reversed_floor6(shape: Floats) -> None:
+    shape[:, 5] *= -1
+
+
+def exchanged(shape: Floats) -> None:
+    shape[:, [1, 5]] = shape[:, [5, 1]]
 
 
 @pytest.mark.parametrize(
@@ -43,31 +73,44 @@ def with_a_lost_cell(shape: Floats) -> None:
 def test_the_table_is_said_to_be_wrong_and_where(
     spoil: Callable[[Floats], None], kind: str, text: str
 ) -> None:
-    names = ["k1"] * 4 + ["k2"] * 4
-    model = chain(["k1", "k2"], [1.0] * 8, [2000.0] * 8, stiffness_parameters=names)
-    modes, rng = model.modes(np.array([1.1, 0.9]), 5, derivatives=False), np.random.default_rng(3)
-    shape = modes.phi.T * (1 + 0.02 * rng.standard_normal((5, 8)))
-    spoil(shape)
-    data, one = modal_data(modes.frequency, shape, model.sensors), np.ones(2)
-    groups = (Group("f", frequency="all"),)
-    (found,) = diagnose(compare(UpdatingProblem(model, data, groups, one / 5, 5 * one, one)))
+    (found,) = diagnose(compare(problem_of(spoil)))
     assert kind in {each.kind for each in (found, *found.others)}
     assert text in str(found)
 
 
+def claims(found: Finding) -> set[tuple[str, str]]:
+    """Return kind and subject of a finding, and of what may be instead."""
+    return {(each.kind, each.subject) for each in (found, *found.others)}
+
+
 @pytest.mark.slow(3)
-def test_a_reversed_sensor_beside_a_lost_cell_is_named_by_the_column_that_is_mended() -> None:
-    """All shapes lack a value and the rest moved: the column with the wrong sign is another's."""
-    names = ["k1"] * 4 + ["k2"] * 4
-    model = chain(["k1", "k2"], [1.0] * 8, [2000.0] * 8, stiffness_parameters=names)
-    modes, rng = model.modes(np.array([1.1, 0.9]), 5, derivatives=False), np.random.default_rng(3)
-    shape = modes.phi.T * (1 + 0.02 * rng.standard_normal((5, 8)))
-    shape[:, 5] *= -1
-    shape[:, 2:-1], shape[:, -1] = shape[:, 3:].copy(), np.nan
-    data, one = modal_data(modes.frequency, shape, model.sensors), np.ones(2)
-    groups = (Group("f", frequency="all"),)
-    found = diagnose(compare(UpdatingProblem(model, data, groups, one / 5, 5 * one, one)))
-    assert {(x.kind, x.subject) for x in found} == {
-        ("shifted-values", "all data"),
-        ("reversed-sensor", "floor6, all data"),
-    }
+@pytest.mark.parametrize(
+    ("spoil", "kind", "sensors"),
+    [
+        ((reversed_floor6, with_lost_cells), "reversed-sensor", ("floor6", "floor5")),
+        ((with_lost_cells, exchanged), "exchanged-sensors", ("floor2, floor7", "floor2, floor6")),
+    ],
+)
+def test_a_mistake_beside_lost_cells_is_of_the_columns_as_they_are_mended_or_as_they_are_given(
+    spoil: tuple[Callable[[Floats], None], ...], kind: str, sensors: tuple[str, str]
+) -> None:
+    """Nobody knows which of the two was first."""
+    shifted, other = sorted(
+        diagnose(compare(problem_of(*spoil))), key=lambda x: x.kind != "shifted-values"
+    )
+    assert claims(shifted) == {("shifted-values", "all data")}
+    assert claims(other) == {(kind, f"{each}, all data") for each in sensors}
+
+
+def test_values_cost_the_same_whatever_leaves_them_out() -> None:
+    fits = Fits(compare(problem_of()))
+    plain = fits.plain
+    without = changed("shape", np.s_[..., 7], np.nan)(plain)
+    assert without.left_out == pytest.approx(5 * NOTHING)
+    (point,) = fits.at([plain], [np.zeros(2)])
+    assert point is not None
+    for mistake in shifted_values(Explanation(fits, (), plain, point, 0.0)):
+        lost = np.isfinite(plain.shape).sum() - np.isfinite(mistake.change(plain).shape).sum()
+        assert mistake.change(plain).left_out == pytest.approx(NOTHING * lost)
+        twice = mistake.change(replace(plain, left_out=np.ones(())))
+        assert twice.left_out == pytest.approx(1 + NOTHING * lost)

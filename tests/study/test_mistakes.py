@@ -265,6 +265,15 @@ def test_directions_that_do_not_match(tmp_path: Path) -> None:
     assert "direction y of floor2 does not match the data: x does" in text
 
 
+def test_all_directions_are_said_that_fit_alike(tmp_path: Path) -> None:
+    """One mode moves the sensor, and no other one: its shape does not say along which axis."""
+    place = 'across12 = { node = 205, direction = "%s" }'
+    (result,) = findings_of(spoilt(tmp_path, "footbridge", (place % "y", place % "z"))).mistakes
+    found = {(x.kind, x.subject, x.numbers["better"]) for x in (result, *result.others)}
+    assert found == {("wrong-direction", "across12", better) for better in ("x", "y", "-y")}
+    assert "(the data cannot tell)" in str(result)
+
+
 def test_two_sensors_at_one_degree_of_freedom(tmp_path: Path) -> None:
     text = only(spoilt(tmp_path, CHAIN, ("floor2 = 1", "floor2 = 2")))
     assert "floor2 fits the data at degree of freedom 1 and not at degree of freedom 2" in text

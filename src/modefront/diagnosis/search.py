@@ -14,7 +14,7 @@ from modefront.diagnosis.evidence import ENOUGH, Fits, point, unlikeness
 from modefront.diagnosis.mistakes import sensors, values
 from modefront.diagnosis.mistakes.record import Explanation, Mistake
 from modefront.diagnosis.state import State
-from modefront.findings.record import Finding, found
+from modefront.findings.record import Finding
 from modefront.pairing.match import match
 
 CLEAR = float(np.log(100.0))
@@ -250,13 +250,7 @@ def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]
     for r in np.flatnonzero(changed).tolist():
         q, near, value = int(pairs.index[r]), int(mended.index[r]), pairs.mac[r]
         if str(data.modes[r]) not in foreign:
-            yield found(
-                "distant-pair",
-                str(data.modes[r]),
-                measured=float(np.exp(state.logs[r])),
-                model=q + 1,
-                f=float(f[q]),
-                alike="" if np.isnan(value) else f" (MAC {value:.2f})",
-                near=near + 1,
-                there=float(f[near]),
-            )
+            alike = "" if np.isnan(value) else f" (MAC {value:.2f})"
+            numbers = {"measured": float(np.exp(state.logs[r])), "alike": alike, "model": q + 1}
+            numbers |= {"f": float(f[q]), "near": near + 1, "there": float(f[near])}
+            yield Finding("distant-pair", str(data.modes[r]), numbers)
