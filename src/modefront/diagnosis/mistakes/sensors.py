@@ -168,30 +168,26 @@ def wrong_direction(old: Explanation) -> Iterator[Mistake]:
         return
     given, axes, names = geometry.sensor_directions, geometry.axes, old.data.sensors
     along = np.where(np.abs(given).max(axis=1) > ALONG, np.abs(given).argmax(axis=1), -1)
-    members = {a: np.flatnonzero(along == a).tolist() for a in axes}
-
-    def turned(some: list[int], new: Floats) -> Mistake:
-        before, after = (list(dict.fromkeys(map(axis_name, x))) for x in (given[some], new))
+    turned = []
+    for (a, b), sign in product(permutations(axes, 2), (1.0, -1.0)):
+        some, turn = np.flatnonzero(along == a).tolist(), np.zeros((3, 3))
+        turn[a, b] = sign
+        turned += [([s], turn) for s in some] + [(some, turn)] * (len(some) > 1)
+    for a, b in combinations(axes, 2):
+        both, swap = np.flatnonzero((along == a) | (along == b)).tolist(), np.eye(3)
+        swap[[a, b]] = swap[[b, a]]
+        turned += [(both, swap)] * bool(0 < (along == a).sum() < len(both))
+    for some, turn in turned:
+        each = given[some], given[some] @ turn
+        before, after = (list(dict.fromkeys(map(axis_name, x))) for x in each)
         numbers = {
             "sensors": enumeration([names[s] for s in some], MANY),
-            "given": enumeration(before),
-            "better": enumeration(after),
-            "s": "s" * (len(some) == 1),
-            "turn": " in turn" * (len(after) > 1),
+            "s": "s"[len(some) - 1 :],
         }
-        change = partial(_relocated, sensors=some, sensor_directions=new)
-        subject = tuple(names[s] for s in some)
-        return Mistake("wrong-direction", subject, change, numbers)
-
-    for (a, b), sign in product(permutations(axes, 2), (1.0, -1.0)):
-        some, new = members[a], sign * np.eye(3)[b] * given[members[a], a, None]
-        yield from (turned([s], x[None]) for s, x in zip(some, new, strict=True))
-        if len(some) > 1:
-            yield turned(some, new)
-        if a < b and sign > 0 and some and members[b]:
-            both, swap = some + members[b], np.eye(3)
-            swap[[a, b]] = swap[[b, a]]
-            yield turned(both, given[both] @ swap)
+        numbers |= {"given": enumeration(before), "better": enumeration(after)}
+        numbers["turn"] = " in turn" * (len(after) > 1)
+        change = partial(_relocated, sensors=some, sensor_directions=each[1])
+        yield Mistake("wrong-direction", tuple(names[s] for s in some), change, numbers)
 
 
 def counted_from_one(old: Explanation) -> Iterator[Mistake]:
