@@ -146,7 +146,7 @@ class Differences:
         for i, parameter in enumerate(parameters):
             own = np.flatnonzero(of.exponents[:, i] != 0)
             if own.size and (rank := np.linalg.matrix_rank(c[:, own])) < own.size:
-                listed = ", ".join(names[k] for k in own)
+                listed = ", ".join(names[k] for k in own.tolist())
                 expected = f"at least {own.size} runs with other values for the terms {listed}"
                 raise wrong(f"--parameter {parameter}", expected, f"{rank} that tell them apart")
         if not c.size or np.linalg.matrix_rank(c) < c.shape[1]:
