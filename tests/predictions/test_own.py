@@ -138,7 +138,7 @@ def test_everything_shows_it(
     assert axes.get_yticklabels()[0].get_text().startswith("slow, mode 1: period")
     compared = mf.compare([folder, folder]).fronts[0].predictions
     assert "period_length slow: mode 1" in [spread.name for spread in compared]
-    assert any("period of slow" in x for said in topics(data).values() for x in said)
+    assert any("period of slow" in x for said in topics(data).values() for x, _ in said)
 
 
 def test_a_kind_that_results_cannot_hold_is_refused(tmp_path: Path) -> None:

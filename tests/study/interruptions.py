@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from modefront.work.store import Store
-from modefront.work.task import Costs, Task
+from modefront.work.task import Task
 
 
 def interrupt(monkeypatch: pytest.MonkeyPatch, when: Callable[[Task[Any], int], bool]) -> None:
@@ -19,13 +19,13 @@ def interrupt(monkeypatch: pytest.MonkeyPatch, when: Callable[[Task[Any], int], 
     write = Store.write
     written = 0
 
-    def stop(store: Store, task: Task[Any], result: Any, costs: Costs) -> None:
+    def stop(store: Store, task: Task[Any], *rest: Any) -> None:
         nonlocal written
         if when(task, written):
             monkeypatch.setattr(Store, "write", write)
             raise KeyboardInterrupt
         written += 1
-        write(store, task, result, costs)
+        write(store, task, *rest)
 
     monkeypatch.setattr(Store, "write", stop)
 

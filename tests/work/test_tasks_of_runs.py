@@ -68,11 +68,11 @@ def kept(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     records: dict[str, Any] = {}
     write = Store.write
 
-    def note(store: Store, task: Task[Any], result: Any, costs: Costs) -> None:
+    def note(store: Store, task: Task[Any], result: Any, costs: Costs, seconds: float) -> None:
         arrays: dict[str, Any] = {}
         content = repr(encode(result, arrays))
         records[task.name] = content, [x.tobytes() for x in arrays.values()], costs.eigenproblems
-        write(store, task, result, costs)
+        write(store, task, result, costs, seconds)
 
     monkeypatch.setattr(Store, "write", note)
     return records
