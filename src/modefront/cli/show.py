@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import groupby
+from itertools import chain, groupby
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from modefront.front.point import INTERNAL, Kind, position, preferred
 from modefront.predictions import ResultVariable
 from modefront.predictions.base import Quantity, predictions_in, quantity
 from modefront.results.compare import Comparison, Spread, short_names
-from modefront.results.remarks import digest, findings_of, headlines, verdict
+from modefront.results.remarks import digest, findings_of, verdict
 from modefront.study.estimate import Estimate
 from modefront.text import json_of
 from modefront.work.task import Costs
@@ -148,42 +148,43 @@ def print_predictions(screen: Screen, data: Dataset) -> None:
     if "range" not in data.sizes:
         screen.say("The study asks for no predictions.")
         return
-    linear, drawn = "posterior_frequency_std" in data, "statistic" in data.sizes
-    kinds = data["kind"].values
+    kinds, labels = data["kind"].values, data["label"].values
     models = [i for i, kind in enumerate(kinds) if kind not in {"front", *INTERNAL}]
-    columns = ["", "minimum", "maximum", "spread", *["posterior"] * linear]
-    columns += [f"drawn {x}" for x in DRAWN] * drawn
-    columns += [str(data["label"].values[i]) for i in models]
 
-    def row(name: str, x: Quantity) -> list[str]:
+    def row(name: str, x: Quantity) -> dict[str, str]:
         form = (".3e" if x.variable.logarithmic else ".5g") if x.variable.ranged else ".2g"
-        known = x.values[np.isfinite(x.values)]
-        extent = ["", number(known.max() if known.size else np.nan, form), ""]
+        known, out = x.values[np.isfinite(x.values)], {"": name}
         if x.variable.ranged:
-            extent = [*(number(end, form) for end in x.extent[:2]), number(x.extent[2], ".4g")]
-        of_draws = [number(x.drawn[name], form) if x.drawn else "" for name in DRAWN] * drawn
-        std = [_deviation(x)] * linear
-        return [name, *extent, *std, *of_draws, *(number(x.values[i], form) for i in models)]
+            out |= {"minimum": number(x.extent[0], form), "maximum": number(x.extent[1], form)}
+            out["spread"] = number(x.extent[2], ".4g")
+        else:
+            out["maximum"] = number(known.max() if known.size else np.nan, form)
+        if x.std is not None:
+            out["posterior"] = _deviation(x)
+        out |= {f"drawn {end}": number(x.drawn[end], form) for end in DRAWN if x.drawn}
+        return out | {str(labels[i]): number(x.values[i], form) for i in models}
+
+    def table(title: str, rows: Sequence[Mapping[str, str]]) -> None:
+        columns = list(dict.fromkeys(chain.from_iterable(rows)))
+        screen.table(title, columns, [[row.get(x, "") for x in columns] for row in rows])
 
     frequency = ResultVariable("frequency", "frequency", "frequency", "Hz")
-    modes = [
-        row(f"f{r}, Hz", quantity(data, frequency, i)) for i, r in enumerate(data["mode"].values)
-    ]
-    title = "frequencies: range over the Pareto-optimal models; spread is greatest over least"
-    screen.table(title, columns, modes)
-    if linear:
+    table(
+        "frequencies: range over the Pareto-optimal models; spread is greatest over least",
+        [row(f"f{r}, Hz", quantity(data, frequency, i)) for i, r in enumerate(data["mode"].values)],
+    )
+    if "posterior_frequency_std" in data:
         screen.say(
             f"posterior: standard deviation around {preferred(data.attrs)}; of P as a factor, "
             "e to that of ln P"
         )
-    if drawn:
+    if "statistic" in data.sizes:
         screen.say(
             f"drawn: over {plural(data.sizes['draw'], 'model')} drawn from the posterior; the mean "
             "of P is the robust failure probability"
         )
     for each in predictions_in(data):
-        rows = [row(f"{x.place}: {x.variable.title}", x) for x in each.quantities]
-        screen.table(each.heading, columns, rows)
+        table(each.heading, [row(f"{x.place}: {x.variable.title}", x) for x in each.quantities])
         check = each.kind.check
         if check is not None and check.label.name in data:
             label = data[check.label.name].values[each.positions[0]]
@@ -329,7 +330,7 @@ def print_summary(data: Dataset, folder: Path, costs: Costs) -> None:
     failures = [str(x) for x in findings_of(data) if x.severity is Severity.FAILURE]
     said = verdict(data)
     whole = command("show", folder, "--findings")
-    for line in [*said, *failures] if said else digest(headlines(data), whole):
+    for line in [*said, *failures] if said else digest(list(map(str, findings_of(data))), whole):
         screen.say(line, start="  ")
     spent = {
         "full eigensolutions": (costs.eigenproblems, costs.full_time),
@@ -366,7 +367,7 @@ def print_results(
 
 def _findings(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]:
     """Return the first findings that fit into ``most`` lines, and the command that prints all."""
-    sentences = headlines(data)
+    sentences = list(map(str, findings_of(data)))
     blocks = [screen.sentence(text, start="- ") for text in sentences]
     count = int(np.searchsorted(np.cumsum([len(x) for x in blocks]), most - 1, side="right"))
     rest = digest(sentences, full, count)[count:] or [f"what these findings mean: {full}"]

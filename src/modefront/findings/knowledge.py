@@ -9,7 +9,6 @@ from modefront.findings.record import Finding, found
 from modefront.identifiability.combinations import NONE, WEAK, Combination, Determination, pairs
 from modefront.identifiability.scale import Scale
 from modefront.identifiability.sparse import SAME, sparse_basis
-from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.inference import Freed, excluding
 
@@ -38,12 +37,6 @@ def in_words(combination: Combination, names: Sequence[str]) -> str:
     v = np.abs(combination.direction)
     order = [names[i] for i in np.argsort(-v, kind="stable") if v[i] >= 0.1 * v.max()]
     return enumeration([*order[:PARTS], *(["others"] if len(order) > PARTS else [])])
-
-
-def measured_noun(groups: Sequence[Group]) -> str:
-    """Return the noun for the data of groups: their kind of residual, "residual" for several."""
-    kinds = {kind for group in groups for kind, _ in group.chosen}
-    return kinds.pop() if len(kinds) == 1 else "residual"
 
 
 # 8 arguments: the data, what they determine, and how the sentence begins.
@@ -82,7 +75,8 @@ def summaries(problem: UpdatingProblem, of: Determination, where: str = "") -> I
     names, groups = problem.model.parameters, problem.groups
     for i, (name, combinations) in enumerate(of.combinations):
         whole = i == len(groups)
-        noun = measured_noun(groups if whole else [groups[i]])
+        kinds = {kind for group in (groups if whole else [groups[i]]) for kind, _ in group.chosen}
+        noun = kinds.pop() if len(kinds) == 1 else "residual"
         full = sum(x.share >= WEAK for x in combinations) == len(names) - len(of.idle)
         of_all, of_group = (
             ("determined", "group-determined") if full else ("all-data", "group-data")

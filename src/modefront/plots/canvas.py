@@ -31,6 +31,7 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 """Told apart by the colour-blind (Okabe and Ito)."""
 
 PANEL, COLUMNS = (2.6, 2.1), 3  # width and height of a panel in inches; panels side by side
+LEGIBLE = 12  # rows of a matrix up to which its numbers are written
 
 STYLE: Mapping[Any, Any] = {
     "font.size": 8.5,
@@ -107,6 +108,17 @@ def names_of(data: Dataset, dimension: str, most: int = NAME) -> list[str]:
 def short(text: object, most: int = 18) -> str:
     """Return a text that fits beside a tick."""
     return clean(text, most).replace("$", r"\$")
+
+
+def draw_matrix(axes: Axes, values: Floats, names: Sequence[str], least: float, hues: str) -> Any:
+    """Draw numbers from ``least`` to 1 with names on both sides, and return their picture."""
+    axes.grid(False)
+    axes.set_xticks(range(len(names)), names, rotation=90)
+    axes.set_yticks(range(len(names)), names)
+    for (i, j), value in np.ndenumerate(values) if len(names) <= LEGIBLE else ():
+        shade = "w" if abs(value) > 0.6 else "k"  # legible on the dark ends of the scale
+        axes.text(j, i, f"{value:.2f}", ha="center", va="center", fontsize=6.5, color=shade)
+    return axes.imshow(values, vmin=least, vmax=1, cmap=hues)
 
 
 def draw_models(axes: Axes, data: Dataset, values: Floats, *without: str) -> None:

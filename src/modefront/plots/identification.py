@@ -7,7 +7,7 @@ import numpy as np
 from modefront.identification.record import Identification
 from modefront.identification.stabilisation import complex_indicators, multivariate_indicators
 from modefront.linalg.small import mac
-from modefront.plots.canvas import COLOURS, Picture, panels, picture, plain, single
+from modefront.plots.canvas import COLOURS, Picture, draw_matrix, panels, picture, plain, single
 
 MOST_PANELS, SHORT = 12, 40
 """Functions in a picture: more are too small to read; characters of a data set in file names."""
@@ -91,13 +91,6 @@ def _auto_mac(identification: Identification) -> Picture:
     shapes = np.array([mode.shape.complex_shape for mode in identification.modes]).T
     values = mac(shapes, shapes)
     ticks = [f"{mode.frequency:.4g}" for mode in identification.modes]
-    image = axes.imshow(values, vmin=0, vmax=1, cmap="Blues")
-    axes.grid(False)
-    axes.set_xticks(range(len(ticks)), ticks, rotation=90)
-    axes.set_yticks(range(len(ticks)), ticks)
-    for (r, s), value in np.ndenumerate(values):
-        colour = "white" if value > 0.5 else "black"  # legible on the dark end of the scale
-        axes.text(s, r, f"{value:.2f}", ha="center", va="center", fontsize=6, color=colour)
+    figure.colorbar(draw_matrix(axes, values, ticks, 0, "Blues"))
     axes.set(title="auto-MAC", xlabel="frequency in Hz", ylabel="frequency in Hz")
-    figure.colorbar(image)
     return figure

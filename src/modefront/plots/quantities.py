@@ -236,14 +236,7 @@ def _correlation(axes: Axes, data: Dataset, covariance: Floats) -> None:
     size = np.sqrt(np.maximum(np.diag(covariance), 0))
     scale = np.outer(size, size)
     r = np.divide(covariance, scale, out=np.zeros(covariance.shape), where=scale > 0)
-    names = canvas.names_of(data, "parameter", 18)
-    axes.imshow(r, vmin=-1, vmax=1, cmap="PuOr")
-    axes.grid(False)
-    axes.set_xticks(range(len(names)), names, rotation=90)
-    axes.set_yticks(range(len(names)), names)
-    for (i, j), value in np.ndenumerate(r) if len(names) <= 10 else ():  # more are illegible
-        shade = "w" if abs(value) > 0.6 else "k"
-        axes.text(j, i, f"{value:.2f}", ha="center", va="center", fontsize=6.5, color=shade)
+    canvas.draw_matrix(axes, r, canvas.names_of(data, "parameter", 18), -1, "PuOr")
     axes.set_title(f"correlation at {canvas.plain(preferred(data.attrs))}", loc="left")
 
 

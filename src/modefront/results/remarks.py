@@ -84,11 +84,6 @@ def findings_of(data: Dataset, *, full: bool = False) -> list[Finding]:
     return in_order(x for x in out if full or x.severity is not Severity.DETAIL)
 
 
-def headlines(data: Dataset) -> list[str]:
-    """Return the sentences of the first findings: without details, and with few names."""
-    return [str(finding) for finding in findings_of(data)]
-
-
 def _failures(data: Dataset) -> Iterator[Finding]:
     status, pareto = data["status"].values, data["pareto"].values
     if (status == "sampled").any():
@@ -224,16 +219,13 @@ def _weights(data: Dataset) -> Iterator[Finding]:
 def _pairs(data: Dataset, most: int) -> Iterator[Finding]:
     """Yield which measured modes resemble model modes poorly, or change their model mode.
 
-    Of more than ``most``, it is said in one record without the places. Where modes change places is
-    said of a front of two objectives, on which points have neighbours.
+    The first ``most`` poor pairs have their places; where modes change them is said of as many, and
+    of a front of two objectives, on which points have neighbours.
     """
     poor = data["mac"].values < POOR
-    modes = data["mode"].values[poor.any(axis=0)]
-    if modes.size > most:
-        yield found("poor-pair", ", ".join(map(str, modes)), many=True, poor=POOR, places="")
-    else:
-        for r, column in zip(modes, poor.T[poor.any(axis=0)], strict=True):
-            yield found("poor-pair", str(r), poor=POOR, places=f" at {places(data, column)}")
+    at = zip(data["mode"].values, poor.T, strict=True)
+    if named := [f"{r} ({places(data, column)})" for r, column in at if column.any()]:
+        yield found("poor-pair", enumeration(named, most), many=len(named) > 1, poor=POOR)
     front = front_points(data)
     labels, paired = data["label"].values[front], data["paired_mode"].values[front]
     out, changed = [], []

@@ -23,7 +23,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
-from modefront.results.remarks import findings_of, headlines, verdict
+from modefront.results.remarks import findings_of, verdict
 from modefront.results.shapes import PairedShapes, paired_shapes, write_vtu
 from modefront.text import Shown
 
@@ -260,7 +260,9 @@ class Results:
 
         front, name = self.front["pareto"].values, str(self.attrs.get("study", "")) or "results"
         optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
-        said = [f"{name}: {optimal}", *(self.verdict or headlines(self.data))[:SENTENCES]]
+        said = [f"{name}: {optimal}", *(self.verdict or map(str, findings_of(self.data)))][
+            : 1 + SENTENCES
+        ]
         kinds = self["kind"].values
         order = [i for kind in SHOWN for i in np.flatnonzero(kinds == kind.value)][:ROWS]
         index = pd.Index(self["label"].values[order], name="model")
