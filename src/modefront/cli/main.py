@@ -5,7 +5,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import asdict, replace
 from functools import partial
@@ -52,20 +52,14 @@ def _repeated(
     return click.option(flag, f"{flag.removeprefix('--')}s", help=text, **more)
 
 
-LISTS: Mapping[str, str] = {
-    "models": "The main models.",
-    "points": "All models.",
-    "minima": "All minima.",
-    "uncertainty": "All deviations.",
-    "predictions": "All predictions.",
-    "findings": "All findings.",
-}
+LISTS = ("models", "points", "minima", "uncertainty", "predictions", "findings")
 """Full lists that ``show`` prints."""
 
 
 def _full_lists(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command with an option for each of `LISTS`."""
-    for name, text in reversed(list(LISTS.items())):
+    for name in reversed(LISTS):
+        text = {"models": "The main models.", "points": "All models."}.get(name, f"All {name}.")
         option = click.option(f"--{name}", "lists", flag_value=name, multiple=True, help=text)
         command = option(command)
     return command
@@ -244,7 +238,7 @@ def show(
     elif figures and not (lists or every):
         say_next("report", directory)
     else:
-        print_results(data, tuple(LISTS) if every else lists, directory)
+        print_results(data, LISTS if every else lists, directory)
 
 
 @cli.command()

@@ -241,12 +241,17 @@ def print_uncertainty(screen: Screen, data: Dataset) -> None:
         screen.table("where linearised standard deviations are approximate", ["model", "why"], rows)
     if "posterior_std" in data:
         modes = data["mode"].values
-        titles = [str(x) for x in data["parameter"].values]
-        titles += [*(f"f{r} Hz" for r in modes), *(f"MAC {r}" for r in modes)]
-        values = [data[f"posterior_{name}std"].values for name in ("", "frequency_", "mac_")]
-        cells = [number(x, ".3g", "") for x in np.concatenate(values)]
+        rows = [
+            [str(title), number(std, ".3g", "")]
+            for titles, name in (
+                (data["parameter"].values, ""),
+                ([f"f{r} Hz" for r in modes], "frequency_"),
+                ([f"MAC {r}" for r in modes], "mac_"),
+            )
+            for title, std in zip(titles, data[f"posterior_{name}std"].values, strict=True)
+        ]
         title = f"posterior around {preferred(data.attrs)}: standard deviations{_rough(data)}"
-        screen.table(title, ["of", "std"], list(zip(titles, cells, strict=True)))
+        screen.table(title, ["of", "std"], rows)
     elif "theta_std" not in data:
         screen.say("The results hold no uncertainty: the data have no errors that are known.")
 

@@ -95,18 +95,13 @@ def legend(figure: Figure, axes: Axes, loc: Any, most: int) -> None:
         shown.remove()
 
 
-def plain(text: object) -> str:
-    """Return a text that is not taken for mathematics."""
-    return short(text, NAME)
-
-
 def names_of(data: Dataset, dimension: str, most: int = NAME) -> list[str]:
     """Return the names along a dimension or variable, as they are shown."""
     return [short(name, most) for name in data[dimension].values]
 
 
-def short(text: object, most: int = 18) -> str:
-    """Return a text that fits beside a tick."""
+def short(text: object, most: int = NAME) -> str:
+    """Return a text of limited length that is not taken for mathematics."""
     return clean(text, most).replace("$", r"\$")
 
 
@@ -217,7 +212,7 @@ class Along:
         step = max(1, -(-n // 20) * 5) if n > 6 else 1
         marked = sorted({1, *range(step, n + 1, step)} - {0}) if n else []
         others = self.data["label"].values[self.others]
-        names = [short(str(name).removesuffix("-weights")) for name in others]
+        names = [short(str(name).removesuffix("-weights"), 18) for name in others]
         for i, axes in enumerate(grid):
             axes.set_xticks([*marked, *self.beside], [*map(str, marked), *names])
             for tick in axes.get_xticklabels()[len(marked) :]:
@@ -266,7 +261,7 @@ def panels_along(
         if bars is not None:
             along.bars(axes, bars[0][:, k], bars[1][:, k])
         mark(axes, k)
-        axes.set_title(plain(name), loc="left")
+        axes.set_title(short(name), loc="left")
         if k % COLUMNS == 0:
             axes.set_ylabel(label)
     along.finish(figure, grid, min(COLUMNS, len(grid)))

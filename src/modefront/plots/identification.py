@@ -7,7 +7,7 @@ import numpy as np
 from modefront.identification.record import Identification
 from modefront.identification.stabilisation import complex_indicators, multivariate_indicators
 from modefront.linalg.small import mac
-from modefront.plots.canvas import COLOURS, Picture, draw_matrix, panels, picture, plain, single
+from modefront.plots.canvas import COLOURS, Picture, draw_matrix, panels, picture, short, single
 
 MOST_PANELS, SHORT = 12, 40
 """Functions in a picture: more are too small to read; characters of a data set in file names."""
@@ -79,7 +79,7 @@ def _functions(identification: Identification) -> Picture:
         for H, colour, label in (measured, (fitted.synthesised, COLOURS[1], "synthesised")):
             axes.semilogy(fitted.data.frequency, np.abs(H[j, i]), color=colour, lw=0.8, label=label)
         pair = f"{fitted.data.references[j]} to {fitted.data.responses[i]}"
-        axes.set_title(f"{plain(pair)}: residual {share[j, i]:.1%}")
+        axes.set_title(f"{short(pair)}: residual {share[j, i]:.1%}")
         axes.set_xlabel("frequency in Hz")
         if axes is grid[0]:
             axes.legend()

@@ -11,7 +11,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from modefront._typing import Floats, Ints
 from modefront.datasets import Dataset
 from modefront.front.point import position
-from modefront.plots.canvas import COLOURS, COLUMNS, Picture, panels, picture, plain, short
+from modefront.plots.canvas import COLOURS, COLUMNS, Picture, names_of, panels, picture, short
 
 REACH, NAMES = 0.15, 14
 """Greatest displacement over the diagonal of the model; sensors up to which each is named."""
@@ -38,7 +38,7 @@ def modes(data: Dataset, *, point: str | int | None = None) -> Picture:
                 _at_sensors(axes, data, computed, measured)
             axes.set_title(title, loc="left")
         figure.legend(*grid[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    figure.suptitle(plain(data["label"].values[i]), x=0.01, ha="left")
+    figure.suptitle(short(data["label"].values[i]), x=0.01, ha="left")
     return figure
 
 
@@ -67,7 +67,7 @@ def _from_the_side(axes: Axes, data: Dataset, measured: Floats, moved: Floats | 
     sign = data["sensor_direction"].values[:, 0]
     _rings(axes, [(row * sign, height[sensor_nodes]) for row in measured], mew=1.4, ms=8)
     axes.set_xlim(-1.15, 1.15)
-    axes.set_yticks(height[sensor_nodes], [short(name) for name in data["sensor"].values])
+    axes.set_yticks(height[sensor_nodes], names_of(data, "sensor", 18))
 
 
 def _at_sensors(axes: Axes, data: Dataset, computed: Floats, measured: Floats) -> None:
@@ -76,7 +76,7 @@ def _at_sensors(axes: Axes, data: Dataset, computed: Floats, measured: Floats) -
     axes.plot(x, computed, "s-", color=COLOURS[0], ms=4, lw=1.2, label="model")
     _rings(axes, [(x, row) for row in measured], mew=1.2, ms=7)
     if x.size <= NAMES:
-        axes.set_xticks(x, [short(name, 12) for name in data["sensor"].values], rotation=60)
+        axes.set_xticks(x, names_of(data, "sensor", 12), rotation=60)
     else:
         axes.set_xlabel("sensor")
 

@@ -123,7 +123,7 @@ def _along(
     """Return a figure with a panel for each title, of values along the front of some studies."""
     figure, grid = canvas.panels(len(titles), columns)
     for axes, title, chosen in zip(grid, titles, curves, strict=True):
-        axes.set_title(canvas.plain(title), loc="left")
+        axes.set_title(canvas.short(title), loc="left")
         for k, values in chosen:
             name, data = studies[k]
             front, pareto = front_points(data), data["pareto"].values.astype(bool)
@@ -156,5 +156,5 @@ def _front(axes: Axes, data: Dataset, values: Floats, k: int, name: str, size: f
     front, pareto = front_points(data), data["pareto"].values.astype(bool)
     marker, colour = MARKERS[k % len(MARKERS)], _colour(k)
     best, others = values[front[pareto[front]]], values[front[~pareto[front]]]
-    axes.plot(*best.T, marker, color=colour, ms=size, ls="", label=canvas.plain(name))
+    axes.plot(*best.T, marker, color=colour, ms=size, ls="", label=canvas.short(name))
     axes.plot(*others.T, marker, mfc="w", mec=colour, ms=size, ls="")

@@ -74,7 +74,7 @@ def _limits(axes: Axes, data: Dataset, error: Floats) -> None:
     text = f"{count} models"
     if count == 1:
         (i,) = np.flatnonzero(far)
-        text = f"{canvas.plain(data['label'].values[i])} ({error[i, 0]:.3g}, {error[i, 1]:.3g})"
+        text = f"{canvas.short(data['label'].values[i])} ({error[i, 0]:.3g}, {error[i, 1]:.3g})"
     axes.set_title(f"beyond the axes: {text}", loc="right", color="0.35")
 
 
@@ -94,9 +94,9 @@ def _many(data: Dataset, error: Floats, groups: list[str], *, log: bool) -> canv
             if log:
                 axes.set(xscale="log", yscale="log")
             if i == n - 1:
-                axes.set_xlabel(f"error of {canvas.short(groups[j])}")
+                axes.set_xlabel(f"error of {canvas.short(groups[j], 18)}")
             if j == 0:
-                axes.set_ylabel(f"error of {canvas.short(groups[i])}")
+                axes.set_ylabel(f"error of {canvas.short(groups[i], 18)}")
     handles, labels = grid[0][0].get_legend_handles_labels()
     once = dict(zip(labels, handles, strict=True))
     figure.legend(once.values(), once.keys(), loc="upper right")
@@ -127,7 +127,8 @@ def frequencies(data: Dataset) -> canvas.Picture:
 
     std = data["posterior_frequency_std"].values if "posterior_frequency_std" in data else ()
     bars = canvas.at_reference(data, f, std)
-    return canvas.panels_along(data, f, _modes(data), "frequency, Hz", bars, mark)
+    names = [f"mode {r}" for r in data["mode"].values]
+    return canvas.panels_along(data, f, names, "frequency, Hz", bars, mark)
 
 
 def mac(data: Dataset) -> canvas.Picture:
@@ -136,11 +137,8 @@ def mac(data: Dataset) -> canvas.Picture:
     std = data["posterior_mac_std"].values if "posterior_mac_std" in data else ()
     bars = canvas.at_reference(data, values, std)
     bars = bars and (bars[0], np.minimum(bars[1], 1.0))
-    return canvas.panels_along(data, values, _modes(data), "MAC", bars)
-
-
-def _modes(data: Dataset) -> list[str]:
-    return [f"mode {r}" for r in data["mode"].values]
+    names = [f"mode {r}" for r in data["mode"].values]
+    return canvas.panels_along(data, values, names, "MAC", bars)
 
 
 def parameter_std(data: Dataset) -> Floats:
@@ -173,7 +171,7 @@ def minima(data: Dataset) -> canvas.Picture:
         for name, theta in zip(data["equal_of"].values, data["equal_theta"].values, strict=True):
             axes.plot(x, theta / unit, "-", color=colours.get(str(name), "0.6"), lw=0.5, alpha=0.35)
     for k, (name, theta) in enumerate(zip(of, data["minimum_theta"].values, strict=True)):
-        label = canvas.plain(name) if name not in of[:k] else None
+        label = canvas.short(name) if name not in of[:k] else None
         axes.plot(x, theta / unit, "-o", color=colours[name], lw=1.4, ms=4.5, label=label)
     bounds = data["bounds"].values / unit[:, None]
     for ends, label in zip(bounds.T, (None, "bounds"), strict=True):
@@ -224,7 +222,7 @@ def _parameters(axes: Axes, data: Dataset) -> None:
             colour = "0.3"
         for width, reach in ((1.0, 2 * std[i]), (2.4, std[i])):
             axes.hlines(shift, theta[i] - reach, theta[i] + reach, colour, lw=width)
-        label = canvas.plain(data["label"].values[i])
+        label = canvas.short(data["label"].values[i])
         axes.plot(theta[i], shift, "o", color=colour, ms=4, label=label)
     axes.set_yticks(y, names)
     axes.set_ylim(len(names) - 0.4, -0.6)
@@ -237,7 +235,7 @@ def _correlation(axes: Axes, data: Dataset, covariance: Floats) -> None:
     scale = np.outer(size, size)
     r = np.divide(covariance, scale, out=np.zeros(covariance.shape), where=scale > 0)
     canvas.draw_matrix(axes, r, canvas.names_of(data, "parameter", 18), -1, "PuOr")
-    axes.set_title(f"correlation at {canvas.plain(preferred(data.attrs))}", loc="left")
+    axes.set_title(f"correlation at {canvas.short(preferred(data.attrs))}", loc="left")
 
 
 def _ellipses(axes: Axes, data: Dataset) -> None:
@@ -301,7 +299,7 @@ def predictions(data: Dataset) -> canvas.Picture:
     axes.set_ylim(len(rows) - 0.4, -0.6)
     if widely:
         axes.set_xscale("log")
-    label = canvas.plain(data["label"].values[best])
+    label = canvas.short(data["label"].values[best])
     axes.set_xlabel(f"over that of {label} (its value in brackets)")
     axes.plot([], [], color=canvas.COLOURS[0], lw=5, alpha=0.5, label="Pareto-optimal models")
     axes.plot(
@@ -337,12 +335,12 @@ def _page(data: Dataset, of: RecordedPrediction) -> canvas.Picture:
         bars = canvas.at_reference(data, np.log(values), std)
         for k, place in enumerate(places):
             colour = canvas.COLOURS[k % len(canvas.COLOURS)]
-            along.draw(axes, values[:, k], colour, canvas.short(place))
+            along.draw(axes, values[:, k], colour, canvas.short(place, 18))
             if bars is not None:
                 along.bars(axes, np.exp(bars[0][:, k]), np.exp(bars[1][:, k]), colour)
         along.finish(figure, [axes], 1)
     else:
         bars = canvas.at_reference(data, values, std)
         figure = canvas.panels_along(data, values, places, variable.title, bars)
-    figure.suptitle(canvas.plain(of.name + f" ({of.load})" * bool(of.load)), x=0.01, ha="left")
+    figure.suptitle(canvas.short(of.name + f" ({of.load})" * bool(of.load)), x=0.01, ha="left")
     return figure

@@ -82,7 +82,7 @@ class Apart(Shown):
 
 
 @dataclass(frozen=True, repr=False)
-class Comparison:
+class Comparison(Shown):
     """Several results side by side."""
 
     groups: tuple[str, ...]  # names of the objectives of all
@@ -121,9 +121,6 @@ class Comparison:
     def __repr__(self) -> str:
         """Return the table."""
         return str(self.table.to_string(float_format="{:.4g}".format))
-
-    def _repr_html_(self) -> str:
-        return str(self.table.to_html(float_format="{:.4g}".format))
 
 
 def compare(folders: Path | str | Sequence[Path | str]) -> Comparison:

@@ -311,10 +311,6 @@ def _numerics(data: Dataset) -> Iterator[Finding]:
         )
         if predicted:
             yield found("not-reduced", full=predicted)
-        labels, failed = data["label"].values, uncertified(data)
-        if failed.any():
-            yield found("above-tolerance", ", ".join(labels[failed]))
-            yield found("within-tolerance", ", ".join(labels[~failed]) or "none")
     gap, volume, igd = (float(attrs[x]) for x in ("largest_gap", "hypervolume", "igd_plus"))
     if not (np.isnan(gap) and np.isnan(volume)):
         missing = "; for the hypervolume: pip install modefront[metrics]" * bool(np.isnan(volume))

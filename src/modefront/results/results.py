@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import textwrap
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -111,7 +110,7 @@ class ReportedModel(Shown):
 
 
 @dataclass(frozen=True, repr=False)
-class Results:
+class Results(Shown):
     """Results of a study, over the dataset that ``results.nc`` holds.
 
     Variables are looked up as in the dataset, ``results["theta"]``, and so is all that is not
@@ -254,35 +253,24 @@ class Results:
     def _of(self, kind: Kind) -> xr.Dataset:
         return self.dataset.isel(point=self.data["kind"].values == kind.value)
 
-    def _shown(self) -> tuple[list[str], pd.DataFrame]:
+    def __repr__(self) -> str:
         """Return the verdict, or the first findings without one, and errors of the first models."""
         import pandas as pd
 
         front, name = self.front["pareto"].values, str(self.attrs.get("study", "")) or "results"
         optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
-        said = [f"{name}: {optimal}", *(self.verdict or map(str, findings_of(self.data)))][
-            : 1 + SENTENCES
-        ]
+        said = [f"{name}: {optimal}", *(self.verdict or map(str, findings_of(self.data)))]
+        lines: list[str] = []
+        for wrapped in (textwrap.wrap(text, WIDTH) for text in said[: 1 + SENTENCES]):
+            if len(lines) + len(wrapped) > LINES:
+                break
+            lines += wrapped
         kinds = self["kind"].values
         order = [i for kind in SHOWN for i in np.flatnonzero(kinds == kind.value)][:ROWS]
         index = pd.Index(self["label"].values[order], name="model")
         groups = [f"error {group}" for group in self["group"].values[:COLUMNS]]
-        return said, pd.DataFrame(self["error"].values[order, :COLUMNS], index, groups)
-
-    def __repr__(self) -> str:
-        """Return the verdict, and the errors of the first models."""
-        said, table = self._shown()
-        lines: list[str] = []
-        for wrapped in (textwrap.wrap(text, WIDTH) for text in said):
-            if len(lines) + len(wrapped) > LINES:
-                break
-            lines += wrapped
+        table = pd.DataFrame(self["error"].values[order, :COLUMNS], index, groups)
         return "\n".join([*lines, "", table.to_string(float_format="{:.4g}".format)])
-
-    def _repr_html_(self) -> str:
-        said, table = self._shown()
-        text = "".join(f"<p>{html.escape(each)}</p>" for each in said)
-        return text + table.to_html(float_format="{:.4g}".format, escape=True)
 
 
 def read_results(folder: Path | str, problem: UpdatingProblem | None = None) -> Results:

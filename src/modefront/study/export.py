@@ -179,34 +179,30 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[
             scipy.sparse.save_npz(stream, matrix.tocsr())
         with written(folder / f"{name}.mtx") as stream:
             scipy.io.mmwrite(stream, matrix, symmetry="symmetric", precision=17)
-    missing = []
     # What an imported study keeps of its program.
     table = read_toml(study, "a study file")[0].values["model"]
     of_program = table if table.get("kind") == "matrices" else {}
     if "dofs" not in of_program:
-        missing.append("dofs.csv, modes.vtu and modes.uff: the study names no nodes (dofs)")
+        return ["dofs.csv, modes.vtu and modes.uff: the study names no nodes (dofs)"]
+    dofs = read_dofs(study.parent / of_program["dofs"])
+    write_dofs(folder / "dofs.csv", dofs)
+    mesh = read_mesh(study.parent / of_program["mesh"]) if "mesh" in of_program else None
+    shapes = model.modes(modes)
+    number, motion = node_motion(dofs, mesh, shapes.shape)
+    turns = bool(((dofs.direction > 3) & np.isin(dofs.node, number)).any())
+    moved, missing = motion if turns else motion[:, :, :3], []
+    with written(folder / "modes.uff") as stream:
+        stream.write("".join(_uff(mesh, number, moved, shapes.frequency)).encode())
+    if mesh is None:
+        missing.append("modes.vtu: the study names no mesh")
+    elif find_spec("meshio") is None:
+        missing.append("modes.vtu: meshio is not installed: pip install modefront[mesh]")
     else:
-        dofs = read_dofs(study.parent / of_program["dofs"])
-        write_dofs(folder / "dofs.csv", dofs)
-        mesh = read_mesh(study.parent / of_program["mesh"]) if "mesh" in of_program else None
-        shapes = model.modes(modes)
-        number, motion = node_motion(dofs, mesh, shapes.shape)
-        turns = bool(((dofs.direction > 3) & np.isin(dofs.node, number)).any())
-        moved = motion if turns else motion[:, :, :3]
-        with written(folder / "modes.uff") as stream:
-            stream.write("".join(_uff(mesh, number, moved, shapes.frequency)).encode())
-        if mesh is None:
-            missing.append("modes.vtu: the study names no mesh")
-        elif find_spec("meshio") is None:
-            missing.append("modes.vtu: meshio is not installed: pip install modefront[mesh]")
-        else:
-            named = enumerate(zip(shapes.frequency, motion, strict=True), start=1)
-            vectors = {f"mode {k}, {f:.6g} Hz": values[:, :3] for k, (f, values) in named}
-            cells = [Cells(x, x, np.searchsorted(number, at)) for x, at in mesh.cells.items()]
-            data = {**vectors, "node": number}
-            write_grid(folder / "modes.vtu", mesh.coordinates, cells, data)
-    if "dofs" not in of_program:
-        return missing
+        named = enumerate(zip(shapes.frequency, motion, strict=True), start=1)
+        vectors = {f"mode {k}, {f:.6g} Hz": values[:, :3] for k, (f, values) in named}
+        cells = [Cells(x, x, np.searchsorted(number, at)) for x, at in mesh.cells.items()]
+        data = {**vectors, "node": number}
+        write_grid(folder / "modes.vtu", mesh.coordinates, cells, data)
     known = study.parent / CHANGES
     changes = read_changes(known) if known.is_file() else []
     lines = [f"updated values, model '{model.label}'"]
