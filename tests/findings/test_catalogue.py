@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
-from modefront.findings.catalogue import CATALOGUE, Severity, page
+from modefront.findings import catalogue
+from modefront.findings.catalogue import CATALOGUE, Severity
 from modefront.findings.record import NUMBER, as_text, found, from_text, in_order
 
-TEXT = page("findings.md")
+TEXT = Path(catalogue.__file__).with_name("findings.md").read_text(encoding="utf-8")
 EXAMPLES = dict(re.findall(r"^### (\S+)\n<!-- .+ -->\n> (.+)$", TEXT, re.MULTILINE))
 
 

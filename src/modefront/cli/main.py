@@ -59,7 +59,12 @@ LISTS = ("models", "points", "minima", "uncertainty", "predictions", "findings")
 def _full_lists(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command with an option for each of `LISTS`."""
     for name in reversed(LISTS):
-        text = {"models": "The main models.", "points": "All models."}.get(name, f"All {name}.")
+        others = {
+            "models": "The main models.",
+            "points": "All models.",
+            "uncertainty": "All scatter.",
+        }
+        text = others.get(name, f"All {name}.")
         option = click.option(f"--{name}", "lists", flag_value=name, multiple=True, help=text)
         command = option(command)
     return command

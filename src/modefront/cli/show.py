@@ -26,9 +26,6 @@ from modefront.work.task import Costs
 
 FEWEST = 2  # rows of a kind that a table keeps, however long it is
 
-LESS: Mapping[str, str] = {"parameter": "that change{} less", "mode": "that fit{} better"}
-"""What is true of the rows that a table leaves out."""
-
 
 def models_in(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]:
     """Return the lines of the first models, ``most`` or fewer where that is possible.
@@ -54,8 +51,9 @@ def models_in(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]
             if count <= 2 or BLANK not in lines:  # they fit side by side
                 break
         left = {name: len(x) - size[name] for name, x in order.items()}
+        less = {"parameter": "that change{} less", "mode": "that fit{} better"}
         said = [
-            f"{plural(n, f'more {name}')} {LESS.get(name, '').format('s' * (n == 1))}".rstrip()
+            f"{plural(n, f'more {name}')} {less.get(name, '').format('s' * (n == 1))}".rstrip()
             for name, n in {**left, "edge": len(models) - count}.items()
             if n
         ]
@@ -140,9 +138,6 @@ def _rough(data: Dataset) -> str:
     return "" if data.attrs.get("settled", 1) else rough
 
 
-DRAWN = ("mean", "5 %", "95 %")  # statistics of models drawn from the posterior that are shown
-
-
 def print_predictions(screen: Screen, data: Dataset) -> None:
     """Print all predictions of all models that are no points of the front, and their ranges."""
     if "range" not in data.sizes:
@@ -161,7 +156,8 @@ def print_predictions(screen: Screen, data: Dataset) -> None:
             out["maximum"] = number(known.max() if known.size else np.nan, form)
         if x.std is not None:
             out["posterior"] = _deviation(x)
-        out |= {f"drawn {end}": number(x.drawn[end], form) for end in DRAWN if x.drawn}
+        shown = ("mean", "5 %", "95 %") if x.drawn else ()
+        out |= {f"drawn {end}": number(x.drawn[end], form) for end in shown}
         return out | {str(labels[i]): number(x.values[i], form) for i in models}
 
     def table(title: str, rows: Sequence[Mapping[str, str]]) -> None:
@@ -364,19 +360,15 @@ def print_results(
         lines += [line for text in verdict(data) for line in screen.sentence(text)]
         most = HEIGHT - len(lines) - LEAST - 4
         lines += [BLANK, *models_in(screen, data, most, f"{show} --models"), BLANK]
-        room = max(HEIGHT - len(lines) - 2, LEAST)
-        screen.show([*lines, *_findings(screen, data, room, f"{show} --findings")])
+        room, full = max(HEIGHT - len(lines) - 2, LEAST), f"{show} --findings"
+        sentences = list(map(str, findings_of(data)))
+        blocks = [screen.sentence(text, start="- ") for text in sentences]
+        ends = np.cumsum([len(block) for block in blocks])
+        count = int(np.searchsorted(ends, room - 1, side="right"))
+        rest = digest(sentences, full, count)[count:] or [f"what these findings mean: {full}"]
+        screen.show([*lines, *chain.from_iterable(blocks[:count]), *screen.sentence(*rest)])
     screen.say(f"all: {show} --all")
     screen.say(f"next: {command('report', folder)}")
-
-
-def _findings(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]:
-    """Return the first findings that fit into ``most`` lines, and the command that prints all."""
-    sentences = list(map(str, findings_of(data)))
-    blocks = [screen.sentence(text, start="- ") for text in sentences]
-    count = int(np.searchsorted(np.cumsum([len(x) for x in blocks]), most - 1, side="right"))
-    rest = digest(sentences, full, count)[count:] or [f"what these findings mean: {full}"]
-    return [*(line for block in blocks[:count] for line in block), *screen.sentence(*rest)]
 
 
 def as_json(data: Dataset) -> str:

@@ -51,15 +51,10 @@ class Said(NamedTuple):
         ]
 
 
-def page(name: str) -> str:
-    """Return the text of a page of sentences."""
-    return Path(__file__).with_name(name).read_text(encoding="utf-8")
-
-
 def _kinds(name: str) -> dict[str, Said]:
     """Return what a page says of each of its kinds; raises ValueError for one without sentence."""
-    out = {}
-    for part in page(name).split("\n## ")[1:]:
+    out, page = {}, Path(__file__).with_name(name).read_text(encoding="utf-8")
+    for part in page.split("\n## ")[1:]:
         heading, *kinds = part.split("\n### ")
         for each in kinds:
             kind, comment, _, text = f"{each}\n\n".split("\n", 3)

@@ -31,9 +31,6 @@ from modefront.results.compare import read_together, short_names
 from modefront.results.remarks import findings_of, verdict
 from modefront.text import json_of
 
-CONSTANTS = {"NaN": None, "Infinity": 10**400, "-Infinity": -(10**400)}
-"""What JSON has for numbers of which it has no word; JavaScript reads such integers as infinity."""
-
 LARGEST = 32767  # of a 16-bit integer
 
 CITE = (
@@ -66,7 +63,8 @@ def payload(results: Sequence[tuple[str, Dataset]]) -> tuple[str, str]:
         "cite": [text.format(version=__version__) for text in CITE],
         "fronts": fronts,
     }
-    text = json_of(report, CONSTANTS, separators=(",", ":")).encode()
+    infinite = {"Infinity": 10**400, "-Infinity": -(10**400)}  # which JavaScript reads as such
+    text = json_of(report, infinite, separators=(",", ":")).encode()
     return title, packed(len(text).to_bytes(4, "little") + text + arrays.content)
 
 
@@ -257,8 +255,6 @@ def _study(data: Dataset) -> str:
     )
 
 
-SUFFIXES = (".html", ".htm")
-
 PAGE = """\
 <!doctype html>
 <html lang="en">
@@ -322,7 +318,7 @@ def report(folders: Path | str | Sequence[Path | str], output: Path | str | None
 
 def write_html(text: str, path: Path) -> None:
     """Write a page whole or not at all; raises InputError where the file cannot be written."""
-    if path.suffix.lower() not in SUFFIXES:
+    if path.suffix.lower() not in (".html", ".htm"):
         raise InputError(Fault(str(path), "-o", "a file that ends in .html", f"'{path.name}'"))
     with writing(path, "-o"):
         write_text(path, text, lasting=True)

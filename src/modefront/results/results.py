@@ -35,8 +35,8 @@ SHOWN = (Kind.NOMINAL, Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL, Kind.EDGE)
 
 ALONE = "expected results with their study, read_results(folder, study), found results alone"
 
-SENTENCES, LINES, WIDTH, ROWS, COLUMNS = 8, 11, 96, 6, 6
-"""Sentences in the short representation, their lines as text and characters; models and groups."""
+LINES, WIDTH, ROWS, COLUMNS = 11, 96, 6, 6
+"""Lines of sentences in the short representation, their characters; models and groups."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -261,7 +261,7 @@ class Results(Shown):
         optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
         said = [f"{name}: {optimal}", *(self.verdict or map(str, findings_of(self.data)))]
         lines: list[str] = []
-        for wrapped in (textwrap.wrap(text, WIDTH) for text in said[: 1 + SENTENCES]):
+        for wrapped in (textwrap.wrap(text, WIDTH) for text in said):
             if len(lines) + len(wrapped) > LINES:
                 break
             lines += wrapped
