@@ -36,6 +36,13 @@ def test_the_example_on_the_page_is_what_the_kind_says(kind: str) -> None:
     ), "what it means, and what to do"
 
 
+def test_a_page_of_another_form_is_an_error_and_no_kind_or_unit_less() -> None:
+    assert len(catalogue.UNITS) == TEXT.count("\n|") - 2
+    for text in ("no table", "| a | b | c |\n|---|---|---|", "| a |\n|---|\n| six | a | b |"):
+        with pytest.raises(ValueError, match="unpack|convert"):
+            catalogue._units(text)
+
+
 def test_a_finding_says_what_it_means_without_marks_of_a_page() -> None:
     (text,) = found("group-data", "shapes").meaning
     assert text.startswith("What one group alone determines.")

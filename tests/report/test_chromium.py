@@ -336,8 +336,8 @@ def test_a_page_fits_and_axe_finds_nothing(
     assert inner[0] <= inner[1]
     if not AXE.is_file():
         pytest.skip("needs axe-core: npm ci, in the folder report")
-    for details in page.page.locator("details").all():
-        details.locator("summary").click()
+    for summary in page.page.locator("details > summary").all():  # outer ones come first
+        summary.click()
     page.page.evaluate(AXE.read_text(encoding="utf-8"))
     result = page.page.evaluate("axe.run().then((result) => result.violations)")
     assert [(each["id"], [node["html"] for node in each["nodes"]]) for each in result] == []
@@ -349,8 +349,8 @@ def test_nothing_overlaps_on_a_phone_and_on_paper(tmp_path: Path, opened: Open) 
     assert cells.count() == 8 * 8
     wide = "(all) => all.filter((x) => x.scrollWidth > x.clientWidth).length"
     assert cells.evaluate_all(wide) == 0
-    for details in page.page.locator("details").all():
-        details.locator("summary").click()
+    for summary in page.page.locator("details > summary").all():  # outer ones come first
+        summary.click()
     page.page.emulate_media(media="print")
     boxes = page.page.locator(".scroll")
     assert boxes.count() >= 3
