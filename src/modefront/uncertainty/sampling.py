@@ -2,13 +2,12 @@ r"""Models drawn from the posterior: randomise then optimise, made exact by Metr
 
 docs/uncertainty.md has the equations. The parameters are functions of standard normal variables z.
 About a peak a model of normal variables :math:`\xi` and of variances s of the errors solves
-:math:`F(z) = L \xi` (Bardsley, Solonen, Haario & Laine 2014, doi:10.1137/140964023). Proposals
-change the normal variables, :math:`u' = \sqrt{1 - b^2}\, u + b\, N(0, I)`; the warm-up shortens b
-from 1, independent models, as far as is needed. Steps of the stochastic Newton method go between
-(Martin et al. 2012, doi:10.1137/110845598), and find models beyond a fold of F, which become
-centres of further proposals. Chains go on until they agree and the effective sample is large enough
-(Vehtari et al. 2021, doi:10.1214/20-BA1221). They end at half of their length at most where none of
-their halves is worth more than one draw.
+:math:`F(z) = L \xi` (Bardsley, Solonen, Haario & Laine 2014, doi:10.1137/140964023). Such models
+are proposals, independent of where a chain is. Steps of the stochastic Newton method go between
+(Martin et al. 2012, doi:10.1137/110845598), of a length that the warm-up finds; they lead beyond a
+fold of F, to models which become centres of further proposals. Chains go on until they agree and
+the effective sample is large enough (Vehtari et al. 2021, doi:10.1214/20-BA1221). They end at half
+of their length at most where none of their halves is worth more than one draw.
 
 Where modes are those of a reduced basis, chains are those of a smaller one, and draws are weighted
 by what the basis itself says of them (Liu 2001, *Monte Carlo Strategies in Scientific Computing*,
@@ -41,7 +40,7 @@ CHAINS, ROUND, LONGEST = 4, 50, 12
 
 WARM = 4  # rounds at most in which models that no peak proposes become centres of further proposals
 AGREE = 1.05  # deviation of all chains over that within them, from which they do not agree
-ACCEPTED = 0.35  # share of proposals that are taken, below which steps become shorter
+ACCEPTED = 0.35  # share of steps nearby that are taken, below which they become shorter
 APART = 1.0  # distance of two peaks, in standard deviations, below which one is enough
 FAINT = 1e-3  # probability of a peak over that of the greatest one, below which it is left out
 
@@ -111,14 +110,14 @@ class Peak:
         of_s = half * np.log(self.scale / 2) - gammaln(half) - (half + 1) * np.log(s)
         return float(size + (of_s - self.scale / (2 * s)).sum())
 
-    def model(self, target: Standardised, u: Floats, start: Evaluation) -> Model | None:
+    def model(self, target: Standardised, u: Floats) -> Model | None:
         """Return the model of normal variables (p + n,) by Newton's method; None without one.
 
         Steps become shorter until the next one does (Deuflhard's natural monotonicity).
         """
         p = self.at.theta.size
         below = ndtr(np.clip(-u[p:], -FARTHEST, FARTHEST))
-        here = Model(start, self.scale / chdtri(self.dof, below))
+        here = Model(self.at, self.scale / chdtri(self.dof, below))
         L = np.linalg.cholesky(self.precision(here.s))
         F, slope = self.forward(here)
         missing = L @ u[:p] - F
@@ -214,7 +213,7 @@ class Chain:
 
     z: Floats  # (steps, p) standardised parameters
     s: Floats  # (n,) variances at its end
-    length: Floats  # b of both kinds of proposals
+    length: float  # b of proposals nearby
     beyond: bool  # whether no peak proposes the model at its end
 
 
@@ -375,7 +374,7 @@ def _advanced(
     """Return the next round of a chain; a warm-up adapts the lengths of steps."""
     target = Standardised(noise.problem)
     of = Sampler(target, noise.logs, peaks)
-    length = np.ones(2) if chain is None or warm else chain.length
+    length = 1.0 if chain is None or warm else chain.length
     if chain is None:
         top = peaks[rng.choice(len(peaks))].top
         z, s = top.z, top.s
@@ -383,13 +382,11 @@ def _advanced(
         z, s = chain.z[-1], chain.s
     here, out = Model(target.evaluate(z), s), []
     for t in range(ROUND):
-        jumps = len(peaks) > 1 and t % 2 == 1
-        here, chances = of.after(here, length, jumps, rng)
+        here, chance = of.after(here, length, rng)
         out.append(here.z)
         if warm:
-            better = np.array([0.0 if jumps else chances[0] - ACCEPTED, chances[1] - ACCEPTED])
-            length = np.minimum(length * np.exp(better / np.sqrt(1 + t / 4)), 1.0)
-    return Chain(np.array(out), here.s, length, not np.isfinite(of.densities(here)[1]))
+            length = min(length * float(np.exp((chance - ACCEPTED) / np.sqrt(1 + t / 4))), 1.0)
+    return Chain(np.array(out), here.s, length, not np.isfinite(of.log_density(here)))
 
 
 @dataclass(frozen=True)
@@ -400,45 +397,31 @@ class Sampler:
     logs: LogSum
     peaks: Sequence[Peak]
 
-    def after(
-        self, here: Model, b: Floats, jumps: bool, rng: np.random.Generator
-    ) -> tuple[Model, tuple[float, float]]:
-        """Return the model after both kinds of steps of lengths b (2,), and their probabilities.
+    def after(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
+        """Return the model after both kinds of steps, and the probability of the one nearby.
 
         The variances are drawn between them.
         """
-        here, far = self.across(here, 1.0 if jumps else float(b[0]), jumps, rng)
+        here = self.across(here, rng)
         scale = here.found.J[:-1] + self.logs.floor
-        here = Model(here.found, scale / rng.chisquare(self.logs.a))
-        here, near = self.nearby(here, float(b[1]), rng)
-        return here, (far, near)
+        return self.nearby(Model(here.found, scale / rng.chisquare(self.logs.a)), b, rng)
 
-    def across(
-        self, here: Model, b: float, jumps: bool, rng: np.random.Generator
-    ) -> tuple[Model, float]:
-        """Return the model after a step through the normal variables behind it.
-
-        Returns also the probability with which the step is taken.
-        """
-        own, of_mixture = self.densities(here)
-        weight = here.log_posterior(self.logs) - of_mixture
+    def across(self, here: Model, rng: np.random.Generator) -> Model:
+        """Return the model after a step to one that is independent of it."""
+        weight = here.log_posterior(self.logs) - self.log_density(here)
         if not np.isfinite(weight):
-            return here, 0.0
-        near = None if jumps else np.exp(own - of_mixture)
-        peak = self.peaks[rng.choice(len(self.peaks), p=near)]
-        u = rng.normal(size=peak.at.theta.size + peak.logs.a.size)
-        if b < 1:
-            u = np.sqrt(1 - b**2) * peak.behind(here) + b * u
-        new = peak.model(self.target, u, here.found if b < 1 else peak.at)
+            return here
+        count = len(self.peaks)
+        peak = self.peaks[rng.choice(count, p=np.full(count, 1 / count))]
+        new = peak.model(self.target, rng.normal(size=here.z.size + here.s.size))
         if new is None:
-            return here, 0.0
-        change = new.log_posterior(self.logs) - self.densities(new)[1] - weight
-        return _taken(here, new, change, rng)
+            return here
+        change = new.log_posterior(self.logs) - self.log_density(new) - weight
+        return _taken(here, new, change, rng)[0]
 
-    def densities(self, model: Model) -> tuple[Floats, float]:
-        """Return the logarithms (peaks,) of the parts of the mixture, and that of their sum."""
-        parts = np.array([peak.log_density(model) for peak in self.peaks])
-        return parts, float(np.logaddexp.reduce(parts))
+    def log_density(self, model: Model) -> float:
+        """Return the logarithm of the sum of what all peaks propose."""
+        return float(np.logaddexp.reduce([peak.log_density(model) for peak in self.peaks]))
 
     def nearby(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
         """Return the model after a step of the stochastic Newton method."""
