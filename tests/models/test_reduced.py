@@ -126,6 +126,8 @@ def test_a_space_of_modes_has_these_and_is_smaller(full: MatrixModel) -> None:
     V = model.space(thetas)
     assert V.shape[0] == model.columns
     assert V.shape[1] < 0.8 * model.columns
+    alike = model.space(np.tile(thetas[0], (2, 1)))
+    assert alike.shape[1] == model.count, "modes that are the same span all that are asked for"
     sent = pickle.loads(pickle.dumps(model.within(V)))
     for theta in thetas:
         result, expected = sent.modes(theta, 8), model.modes(theta, 8)

@@ -194,14 +194,15 @@ class ReducedModel(Shown):
         """Return coordinates (columns, n) in the basis that span its modes at some parameters.
 
         Directions in which modes of unit energy have less than `HARDLY`, root mean square, are left
-        out, and spare modes.
+        out, and spare modes, but for as many as there are modes.
         """
         _, K, M, _ = self._projected()
         used = self.first.modes
         X = [dense.decompose(K.at(x), M.at(x), used).X[:, :used] for x in thetas]
         U, sizes, _ = np.linalg.svd(np.hstack(X), full_matrices=False)
         spend(Costs(reduced=len(thetas)))
-        return np.asarray(U[:, sizes > HARDLY * np.sqrt(len(thetas))])
+        kept = np.count_nonzero(sizes > HARDLY * np.sqrt(len(thetas)))
+        return np.asarray(U[:, : max(kept, self.count)])
 
     def within(self, V: Floats) -> "ReducedModel":
         """Return the model in the space of coordinates (columns, n) in its basis."""
