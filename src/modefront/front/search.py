@@ -61,8 +61,10 @@ class Loop:
         while offers := self._offers(proposers):
             left = most - self.state.evaluations
             if left <= 0:
-                places = self.state.places
-                self.open |= {places[offer.place].subproblem.key for _, offer in offers}
+                for _, offer in offers:
+                    places = self.state.places
+                    ended = places if offer.place < 0 else [places[offer.place]]
+                    self.open |= {place.subproblem.key for place in ended}
                 break
             chosen = offers[:BATCH]
             self.turn += 1

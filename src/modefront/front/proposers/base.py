@@ -13,7 +13,7 @@ from modefront.front.subproblems import Subproblem
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, begin
 
-USUAL = 10  # models of a generation, and random starts that cover the box together
+USUAL = 10  # models of a generation, and minima of which a box seldom has more
 
 
 @dataclass(frozen=True)
@@ -65,8 +65,6 @@ def evaluated(problem: Problem, solution: Solution) -> Solution:
     return begin(problem.evaluate(solution.theta, second=True))
 
 
-def _evaluated(problem: Problem, thetas: Floats) -> Solution:
-    """Evaluate models; the recorder of evaluations tells of all of them, the last is returned."""
-    for theta in thetas:
-        last = problem.evaluate(theta, derivatives=False)
-    return begin(last)
+def _evaluated(problem: Problem, thetas: Floats) -> list[Evaluation]:
+    """Return models without derivatives."""
+    return [problem.evaluate(theta, derivatives=False) for theta in thetas]
