@@ -272,10 +272,8 @@ def _from_toml(path: Path) -> ModalTest:
         name: (np.array(six[:3]), np.array(six[3:]) / np.linalg.norm(six[3:]))
         for name, six in placed.items()
     }
-    sets = [
-        replace(each, channels=channels, quantity=quantity, windows=windows)
-        for each in _set_tables(root, ambient)
-    ]
+    common = SetFiles("", (), channels=channels, quantity=quantity, windows=windows)
+    sets = _set_tables(root, ambient, common)
     root.close()
     refuse(root.faults)
     setups = _setups(root, sets) if ambient else ()
@@ -290,13 +288,14 @@ def _from_toml(path: Path) -> ModalTest:
     return ModalTest(name, band, modes, data_sets, setups, chosen, places)
 
 
-def _set_tables(root: opt.Table, ambient: bool) -> list[SetFiles]:
+def _set_tables(root: opt.Table, ambient: bool, common: SetFiles) -> list[SetFiles]:
     out = []
     for position, table in enumerate(root.tables("set", required=True), start=1):
         name = table.text("name", default=str(position)) or str(position)
         names = table.value("files", FILES) or []
         files = tuple(Path(root.file).parent / file for file in names)
-        known = SetFiles(name, files, table.value("columns", COLUMNS, {}))
+        columns = table.value("columns", COLUMNS, {})
+        known = replace(common, name=name, files=files, columns=columns)
         if ambient:
             rate = table.value("rate", RATE, None)
             sensors = tuple(table.value("sensors", SENSORS, []))

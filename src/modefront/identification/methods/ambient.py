@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import scipy.linalg as la
 from scipy.sparse.csgraph import connected_components
 from scipy.stats import chi2, norm
 
@@ -88,11 +89,6 @@ class Local:
     def half(self) -> float:
         """Half bandwidth in rad/s."""
         return self.zeta * self.omega
-
-    @property
-    def stds(self) -> Floats:
-        """Standard deviations of ln omega and ln zeta, and of the components of phi."""
-        return np.sqrt(np.diag(self.covariance))
 
 
 @dataclass(frozen=True)
@@ -335,11 +331,9 @@ def _shares(band: Band, model: Density) -> Floats:
     return np.minimum(shares.max(axis=0), 1.0)
 
 
-def _estimate(
-    omega: float, zeta: float, stds: Floats, phi: Floats, covariance: Floats
-) -> ModeEstimate:
-    """Return a mode in physical units from logarithmic deviations of its pole."""
-    shape = real_shape(np.nan_to_num(phi).astype(complex))
+def _estimate(omega: float, zeta: float, phi: Floats, covariance: Floats) -> ModeEstimate:
+    """Return a mode in physical units, with the covariance of ln omega, ln zeta and phi."""
+    shape, stds = real_shape(np.nan_to_num(phi).astype(complex)), np.sqrt(np.diag(covariance))
     return ModeEstimate(
         complex(-zeta * omega, omega * np.sqrt(1 - zeta**2)),
         omega / (2 * np.pi),
@@ -347,9 +341,9 @@ def _estimate(
         float(stds[0]) * omega / (2 * np.pi),
         float(stds[1]) * zeta,
         shape,
-        np.sqrt(np.diag(covariance)),
+        stds[2:],
         np.zeros(0, complex),
-        shape_covariance=covariance,
+        shape_covariance=covariance[2:, 2:],
     )
 
 
@@ -358,7 +352,7 @@ def _groups(setups: Sequence[_Setup], least: float = 0.0) -> list[dict[int, int]
     local = [
         (
             each.records.sensors,
-            [_estimate(x.omega, x.zeta, x.stds, x.phi, x.covariance[2:, 2:]) for x in each.modes],
+            [_estimate(x.omega, x.zeta, x.phi, x.covariance) for x in each.modes],
         )
         for each in setups
     ]
@@ -401,12 +395,13 @@ def _combined(
     lines = max(len(each.lines.omega) for each in setups)
     for group in groups:
         having = [(setups[k], setups[k].modes[r]) for k, r in group.items()]
-        (mode, misfit), why = _of_structure(having, sensors), _harmonic(having)
+        (mode, misfit), why = _of_structure(having, sensors), ""
         freedom = sum(local.freedom for _, local in having)
         gain = sum(local.gain for _, local in having) - misfit
         gain /= float(chi2.isf(FALSE / lines, freedom))
         mode = replace(mode, evidence=_evidence(having, mode, len(setups), gain))
         if not any(local.held for _, local in having):
+            why = _harmonic(having)
             if len(having) == 1 < len(setups):
                 why = "none of the other setups has it, where its pole was tried"
             elif mode.evidence.gain < 1:
@@ -446,20 +441,21 @@ def _of_structure(
     """
     logs = np.log([[mode.omega, mode.zeta] for _, mode in having])
     power = np.array([-1, 1])
-    of_unit = np.array([mode.stds[:2] ** 2 for _, mode in having]) * np.exp(logs[:, 1:] * power)
+    own = np.array([mode.covariance.diagonal()[:2] for _, mode in having])
+    of_unit = own * np.exp(logs[:, 1:] * power)
     common = np.average(logs[:, 1], weights=1 / of_unit[:, 1])
     variance = of_unit * np.exp(-common * power)
     means = np.average(logs, axis=0, weights=1 / variance)
     misfit = np.sum((logs - means) ** 2 / variance, axis=0)
     widening = np.maximum(misfit / max(len(logs) - 1, 1), 1.0)
-    deviations = np.sqrt(widening / np.sum(1 / variance, axis=0))
+    of_pole = np.diag(widening / np.sum(1 / variance, axis=0))
     places = [np.array([sensors.index(x) for x in setup.records.sensors]) for setup, _ in having]
     covariances = [mode.covariance[2:, 2:] for _, mode in having]
     shapes = [mode.phi for _, mode in having]
     phi, C, of_shapes = merged_shape(places, shapes, covariances, len(sensors))
     omega, zeta = np.exp(means).tolist()
     misfits = float(misfit.sum() + of_shapes)
-    return _estimate(omega, zeta, deviations, phi, C), misfits
+    return _estimate(omega, zeta, phi, la.block_diag(of_pole, C)), misfits
 
 
 def _evidence(
@@ -480,8 +476,6 @@ def _evidence(
 
 def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
     """Return why a mode is the harmonic of a machine; empty where it is none."""
-    if any(mode.held for _, mode in having):
-        return ""
     z = np.array([(mode.kurtosis[0] - 2) / mode.kurtosis[1] for _, mode in having])
     if z.sum() / np.sqrt(len(z)) < norm.ppf(HARMONIC):
         mean = np.mean([mode.kurtosis[0] for _, mode in having])
