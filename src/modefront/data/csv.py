@@ -11,10 +11,9 @@ import math
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TextIO
 
 import numpy as np
 
@@ -143,21 +142,21 @@ def read_table(path: Path, what: str) -> tuple[int, list[str], Rows, list[Fault]
 
     The latter are faults. Raises InputError for what is no CSV, and for an empty file.
     """
-    with table_rows(path, what) as rows:
-        first, fields = next(rows, (1, []))
-        header = "\0".join(map(str.strip, fields)).rstrip("\0").split("\0")
-        if not fields:
-            raise wrong(path, "a header of column names", "an empty file", "line 1")
-        width, out, faults = len(header), Rows(), list[Fault]()
-        for line, row in rows:
-            values = list(map(str.strip, row))
-            if not any(values[width:]):  # fields without a name may be empty
-                values = values[:width]
-            if len(values) == width:
-                out.append((line, values))
-            elif len(faults) <= MOST_FAULTS:
-                expected = f"{width} fields, as in the header"
-                faults.append(Fault(str(path), f"line {line}", expected, str(len(values))))
+    rows = table_rows(path, what)
+    first, fields = next(rows, (1, []))
+    header = "\0".join(map(str.strip, fields)).rstrip("\0").split("\0")
+    if not fields:
+        raise wrong(path, "a header of column names", "an empty file", "line 1")
+    width, out, faults = len(header), Rows(), list[Fault]()
+    for line, row in rows:
+        values = list(map(str.strip, row))
+        if not any(values[width:]):  # fields without a name may be empty
+            values = values[:width]
+        if len(values) == width:
+            out.append((line, values))
+        elif len(faults) <= MOST_FAULTS:
+            expected = f"{width} fields, as in the header"
+            faults.append(Fault(str(path), f"line {line}", expected, str(len(values))))
     return first, header, out, faults
 
 
@@ -257,42 +256,37 @@ def _place(line: int, column: str) -> str:
     return f"line {line}, column {clean(column, NAME)!r}"
 
 
-@contextmanager
-def table_rows(path: Path, what: str) -> Iterator[Iterator[tuple[int, list[str]]]]:
+def table_rows(path: Path, what: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the numbered rows that are not blank; raises InputError for what is no CSV."""
-    with opened(path, what) as (stream, separator, before):
-        reader = csv.reader(stream, delimiter=separator, strict=True, skipinitialspace=True)
-        rows = ((before + reader.line_num, row) for row in reader if any(map(str.strip, row)))
-        try:
+    lines, separator, before = _lines(path, what)
+    reader = csv.reader(lines, delimiter=separator, strict=True, skipinitialspace=True)
+    try:
+        for row in reader:
             if separator != ",":
-                rows = ((k, [DECIMAL_COMMA.sub(r"\1.\2", x) for x in row]) for k, row in rows)
-            yield rows
-        except csv.Error as error:
-            raise wrong(path, "CSV", reason(error), f"line {before + reader.line_num}") from None
+                row = [DECIMAL_COMMA.sub(r"\1.\2", field) for field in row]
+            if any(map(str.strip, row)):
+                yield before + reader.line_num, row
+    except csv.Error as error:
+        raise wrong(path, "CSV", reason(error), f"line {before + reader.line_num}") from None
 
 
-@contextmanager
-def opened(path: Path, what: str) -> Iterator[tuple[TextIO, str, int]]:
-    """Open a table; yield the stream at its header, the separator, and the lines before.
+def _lines(path: Path, what: str) -> tuple[list[str], str, int]:
+    """Return the lines of a table, the separator, and the number of lines that are left out.
 
-    Raises InputError for what is no text, too large, or torn.
+    Raises InputError for what is no text, or too large.
     """
     file_size(path, what, min(MOST_DATA, available_memory() // 4))
     try:
         with path.open(newline="", encoding="utf-8-sig") as stream:
-            lines, first = 1, stream.readline(10**6)
-            while first and not first.strip(SEPARATORS + " \r\n"):
-                lines, first = lines + 1, stream.readline(10**6)
-            declared = re.fullmatch(r'"?sep=([,;\t])"?[,;\t \r\n]*', first, re.IGNORECASE)
-            if declared:  # as spreadsheets say what separates the columns
-                yield stream, declared[1], lines
-            else:
-                stream.seek(0)
-                yield stream, max(SEPARATORS, key=first.count), 0
-    except InputError:
-        raise
-    except (OSError, ValueError, csv.Error) as error:
+            lines = stream.readlines()
+    except (OSError, ValueError) as error:
         raise wrong(path, "CSV in UTF-8", reason(error)) from None
+    header = (k for k, line in enumerate(lines) if line.strip(SEPARATORS + " \r\n"))
+    first = next(header, len(lines))
+    text = "".join(lines[first : first + 1])
+    if declared := re.fullmatch(r'"?sep=([,;\t])"?[,;\t \r\n]*', text, re.IGNORECASE):
+        return lines[first + 1 :], declared[1], first + 1  # as spreadsheets say it
+    return lines, max(SEPARATORS, key=text.count), 0
 
 
 Said = tuple[str, str, str]  # a column, what is expected in it, and what was found
@@ -501,11 +495,11 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
 
     Raises InputError.
     """
-    with opened(path, what) as (stream, separator, _):
-        header = [field.strip() for field in next(csv.reader(stream, delimiter=separator), [])]
-        text = stream.read() if separator == "," else stream.read().replace(",", ".")
-    texts = [row for row in text.splitlines() if row.strip(SEPARATORS + " ")]
-    with suppress(ValueError):
+    lines, separator, _ = _lines(path, what)
+    with suppress(ValueError, csv.Error):
+        header = [field.strip() for field in next(csv.reader(lines, delimiter=separator), [])]
+        texts = [x for line in lines[1:] if (x := line.rstrip("\r\n")).strip(SEPARATORS + " ")]
+        texts = texts if separator == "," else [x.replace(",", ".") for x in texts]
         values = np.loadtxt(texts or ["?"], delimiter=separator, comments=None, ndmin=2)
         if values.shape == (len(texts), len(header)) and (np.abs(values) <= LARGEST).all():
             ended_column(path, (row.rpartition(separator)[2] for row in texts))

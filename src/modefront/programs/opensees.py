@@ -54,8 +54,8 @@ def _mesh(path: Path) -> base.ProgramMesh | None:
 def _rows(path: Path, number: type) -> list[list[Any]]:
     """Return rows of whole numbers, each once, and others, without a header."""
     ended(path)
-    with table_rows(path, "rows node,x,y,z, or element,node,…") as listed:
-        rows = [[x.strip() for x in row if x.strip()] for _, row in listed]
+    listed = table_rows(path, "rows node,x,y,z, or element,node,…")
+    rows = [[x.strip() for x in row if x.strip()] for _, row in listed]
     begin = 0 if rows and rows[0][0].lstrip("-").isdigit() else 1
     out = [[int(row[0]), *map(number, row[1:])] for row in rows[begin:]]
     once(path, "rows", "each node or element", (row[0] for row in out))
