@@ -58,9 +58,9 @@ LARGE, SAMPLES = 80, 4
 """Degrees of freedom from which on a model is reduced, and models of its basis beside the nominal
 one."""
 
-KEPT, NUMBERS = 64, 2**18
-"""Models that are kept, as many explanations are compared at the same parameters, and numbers of
-an array of those that are compared at once, which bounds the memory."""
+KEPT, NUMBERS = 2**24, 2**18
+"""Numbers of the models that are kept, as many explanations are compared at the same parameters,
+and of an array of those that are compared at once: both bound the memory."""
 
 
 class Points(NamedTuple):
@@ -219,7 +219,7 @@ class Fits:
         )
         self.together = max(1, NUMBERS // (data.shape.size * (1 + len(start))))
 
-        @lru_cache(KEPT)
+        @lru_cache(max(64, KEPT // (basis.shape[1] * count * (1 + len(start)))))
         def solved(theta: bytes) -> Modes | None:
             """Return the modes at parameters; None where there are none."""
             with suppress(ModelError):
