@@ -79,7 +79,7 @@ def mixed(mistakes: Sequence[Mistake]) -> float:
 
 def key_of(mistakes: Sequence[Mistake]) -> object:
     """Return what tells an explanation from others; of two orders, one is known."""
-    return frozenset((*each.claim, str(each.numbers)) for each in mistakes)
+    return frozenset(each.key for each in mistakes)
 
 
 def undone(state: State, mistakes: Iterable[Mistake]) -> State:
@@ -189,11 +189,11 @@ class Search:
         for one in best.mistakes:
             rest = best.claims - {one.claim}
             # What may be instead, and of it, and of the mistake itself, what is better.
-            firsts, swaps = dict[tuple[str, ...], Mistake](), dict[str, Mistake]()
+            firsts, swaps = dict[tuple[str, ...], Mistake](), dict[object, Mistake]()
             for x in (x for each in near if each.claims >= rest for x in each.mistakes):
                 if x.claim not in rest:
                     firsts.setdefault(x.claim, x)
-                    swaps.setdefault(str(x.finding), x)
+                    swaps.setdefault(x.key, x)
             costs = [x.cost for x in rivals if not x.claims & firsts.keys()]
             gain = min(costs, default=np.inf) - best.cost
             if len(firsts) <= EITHER and gain >= CLEAR:

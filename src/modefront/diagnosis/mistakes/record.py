@@ -15,6 +15,9 @@ from modefront.modes.result import Modes
 
 MANY = 6  # names that a sentence has, at most
 
+BETTER = ("better", "factor", "looks", "place", "sensor", "what", "of", "quantity", "later")
+"""Names and numbers of sentences that tell mistakes of the same claim from each other."""
+
 Change: TypeAlias = Callable[[State], State]
 Claims = frozenset[tuple[str, ...]]
 
@@ -37,6 +40,11 @@ class Mistake:
     def claim(self) -> tuple[str, ...]:
         """What is claimed: the kind, and whom it blames."""
         return (self.kind, *self.subject)
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What tells it from others: the claim, and what is better, without the numbers beside."""
+        return (*self.claim, *map(self.numbers.get, BETTER))
 
     @property
     def finding(self) -> Finding:
