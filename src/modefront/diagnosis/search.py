@@ -8,6 +8,7 @@ from operator import attrgetter
 
 import numpy as np
 
+from modefront._typing import Floats
 from modefront.diagnosis.comparison import Comparison, of_few_sets
 from modefront.diagnosis.evidence import ENOUGH, Fits, point, unlikeness
 from modefront.diagnosis.mistakes import sensors, values
@@ -99,8 +100,9 @@ class Search:
     def fit(self, several: Sequence[tuple[Mistake, ...]], near: Explanation | None = None) -> None:
         """Fit explanations by some mistakes each, from the best of nominal and near parameters."""
         states = [undone(self.fits.plain, mistakes) for mistakes in several]
-        nominal = np.zeros(len(self.fits.plain.start))
-        xs = [[x] * len(states) for x in (nominal, near.point.x if near else nominal)]
+        xs = [[np.zeros(len(self.fits.plain.start))] * len(states)]
+        if near:
+            xs += [[near.point.x] * len(states), self._same(states, near)]
         best = np.argmin([self.fits.ahead(states, x) for x in xs], axis=0)
         ends = self.fits.fitted(states, [xs[i][k] for k, i in enumerate(best)])
         for mistakes, state, at in zip(several, states, ends, strict=True):
@@ -108,6 +110,11 @@ class Search:
                 cost = float(at.cost) + sum(x.price for x in mistakes) + mixed(mistakes)
                 key, new = key_of(mistakes), Explanation(self.fits, mistakes, state, at, cost)
                 self.known[key] = min(self.known.get(key, new), new, key=COST)
+
+    def _same(self, states: Iterable[State], near: Explanation) -> list[Floats]:
+        """Return x of the same parameters in other states, within the bounds."""
+        theta = near.state.theta(near.point.x)
+        return [np.clip(state.x(theta), *self.fits.ends) for state in states]
 
     def extend(self, old: Explanation) -> None:
         """Fit the most promising explanations with a mistake more."""
@@ -170,7 +177,7 @@ class Search:
             # A rival may only have been fitted from where its way is barred.
             rivals = list(self.known.values())
             states = [each.state for each in rivals]
-            costs = self.fits.ahead(states, [best.point.x] * len(states))
+            costs = self.fits.ahead(states, self._same(states, best))
             nearer = costs < np.array([x.point.cost for x in rivals]) - ENOUGH
             self.fit([rivals[k].mistakes for k in np.flatnonzero(nearer)], best)
             if min(map(COST, self.known.values())) > best.cost - ENOUGH:

@@ -85,6 +85,11 @@ class State:
         factors = np.exp(np.where(self.unit == 0, x, 0.0))
         return self.start * factors + self.unit * x
 
+    def x(self, theta: Floats) -> Floats:
+        """Return x of parameters."""
+        factors = np.where(self.unit == 0, ratio(theta, self.start), 1.0)
+        return np.log(factors) + ratio(theta - self.start, self.unit)
+
     @cached_property
     def seen(self) -> Bools:
         """Whether each component was measured, (..., sets, modes, sensors)."""
