@@ -39,7 +39,7 @@ def test_the_example_on_the_page_is_what_the_kind_says(kind: str) -> None:
 def test_a_page_of_another_form_is_an_error_and_no_kind_or_unit_less() -> None:
     assert len(catalogue.UNITS) == TEXT.count("\n|") - 2
     for text in ("no table", "| a | b | c |\n|---|---|---|", "| a |\n|---|\n| six | a | b |"):
-        with pytest.raises(ValueError, match="unpack|convert"):
+        with pytest.raises(ValueError, match=r"unpack|convert"):
             catalogue._units(text)
 
 
