@@ -34,7 +34,7 @@ from modefront.front.point import Kind, of_kind
 from modefront.front.proposers.base import USUAL, Offer, Proposer, at, evaluate_all
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
-from modefront.front.proposers.starts import CHOICE, SURE, Minima, Starts
+from modefront.front.proposers.starts import SURE, Minima, Starts
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import lattice, payoff
 from modefront.front.state import Place, State
@@ -434,43 +434,23 @@ def test_starts_that_end_at_the_limit_of_iterations_have_met_no_minimum() -> Non
     assert known.unseen() == 1.0, "two starts that met two minima"
 
 
-def with_pool(state: State, most: int, tries: int = 0) -> tuple[Starts, Outcome]:
-    """Return starts that have models to choose from, and the evaluations of these."""
-    starts = Starts(np.random.default_rng(0))
-    for place in state.places:
-        starts.of(place).tries = tries
-    (offer,) = starts.offers(state, most)
-    outcome = recorded(offer.function, None, state.problem, *offer.arguments)
-    starts.learn(state, offer, outcome, 0.0)
-    return starts, outcome
-
-
-def test_starts_are_the_best_of_models_that_are_spread_evenly() -> None:
+def test_starts_begin_at_the_problem_s_own_and_cover_each_range_evenly() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
-    state = state_of(problem, anchors(problem)[:2], [[0.0, 0.0]])
-    starts, outcome = with_pool(state, 3)
-    count = 3 * CHOICE
-    assert outcome.evaluations == count
-    models = np.array([x.theta for x in outcome.result])
-    cells = np.floor((models + 4) / 8 * count).astype(int)
-    assert (np.sort(cells, axis=0) == np.arange(count)[:, None]).all()
-    offers = list(starts.offers(state, 3))
-    for k, place in enumerate(state.places):
-        thetas = [x.start.theta.tolist() for x in offers if x.place == k]
-        assert thetas[0] == problem.start.tolist()
-        best = np.argsort([place.subproblem.order.value(x.J) for x in outcome.result])
-        assert thetas[1:] == models[best[:2]].tolist()
-    starts.learn(state, offers[1], Outcome(offers[1].start, models, models, 1), 0.0)
-    (more,) = starts.offers(state, 3)
-    assert len(more.arguments[0]) == CHOICE, "for one more start"
+    state = state_of(problem, anchors(problem)[:1], [[0.0, 0.0]])
+    thetas = [
+        offer.start.theta for offer in Starts(np.random.default_rng(0)).offers(state, USUAL + 1)
+    ]
+    assert thetas[0].tolist() == problem.start.tolist()
+    block = np.array(thetas[1:])
+    assert block.shape == (USUAL, 2)
+    cells = np.floor((block + 4) / 8 * USUAL).astype(int)
+    assert (np.sort(cells, axis=0) == np.arange(USUAL)[:, None]).all()
 
 
 def test_starts_that_are_all_lost_end() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
     state = state_of(problem, anchors(problem)[:1], [[0.0, 0.0]])
-    starts, _ = with_pool(state, 1, tries=25)
-    known = starts.of(state.places[0])
-    known.tries = tries = 0
+    starts, tries = Starts(np.random.default_rng(0)), 0
     lost = Outcome(begin(infeasible(np.zeros(2), 2)), np.zeros((0, 2)), np.zeros((0, 2)), 1)
     while (offer := next(starts.offers(state, 1))).chance >= Search().doubt:
         starts.learn(state, offer, lost, 0.0)
@@ -481,9 +461,9 @@ def test_starts_that_are_all_lost_end() -> None:
 def test_as_many_starts_at_a_time_as_are_needed() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
     state = state_of(problem, anchors(problem)[:1], [[0.0, 0.0]])
-    starts, _ = with_pool(state, 6, tries=5)
+    starts = Starts(np.random.default_rng(0))
     known = starts.of(state.places[0])
-    known.ends, known.counts = [state.places[0].incumbent], [5]
+    known.ends, known.counts, known.tries = [state.places[0].incumbent], [5], 5
     chances = [offer.chance for offer in starts.offers(state, 6)]
     assert sum(chance >= Search().doubt for chance in chances) == 2, "after seven, one is enough"
 
@@ -623,6 +603,16 @@ def test_offers_below_the_doubt_are_not_made_and_the_likeliest_come_first() -> N
     assert loop.turn == 1
     assert state.evaluations == 5
     assert at(np.ones(2)).theta.tolist() == [1.0, 1.0]
+
+
+def test_at_the_budget_models_that_wait_for_evaluation_are_of_all_places() -> None:
+    problem = box(circles, [-2, -2], [2, 2])
+    state = state_of(problem, anchors(problem), [[0.5, 0.0]])
+    for place in state.places:
+        place.closed = True
+    state.evaluations = 1
+    loop = run(state, Given(np.ones((1, 2))), search=Search(evaluations=1))
+    assert loop.open == {place.subproblem.key for place in state.places}
 
 
 def test_models_that_cannot_be_evaluated_do_not_compete() -> None:

@@ -2,9 +2,10 @@
 
 A few searches are timed, and each prediction once, with few samples: all times are those of the
 processor, whatever else it does. Random starts of an edge end by the rule of the search
-(`modefront.front.proposers.starts`), after as many as confirm one minimum, or some ten. All else
-takes searches from known models, which take from `NEAR` of one from anywhere.
-``benchmarks/honest_time.py`` measures how often the time of a run is within the range.
+(`modefront.front.proposers.starts`), after as many as confirm one minimum, or those of a box that
+has as many as starts cover together. All else takes searches from known models, which take from
+`NEAR` of one from anywhere. ``benchmarks/honest_time.py`` measures how often the time of a run is
+within the range.
 """
 
 import time

@@ -13,7 +13,7 @@ from modefront.front.subproblems import Subproblem
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, begin
 
-USUAL = 10  # models of a generation, and minima of which a box seldom has more
+USUAL = 10  # models of a generation, and random starts that cover the box together
 
 
 @dataclass(frozen=True)

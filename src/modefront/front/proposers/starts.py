@@ -1,9 +1,5 @@
 r"""Starts: subproblems are solved from random models, until unseen minima are unlikely.
 
-Wide and deep basins have most of the low models: of four random models for each start, which all
-subproblems share, the best in a subproblem are its starts (the reduced sample of Boender, Rinnooy
-Kan, Timmer & Stougie 1982, doi:10.1007/BF01581033).
-
 With w minima of different values, to which N random starts have led, the part of the box from
 which unseen ones would be reached is expected to be (Boender & Rinnooy Kan 1987,
 doi:10.1007/BF02591684)
@@ -19,19 +15,16 @@ starts: they begin at what others have found.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import islice
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.archive import Outcome
-from modefront.front.proposers.base import Offer, at, evaluate_all, solve_from
+from modefront.front.proposers.base import USUAL, Offer, at, solve_from
 from modefront.front.state import Place, State
-from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution, Status
 from modefront.work.task import Key
 
-CHOICE = 4  # random models for each start, of which the best ones are starts
 SURE = 2  # starts that lead to a minimum, from which on it is hardly a matter of chance
 
 
@@ -45,7 +38,8 @@ class Minima:
     ends: list[Solution] = field(default_factory=list)
     counts: list[int] = field(default_factory=list)  # number of starts that led to each
     lost: int = 0  # number of starts that neither met a minimum nor gained
-    used: set[bytes] = field(default_factory=set)  # parameters of all starts so far
+    # parameters of all starts so far, and of the next ones
+    thetas: list[Floats] = field(default_factory=list)
 
     def note(self, place: Place, solution: Solution, tolerance: float) -> bool:
         """Count the end of a start; return whether that has met a minimum."""
@@ -95,37 +89,26 @@ class Starts:
     # solved for instead of from random models; None without one
     again: Mapping[Key, Sequence[Solution]] | None = None
     minima: dict[Key, Minima] = field(default_factory=dict)  # of each subproblem, by its key
-    pool: list[Evaluation] = field(default_factory=list)  # models from which starts are chosen
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
-        """Yield starts of each place, or the evaluation of more models to choose them from."""
-        if self.again is not None:
-            for k, place in enumerate(state.places):
-                left = self.again.get(place.subproblem.key, ())[self.of(place).tries :]
-                yield from (solve_from(k, place, at(x.theta), 1.0) for x in left[:most])
-            return
-        tries = max(self.of(place).tries for place in state.places)
-        missing = CHOICE * (tries + most) - len(self.pool)
-        if missing > 0:
-            chances = (self.of(place).chance(place, state.tolerance) for place in state.places)
-            yield evaluate_all(self._spread(state, missing), max(chances))
-            return
-        J = np.fmin([x.J for x in self.pool], np.finfo(float).max ** 0.5)  # undefined ones are last
+        """Yield random starts of each place."""
         for k, place in enumerate(state.places):
-            known, ranked = self.of(place), place.subproblem.order.value(J).argsort(kind="stable")
-            thetas = (state.problem.start, *(self.pool[j].theta for j in ranked.tolist()))
-            new = (x for x in thetas if x.tobytes() not in known.used)
-            for ahead, theta in enumerate(islice(new, most)):
-                yield solve_from(k, place, at(theta), known.chance(place, state.tolerance, ahead))
+            known = self.of(place)
+            if self.again is not None:
+                left = self.again.get(place.subproblem.key, ())[known.tries :]
+                yield from (solve_from(k, place, at(x.theta), 1.0) for x in left[:most])
+                continue
+            known.thetas = known.thetas or [state.problem.start]
+            while len(known.thetas) < known.tries + most:
+                known.thetas += self._block(state)
+            for ahead in range(most):
+                chance = known.chance(place, state.tolerance, ahead)
+                yield solve_from(k, place, at(known.thetas[known.tries + ahead]), chance)
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
-        """Count the start, and keep its minimum if it is new; or keep models to choose from."""
-        if offer.place < 0:
-            self.pool += outcome.result
-            return
+        """Count the start, and keep its minimum if it is new."""
         place = state.places[offer.place]
         known = self.of(place)
-        known.used.add(offer.start.theta.tobytes())
         known.tries += 1
         known.gains += gain > state.tolerance
         met = known.note(place, outcome.result, state.tolerance)
@@ -135,8 +118,8 @@ class Starts:
         """Return the minima of a subproblem."""
         return self.minima.setdefault(place.subproblem.key, Minima())
 
-    def _spread(self, state: State, count: int) -> Floats:
-        """Return random parameters (count, p) that are spread evenly over each range."""
-        cells = self.rng.permuted(np.tile(np.arange(count), (state.span.size, 1)), axis=1).T
-        u = (cells + self.rng.uniform(size=cells.shape)) / count
-        return np.asarray(state.problem.lower + state.span * u)
+    def _block(self, state: State) -> list[Floats]:
+        """Return random parameters that are spread evenly over each range."""
+        cells = self.rng.permuted(np.tile(np.arange(USUAL), (state.span.size, 1)), axis=1).T
+        u = (cells + self.rng.uniform(size=cells.shape)) / USUAL
+        return list(state.problem.lower + state.span * u)
