@@ -57,7 +57,7 @@ def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
     for term in terms.terms:
         say(f"{term.name}: {describe(term)}")
     for error in imported.errors:
-        say(f"affine: the run for checking differs by {error:.1e} of the greatest entry")
+        say(f"the run for checking is what the terms say, to {error:.1e} of the greatest entry")
     if not checks:
         say("not checked: --check RUN:NAME=VALUE,… compares with one more run")
     if imported.frequencies is not None:

@@ -346,7 +346,7 @@ def describe(term: Term) -> str:
     """Return the description of a term."""
     what = " and ".join(term.matrices)
     rank = "" if term.rank is None else f", of rank {term.rank}"
-    return f"{what}, at {term.dofs} degrees of freedom{rank}"
+    return f"{what}, at {term.dofs} degree{'s' * (term.dofs != 1)} of freedom{rank}"
 
 
 FACTORS, CHECK = (2.0, 0.5, 1.5, 0.75), (1.5, 0.7, 1.3, 0.8)
