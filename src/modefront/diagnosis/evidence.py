@@ -58,7 +58,7 @@ LARGE, SAMPLES = 80, 4
 """Degrees of freedom from which on a model is reduced, and models of its basis beside the nominal
 one."""
 
-KEPT, NUMBERS = 2**24, 2**18
+KEPT, NUMBERS = 2**25, 2**18
 """Numbers of the models that are kept, as many explanations are compared at the same parameters,
 and of an array of those that are compared at once: both bound the memory."""
 
