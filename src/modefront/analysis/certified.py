@@ -74,7 +74,7 @@ def certified_front(
     if columns < model.capacity:
         (lacking,) = work.run([Task(("probe-basis",), _lacking, (problem, model), in_process=True)])
         if lacking:
-            request = SnapshotRequest(np.array(lacking), _lowest(problem))
+            request = SnapshotRequest(np.array(lacking), _lowest(problem), derivatives=False)
             probed = _take(model, "probes", 1, request, work)
             columns = probed.columns if probed else columns
     known: Front | None = None

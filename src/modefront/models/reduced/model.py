@@ -41,7 +41,8 @@ MEMORY = 4.0  # default limit of the memory of a basis in GiB
 class SnapshotRequest:
     """One model, or several together, at which a snapshot is requested.
 
-    Derivatives are those of the model of which the basis knows the least.
+    Derivatives are those of models that are solved in full, and of the one among the others of which
+    the basis knows the least.
     """
 
     theta: Floats  # (p,) parameters of the model, or (models, p)
@@ -50,6 +51,7 @@ class SnapshotRequest:
     # relative error of eigenvalues below which a model is left as it is, and so is one that is not
     # among the worst; 0 where all models have to be exact, and no mode may be missing
     enough: float = 0.0
+    derivatives: bool = True  # whether the basis is to have some
 
     @property
     def models(self) -> list[Floats]:
@@ -57,9 +59,9 @@ class SnapshotRequest:
         return list(np.atleast_2d(self.theta))
 
     @property
-    def key(self) -> tuple[bytes, int, float]:
+    def key(self) -> tuple[bytes, int, float, bool]:
         """What tells the snapshot from others."""
-        return self.theta.tobytes(), self.modes, self.enough
+        return self.theta.tobytes(), self.modes, self.enough, self.derivatives
 
 
 _Projected: TypeAlias = tuple[tuple[SnapshotRequest, ...], DenseAffine, DenseAffine, Floats]
@@ -105,7 +107,7 @@ class ReducedModel(Shown):
         return {**vars(self), **lost}
 
     @property
-    def version(self) -> tuple[tuple[bytes, int, float], ...]:
+    def version(self) -> tuple[tuple[bytes, int, float, bool], ...]:
         """Snapshots in use."""
         return tuple(what.key for what in self.snapshots)
 
@@ -280,7 +282,7 @@ class ReducedModel(Shown):
         """
         models, error = what.models, 0.0
         if self._basis is None:
-            basis = self._solved(None, models.pop(0), what.modes)
+            basis = self._solved(None, models.pop(0), what)
             return (self._added_to(basis, models, what)[0] if models else basis), np.inf
         if what.modes == 0:
             return self._excluding(self._basis, models), np.inf
@@ -299,7 +301,7 @@ class ReducedModel(Shown):
         failed = 0
         for theta in models:
             try:
-                larger = self._solved(basis, theta, what.modes)
+                larger = self._solved(basis, theta, what)
             except ModelError:
                 failed += 1
                 continue
@@ -357,12 +359,17 @@ class ReducedModel(Shown):
         if known is None:
             return None
         basis, errors = known
-        if count := int((errors >= what.enough).sum()):
+        count = int((errors >= what.enough).sum())
+        if count and what.derivatives:
             basis = self._with_derivatives(basis, near[int(errors.argmax())], what.modes)
         spend(Costs(corrected=count, corrected_time=time.perf_counter() - started))
         return basis, float(errors.max())
 
-    def _solved(self, known: bases.Basis | None, theta: Floats, modes: int) -> bases.Basis:
+    def _solved(
+        self, known: bases.Basis | None, theta: Floats, what: SnapshotRequest
+    ) -> bases.Basis:
+        """Return the basis with the modes of a model and, where they are wanted, derivatives."""
+        modes = what.modes
         started = time.perf_counter()
         pencil = self.full.pencil
         count, spectrum = min(modes + SPARE, self.size), None
@@ -380,9 +387,9 @@ class ReducedModel(Shown):
         basis = bases.extended(basis, vectors, self._shortest, self.capacity)
         solved = time.perf_counter()
         spend(Costs(eigenproblems=1, full_time=solved - started))
-        # Of its derivatives the model's own factor knows more.
-        own = self._with_derivatives(replace(basis, factor=below), theta, modes)
-        basis = replace(own, factor=basis.factor)
+        if what.derivatives:  # of which the model's own factor knows more
+            own = self._with_derivatives(replace(basis, factor=below), theta, modes)
+            basis = replace(own, factor=basis.factor)
         if known is None:
             basis = self._at_bounds(basis, theta)
         spend(Costs(corrected_time=time.perf_counter() - solved))
