@@ -41,7 +41,7 @@ MEMORY = 4.0  # default limit of the memory of a basis in GiB
 class SnapshotRequest:
     """One model, or several together, at which a snapshot is requested.
 
-    Derivatives are those of models that are solved in full, and of the one among the others of which
+    Derivatives are those of models that are solved in full, and of the one among the others that
     the basis knows the least.
     """
 
