@@ -93,6 +93,13 @@ def test_larger_models_gain_more() -> None:
     assert share(chain(400, 2), 6) < share(chain(400, 12), 6)
 
 
+def test_functions_of_a_parameter_take_columns_as_parameters_do() -> None:
+    A, sensors = scipy.sparse.eye_array(200), {"top": 0}
+    mass = {"base": A, "t": A}
+    assert columns(mf.matrices(["t"], {"t": A}, mass, sensors), 4) == 4 * (1 + 1.5)
+    assert columns(mf.matrices(["t"], {"t": A, "t^3": A}, mass, sensors), 4) == 4 * (1 + 2 * 1.5)
+
+
 def test_a_basis_of_a_dense_model_has_its_modes() -> None:
     model = chain(150, 3)
     assert not isinstance(model.stiffness, SparseAffine)

@@ -40,9 +40,11 @@ that ``benchmarks/choice.py`` measures, from 1000 to 100,000 degrees of freedom.
 def columns(model: MatrixModel, count: int) -> float:
     """Return how many columns a basis is expected to have that has ``count`` modes.
 
-    For each mode and parameter: its derivative and the modes at both bounds, if not yet spanned.
+    For each mode and function of the parameters, which is a parameter in most models: the
+    derivative, and the modes at both bounds, if not yet spanned.
     """
-    return count * (1 + 1.5 * len(model.parameters))
+    terms = np.vstack([A.coefficients.exponents for A in (model.stiffness, model.mass)])
+    return count * (1 + 1.5 * len(np.unique(terms[terms.any(axis=1)], axis=0)))
 
 
 def share(model: MatrixModel, count: int) -> float:
