@@ -40,12 +40,12 @@ def test_random_starts_find_the_true_concrete_frame(costs: Costs) -> None:
     assert costs.eigenproblems < 6 * 25
 
 
-@pytest.mark.slow(16)
+@pytest.mark.slow(60)
 def test_small_sensors_of_the_steel_bridge_that_are_reversed() -> None:
     """At ``dof887`` it lowers MAC 5 from 0.90 to 0.81: a mode must not be left out for that."""
     problem = frequencies_and_shapes(read("steel_bridge_exp"))
     assert diagnose(compare(problem)) == []
-    for name in ("dof936", "dof818", "dof300", "dof893", "dof887", "dof886", "dof851"):
+    for name in ("dof936", "dof300", "dof887", "dof851"):
         shape = problem.data.shape.copy()
         shape[..., problem.data.sensors.index(name)] *= -1
         data = replace(problem.data, shape=shape)

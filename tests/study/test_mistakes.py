@@ -142,7 +142,7 @@ def test_a_reversed_sensor(example: str, sensor: str, tmp_path: Path) -> None:
     assert f"check the direction of {sensor}" in text
 
 
-@pytest.mark.slow(9)
+@pytest.mark.slow(65)
 def test_a_reversed_sensor_that_moves_too_little_for_the_mac() -> None:
     names = [f"k{i + 1}" for i in range(50)]
     model = chain(names, [1.0] * 50, [1e4] * 50, sensors={f"s{i}": i for i in range(50)})
