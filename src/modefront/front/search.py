@@ -61,8 +61,8 @@ class Loop:
         while offers := self._offers(proposers):
             left = most - self.state.evaluations
             if left <= 0:
+                places = self.state.places
                 for _, offer in offers:
-                    places = self.state.places
                     ended = places if offer.place < 0 else [places[offer.place]]
                     self.open |= {place.subproblem.key for place in ended}
                 break
