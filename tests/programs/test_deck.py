@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -109,6 +110,9 @@ def test_what_cannot_be_run_is_refused(deck: Path, tmp_path: Path) -> None:
     assert not list(tmp_path.glob("*-jobs"))
     with pytest.raises(mf.InputError, match=r"a run of .* that writes \.sti"):
         mf.import_deck(deck, {"E": "material:STEEL"}, run=sys.executable)
+    functions: Any = {"t": {"stifness": ["t^3"]}}
+    with pytest.raises(mf.InputError, match="functions 't': expected stiffness or mass, found"):
+        mf.import_deck(deck, {"t": "section:DECK"}, run=sys.executable, functions=functions)
     deck.write_text(DECK.replace("*Frequency", "*Static"))
     with pytest.raises(mf.InputError, match=r"expected a step with \*FREQUENCY, found none"):
         mf.import_deck(deck, {"E": "material:STEEL"}, run=sys.executable)

@@ -214,6 +214,12 @@ def import_model(
 
 def _of_quantity(functions: Functions, quantity: Quantity) -> dict[str, Sequence[str]]:
     """Return the terms of parameters in the matrix of a quantity."""
+    refuse(
+        Fault("", f"functions '{name}'", " or ".join(QUANTITIES), suggestion(key, QUANTITIES))
+        for name, each in functions.items()
+        for key in (each if isinstance(each, Mapping) else ())
+        if key not in QUANTITIES
+    )
     return {
         name: each.get(quantity, (name,)) if isinstance(each, Mapping) else each
         for name, each in functions.items()
