@@ -13,7 +13,7 @@ NUMBER = re.compile(r"\{([^{}|]*)\|([^{}|]*)\}")
 """Words of a sentence on one subject, and on several."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Finding(Shown):
     """What was found."""
 
@@ -30,6 +30,10 @@ class Finding(Shown):
     def severity(self) -> Severity:
         """How severe it is."""
         return Severity(CATALOGUE[self.kind].heading)
+
+    def __repr__(self) -> str:
+        """Return the kind and the sentence."""
+        return f"{self.kind}: {self}"
 
     def __str__(self) -> str:
         """Return the sentence: with a small letter first, and without a full stop."""

@@ -32,6 +32,7 @@ import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.linalg.affine import DenseAffine, SparseAffine, first_axis
+from modefront.text import Shown
 
 Solved: TypeAlias = tuple[Floats, Floats, Floats]
 """Some mass-normalised modes r at all degrees of freedom (N, modes), their derivatives
@@ -96,8 +97,8 @@ class SecondDerivatives:
         return out
 
 
-@dataclass(frozen=True)
-class ModeDerivatives:
+@dataclass(frozen=True, repr=False)
+class ModeDerivatives(Shown):
     """Derivatives of modes with respect to the parameters."""
 
     # (modes, parameters) derivatives of eigenvalues; for coinciding modes, those of the ascending
@@ -113,8 +114,8 @@ class ModeDerivatives:
     second: SecondDerivatives | None = None
 
 
-@dataclass(frozen=True)
-class Modes:
+@dataclass(frozen=True, repr=False)
+class Modes(Shown):
     """The lowest modes of a model, in ascending order, seen at its sensors."""
 
     lam: Floats  # (modes,) eigenvalues omega**2 in (rad/s)**2
