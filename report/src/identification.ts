@@ -40,6 +40,8 @@ export interface DataSet {
   functions: { name: string; residual: number; measured: Row; synthesised: Row }[];
   mac: number[][];
   sensors: string[];
+  /** Whether the positions are those of the test file; else the sensors stand in a row. */
+  placed: boolean;
   positions: number[][];
   directions: number[][];
 }

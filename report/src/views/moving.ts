@@ -34,32 +34,42 @@ export function movingShape(set: DataSet): HTMLElement {
   const count = set.positions.length;
   const middle = [0, 1, 2].map((c) => set.positions.reduce((sum, x) => sum + x[c], 0) / count);
   const size = Math.max(...set.positions.map((x) => Math.hypot(...x.map((y, c) => y - middle[c]))), 1e-9);
-  let [turn, tilt, width] = [0.5, 0.35, 0];
+  // A row of sensors is seen from the side.
+  const row = set.positions.every((x) => x[1] === 0 && x[2] === 0);
+  let [turn, tilt, width] = row ? [0, 0, 0] : [0.5, 0.35, 0];
   const svg = s("svg", { height: 320, role: "img", "aria-label": "mode shape" });
-  const lines = tree.map(() => s("line", { class: "stroke" }));
+  const [calm, lines] = ["var(--faint)", ""].map((stroke) => tree.map(() => s("line", stroke ? { stroke } : { class: "stroke" })));
   const dots = set.positions.map((_, k) => {
     const dot = s("circle", { class: "dot", r: 4 });
     dot.append(s("title", {}, set.sensors[k]));
     return dot;
   });
-  svg.append(...lines, ...dots);
+  svg.append(...calm, ...lines, ...dots);
   stage.append(svg);
   const draw = (phase: number): void => {
     const shape = set.modes[Number(select.value)]?.shape ?? [];
     const most = Math.max(...shape.map((x) => Math.abs(x ?? 0)), 1e-9);
     const reach = (0.3 * size * Math.sin(phase)) / most;
-    const unit = Math.min(width, 320) / (2.9 * size);
-    const seen = set.positions.map((x, k) => {
-      const [a, b, c] = x.map((y, axis) => y - middle[axis] + reach * (shape[k] ?? 0) * set.directions[k][axis]);
-      const across = a * Math.cos(turn) - b * Math.sin(turn);
+    const projected = ([a, b, c]: number[]): [number, number] => {
       const deep = a * Math.sin(turn) + b * Math.cos(turn);
-      return [width / 2 + unit * across, 160 - unit * (c * Math.cos(tilt) + deep * Math.sin(tilt))];
-    });
-    tree.forEach(([a, b], k) => {
-      for (const [name, value] of Object.entries({ x1: seen[a][0], y1: seen[a][1], x2: seen[b][0], y2: seen[b][1] })) {
-        lines[k].setAttribute(name, value.toFixed(1));
-      }
-    });
+      return [a * Math.cos(turn) - b * Math.sin(turn), c * Math.cos(tilt) + deep * Math.sin(tilt)];
+    };
+    // The structure at rest, with room for the motion about it, fills the stage.
+    const rest = set.positions.map((x) => projected(x.map((y, axis) => y - middle[axis])));
+    const half = [0, 1].map((axis) => Math.max(...rest.map((x) => Math.abs(x[axis]))) + 0.3 * size);
+    const unit = Math.min((width / 2 - 8) / half[0], 152 / half[1]);
+    const placed = ([across, up]: [number, number]): [number, number] => [width / 2 + unit * across, 160 - unit * up];
+    const seen = set.positions.map((x, k) =>
+      placed(projected(x.map((y, axis) => y - middle[axis] + reach * (shape[k] ?? 0) * set.directions[k][axis]))),
+    );
+    const base = rest.map(placed);
+    for (const [of, at] of [[calm, base], [lines, seen]] as const) {
+      tree.forEach(([a, b], k) => {
+        for (const [name, value] of Object.entries({ x1: at[a][0], y1: at[a][1], x2: at[b][0], y2: at[b][1] })) {
+          of[k].setAttribute(name, value.toFixed(1));
+        }
+      });
+    }
     seen.forEach(([x, y], k) => {
       dots[k].setAttribute("cx", x.toFixed(1));
       dots[k].setAttribute("cy", y.toFixed(1));
@@ -93,5 +103,6 @@ export function movingShape(set: DataSet): HTMLElement {
     if (moving) requestAnimationFrame(step);
   });
   label();
-  return section("mode shape", "Mode shapes", h("div", { class: "controls" }, select, still), stage);
+  const note = "The test file says nothing of where the sensors are: they stand in their order. [geometry] places them.";
+  return section("mode shape", "Mode shapes", h("div", { class: "controls" }, select, still), stage, set.placed ? null : h("p", { class: "note" }, note));
 }

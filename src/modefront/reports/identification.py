@@ -46,7 +46,11 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
     inside = (diagram.frequency >= each.band[0]) & (diagram.frequency <= each.band[1])
     has_phase = bool(np.any(np.nan_to_num(data.H).imag))
     multivariate = multivariate_indicators(data)[:, kept] if has_phase else np.zeros((0, 0))
-    positions, directions = _places(test, each)
+    places = test.test.places
+    placed = all(name in places for name in each.responses)
+    # In a row where they are not given.
+    at = [places[x] if placed else ((i, 0, 0), (0, 0, 1)) for i, x in enumerate(each.responses)]
+    positions, directions = np.array(at, dtype=float).transpose(1, 0, 2)
     shapes = np.array([mode.shape.complex_shape for mode in each.modes]).T
     rows: list[Floats] = list(mac(shapes, shapes)) if each.modes else []
     return {
@@ -81,6 +85,7 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
         "functions": _functions(each, kept),
         "mac": [_rounded(row, 3) for row in rows],
         "sensors": each.responses,
+        "placed": placed,
         "positions": positions,
         "directions": directions,
     }
@@ -102,17 +107,6 @@ def _functions(each: Identification, kept: Any) -> list[dict[str, Any]]:
             }
         )
     return out
-
-
-def _places(test: IdentifiedTest, each: Identification) -> tuple[Floats, Floats]:
-    """Return positions and directions of the sensors, (sensors, 3): in a row where not given."""
-    places = test.test.places
-    if all(name in places for name in each.responses):
-        rows = [places[name] for name in each.responses]
-        return np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
-    n = len(each.responses)
-    row = np.column_stack([np.arange(n, dtype=float), np.zeros((n, 2))])
-    return row, np.tile([0.0, 0.0, 1.0], (n, 1))
 
 
 def _logarithms(power: Floats) -> list[int | None]:
