@@ -392,9 +392,63 @@ def misread(case: Case) -> Case | None:
     return case.spoilt(("far-from-model", str(case.data.modes[r])), data={"frequency": f})
 
 
+def _unlike_shapes(case: Case, shape: Floats, least: float) -> bool:
+    """Return whether shapes differ from those of a study by ``least`` in the MAC on average."""
+    of_both = np.nan_to_num(shape), np.nan_to_num(case.data.shape)
+    psi, phi = (x.reshape(-1, x.shape[-1]).T for x in of_both)
+    return bool(np.mean(1 - np.diag(mac(psi, phi))) >= least)
+
+
+def shapes_exchanged(case: Case) -> Case | None:
+    """Return the study with the shapes of two modes exchanged, of other frequencies by 10 %."""
+    shape, f = case.data.shape.copy(), case.data.mean_frequency
+    r, q = sorted(case.rng.choice(f.size, 2, replace=False).tolist())
+    shape[:, [r, q]] = shape[:, [q, r]]
+    claim = ("exchanged-shapes", *(str(case.data.modes[x]) for x in (r, q)))
+    return case.spoilt(claim, data={"shape": shape}) if f[q] > 1.1 * f[r] else None
+
+
+def turned_round(case: Case) -> Case | None:
+    """Return the study with all sensors in the opposite order."""
+    shape = case.data.shape[..., ::-1]
+    claim = ("opposite-order", "sensors")
+    return case.spoilt(claim, data={"shape": shape}) if _unlike_shapes(case, shape, 0.2) else None
+
+
+def unsigned(case: Case) -> Case | None:
+    """Return the study with magnitudes for shapes."""
+    shape = np.abs(case.data.shape)
+    claim = ("unsigned-shapes", "shapes")
+    return case.spoilt(claim, data={"shape": shape}) if _unlike_shapes(case, shape, 0.2) else None
+
+
+def channel(case: Case) -> Case | None:
+    """Return the study with a sensor without signal, or with noise alone."""
+    s, shape = _sensor(case), case.data.shape.copy()
+    if s is None or len(shape[0]) < 4:
+        return None
+    size = np.sqrt(np.nanmean(shape**2, axis=2))
+    noise = case.rng.choice([0.0, 0.01, 1.0]) * case.rng.standard_normal(size.shape)
+    shape[..., s] = np.where(np.isnan(shape[..., s]), np.nan, size * noise)
+    return case.spoilt(("odd-sensor", case.data.sensors[s]), data={"shape": shape})
+
+
+def slip(case: Case) -> Case | None:
+    """Return the study of one data set with the sign of one great value lost."""
+    shape, psi = case.data.shape.copy(), np.abs(_psi(case))
+    great = np.argwhere(psi[0] > 1.0)
+    if len(shape) > 1 or not len(great):
+        return None
+    r, s = case.rng.choice(great).tolist()
+    shape[0, r, s] *= -1
+    claim = ("reversed-value", str(case.data.modes[r]), case.data.sensors[s])
+    return case.spoilt(claim, data={"shape": shape})
+
+
 MISTAKES: Sequence[Callable[[Case], Case | None]] = (
     *(factor, set_factor, reversal, exchange, direction, directions, place, counted, nominal),
-    *(percent, odd_frequency, numbers, calibration, pasted, shifted, misread),
+    *(percent, odd_frequency, numbers, calibration, pasted, shifted, misread, shapes_exchanged),
+    *(turned_round, unsigned, channel, slip),
 )
 
 

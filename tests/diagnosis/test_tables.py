@@ -58,9 +58,39 @@ def exchanged(shape: Floats) -> None:
     shape[:, [1, 5]] = shape[:, [5, 1]]
 
 
+def of_other_modes(shape: Floats) -> None:
+    shape[[1, 3]] = shape[[3, 1]]
+
+
+def from_the_other_end(shape: Floats) -> None:
+    shape[:] = shape[:, ::-1].copy()
+
+
+def as_magnitudes(shape: Floats) -> None:
+    np.abs(shape, out=shape)
+
+
+def without_signal(shape: Floats) -> None:
+    shape[:, 4] = 0.0
+
+
+def of_noise(shape: Floats) -> None:
+    shape[:, 4] = 0.1 * np.random.default_rng(1).standard_normal(len(shape))
+
+
+def with_a_slip(shape: Floats) -> None:
+    shape[2, int(np.abs(shape[2]).argmax())] *= -1
+
+
 @pytest.mark.parametrize(
     ("spoil", "kind", "text"),
     [
+        (of_other_modes, "exchanged-shapes", "the shapes of modes 2 and 4 are exchanged"),
+        (from_the_other_end, "opposite-order", "of all sensors are in the opposite order"),
+        (as_magnitudes, "unsigned-shapes", "the shapes have no signs"),
+        (without_signal, "odd-sensor", "the values of sensor floor5 are near zero in all modes"),
+        (of_noise, "odd-sensor", "the values of sensor floor5 are noise"),
+        (with_a_slip, "reversed-value", "in mode 3 has the other sign"),
         (pasted, "copied-sensor", "sensor floor3 has the same digits as floor7"),
         (of_another_unit, "sensor-factor", "floor4 in all data are 1e+03 times what the others"),
         (

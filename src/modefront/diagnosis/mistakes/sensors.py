@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.diagnosis.evidence import OF_MODEL, SHAPE
+from modefront.diagnosis.evidence import OF_MODEL, SHAPE, log_frequencies, mac_values, pair_costs
 from modefront.diagnosis.mistakes.record import MANY, Explanation, Mistake, changed
 from modefront.diagnosis.state import SHAPE as NOISE
 from modefront.diagnosis.state import State, loss
 from modefront.findings.knowledge import enumeration
 from modefront.models.geometry import ALONG, Geometry, axis_name
+from modefront.pairing.match import assigned
 from modefront.rounding import ACCUMULATED
 
 FACTORS = (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 9.81, 1 / 9.81, 2.0, 0.5)
@@ -42,7 +43,8 @@ def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
 def wrong_factor(old: Explanation) -> Iterator[Mistake]:
     """Yield sensors that are reversed, or in other units."""
     where, names = parts(old.data.sets), old.data.sensors
-    for (sets, name), s, factor in product(where, old.measured, (-1.0, *FACTORS)):
+    moving = [s for s in old.measured if np.nan_to_num(old.state.shape[..., s]).any()]
+    for (sets, name), s, factor in product(where, moving, (-1.0, *FACTORS)):
         kind = "reversed-sensor" if factor < 0 else "sensor-factor"
         numbers = {"sensor": names[s], "where": name, "factor": factor}
         change = partial(_rescaled, sets=sets, s=s, factor=factor)
@@ -77,6 +79,56 @@ def exchanged_sensors(old: Explanation) -> Iterator[Mistake]:
 def _arranged(shape: Floats, order: Ints) -> Floats:
     """Return shapes with their components in another order, and nothing where that is -1."""
     return np.where(order < 0, np.nan, shape[..., order])
+
+
+def opposite_order(old: Explanation) -> Iterator[Mistake]:
+    """Yield the opposite order of all sensors."""
+    order = np.arange(len(old.data.sensors))
+    order[old.measured] = old.measured[::-1]
+    change = changed("shape", ..., partial(_arranged, order=order))
+    yield Mistake("opposite-order", ("sensors",), change, moves=True)
+
+
+def unsigned_shapes(old: Explanation) -> Iterator[Mistake]:
+    """Yield signs for shapes of which none has any, as if they were magnitudes.
+
+    The signs are those of the model that fits the frequencies alone.
+    """
+    state, fits = old.state, old.fits
+    values = np.nan_to_num(state.shape)
+    if (values.min(axis=2) * values.max(axis=2) < 0).any():
+        return
+    unknown = replace(state, shape=np.full(state.shape.shape, np.nan))
+    (end,) = fits.fitted([unknown], [0 * state.start])
+    if end is not None and (modes := fits.modes(state.theta(end.x).tobytes())):
+        phi = state.rows @ modes.phi
+        mac = mac_values(np.abs(state.mean), state.known, np.abs(phi))
+        cost = pair_costs(mac, state.logs, log_frequencies(modes.frequency))
+        signs = np.sign(phi[:, assigned(cost[:, : state.candidates])].T)
+        change = changed("shape", ..., partial(np.multiply, signs))
+        yield Mistake("unsigned-shapes", ("shapes",), change)
+
+
+def odd_sensor(old: Explanation) -> Iterator[Mistake]:
+    """Yield sensors without signal, where the model has nothing either, or with noise alone."""
+    for s in old.measured:
+        name, rows = old.data.sensors[s], old.state.rows.copy()
+        rows[s] = 0.0
+        for what, change in (
+            ("near zero in all modes", partial(replace, rows=rows)),
+            ("noise: they fit no place, sign or unit", changed("shape", np.s_[..., s], np.nan)),
+        ):
+            yield Mistake("odd-sensor", (name,), change, {"sensor": name, "what": what})
+
+
+def reversed_value(old: Explanation) -> Iterator[Mistake]:
+    """Yield single components, of shapes that one data set alone has, with the other sign."""
+    state, names = old.state, old.data
+    once = state.seen & (state.seen.any(axis=2).sum(axis=0) == 1)[:, None]
+    for k, r, s in np.argwhere(once).tolist():
+        numbers = {"mode": names.modes[r], "sensor": names.sensors[s]}
+        change = changed("shape", np.s_[k, r, s], -1.0)
+        yield Mistake("reversed-value", tuple(map(str, numbers.values())), change, numbers)
 
 
 def copied_sensor(old: Explanation) -> Iterator[Mistake]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from itertools import product
+from itertools import combinations, product
 from typing import Any
 
 import numpy as np
@@ -170,6 +170,17 @@ def _renumbered(state: State, k: int, index: Ints) -> State:
     for name, values in parts.items():
         values[k, index] = getattr(state, name)[k]
     return replace(state, **parts)
+
+
+def exchanged_shapes(old: Explanation) -> Iterator[Mistake]:
+    """Yield each two modes, as if in all data sets each had the shape of the other."""
+    state, modes = old.state, old.data.modes
+    known = np.flatnonzero(np.isfinite(state.logs) & state.known.any(axis=1))
+    for pair in combinations(known.tolist(), 2):
+        names = tuple(str(modes[r]) for r in pair)
+        change = changed("shape", np.s_[:, pair], partial(np.flip, axis=1))
+        numbers = {"modes": enumeration(names)}
+        yield Mistake("exchanged-shapes", names, change, numbers, moves=True)
 
 
 WRONG = {"frequency": 0.2, "shape": 1.0}
