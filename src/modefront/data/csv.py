@@ -12,7 +12,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -47,8 +47,10 @@ COLUMNS = mapping("a table, name in the file = name here", text("a text"))
 
 MOST_FAULTS = 100  # faults of rows after which the rest is not looked at
 
-Key = tuple[str, int]
-Values = Mapping[Key, Mapping[str, float]]  # data set and mode of a row; values by column of each
+EXPECTED = "a finite number or an empty field"
+
+Key = tuple[str, int]  # data set and mode
+Rows = dict[Key, tuple[int, dict[str, float]]]  # line of each, and values by column
 
 
 def is_reserved(name: str, sensors: Collection[str]) -> bool:
@@ -101,71 +103,82 @@ def read_csv(
     InputError
         With every row and column in which something is wrong.
     """
-    path, file = Path(path), str(path)
-    values: dict[Key, dict[str, float]] = {}
-    lines: dict[Key, int] = {}
-    first, own, rows, faults = read_table(path, "a file of modal data")
-    header, used = renamed(own, columns or {}, (STD,))
+    table = read_table(Path(path), "a file of modal data")
+    header, used = renamed(table.header, columns or {}, (STD,))
     refuse(
-        Fault(file, f"columns {clean(name, NAME)!r}", "a column of it", suggestion(name, own))
+        Fault(str(path), f"columns {clean(name, NAME)!r}", "a column of it", found)
         for name in columns or {}
-        if name not in used
+        if name not in used and (found := suggestion(name, table.header))
     )
     if len(header) > 20_000:
-        raise wrong(path, "up to 20000 columns", str(len(header)), f"line {first}")
+        raise wrong(table.path, "up to 20000 columns", str(len(header)), f"line {table.line}")
     if sensors is None:
         named = [name for name in dict.fromkeys(header) if name.isprintable() and name]
         sensors = [name for name in named if not is_reserved(name, set(header))]
-    said = _header_faults(header, sensors)
-    refuse(Fault(file, _place(first, name), *each) for name, *each in said)
-    for line, fields in rows:
+    refuse(table.at(table.line, *said) for said in _header_faults(header, sensors))
+    rows: Rows = {}
+    for line, fields in table.rows:
         key, row, found = _row(dict(zip(header, fields, strict=True)), sensors)
-        faults += [Fault(file, _place(line, name), *each) for name, *each in found]
-        if key in values:
+        table.faults += [table.at(line, *said) for said in found]
+        if key in rows:
             expected, place = "each mode of a data set once", "columns 'set' and 'mode'"
             if "set" not in header:
                 expected = "each mode once, or a column 'set' that tells data sets apart"
                 place = "column 'mode'"
-            faults.append(Fault(file, f"line {line}, {place}", expected, f"{key} again"))
+            table.faults.append(Fault(str(path), f"line {line}, {place}", expected, f"{key} again"))
         elif key is not None:
-            values[key], lines[key] = row, line
-    refuse_rows(path, rows, faults)
-    paired = PAIR in header and PAIR not in sensors
-    return _assembled(path, values, tuple(sensors), _pairs(path, values, lines) if paired else ())
+            rows[key] = line, row
+    table.close()
+    pairs = _pairs(table, rows) if PAIR in header and PAIR not in sensors else ()
+    return _assembled(table.path, rows, tuple(sensors), pairs)
 
 
-Rows = list[tuple[int, list[str]]]  # lines of a file and their fields
+@dataclass
+class Table:
+    """A table of a CSV file."""
+
+    path: Path
+    line: int  # of the header
+    header: list[str]  # names of the columns
+    rows: list[tuple[int, list[str]]]  # lines, and as many fields
+    faults: list[Fault]  # other rows, and what is found wrong while the table is read
+
+    def at(self, line: int, column: str, expected: str, found: str) -> Fault:
+        """Return the fault of a field."""
+        place = f"line {line}, column {clean(column, NAME)!r}"
+        return Fault(str(self.path), place, expected, found)
+
+    def close(self, column: int = -1) -> None:
+        """Raise InputError for faults, without any row, and where a column may be cut off."""
+        refuse(self.faults)
+        if not self.rows:
+            raise wrong(self.path, "at least one row below the header", "the end", "line 2")
+        ended_column(self.path, (fields[column] for _, fields in self.rows))
 
 
-def read_table(path: Path, what: str) -> tuple[int, list[str], Rows, list[Fault]]:
-    """Return the line of the header, its names, the rows that have as many fields, and other rows.
-
-    The latter are faults. Raises InputError for what is no CSV, and for an empty file.
-    """
+def read_table(path: Path, what: str) -> Table:
+    """Return the table of a file; raises InputError for what is no CSV, and for an empty file."""
     rows = table_rows(path, what)
     first, fields = next(rows, (1, []))
-    header = "\0".join(map(str.strip, fields)).rstrip("\0").split("\0")
     if not fields:
         raise wrong(path, "a header of column names", "an empty file", "line 1")
-    width, out, faults = len(header), Rows(), list[Fault]()
+    header = "\0".join(map(str.strip, fields)).rstrip("\0").split("\0")
+    width, table = len(header), Table(path, first, header, [], [])
     for line, row in rows:
         values = list(map(str.strip, row))
         if not any(values[width:]):  # fields without a name may be empty
             values = values[:width]
         if len(values) == width:
-            out.append((line, values))
-        elif len(faults) <= MOST_FAULTS:
+            table.rows.append((line, values))
+        elif len(table.faults) <= MOST_FAULTS:
             expected = f"{width} fields, as in the header"
-            faults.append(Fault(str(path), f"line {line}", expected, str(len(values))))
-    return first, header, out, faults
+            table.faults.append(Fault(str(path), f"line {line}", expected, str(len(values))))
+    return table
 
 
-def refuse_rows(path: Path, rows: Rows, faults: Sequence[Fault], column: int = -1) -> None:
-    """Raise InputError for faults, without any row, and where the last one may be cut off."""
-    refuse(faults)
-    if not rows:
-        raise wrong(path, "at least one row below the header", "the end", "line 2")
-    ended_column(path, (fields[column] for _, fields in rows))
+def number(text: str) -> float:
+    """Return the number that a field holds; NaN for an empty one, infinity for anything else."""
+    return float(text) if NUMBER.fullmatch(text) else math.inf if text else math.nan
 
 
 def read_covariance(
@@ -177,46 +190,45 @@ def read_covariance(
     covariances. ``columns`` maps sensors of the file to those of the data; ``set`` may be left out
     for one set. Shapes without rows keep their deviations. Raises InputError with what is wrong.
     """
-    file, columns = str(path), columns or {}
+    columns = columns or {}
     known = {"set": data.sets, "mode": tuple(map(str, data.modes)), SENSOR: data.sensors}
     C = np.full((*data.shape.shape, len(data.sensors)), np.nan)
-    first, header, rows, faults = read_table(path, "a file of covariances of shapes")
-    keys = header[: header.index(SENSOR) + 1] if SENSOR in header else []
-    names = renamed(header[len(keys) :], columns, ())[0]
+    table = read_table(path, "a file of covariances of shapes")
+    keys = table.header[: table.header.index(SENSOR) + 1] if SENSOR in table.header else []
+    names = renamed(table.header[len(keys) :], columns, ())[0]
     if sorted(keys) not in (["mode", SENSOR], ["mode", SENSOR, "set"])[len(data.sets) > 1 :]:
-        found = clean(", ".join(header[:6]), NAME) or "nothing"
-        raise wrong(path, "set, mode, sensor, then a column a sensor", found, f"line {first}")
+        found = clean(", ".join(table.header[:6]), NAME) or "nothing"
+        raise wrong(path, "set, mode, sensor, then a column a sensor", found, f"line {table.line}")
     refuse(
-        Fault(file, _place(first, x), "a sensor of the data, once", suggestion(x, data.sensors))
+        table.at(table.line, x, "a sensor of the data, once", suggestion(x, data.sensors))
         for k, x in enumerate(names)
         if x not in data.sensors or x in names[:k]
     )
     places = [data.sensors.index(name) for name in names]
-    for line, fields in rows:
+    for line, fields in table.rows:
         row = {"set": data.sets[0]} | dict(zip(keys, fields, strict=False))
         row[SENSOR] = columns.get(row[SENSOR], row[SENSOR])
-        numbers = dict(zip(names, fields[len(keys) :], strict=True))
         said = [
             (key, f"one of {', '.join(known[key][:8])}", suggestion(text, known[key]))
             for key, text in row.items()
             if text not in known[key]
         ]
         said += [
-            (name, "a finite number or an empty field", repr(text))
-            for name, text in numbers.items()
-            if text and not NUMBER.fullmatch(text)
+            (name, EXPECTED, repr(text))
+            for name, text in zip(names, fields[len(keys) :], strict=True)
+            if math.isinf(number(text))
         ]
         place = tuple(known[key].index(row[key]) for key in known) if not said else ()
         if place and np.isfinite(C[place]).any():
             said.append((SENSOR, "each component of a shape once", "one again"))
-        faults += [Fault(file, _place(line, name), *each) for name, *each in said]
+        table.faults += [table.at(line, *each) for each in said]
         if not said:
-            C[place][places] = [float(text or "nan") for text in numbers.values()]
-    refuse_rows(path, rows, faults)
+            C[place][places] = list(map(number, fields[len(keys) :]))
+    table.close()
     try:
         return data.with_covariance(C)
     except InputError as error:
-        raise InputError(replace(fault, file=file) for fault in error.faults) from None
+        raise InputError(replace(fault, file=str(path)) for fault in error.faults) from None
 
 
 def write_covariance(path: Path, data: ModalData) -> None:
@@ -250,10 +262,6 @@ def write_csv(
                 partner = str(other[mode]) if other.get(mode) in here else ""
                 rows.append([name, str(mode), *texts, *[partner] * bool(data.pairs)])
     write_table(path, rows)
-
-
-def _place(line: int, column: str) -> str:
-    return f"line {line}, column {clean(column, NAME)!r}"
 
 
 def table_rows(path: Path, what: str) -> Iterator[tuple[int, list[str]]]:
@@ -322,10 +330,10 @@ def _row(
     key = None if faults else (name, int(mode))
     for column, given in texts.items():
         if column not in KEYS:
-            is_number = NUMBER.fullmatch(given) is not None
-            values[column] = float(given) if is_number else math.nan
+            values[column] = number(given)
             if given and (expected := _range(column, values[column])):
-                faults.append((column, expected, given if is_number else repr(given)))
+                found = given if NUMBER.fullmatch(given) else repr(given)
+                faults.append((column, expected, found))
     there = [name for name in sensors if not math.isnan(values.get(name, math.nan))]
     greatest = max((abs(values[name]) for name in there), default=1.0)
     if faults:
@@ -343,7 +351,7 @@ def _row(
 def _range(column: str, value: float) -> str:
     """Return the range expected of a value that is out of it; empty for a value within."""
     if not math.isfinite(value):
-        return "a finite number or an empty field"
+        return EXPECTED
     if column == "frequency" and not 1e-9 <= value <= 1e12:
         return "a frequency above 0 Hz, from 1e-09 to 1e+12"
     if column == "damping" and not 0 <= value < 1:
@@ -352,20 +360,20 @@ def _range(column: str, value: float) -> str:
     return "a standard deviation of 0 or more" if column.endswith(STD) and value < 0 else ""
 
 
-def _assembled(path: Path, values: Values, sensors: tuple[str, ...], pairs: Pairs) -> ModalData:
+def _assembled(path: Path, rows: Rows, sensors: tuple[str, ...], pairs: Pairs) -> ModalData:
     """Return the data of all rows; raises InputError where they are spread over too many sets."""
-    sets = tuple(dict.fromkeys(name for name, _ in values))
-    modes = tuple(sorted({mode for _, mode in values}))
+    sets = tuple(dict.fromkeys(name for name, _ in rows))
+    modes = tuple(sorted({mode for _, mode in rows}))
     if 16 * len(sets) * len(modes) * (2 + len(sensors)) > available_memory() // 2:
-        found = f"{len(values)} rows of {len(sets)} sets and {len(modes)} modes"
+        found = f"{len(rows)} rows of {len(sets)} sets and {len(modes)} modes"
         raise wrong(path, "most modes in every data set", found, "rows")
     places = {name: k for k, name in enumerate(sets)}
-    row = [places[name] for name, _ in values]
-    column = np.searchsorted(modes, [mode for _, mode in values])
+    row = [places[name] for name, _ in rows]
+    column = np.searchsorted(modes, [mode for _, mode in rows])
 
     def collect(*names: str) -> Floats:
         out = np.full((len(sets), len(modes), len(names)), np.nan)
-        known = [[each.get(name, np.nan) for name in names] for each in values.values()]
+        known = [[each.get(name, np.nan) for name in names] for _, each in rows.values()]
         out[row, column] = np.array(known).reshape(len(row), len(names))
         return out
 
@@ -374,11 +382,10 @@ def _assembled(path: Path, values: Values, sensors: tuple[str, ...], pairs: Pair
     return ModalData(sets, modes, sensors, f, zeta, phi, f_std, phi_std, pairs)
 
 
-def _pairs(path: Path, values: Values, lines: Mapping[Key, int]) -> Pairs:
-    other = {key: x for key, row in values.items() if not math.isnan(x := row[PAIR])}
-    expected = "the other mode of a pair of this set"
+def _pairs(table: Table, rows: Rows) -> Pairs:
+    other = {key: x for key, (_, row) in rows.items() if not math.isnan(x := row[PAIR])}
     refuse(
-        Fault(str(path), _place(lines[name, mode], PAIR), expected, f"{x:g}")
+        table.at(rows[name, mode][0], PAIR, "the other mode of a pair of this set", f"{x:g}")
         for (name, mode), x in other.items()
         if x == mode or x % 1 or other.get((name, int(x))) != mode
     )
@@ -386,7 +393,7 @@ def _pairs(path: Path, values: Values, lines: Mapping[Key, int]) -> Pairs:
     count = Counter(mode for pair in pairs for mode in pair)
     if twice := [mode for mode, number in count.items() if number > 1]:
         expected = "each mode in one pair, the same in all sets"
-        raise wrong(path, expected, f"mode {twice[0]} in two", f"column {PAIR!r}")
+        raise wrong(table.path, expected, f"mode {twice[0]} in two", f"column {PAIR!r}")
     return tuple(sorted(pairs))
 
 
@@ -408,62 +415,53 @@ def read_test_csv(path: Path, columns: Mapping[str, str] | None = None) -> Conte
     endings = (*dict.fromkeys(end for pair in PAIRS for end in pair), COHERENCE)
     header, used = renamed(own, columns or {}, endings)
     column, file = dict(zip(header, values.T, strict=True)), str(path)
-    said = [(repr(x), "each column once", "another") for x, n in Counter(header).items() if n > 1]
-    if TIME in header and FREQUENCY not in header:
-        if FORCE not in header:
-            said.append((repr(FORCE), "the record of the force", "no such column"))
-        names = [name for name in header if name not in (TIME, FORCE)]
-        if not names:
-            said.append(("", "columns of at least one response", ", ".join(header)))
-        _refuse_columns(path, said)
+    is_blow = TIME in header and FREQUENCY not in header
+    forms, said = _forms(header) if not is_blow else ({}, [])
+    names = [name for name in header if name not in (TIME, FORCE)]
+    if is_blow and FORCE not in header:
+        said.append((repr(FORCE), "the record of the force", "no such column"))
+    if is_blow and not names:
+        said.append(("", "columns of at least one response", ", ".join(header)))
+    twice = [(repr(x), "each column once", "another") for x, n in Counter(header).items() if n > 1]
+    refuse(
+        Fault(file, f"line 1, column {name}" if name else "line 1", *each)
+        for name, *each in [*twice, *said][:LISTED]
+    )
+    if is_blow:
         records = {name: np.nan_to_num(column[name], nan=0.0) for name in names}  # empty columns
         blow = Blow(file, "columns", "", column[TIME], column[FORCE], records)
         return Contents(blows=(blow,), used=frozenset(used))
-    forms, more = _forms(header)
-    _refuse_columns(path, said + more)
     channels = []
     for name, pair in forms.items():
+        real, imaginary = (name + end for end in pair)
+        place = file, f"columns {real!r} and {imaginary!r}", "", name
         coherence = column.get(name + COHERENCE)
-        channels.append(
-            Channel(
-                file,
-                f"columns {name + pair[0]!r} and {name + pair[1]!r}",
-                "",
-                name,
-                column[FREQUENCY],
-                _function(path, name, pair, (column[name + pair[0]], column[name + pair[1]])),
-                coherence=None if coherence is None or np.isnan(coherence).any() else coherence,
-            )
-        )
+        if coherence is not None and np.isnan(coherence).any():
+            coherence = None
+        H = _function(path, {x: column[x] for x in (real, imaginary)}, pair)
+        channels.append(Channel(*place, column[FREQUENCY], H, coherence=coherence))
     return Contents(tuple(channels), used=frozenset(used))
 
 
-def _refuse_columns(path: Path, said: Sequence[Said]) -> None:
-    places = [f"line 1, column {name}" if name else "line 1" for name, *_ in said[:LISTED]]
-    refuse(Fault(str(path), place, *each[1:]) for place, each in zip(places, said, strict=False))
-
-
-def _function(
-    path: Path, name: str, pair: tuple[str, str], parts: tuple[Floats, Floats]
-) -> Complexes:
+def _function(path: Path, columns: Mapping[str, Floats], form: tuple[str, str]) -> Complexes:
     """Return the function of two columns; raises InputError for a phase of another unit."""
-    first, second = parts
-    empty = [bool(np.isnan(part).any()) for part in parts]
+    places = [f"column {name!r}" for name in columns]
+    first, second = columns.values()
+    empty = [bool(np.isnan(part).any()) for part in (first, second)]
     if all(empty):
         return np.zeros(first.shape, complex)
     if any(empty):
-        place = f"column {name + pair[empty.index(True)]!r}"
-        raise wrong(path, "numbers, as in the other column", "an empty one", place)
-    if pair == PAIRS[0]:
+        expected = "numbers, as in the other column"
+        raise wrong(path, expected, "an empty one", places[empty.index(True)])
+    if form == PAIRS[0]:
         return np.asarray(first + 1j * second)
-    most, degrees = float(np.abs(second).max()), pair[1] == "_deg"
+    most, degrees = float(np.abs(second).max()), form[1] == "_deg"
     if first.min() < 0:
-        found = f"{first.min():g}: are these dB?"
-        raise wrong(path, "magnitudes of 0 or more", found, f"column {name + pair[0]!r}")
+        raise wrong(path, "magnitudes of 0 or more", f"{first.min():g}: are these dB?", places[0])
     if (1 < most <= 3.15) if degrees else most > 100:  # half a turn in radians, or many of them
         unit = "degrees" if degrees else "radians"
         expected = f"a phase in {unit} (NAME_deg is in degrees, NAME_rad in radians)"
-        raise wrong(path, expected, f"{most:g} at most", f"column {name + pair[1]!r}")
+        raise wrong(path, expected, f"{most:g} at most", places[1])
     phase = np.radians(second) if degrees else second
     return np.asarray(first * np.exp(1j * phase))
 
@@ -504,17 +502,14 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
         if values.shape == (len(texts), len(header)) and (np.abs(values) <= LARGEST).all():
             ended_column(path, (row.rpartition(separator)[2] for row in texts))
             return header, values
-    _, header, rows, faults = read_table(path, what)
-    full = [k for k in range(len(header)) if any(row[k] for _, row in rows)]
-    values = np.full((len(rows), len(header)), np.nan)
-    for position, (number, row) in enumerate(rows):
+    table = read_table(path, what)
+    full = [k for k in range(len(table.header)) if any(row[k] for _, row in table.rows)]
+    values = np.full((len(table.rows), len(table.header)), np.nan)
+    for out, (line, row) in zip(values, table.rows, strict=True):
+        out[full] = [number(row[k]) for k in full]
         for k in full:
-            if NUMBER.fullmatch(row[k]) and abs(float(row[k])) <= LARGEST:
-                values[position, k] = float(row[k])
-            else:
+            if not abs(out[k]) <= LARGEST and len(table.faults) < LISTED:
                 expected = f"a finite number up to {LARGEST:g}"
-                faults.append(Fault(str(path), _place(number, header[k]), expected, repr(row[k])))
-        if len(faults) >= LISTED:
-            break
-    refuse_rows(path, rows, faults[:LISTED], full[-1] if full else -1)
-    return header, values
+                table.faults.append(table.at(line, table.header[k], expected, repr(row[k])))
+    table.close(full[-1] if full else -1)
+    return table.header, values

@@ -306,8 +306,8 @@ def _driving_points(data: FrequencyResponses, groups: _Groups) -> Iterator[str]:
 
 
 def _reciprocity(name: str, data: FrequencyResponses, turned: bool) -> Iterator[str]:
-    """Yield where H_ji and H_ij differ by a sign, and which sensors differ by a factor."""
-    factors: dict[str, dict[str, float]] = {}
+    """Yield where H_ji and H_ij differ by a sign, and which sensors differ from all others."""
+    factors: dict[str, dict[str, float]] = {}  # size of each sensor over that of others
     places = {response: i for i, response in enumerate(data.responses)}
     points = [(j, x) for j, x in enumerate(data.references) if x in places]
     for (j, first), (k, second) in combinations(points, 2):
@@ -326,15 +326,7 @@ def _reciprocity(name: str, data: FrequencyResponses, turned: bool) -> Iterator[
             sensor, other = (first, second) if turned else (second, first)
             factors.setdefault(sensor, {})[other] = ratio
             factors.setdefault(other, {})[sensor] = 1 / ratio
-    yield from _sensors_of_other_units(name, factors)
-
-
-def _sensors_of_other_units(name: str, factors: dict[str, dict[str, float]]) -> Iterator[str]:
-    """Yield the sensors that differ from every other one with which reciprocity compares them.
-
-    ``factors`` holds the size of each sensor over that of the others. Where it compares two sensors
-    only, either may be the wrong one; the one with the smaller numbers comes first.
-    """
+    # Of two sensors alone, either may be the wrong one: that with the smaller numbers comes first.
     for sensor, others in sorted(factors.items(), key=lambda x: min(x[1].values())):
         if any(1 / UNEQUAL < factor < UNEQUAL for factor in others.values()):
             continue

@@ -36,6 +36,10 @@ FRF, COHERENCE, TIME = 4, 6, 1  # types of functions in dataset 58
 
 CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 
+BINARY_CLOSING = re.compile(rb"    -1[ \t]*\r?(?=[\s\0\x1a]*(\Z|^    -1[ \t]*\r?\n))", re.MULTILINE)
+"""The end of a binary dataset, with the end of the file or the next dataset behind it. The number
+of bytes in the header is wrong in files of some programs, `pyuff` among them."""
+
 QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 """Quantities of the numerator: displacement, velocity, acceleration."""
 
@@ -99,14 +103,12 @@ def _decoded(
     return out
 
 
-@dataclass(frozen=True, eq=False)
-class Function:
+class Function(NamedTuple):
     """A dataset 58: its type, quantity of the numerator, and what it holds as a channel.
 
     Values have the signs of the directions: functions that of both, others that of the response.
     """
 
-    block: Block
     kind: int
     ordinate: int
     channel: Channel
@@ -133,12 +135,12 @@ def read_uff(path: Path) -> Contents:
         made = (replace(x, H=np.asarray(x.H, complex), coherence=known) for x, known in pairs)
         return Contents(tuple(made))
     # A blow ends where one of its channels comes again, or another force.
-    groups: list[dict[str, Function]] = [{}]
+    groups: list[dict[str, Channel]] = [{}]
     for record in (each for each in functions if each.kind == TIME):
         is_force = record.ordinate in (9, 13)  # a reaction force, an excitation force
         key = "" if is_force else record.channel.response
         groups += [{}] if key in groups[-1] else []
-        groups[-1][key] = record
+        groups[-1][key] = record.channel
     if blows := [_blow(group) for group in groups if "" in group and len(group) > 1]:
         return Contents(blows=tuple(blows))
     expected = (
@@ -150,18 +152,18 @@ def read_uff(path: Path) -> Contents:
     raise wrong(path, expected, found, "dataset 58")
 
 
-def _blow(group: Mapping[str, Function]) -> Blow:
-    block, force = group[""].block, group[""].channel
+def _blow(group: Mapping[str, Channel]) -> Blow:
+    force = group[""]
     for record in group.values():
-        if (count := len(record.channel.H)) != len(force.H):
-            expected = f"{len(force.H)} samples, as the force of line {block.line}"
-            raise wrong(block.file, expected, str(count), record.block.place)
-    quantity, *others = {group[name].channel.quantity for name in group if name}
+        if len(record.H) != len(force.H):
+            expected = f"{len(force.H)} samples, as the force of {force.place}"
+            raise InputError(record.fault(expected, str(len(record.H))))
+    quantity, *others = {group[name].quantity for name in group if name}
     if others:
         found = ", ".join(sorted(each or "others" for each in (quantity, *others)))
-        raise wrong(block.file, "responses of one quantity", found, block.place)
-    records = {name: np.asarray(record.channel.H, float) for name, record in group.items()}
-    place = force.file, block.place, force.response, force.frequency
+        raise InputError(force.fault("responses of one quantity", found))
+    records = {name: np.asarray(record.H, float) for name, record in group.items()}
+    place = force.file, force.place, force.response, force.frequency
     return Blow(*place, records.pop(""), records, quantity)
 
 
@@ -177,10 +179,7 @@ def blocks(content: bytes, file: Path) -> list[Block]:
             expected = "the number of a dataset, which ends in column 6"
             found = repr(opening[0].splitlines()[-1].decode("latin-1"))
             raise wrong(file, expected, found, f"line {line + 1}")
-        if binary:
-            closing = _end_of_binary(content, opening[3], opening.end())
-        else:
-            closing = CLOSING.search(content, opening.end())
+        closing = (BINARY_CLOSING if binary else CLOSING).search(content, opening.end())
         if not closing:
             expected = f"the end of dataset {number}, a line with -1"
             raise wrong(file, expected, "the end of the file", f"line {line}")
@@ -197,34 +196,6 @@ def blocks(content: bytes, file: Path) -> list[Block]:
         found = rest[:40].partition(b"\n")[0].decode("latin-1").strip()
         raise wrong(file, expected, repr(found), f"line {line}")
     return out
-
-
-def _end_of_binary(content: bytes, header: bytes, start: int) -> re.Match[bytes] | None:
-    """Return the end of a binary dataset, which follows on its values; None where there is none.
-
-    The number of bytes in the header is wrong in files of some programs, `pyuff` among them; then
-    it is that of the values that record 7 announces.
-    """
-    numbers = header.split()
-    try:
-        lines = int(numbers[2]) if len(numbers) > 3 else HEADER
-        sizes = [int(numbers[3])] if len(numbers) > 3 else []
-    except ValueError:
-        return None
-    for number in range(lines):
-        if number == RECORD_7:
-            record = content[start : content.find(b"\n", start)].split()[:3]
-        start = content.find(b"\n", start) + 1
-        if not start:
-            return None
-    with suppress(ValueError):  # of record 7
-        kind, count, even = map(int, record)
-        size, values = (8 if kind in (4, 6) else 4), (2 if kind in (5, 6) else 1)
-        sizes += [count * values * size] if even else []
-        sizes += [] if even else [count * (1 + values) * size, count * (4 + values * size)]
-    end = re.compile(rb"\r?\n?[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
-    closings = (end.match(content, start + size) for size in sizes)
-    return next((closing for closing in closings if closing), None)
 
 
 def reals(text: str) -> list[float]:
@@ -251,9 +222,9 @@ def _function(block: Block) -> list[Function]:
     kind, ordinate = int(six[0]), int(head[8][:10])
     (response, sign), (reference, other) = (_dof(six[k], six[k + 1]) for k in (5, 8))
     sign *= other if kind == FRF else 1
-    place = str(block.file), f"{block.place} of {reference} to {response}", reference, response
-    channel = Channel(*place, x, sign * data, QUANTITIES.get(ordinate, ""))
-    return [Function(block, kind, ordinate, channel)]
+    place = f"{block.place}{f' of {reference} to {response}' * (kind == FRF)}"
+    named = str(block.file), place, reference, response
+    return [Function(kind, ordinate, Channel(*named, x, sign * data, QUANTITIES.get(ordinate, "")))]
 
 
 def _values(block: Block, body: bytes, record: tuple[int, int, int]) -> tuple[Floats, Any]:
@@ -265,9 +236,12 @@ def _values(block: Block, body: bytes, record: tuple[int, int, int]) -> tuple[Fl
         y = order + {2: "f4", 4: "f8", 5: "c8", 6: "c16"}[form]
         x = order + ("f4" if form in (2, 5) else "f8")
         kinds = [np.dtype([("x", each), ("y", y)][even:]) for each in (x, order + "f4")]
-        kind = next((each for each in kinds if len(body) == count * each.itemsize), kinds[0])
-        counted(block.file, block.place, "bytes of values", count * kind.itemsize, len(body))
-        table = np.frombuffer(body, kind)
+        # There may be the end of a line behind the values.
+        lengths = [len(body) - len(end) for end in (b"", b"\n", b"\r\n") if body.endswith(end)]
+        kind = next((each for each in kinds if count * each.itemsize in lengths), kinds[0])
+        if (length := count * kind.itemsize) not in lengths:
+            counted(block.file, block.place, "bytes of values", length, len(body))
+        table = np.frombuffer(body, kind, count)
         of_x = np.zeros(0) if even else table["x"].astype(float)
         return of_x, table["y"].astype(complex if is_complex else float)
     if other := body.translate(None, b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"):

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.data.csv import read_table, refuse_rows
+from modefront.data.csv import read_table
 from modefront.fem.check import unit_vector
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import wrong
@@ -117,15 +117,15 @@ def read_dofs(path: Path) -> DofTable:
 
     Raises InputError for a file that is not such a table.
     """
-    _, names, rows, faults = read_table(path, "a table of degrees of freedom")
-    if tuple(names) not in (COLUMNS, COLUMNS[:2]):
+    read = read_table(path, "a table of degrees of freedom")
+    if tuple(names := read.header) not in (COLUMNS, COLUMNS[:2]):
         expected = "node,direction or node,direction,weight"
         raise wrong(path, expected, ",".join(names), "header")
-    refuse_rows(path, rows, faults)
-    node, direction = np.zeros((2, len(rows)), np.intp)
-    table = DofTable(node, direction, np.ones(len(rows)))
+    read.close()
+    node, direction = np.zeros((2, len(read.rows)), np.intp)
+    table = DofTable(node, direction, np.ones(len(read.rows)))
     numbers = {name: number_of(name) for name in DIRECTIONS} | {str(k): k for k in range(-1, 1000)}
-    for k, (line, row) in enumerate(rows):
+    for k, (line, row) in enumerate(read.rows):
         try:
             label, name, *weight = row
             node[k], direction[k] = int(label), numbers[name]
