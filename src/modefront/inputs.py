@@ -30,7 +30,7 @@ def file_size(path: Path, expected: str, most: int | None = None) -> int:
     """Return the size of a regular file, ``most`` or less, in bytes; links are followed.
 
     ``expected`` says what it should be. Raises InputError where there is no such file, where it is
-    a folder, a pipe or a device, and where it is too large.
+    a folder, a pipe or a device, and where it is empty or too large.
     """
     try:
         status = path.stat()
@@ -40,6 +40,8 @@ def file_size(path: Path, expected: str, most: int | None = None) -> int:
         raise wrong(path, expected, reason(error)) from None
     if kind := KINDS.get(stat.S_IFMT(status.st_mode)):
         raise wrong(path, expected, kind)
+    if not status.st_size:
+        raise wrong(path, expected, "an empty file")
     if most is not None and status.st_size > most:
         limit = f"{expected} of up to {most / MEGABYTE:g} MB"
         raise wrong(path, limit, f"{status.st_size / MEGABYTE:.6g} MB")

@@ -68,7 +68,7 @@ ERRORS = [
     pytest.param(_all(accelerances())[:-900], "the end of dataset 58", id="cut-off"),
     pytest.param("    -1\n    15\n  1 0 0\n    -1\n", "datasets 15 only", id="other-datasets"),
     pytest.param("a letter to a friend\n", "this is no universal file", id="text"),
-    pytest.param("", "this is no universal file", id="empty"),
+    pytest.param("", "found an empty file", id="empty"),
     pytest.param(_changed(0, 1, np.nan), "finite numbers", id="nan"),
     pytest.param(_all(0 * accelerances()), "only zeros", id="zeros"),
     pytest.param(

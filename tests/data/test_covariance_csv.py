@@ -49,7 +49,7 @@ def test_a_mode_without_rows_has_deviations_alone_and_names_are_mapped(tmp_path:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "line 1: expected a header of column names, found an empty file"),
+        ("", "file: expected a file of covariances of shapes, found an empty file"),
         (HEADER, "line 2: expected at least one row below the header, found the end"),
         (HEADER.replace("top", "tip") + ROWS, "column 'tip': expected a sensor of the data, once"),
         (HEADER + ROWS.replace("1,1,low", "2,1,low"), "line 2, column 'set': expected one of 1, f"),

@@ -109,7 +109,7 @@ def test_binary_functions_of_pyuff_are_read_though_it_writes_a_wrong_size(
         (_ascii58(_values("E"), 9, kind=1), "functions of type 1 only"),
         ("    -1\n    15\n  1 2 3\n    -1\n", "datasets 15 only"),
         ("once upon a time", "this is no universal file"),
-        ("", "this is no universal file"),
+        ("", "found an empty file"),
     ],
 )
 def test_other_files_are_answered(tmp_path: Path, content: str, message: str) -> None:

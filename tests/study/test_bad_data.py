@@ -117,7 +117,7 @@ def test_contradictions_of_the_data(
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        (b"", "line 1: expected a header of column names, found an empty file"),
+        (b"", "file: expected a file of modal data, found an empty file"),
         (b"\n\n , ,\n", "line 1: expected a header of column names, found an empty file"),
         (
             DATA.splitlines()[0].encode(),

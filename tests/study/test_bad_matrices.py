@@ -42,7 +42,7 @@ UNREADABLE = "expected a readable matrix"
 
 MATRIX_FILES = [
     # file, content, what is said of it
-    ("K0.mtx", b"", UNREADABLE),
+    ("K0.mtx", b"", "expected a matrix, found an empty file"),
     ("K0.mtx", b"\xff\xfe\x00", UNREADABLE),
     ("K0.mtx", b"1 0\n0 1\n", UNREADABLE),
     ("K0.mtx", f"{MTX} coordinate real general\n2 2 3\n1 1 1.0\n".encode(), UNREADABLE),
@@ -70,7 +70,7 @@ MATRIX_FILES = [
         f"{MTX} coordinate real general\n2 2 1\n2 2 nan\n".encode(),
         "row 1, column 1 (from 0): expected finite numbers up to 1e+100, found nan",
     ),
-    ("K1.npy", b"", UNREADABLE),
+    ("K1.npy", b"", "expected a matrix, found an empty file"),
     ("K1.npy", b"garbage", UNREADABLE),
     ("K1.npy", npy(EYE)[:-5], UNREADABLE),
     ("K1.npy", npy(EYE)[:20], UNREADABLE),
@@ -87,7 +87,7 @@ MATRIX_FILES = [
     ("K1.npy", npy([[1, 2], [3, 1]]), "symmetric matrix, found 2, and 3 across the diagonal"),
     ("K1.npy", npy([[1e308, 0], [0, 1]]), "numbers up to 1e+100, found 1e+308"),
     ("K1.npy", npy(np.eye(3)), "k1: expected 2 x 2, as the other matrices, found 3 x 3"),
-    ("K2.npz", b"", UNREADABLE),
+    ("K2.npz", b"", "expected a matrix, found an empty file"),
     ("K2.npz", b"PK\x03\x04garbage", UNREADABLE),
     ("K2.npz", sparse(EYE)[:-30], UNREADABLE),
     ("K2.npz", sparse(EYE)[:200] + b"damage" + sparse(EYE)[206:], UNREADABLE),

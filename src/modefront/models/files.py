@@ -4,6 +4,7 @@ The readers of other packages do not believe what a file announces, or end with 
 process of their own, with limits on time and memory (`modefront.isolated`).
 """
 
+import zipfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -130,6 +131,8 @@ def _numpy_npy(path: Path, _: str) -> Any:
 
 
 def _npz(path: Path, name: str) -> Any:
+    if not zipfile.is_zipfile(path):
+        raise ValueError("no file of arrays of NumPy or SciPy, or one that is cut off")
     with np.load(path, allow_pickle=False) as arrays:
         if "format" not in arrays.files:  # of NumPy
             return arrays[_chosen(path, name, {key: arrays[key].shape for key in arrays.files})]
@@ -147,7 +150,10 @@ def _matlab(path: Path, name: str) -> Any:
         from modefront import hdf5  # takes time to import
 
         return hdf5.variable(path, _chosen(path, name, hdf5.variables(path)))
-    known = {each: shape for each, shape, _ in scipy.io.whosmat(path)}
+    try:
+        known = {each: shape for each, shape, _ in scipy.io.whosmat(path)}
+    except IndexError:  # of what is no version
+        raise ValueError("no file of MATLAB") from None
     chosen = _chosen(path, name, known)
     found = scipy.io.loadmat(path, variable_names=[chosen], chars_as_strings=False)
     A = found[chosen]
