@@ -155,7 +155,7 @@ def test_calculix_that_failed_or_was_cut_off(tmp_path: Path, suffix: str) -> Non
     path.write_text("".join(whole).replace("1", "x"))
     refused("calculix", tmp_path / "a", "expected")
     path.write_text("")
-    refused("calculix", tmp_path / "a", "an empty one")
+    refused("calculix", tmp_path / "a", "an empty file")
     path.unlink()
     refused("calculix", tmp_path / "a", "MATRIXSTORAGE.*status 0.*no such file")
 

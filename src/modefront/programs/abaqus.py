@@ -62,7 +62,7 @@ def _files(path: Path) -> tuple[Path, Path]:
     return stiffness, base.existing(stiffness.with_name(name), "the mass of Abaqus", ADVICE)
 
 
-def _first(path: Path) -> tuple[int, str]:
+def _first(path: Path) -> tuple[int, str | None]:
     """Return how many numbers the first line of a matrix has, five or three, and what is between.
 
     Raises InputError where there are none, or others.
@@ -75,7 +75,7 @@ def _first(path: Path) -> tuple[int, str]:
     if len(fields) not in (3, 5):
         expected = "lines 'node, direction, node, direction, value' or 'row column value'"
         raise wrong(path, expected, " ".join(fields[:6]))
-    return len(fields), "," if "," in line else r"\s+"
+    return len(fields), "," if "," in line else None
 
 
 def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[scipy.sparse.coo_array]]:

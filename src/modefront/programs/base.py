@@ -6,6 +6,8 @@ are whole, finite and symmetric, and without what is held.
 """
 
 import importlib
+import re
+import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass
 from pathlib import Path
@@ -270,30 +272,30 @@ def existing(path: Path, expected: str, advice: str) -> Path:
 
     Raises InputError, which says what to do, where it is not.
     """
-    if file_size(path, f"{expected} ({advice})") > 0:
-        return path
-    raise wrong(path, f"{expected} ({advice})", "an empty one")
+    file_size(path, f"{expected} ({advice})")
+    return path
 
 
-def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.ndarray]:
-    """Return the columns of a table of numbers in a file.
+def columns(path: Path, separator: str | None, kinds: str, *, comment: str) -> list[np.ndarray]:
+    """Return the columns of a table of numbers in a file, between blanks or a separator.
 
-    Lines that begin with ``comment`` are left out. ``kinds`` has a letter for each column, ``i``
-    for whole numbers and ``f`` for real ones. Raises InputError for other lines.
+    What follows a ``comment`` is left out. ``kinds`` has a letter for each column, ``i`` for whole
+    numbers and ``f`` for real ones. Raises InputError for other lines.
     """
-    import pandas as pd  # takes time
-
     ended(path)
-    types = {k: np.int32 if kind == "i" else np.float64 for k, kind in enumerate(kinds)}
-    form = {"sep": separator, "comment": comment, "skipinitialspace": True, "engine": "c"}
+    form = [(str(k), np.int32 if kind == "i" else np.float64) for k, kind in enumerate(kinds)]
     try:
-        table = pd.read_csv(
-            path, header=None, dtype=types, names=range(len(kinds)), index_col=False, **form
-        )
-    except (ValueError, OSError, OverflowError) as error:
-        expected = f"{len(kinds)} numbers in every line"
-        raise wrong(path, expected, reason(error)) from None
-    return [table[k].to_numpy() for k in range(len(kinds))]
+        with warnings.catch_warnings(action="error"):  # without any lines
+            table = np.loadtxt(path, form, comment, separator, ndmin=1, encoding="latin-1")
+    except (ValueError, OverflowError, UserWarning) as error:
+        numbers = {"i": r"[+-]?\d+", "f": r"[-+.\dED]+"}
+        line = re.compile(r"\s*[\s,.]\s*".join(numbers[kind] for kind in kinds) + "$")
+        with path.open(encoding="latin-1") as file:
+            rows = ((k, x.partition(comment)[0].strip()) for k, x in enumerate(file, start=1))
+            bad = ((repr(x[:60]), f"line {k}") for k, x in rows if x and not line.match(x.upper()))
+            found = next(bad, (reason(error), "file"))
+        raise wrong(path, f"{len(kinds)} numbers in every line", *found) from None
+    return [table[name] for name, _ in form]
 
 
 def fixed_width(text: bytes, width: int) -> Floats:

@@ -40,7 +40,7 @@ def read(path: Path, options: JobOptions) -> Listed:
     node, direction = (column.astype(np.intp) for column in labels)
     matrices = []
     for suffix in (".sti", ".mas"):
-        row, column, value = columns(files[suffix], r"\s+", "iif", comment="#")
+        row, column, value = columns(files[suffix], None, "iif", comment="#")
         last = max(int(row.max(initial=0)), int(column.max(initial=0)))
         if last != node.size:
             expected = f"entries up to row {node.size}, as '{files['.dof'].name}' has"

@@ -90,6 +90,8 @@ def read_deck(path: Path) -> Deck:
         elif keyword in ("INCLUDE", "NGEN", "NFILL", "NCOPY", "NMAP"):
             more = True  # they make nodes, or may have them in another file
     if not deck.parts and not more:
+        if not deck.nodes:
+            raise wrong(path, "nodes (*NODE)", "none")
         refuse_unknown_nodes(path, deck.nodes, deck.expanded | deck.others)
     return deck
 

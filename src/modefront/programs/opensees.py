@@ -12,7 +12,7 @@ import numpy as np
 
 from modefront.data.csv import table_rows
 from modefront.errors import reason
-from modefront.inputs import ended, once, wrong
+from modefront.inputs import ended, wrong
 from modefront.models.dofs import read_dofs
 from modefront.models.files import read_entries
 from modefront.programs import base
@@ -36,32 +36,34 @@ def read(path: Path, options: base.JobOptions) -> base.Listed:
 
 
 def _mesh(path: Path) -> base.ProgramMesh | None:
-    nodes = path.with_name(path.name + "_nodes.csv")
+    nodes, elements = (path.with_name(f"{path.name}_{x}.csv") for x in ("nodes", "elements"))
     if not nodes.is_file():
         return None
-    elements = path.with_name(path.name + "_elements.csv")
-    try:
-        points = {n: np.array([*x, 0.0, 0.0, 0.0][:3]) for n, *x in _rows(nodes, float)}
-        rows = _rows(elements, int) if elements.is_file() else []
-    except ValueError as error:
-        expected = "rows node,x,y,z (and element,node,… of elements)"
-        raise wrong(nodes, expected, reason(error)) from None
-    base.refuse_unknown_nodes(elements, points, (n for row in rows for n in row[1:]))
+    points = _rows(nodes, "node,x,y,z", float)
+    members = _rows(elements, "element,node,…", int) if elements.is_file() else {}
+    base.refuse_unknown_nodes(elements, points, (n for row in members.values() for n in row))
     kinds = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
-    return base.mesh_of(points, ((kinds[len(x)], x) for _, *x in rows if len(x) in kinds))
+    known = ((kinds[len(row)], row) for row in members.values() if len(row) in kinds)
+    return base.mesh_of({n: np.array([*x, 0.0, 0.0, 0.0][:3]) for n, x in points.items()}, known)
 
 
-def _rows(path: Path, number: type) -> list[list[Any]]:
-    """Return rows of whole numbers, each once, and others, without a header."""
+def _rows(path: Path, form: str, number: type) -> dict[int, list[Any]]:
+    """Return the numbers behind the first, a whole one, of every row below the header, if any."""
     ended(path)
-    listed = table_rows(path, "rows node,x,y,z, or element,node,…")
-    rows = [[x.strip() for x in row if x.strip()] for _, row in listed]
-    begin = 0 if rows and rows[0][0].lstrip("-").isdigit() else 1
-    out = [[int(row[0]), *map(number, row[1:])] for row in rows[begin:]]
-    once(path, "rows", "each node or element", (row[0] for row in out))
-    lengths = {len(row) for row in out}
-    if number is float and (len(lengths) > 1 or max(lengths, default=4) > 4):
-        raise ValueError("rows of different lengths, or of more than three coordinates")
-    if number is float and not np.isfinite(out).all():
-        raise ValueError("numbers that are not finite")
+    out: dict[int, list[Any]] = {}
+    for k, (line, fields) in enumerate(table_rows(path, f"rows {form}")):
+        first, *others = (x.strip() for x in fields if x.strip())
+        if k == 0 and not first.lstrip("-").isdigit():
+            continue
+        try:
+            key, row = int(first), list(map(number, others))
+            if key in out:
+                raise ValueError(f"{key} again")
+            if number is float and len(row) != len(next(iter(out.values()), row[:3])):
+                raise ValueError(f"{len(row)} coordinates")
+            if not np.isfinite(row).all():
+                raise ValueError("numbers that are not finite")
+        except ValueError as error:
+            raise wrong(path, f"rows {form}", reason(error), f"line {line}") from None
+        out[key] = row
     return out
