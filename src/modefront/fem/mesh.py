@@ -250,33 +250,28 @@ def _node_sets(raw: Any) -> dict[str, Ints]:
     out = {str(name): np.asarray(nodes, dtype=np.int64) for name, nodes in raw.point_sets.items()}
     tags = np.asarray(raw.point_data.get("point_tags", []))
     for family, names in getattr(raw, "point_tags", {}).items():
-        nodes = np.flatnonzero(tags == family)
         for name in map(str, names):
-            out[name] = np.union1d(out.get(name, np.zeros(0, dtype=np.int64)), nodes)
-    return out
+            out[name] = np.union1d(out.get(name, []), np.flatnonzero(tags == family))
+    return {name: nodes.astype(np.int64) for name, nodes in out.items()}
 
 
 def _named_cells(raw: Any) -> Iterator[tuple[str, str, Ints]]:
     """Group, type and cells of every part of a meshio mesh that has a name."""
-    cells = [np.asarray(block.data, dtype=np.int64) for block in raw.cells]
     sets = {name: s for name, s in raw.cell_sets.items() if not name.startswith("gmsh:")}
-    tags = raw.cell_data.get("gmsh:physical", [])
-    for name, members in sets.items():
-        for block, data, chosen in zip(raw.cells, cells, members, strict=True):
-            if chosen is not None and len(chosen):
-                yield name, block.type, data[np.asarray(chosen, dtype=np.int64)]
-    families = getattr(raw, "cell_tags", {})
-    of_blocks = raw.cell_data.get("cell_tags", [])
-    for block, data, of_block in zip(raw.cells, cells, of_blocks, strict=False):
-        for family in np.unique(of_block).tolist():
-            for name in families.get(family, ()):
-                yield name, block.type, data[np.asarray(of_block) == family]
     names = {(int(tag), int(dim)): name for name, (tag, dim) in raw.field_data.items()}
-    for block, data, block_tags in zip(raw.cells, cells, tags, strict=False):
-        for tag in np.unique(block_tags):
+    families = getattr(raw, "cell_tags", {})
+    of_families, tags = (raw.cell_data.get(x, []) for x in ("cell_tags", "gmsh:physical"))
+    for k, block in enumerate(raw.cells):
+        cells = np.asarray(block.data, dtype=np.int64)
+        for name, members in sets.items():
+            if members[k] is not None and len(members[k]):
+                yield name, block.type, cells[np.asarray(members[k], dtype=np.int64)]
+        for family in np.unique(of_families[k]).tolist() if of_families else ():
+            for name in families.get(family, ()):
+                yield name, block.type, cells[np.asarray(of_families[k]) == family]
+        for tag in np.unique(tags[k]) if tags else ():
             name = names.get((int(tag), block.dim), str(tag) if tag else "all")
             if name not in sets:
-                yield name, block.type, data[np.asarray(block_tags) == tag]
-    if not sets and not tags and not families:
-        for block, data in zip(raw.cells, cells, strict=True):
-            yield "all", block.type, data
+                yield name, block.type, cells[np.asarray(tags[k]) == tag]
+        if not sets and not tags and not families:
+            yield "all", block.type, cells
