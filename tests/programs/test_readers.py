@@ -160,6 +160,18 @@ def test_calculix_that_failed_or_was_cut_off(tmp_path: Path, suffix: str) -> Non
     refused("calculix", tmp_path / "a", "MATRIXSTORAGE.*status 0.*no such file")
 
 
+def test_a_line_of_calculix_that_is_no_row_is_shown(tmp_path: Path) -> None:
+    write_calculix(tmp_path / "a", K, M, labels())
+    (tmp_path / "a.inp").write_text("*STEP\n")
+    refused("calculix", tmp_path / "a", r"a\.inp: file: expected nodes \(\*NODE\), found none")
+    (tmp_path / "a.inp").unlink()
+    file = tmp_path / "a.sti"
+    lines = file.read_text().splitlines()
+    for wrong in ("5 x 1.0", "5 6", "5 6 1.0 1.0", "5 6 1.0e"):
+        file.write_text("\n".join([*lines[:4], wrong, *lines[5:]]) + "\n")
+        refused("calculix", tmp_path / "a", rf"line 5: expected 3 numbers.*, found '{wrong}'$")
+
+
 def test_nodes_that_calculix_expands_are_means(tmp_path: Path) -> None:
     names = [(9, 3), (5, 1), (5, 3), (5, 1), (5, 3), (9, 3), (9, 3), (11, 1), (11, 3), (11, 3)]
     A = np.diag(np.arange(1.0, 11.0))
@@ -302,6 +314,29 @@ def test_opensees(tmp_path: Path) -> None:
     assert_same(job)
     assert job.mesh is not None
     assert {kind: len(table) for kind, table in job.mesh.cells.items()} == {"line": 1, "quad": 1}
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "says"),
+    [
+        (
+            "nodes",
+            "node,x\n12,0,0\n3,1\n",
+            r"line 3: expected rows node,x,y,z, found 1 coordinates",
+        ),
+        ("nodes", "12,0,0,0,9\n", "line 1: expected rows node,x,y,z, found 4 coordinates"),
+        ("nodes", "12,0,0\n12,1,0\n", "line 2: expected rows node,x,y,z, found 12 again"),
+        ("nodes", "12,0,nan\n", "line 1: .* found numbers that are not finite"),
+        ("elements", "1,12,x\n", "line 1: expected rows element,node,…, found .*'x'"),
+        ("elements", "1,12,3\n2,12", "last line: expected whole lines to the end"),
+        ("elements", "1,12,99\n", "nodes: expected all nodes of its elements, found no node 99"),
+    ],
+)
+def test_rows_of_opensees_that_are_wrong(tmp_path: Path, name: str, text: str, says: str) -> None:
+    write_opensees(tmp_path / "a", K, M, labels())
+    (tmp_path / "a_nodes.csv").write_text("12,0,0,0\n3,1,0,0\n")
+    (tmp_path / f"a_{name}.csv").write_text(text)
+    refused("opensees", tmp_path / "a", rf"a_{name}\.csv: {says}")
 
 
 # All

@@ -106,9 +106,9 @@ def read_csv(
     table = read_table(Path(path), "a file of modal data")
     header, used = renamed(table.header, columns or {}, (STD,))
     refuse(
-        Fault(str(path), f"columns {clean(name, NAME)!r}", "a column of it", found)
+        Fault(str(path), f"columns {clean(name, NAME)!r}", "a column of it", close)
         for name in columns or {}
-        if name not in used and (found := suggestion(name, table.header))
+        if name not in used and (close := suggestion(name, table.header))
     )
     if len(header) > 20_000:
         raise wrong(table.path, "up to 20000 columns", str(len(header)), f"line {table.line}")

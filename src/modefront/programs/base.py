@@ -17,6 +17,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.data.csv import NUMBER
 from modefront.errors import reason
 from modefront.fem.structure import FACES
 from modefront.inputs import ended, file_size, first_repeated, fortran, wrong
@@ -288,11 +289,12 @@ def columns(path: Path, separator: str | None, kinds: str, *, comment: str) -> l
         with warnings.catch_warnings(action="error"):  # without any lines
             table = np.loadtxt(path, form, comment, separator, ndmin=1, encoding="latin-1")
     except (ValueError, OverflowError, UserWarning) as error:
-        numbers = {"i": r"[+-]?\d+", "f": r"[-+.\dED]+"}
-        line = re.compile(r"\s*[\s,.]\s*".join(numbers[kind] for kind in kinds) + "$")
+        numbers = {"i": r"[+-]?\d+", "f": NUMBER.pattern}
+        between = r"\s*[\s,.]\s*"
+        row = re.compile(between.join(numbers[kind] for kind in kinds), re.IGNORECASE)
         with path.open(encoding="latin-1") as file:
             rows = ((k, x.partition(comment)[0].strip()) for k, x in enumerate(file, start=1))
-            bad = ((repr(x[:60]), f"line {k}") for k, x in rows if x and not line.match(x.upper()))
+            bad = ((repr(x[:60]), f"line {k}") for k, x in rows if x and not row.fullmatch(x))
             found = next(bad, (reason(error), "file"))
         raise wrong(path, f"{len(kinds)} numbers in every line", *found) from None
     return [table[name] for name, _ in form]
