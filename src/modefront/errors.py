@@ -131,6 +131,10 @@ def reason(error: BaseException) -> str:
         return "more than fits into the memory: close other programs, or use a smaller file"
     if isinstance(error, RecursionError):
         return "too many levels, one in another"
+    if isinstance(error, IndexError):
+        return "less than there has to be: is the file cut off, or another one?"
+    if isinstance(error, ValueError) and "pickle" in str(error):
+        return "no arrays of numbers of NumPy; objects, which could run code, are not read"
     if isinstance(error, OSError) and error.errno is not None:
         known = error.strerror or f"error {error.errno} of the system"
         return SYSTEM.get(error.errno) or one_line(known[:1].lower() + known[1:], NAME)

@@ -75,7 +75,7 @@ MATRIX_FILES = [
     ("K1.npy", npy(EYE)[:-5], UNREADABLE),
     ("K1.npy", npy(EYE)[:20], UNREADABLE),
     ("K1.npy", npz(A=EYE), UNREADABLE),
-    ("K1.npy", npy([[{}, {}], [{}, {}]]), UNREADABLE + " ... Object arrays cannot be loaded"),
+    ("K1.npy", npy([[{}, {}], [{}, {}]]), UNREADABLE + " ... objects, which could run code"),
     ("K1.npy", npy([["1", "0"], ["0", "1"]]), "real numbers, found <U1"),
     ("K1.npy", npy(np.array(EYE) * 1j), "real numbers, found complex128"),
     ("K1.npy", npy(1.0), "a square matrix, found a single number"),
@@ -96,7 +96,7 @@ MATRIX_FILES = [
     (
         "K2.npz",
         npz(format=np.array([{}]), shape=(2, 2), data=[1.0]),
-        UNREADABLE + " ... Object arrays cannot",
+        UNREADABLE + " ... objects, which could",
     ),
     ("K2.npz", compressed([0, 10**8], [0, 1, 2]), UNREADABLE),
     ("K2.npz", compressed([0, 1], [0, 10**6, 2]), UNREADABLE),
