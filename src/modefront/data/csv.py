@@ -433,12 +433,12 @@ def read_test_csv(path: Path, columns: Mapping[str, str] | None = None) -> Conte
         return Contents(blows=(blow,), used=frozenset(used))
     channels = []
     for name, pair in forms.items():
-        real, imaginary = (name + end for end in pair)
-        place = file, f"columns {real!r} and {imaginary!r}", "", name
+        first, second = (name + end for end in pair)
+        place = file, f"columns {first!r} and {second!r}", "", name
         coherence = column.get(name + COHERENCE)
         if coherence is not None and np.isnan(coherence).any():
             coherence = None
-        H = _function(path, {x: column[x] for x in (real, imaginary)}, pair)
+        H = _function(path, {x: column[x] for x in (first, second)}, pair)
         channels.append(Channel(*place, column[FREQUENCY], H, coherence=coherence))
     return Contents(tuple(channels), used=frozenset(used))
 
