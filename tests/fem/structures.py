@@ -11,7 +11,7 @@ from scipy.sparse.linalg import eigsh
 from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
-from modefront.fem.elements.common import ByPower, ElementMatrices, elasticity
+from modefront.fem.elements.common import ByPower, Matrices, elasticity
 from modefront.fem.elements.shapes import CUBE_EDGES, TETRAHEDRON_EDGES, WEDGE_EDGES, Edges
 from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import solid
@@ -72,20 +72,20 @@ def _quadratic(corners: Floats, edges: Edges, curved: float = 0.0) -> Floats:
     return np.asarray(nodes + curved * np.sin(np.arange(nodes.size).reshape(-1, 3) ** 2))
 
 
-def _beam(X: Floats, r: Floats) -> ElementMatrices:
+def _beam(X: Floats, r: Floats) -> Matrices:
     axis = X[:, 1] - X[:, 0]
     side = np.cross(axis, axis[:, [1, 2, 0]] + np.array([0.3, 0, 0]))
     return beam(X, STEEL, SECTION, side, r)[0]
 
 
-def _shell(X: Floats, thickness: float, offset: float) -> ElementMatrices:
+def _shell(X: Floats, thickness: float, offset: float) -> Matrices:
     nodes, cells = X.reshape(-1, 3), [np.arange(len(X) * len(X[0])).reshape(len(X), -1)]
     (d,), (narrow,) = directors(nodes, cells), narrowness(nodes, cells)
     return shell(X, d, narrow, X[:, 1] - X[:, 0], STEEL, thickness, offset, varied=False)
 
 
 # name: (nodes, directions of each node, element)
-ELEMENTS: dict[str, tuple[Floats, int, Callable[[Floats], ElementMatrices]]] = {
+ELEMENTS: dict[str, tuple[Floats, int, Callable[[Floats], Matrices]]] = {
     "beam": (np.array([[0, 0, 0], [1.0, 0.5, 0.2]]), 6, lambda X: _beam(X, np.zeros((2, 3)))),
     "beam, eccentric": (
         np.array([[0, 0, 0], [1.0, 0.5, 0.2]]),

@@ -118,7 +118,7 @@ def _of_file(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]
         names = [name for name in header if name != TIME]
         rows = np.nan_to_num(np.delete(values, column, axis=1).T, nan=0.0)  # empty columns
         return names, rows, _rate(path, values[:, column])
-    functions = [x.channel for x in read_functions(path) if x.kind == OF_TIME]
+    functions = [x for kind, _, x in read_functions(path) if kind == OF_TIME]
     if not functions:
         expected = "records in time (functions of type 1) in dataset 58"
         raise wrong(path, expected, "none", "dataset 58")

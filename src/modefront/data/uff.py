@@ -103,15 +103,9 @@ def _decoded(
     return out
 
 
-class Function(NamedTuple):
-    """A dataset 58: its type, quantity of the numerator, and what it holds as a channel.
-
-    Values have the signs of the directions: functions that of both, others that of the response.
-    """
-
-    kind: int
-    ordinate: int
-    channel: Channel
+Function = tuple[int, int, Channel]
+"""A dataset 58: its type, quantity of the numerator, and what it holds as a channel. Values have
+the signs of the directions: functions that of both, others that of the response."""
 
 
 def read_functions(path: Path) -> list[Function]:
@@ -127,20 +121,19 @@ def read_uff(path: Path) -> Contents:
     InputError where the file holds neither, is cut off or cannot be decoded.
     """
     functions = read_functions(path)
-    kinds = {each.kind for each in functions}
+    kinds = {kind for kind, *_ in functions}
     if FRF in kinds:
-        of_kind = [[x.channel for x in functions if x.kind == kind] for kind in (FRF, COHERENCE)]
-        coherence = {(x.reference, x.response): np.abs(x.H) for x in of_kind[1]}
-        pairs = ((x, coherence.get((x.reference, x.response))) for x in of_kind[0])
+        measured, others = ([x for kind, _, x in functions if kind == k] for k in (FRF, COHERENCE))
+        coherence = {(x.reference, x.response): np.abs(x.H) for x in others}
+        pairs = ((x, coherence.get((x.reference, x.response))) for x in measured)
         made = (replace(x, H=np.asarray(x.H, complex), coherence=known) for x, known in pairs)
         return Contents(tuple(made))
     # A blow ends where one of its channels comes again, or another force.
     groups: list[dict[str, Channel]] = [{}]
-    for record in (each for each in functions if each.kind == TIME):
-        is_force = record.ordinate in (9, 13)  # a reaction force, an excitation force
-        key = "" if is_force else record.channel.response
+    for ordinate, record in ((x, record) for kind, x, record in functions if kind == TIME):
+        key = "" if ordinate in (9, 13) else record.response  # reaction and excitation forces
         groups += [{}] if key in groups[-1] else []
-        groups[-1][key] = record.channel
+        groups[-1][key] = record
     if blows := [_blow(group) for group in groups if "" in group and len(group) > 1]:
         return Contents(blows=tuple(blows))
     expected = (
@@ -224,7 +217,7 @@ def _function(block: Block) -> list[Function]:
     sign *= other if kind == FRF else 1
     place = f"{block.place}{f' of {reference} to {response}' * (kind == FRF)}"
     named = str(block.file), place, reference, response
-    return [Function(kind, ordinate, Channel(*named, x, sign * data, QUANTITIES.get(ordinate, "")))]
+    return [(kind, ordinate, Channel(*named, x, sign * data, QUANTITIES.get(ordinate, "")))]
 
 
 def _values(block: Block, body: bytes, record: tuple[int, int, int]) -> tuple[Floats, Any]:

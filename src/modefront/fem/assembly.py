@@ -95,10 +95,9 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
         raise wrong("structure", "at least one degree of freedom that is free", "none")
     K, M = (_Terms(dofs.T, structure.parameters) for _ in range(2))
     for block in blocks:
-        K.add(block, block.name, block.matrices.stiffness, ("E", "spring"))
-        M.add(block, block.name, block.matrices.mass, ("density", "mass"))
-        if block.prestress is not None:
-            K.add(block, block.name, {0: block.prestress}, ("prestress",))
+        K.add(block, block.name, block.stiffness, ("E", "spring"))
+        M.add(block, block.name, block.mass, ("density", "mass"))
+        K.add(block, block.name, block.prestress, ("prestress",))
     factor = _stable(K.total()) if forces and not floating else None
     for load, f in zip(structure.loads, forces, strict=True):
         if factor is None:
@@ -110,7 +109,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
                 strain = load.strains.get(block.name, 0.0)
                 made = block.internal().stiffness(u[block.dofs()], strain)
                 K.add(block, load.name, {0: made}, ("prestress",))
-    prestressed = bool(forces) or any(block.prestress is not None for block in blocks)
+    prestressed = forces or any(block.prestress for block in blocks)
     if prestressed and not floating and _stable(K.total()) is None:
         expected = "loads and forces below the critical ones"
         raise wrong("load", expected, "those under which the structure buckles")
@@ -123,9 +122,8 @@ def _existing(X: Floats, blocks: list[Block], following: list[Followers]) -> Boo
     """Return the DOFs (nodes, 6) that anything gives stiffness or mass, or that links use."""
     exists = np.zeros((len(X), 6), dtype=bool)
     for block in blocks:
-        parts = [*block.matrices.stiffness.values(), *block.matrices.mass.values()]
-        if block.prestress is not None:
-            parts.append(block.prestress)
+        terms = block.stiffness, block.mass, block.prestress
+        parts = [part for each in terms for part in each.values()]
         used = np.any([np.diagonal(part, axis1=1, axis2=2) != 0 for part in parts], axis=0)
         exists.ravel()[block.dofs()[used]] = True
     for each in following:
@@ -242,7 +240,7 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools) -> Floats:
         raise wrong("strains", expected, repr(min(unknown)))
     for block in blocks:
         pull = np.tile(np.append(a, np.zeros(3))[list(block.directions)], block.cells.shape[1])
-        parts = [M @ pull for M in block.matrices.mass.values()]
+        parts = [M @ pull for M in block.mass.values()]
         if block.internal is not None and (strain := load.strains.get(block.name, 0.0)):
             parts.append(block.internal().free_forces(strain))
         for each in parts:

@@ -1,7 +1,7 @@
 """From the members of a structure to blocks of element matrices, checked on the way."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -28,10 +28,11 @@ class Block:
     name: str  # of the group, spring or mass
     cells: Ints  # nodes (elements, k)
     directions: tuple[int, ...]  # the d DOFs of each node that the matrices have, ascending
-    matrices: common.ElementMatrices  # of size k d
+    stiffness: common.ByPower  # stiffness, mass: matrices of size k d
+    mass: common.ByPower
     rigid: bool = False  # whether an element that nothing deforms is one rigid body with its nodes
-    # geometric stiffness (elements, k d, k d) of given forces; None without any
-    prestress: Floats | None = None
+    # geometric stiffness of given forces
+    prestress: common.ByPower = field(default_factory=dict)
     # returns internal forces; None for elements that make no geometric stiffness
     internal: Callable[[], Axial | common.Stresses] | None = None
 
@@ -64,7 +65,7 @@ def blocks_of(X: Floats, structure: members.Structure, faults: list[Fault]) -> l
             ply = common.ply(group.material)
             internal = partial(shell.shell_stresses, x, r, m, ply, t)
             made = shell.shell(x, d, narrow, *given)
-            blocks.append(Block(group.name, cells, SIX, made, rigid=True, internal=internal))
+            blocks.append(Block(group.name, cells, SIX, *made, rigid=True, internal=internal))
     for member in (*structure.groups, *structure.springs, *structure.masses):
         kind, make = MADE.get(type(member), ("", None))
         with noted(faults, f"{kind} {member.name!r}"):
@@ -92,15 +93,15 @@ def _beams(X: Floats, group: members.Beams) -> Block:
             expected = f"a vector not parallel to the axis of element {parallel[0]} (nodes {nodes})"
             raise wrong("orientation", expected, tuple(group.orientation))
     made, axial = beam(X[cells], group.material, section, orientation, r, group.released)
-    given = group.force * axial.unit if group.force else None
-    return Block(group.name, cells, SIX, made, not group.released, given, lambda: axial)
+    given = {0: group.force * axial.unit} if group.force else {}
+    return Block(group.name, cells, SIX, *made, not group.released, given, lambda: axial)
 
 
 def _trusses(X: Floats, group: members.Trusses) -> Block:
     cells, _ = _lines(X, group, np.zeros((2, 3)))
     made, axial = truss(X[cells], group.material, group.area)
-    given = group.force * axial.unit if group.force else None
-    return Block(group.name, cells, TRANSLATIONS, made, False, given, lambda: axial)
+    given = {0: group.force * axial.unit} if group.force else {}
+    return Block(group.name, cells, TRANSLATIONS, *made, False, given, lambda: axial)
 
 
 def _lines(X: Floats, group: members.Beams | members.Trusses, r: Floats) -> tuple[Ints, Floats]:
@@ -139,7 +140,7 @@ def _solids(X: Floats, group: members.Solids) -> Block:
     check.check_sizes(check.solid_sizes(X[cells]), cells, "volume")
     C = common.elasticity(group.material, check.axes_of(group.axes))
     made, internal = solid(X[cells], group.material.rho, C), partial(solid_stresses, X[cells], C)
-    return Block(group.name, cells, TRANSLATIONS, made, rigid=True, internal=internal)
+    return Block(group.name, cells, TRANSLATIONS, *made, rigid=True, internal=internal)
 
 
 def _springs(X: Floats, member: members.Spring) -> Block:
@@ -168,7 +169,7 @@ def _springs(X: Floats, member: members.Spring) -> Block:
         axis = _spring_axis(X, member, nodes, gap)
         rows = np.concatenate([axis, -axis][: nodes.shape[1]], 1)[:, None]
     K = common.symmetric(np.swapaxes(rows, 1, 2) @ (k[:, None] * rows))
-    return Block(member.name, nodes, SIX, common.ElementMatrices({0: K}, {}))
+    return Block(member.name, nodes, SIX, {0: K}, {})
 
 
 def _spring_axis(X: Floats, member: members.Spring, nodes: Ints, gap: Floats) -> Floats:
@@ -209,8 +210,7 @@ def _masses(X: Floats, member: members.Mass) -> Block:
     centre = np.concatenate([np.eye(3), -common.cross_matrix(c)], 1)
     M = centre.T @ (m[:, None] * centre)
     M[3:, 3:] += inertia
-    matrices = common.ElementMatrices({}, {0: np.tile(common.symmetric(M), (len(nodes), 1, 1))})
-    return Block(member.name, nodes, SIX, matrices)
+    return Block(member.name, nodes, SIX, {}, {0: np.tile(common.symmetric(M), (len(nodes), 1, 1))})
 
 
 MADE: Mapping[type, tuple[str, Callable[[Floats, Any], Block]]] = {

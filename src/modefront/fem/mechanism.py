@@ -133,9 +133,7 @@ def _motions(X: Floats, bodies: Bodies, node: Ints, body: Ints) -> sparse.csr_ar
 
 def _resisted(block: Block, size: int) -> sparse.csr_array:
     """Return the rows (.., 6 nodes) of displacements that elements of a block resist."""
-    K = next(iter(block.matrices.stiffness.values()))
-    if block.prestress is not None:
-        K = K + block.prestress
+    K = sum(block.prestress.values(), next(iter(block.stiffness.values())))
     scale = np.sqrt(np.diagonal(K, axis1=1, axis2=2).clip(0))
     unit = np.where(scale > 0, scale, 1)
     values, vectors = np.linalg.eigh(K / unit[:, :, None] / unit[:, None])
@@ -179,7 +177,7 @@ def check_mechanisms(
     may move as a rigid body as a whole.
     """
     bodies = rigid_bodies(X, [block for block in blocks if block.rigid], exists)
-    soft = [block for block in blocks if block.matrices.stiffness and not block.rigid]
+    soft = [block for block in blocks if block.stiffness and not block.rigid]
     C = constraint_rows(X, bodies, soft, following, held)
     count = len(bodies.extent)
     touches = abs(C) @ sparse.kron(sparse.eye_array(count), np.ones((6, 1)))

@@ -29,7 +29,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import wrong
-from modefront.fem.elements.common import ElementMatrices, attachment, congruence, symmetric
+from modefront.fem.elements.common import Matrices, attachment, congruence, symmetric
 from modefront.fem.section import Material, Section
 from modefront.rounding import COMPUTED
 
@@ -125,7 +125,7 @@ def beam(
     orientation: Floats,
     r: Floats,
     released: Sequence[int] = (),
-) -> tuple[ElementMatrices, Axial]:
+) -> tuple[Matrices, Axial]:
     """Matrices of straight beams, DOFs (u, r) node by node in global axes.
 
     Parameters
@@ -178,10 +178,10 @@ def beam(
         a = release(K, released) @ a
     elongation = L[:, None] * (df[:, :1, U] @ a)[:, 0]
     K, M, K_G = (congruence(a, each) for each in (K, M, K_G))
-    return ElementMatrices({0: K}, {0: M}), Axial(elongation, L, E * A, K_G)
+    return ({0: K}, {0: M}), Axial(elongation, L, E * A, K_G)
 
 
-def truss(X: Floats, material: Material, area: float) -> tuple[ElementMatrices, Axial]:
+def truss(X: Floats, material: Material, area: float) -> tuple[Matrices, Axial]:
     """Matrices of straight bars X (elements, 2, 3), DOFs u node by node in global axes."""
     along = X[:, 1] - X[:, 0]
     L = np.linalg.norm(along, axis=1)[:, None]
@@ -191,5 +191,4 @@ def truss(X: Floats, material: Material, area: float) -> tuple[ElementMatrices, 
     M = (mass * L)[:, None] * np.kron(np.array([[2.0, 1], [1, 2]]) / 6, np.eye(3))
     M += (mass * L / 12)[:, None] * row[:, :, None] * row[:, None, :]
     across = np.kron(np.array([[1.0, -1], [-1, 1]]), np.eye(3)) - row[:, :, None] * row[:, None, :]
-    matrices = ElementMatrices({0: symmetric(K)}, {0: M})
-    return matrices, Axial(row, L[:, 0], EA, symmetric(across / L[:, None]))
+    return ({0: symmetric(K)}, {0: M}), Axial(row, L[:, 0], EA, symmetric(across / L[:, None]))

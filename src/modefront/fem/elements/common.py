@@ -18,12 +18,8 @@ ByPower = dict[int, Floats]
 of the thickness with which they grow; 0 where there is none, or it does not vary."""
 
 
-@dataclass(frozen=True)
-class ElementMatrices:
-    """Stiffness, linear in Young's modulus, and mass, linear in density."""
-
-    stiffness: ByPower
-    mass: ByPower
+Matrices = tuple[ByPower, ByPower]
+"""Stiffness, linear in Young's modulus, and mass, linear in density."""
 
 
 def symmetric(K: Floats) -> Floats:

@@ -41,7 +41,6 @@ more. Rotary inertia has linear v.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -65,19 +64,6 @@ ROTARY = block_diag(*[_MEAN[:3, :3]] * 3) / 12
 
 Rows = tuple[Floats, Floats]
 """Rows B (elements, points, rows, n) and weights D (elements, points, rows, rows) of B^T D B."""
-
-
-class Side(NamedTuple):
-    """Side of shells: its ends, e, and gamma_0 times its length, as what bends and what shears.
-
-    Both have columns (elements, n), and n more per tau where the thickness varies.
-    """
-
-    i: int
-    j: int
-    e: Floats
-    bends: Floats
-    shears: Floats
 
 
 @dataclass(frozen=True)
@@ -112,8 +98,11 @@ class Elements:
         for i, j in TRIANGLE_EDGES:
             yield i, j, (self.x[:, j] - self.x[:, i])[:, None]
 
-    def sheared(self, t: float, material: Ply) -> Iterator[Side]:
-        """Shear of each side."""
+    def sheared(self, t: float, material: Ply) -> Iterator[tuple[int, int, Floats, Floats, Floats]]:
+        """Ends i and j, e, and gamma_0 times its length, as what bends and what shears, of sides.
+
+        Both have columns (elements, n), and n more per tau where the thickness varies.
+        """
         for i, j, e in self.sides():
             L2 = (e**2).sum(2)
             d = self.d[:, i] + self.d[:, j]
@@ -127,7 +116,7 @@ class Elements:
             if self.varied:
                 bends = np.concatenate([(1 + 3 * phi) * bends, -2 * phi * bends], 1) / (1 + phi)
                 rows = np.pad(gamma, ((0, 0), (0, gamma.shape[1])))
-            yield Side(i, j, e, bends, rows - bends)
+            yield i, j, e, bends, rows - bends
 
 
 def shear_and_bending(each: Elements, t: float, material: Ply) -> tuple[Rows, Rows]:
@@ -149,16 +138,14 @@ def shear_and_bending(each: Elements, t: float, material: Ply) -> tuple[Rows, Ro
     if each.varied:
         kappa = np.concatenate([kappa, np.zeros_like(kappa)], -1)
     gamma = np.zeros(())
-    for k, side in enumerate(each.sheared(t, material)):
-        bulge = np.swapaxes(side.e, 1, 2)[:, :2] * (-1.5 * side.bends / (side.e**2).sum(2))[:, None]
+    for k, (i, j, e, bends, shears) in enumerate(each.sheared(t, material)):
+        bulge = np.swapaxes(e, 1, 2)[:, :2] * (-1.5 * bends / (e**2).sum(2))[:, None]
         slope = bows[:, :, :, k, None]
         x, y = slope[:, :, 0] * bulge[:, None, 0], slope[:, :, 1] * bulge[:, None, 1]
         xy = slope[:, :, 0] * bulge[:, None, 1] + slope[:, :, 1] * bulge[:, None, 0]
         kappa = kappa + np.stack([x, y, xy], 2)
-        field = (
-            N[:, side.i, None] * g[:, None, :, side.j] - N[:, side.j, None] * g[:, None, :, side.i]
-        )
-        gamma = gamma + field[..., None] * side.shears[:, None, None]
+        field = N[:, i, None] * g[:, None, :, j] - N[:, j, None] * g[:, None, :, i]
+        gamma = gamma + field[..., None] * shears[:, None, None]
     m = each.m[:, :2, None] / np.linalg.norm(each.m[:, :2], axis=1)[:, None, None]
     G = material.G[1] * np.eye(2) + (material.G[0] - material.G[1]) * m @ np.swapaxes(m, 1, 2)
     relief = np.swapaxes(bows - bows.mean(1, keepdims=True), 2, 3) @ G[:, None]

@@ -112,7 +112,7 @@ def shell(
     thickness: float,
     offset: float,
     varied: bool,
-) -> common.ElementMatrices:
+) -> common.Matrices:
     """Matrices of shells, DOFs (u, r) node by node in global axes.
 
     Parameters
@@ -130,9 +130,11 @@ def shell(
             shell(X[some], d[some], narrow[some], m[some], material, thickness, offset, varied)
             for some in (slice(k, k + AT_ONCE) for k in range(0, len(X), AT_ONCE))
         ]
-        named = [[x.stiffness for x in pieces], [x.mass for x in pieces]]
-        K, M = ({k: np.concatenate([x[k] for x in each]) for k in each[0]} for each in named)
-        return common.ElementMatrices(K, M)
+        K, M = (
+            {k: np.concatenate([x[k] for x in each]) for k in each[0]}
+            for each in zip(*pieces, strict=True)
+        )
+        return K, M
     t, r = thickness, offset * d
     x = X + r
     A = common.attachment(r)
@@ -169,11 +171,10 @@ def shell(
     K_1, K_3 = t * sheared, t**3 * bent
     M_1, M_3 = material.rho * t * moved, material.rho * t**3 * turned
     if not varied:
-        return common.ElementMatrices({0: t * stretched + K_1 + K_3}, {0: M_1 + M_3})
+        return {0: t * stretched + K_1 + K_3}, {0: M_1 + M_3}
     n = A.shape[-1]
     (K1, K2, K3), (more, K4, K5) = _by_order(K_1, n), _by_order(K_3, n)
-    K = {1: t * stretched + K1, 2: K2, 3: K3 + more, 4: K4, 5: K5}
-    return common.ElementMatrices(K, {1: M_1, 3: M_3})
+    return {1: t * stretched + K1, 2: K2, 3: K3 + more, 4: K4, 5: K5}, {1: M_1, 3: M_3}
 
 
 def _by_order(K: Floats, n: int) -> tuple[Floats, Floats, Floats]:

@@ -48,7 +48,7 @@ SOLIDS = {
 """Kinds of solids by their number of nodes."""
 
 
-def solid(X: Floats, rho: float, C: Floats) -> common.ElementMatrices:
+def solid(X: Floats, rho: float, C: Floats) -> common.Matrices:
     """Matrices of solids X (elements, nodes, 3), DOFs u node by node in global axes.
 
     C is `modefront.fem.elements.common.elasticity`. From the energy C_ijkl u_i,j u_k,l / 2 with
@@ -79,7 +79,7 @@ def solid(X: Floats, rho: float, C: Floats) -> common.ElementMatrices:
     products = (N[:, :, None] * N[:, None, :]).reshape(len(N), -1)
     m = common.symmetric((weight @ products).reshape(count, X.shape[1], -1))
     M = rho * np.einsum("enm,ij->enimj", m, np.eye(3)).reshape(count, size, size)
-    return common.ElementMatrices({0: K}, {0: M})
+    return {0: K}, {0: M}
 
 
 def solid_stresses(X: Floats, C: Floats) -> common.Stresses:
