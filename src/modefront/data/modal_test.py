@@ -276,9 +276,14 @@ def _from_toml(path: Path) -> ModalTest:
     sets = _set_tables(root, ambient, common)
     root.close()
     refuse(root.faults)
-    setups = _setups(root, sets) if ambient else ()
+    setups, sensors = tuple(map(read_records, sets)) if ambient else (), list[str]()
+    for setup in setups:
+        if sensors and set(sensors).isdisjoint(setup.sensors):
+            expected = f"a sensor that another set has: {', '.join(sorted(set(sensors))[:8])}"
+            found = ", ".join(setup.sensors[:8])
+            raise InputError(Fault(root.file, f"[[set]] {setup.name!r}", expected, found))
+        sensors += setup.sensors
     data_sets = () if ambient else tuple(_data_set(root, each) for each in sets)
-    sensors = [x for each in setups for x in each.sensors]
     sensors += [x for each in data_sets for x in each.data.responses]
     for place in places:
         if place not in sensors:
@@ -321,19 +326,6 @@ def _set_tables(root: opt.Table, ambient: bool, common: SetFiles) -> list[SetFil
         out.append(known)
     for name in opt.repeated(known.name for known in out):
         root.fault("[[set]]", "a name for each data set", f"{name!r} twice")
-    return out
-
-
-def _setups(root: opt.Table, sets: Sequence[SetFiles]) -> tuple[Records, ...]:
-    """Return the records of an ambient test, of which every set is a setup."""
-    out = tuple(map(read_records, sets))
-    joined_to = set(out[0].sensors)
-    for each in out[1:]:
-        if joined_to.isdisjoint(each.sensors):
-            expected = f"a sensor that another set has: {', '.join(sorted(joined_to)[:8])}"
-            found = ", ".join(each.sensors[:8])
-            raise InputError(Fault(root.file, f"[[set]] {each.name!r}", expected, found))
-        joined_to.update(each.sensors)
     return out
 
 
