@@ -255,8 +255,7 @@ def averaged_blows(
         if len(steps) < 2 or steps.min() <= 0 or np.ptp(steps) > EVEN * steps.mean():
             faults.append(Fault(blow.file, blow.place, "a time axis of even steps", "another"))
         elif len(blow.time) != len(time) or abs(np.ptp(blow.time) / np.ptp(time) - 1) > EVEN:
-            pair = blow.time, time
-            here, there = (f"{len(t)} samples over {np.ptp(t):.6g} s" for t in pair)
+            here, there = (f"{len(t)} samples over {np.ptp(t):.6g} s" for t in (blow.time, time))
             expected = f"records of {there}, as in {blows[0].file}"
             faults.append(Fault(blow.file, blow.place, expected, here))
         elif not all((np.abs(x) <= LARGEST).all() for x in (blow.force, *blow.responses.values())):

@@ -405,8 +405,7 @@ def read_uff55(path: Path) -> NodalModes:
     """
     known: dict[int, Callable[[Block], Sequence[Any]]]
     known = {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode}
-    what = "a universal file with modes (dataset 55)"
-    old, new, systems, modes = _decoded(path, what, 55, known)
+    old, new, systems, modes = _decoded(path, "a universal file with modes (dataset 55)", 55, known)
     once(path, "nodes", "each node", (node for node, *_ in old + new))
     return _assembled(path, modes, old + new, dict(systems))
 

@@ -216,8 +216,7 @@ def selection_matrix(
     faults = list[Fault]()
     for n in np.flatnonzero(abs(selection).sum(1) == 0).tolist():
         found = f"{sensors[n].direction!r} at node {nodes[n]}, which is held or has no stiffness"
-        place = f"sensor {sensors[n].name!r}"
-        faults.append(Fault("", place, "a direction that can move", found))
+        faults.append(Fault("", f"sensor {sensors[n].name!r}", "a direction that can move", found))
     refuse(faults)
     return selection
 

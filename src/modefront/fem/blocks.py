@@ -62,8 +62,7 @@ def blocks_of(X: Floats, structure: members.Structure, faults: list[Fault]) -> l
             x, t = X[cells], group.thickness
             m, r, varied = _grain(x, group), group.offset * d, structure.varied_thickness
             given = m, group.material, t, group.offset, group.name in varied
-            ply = common.ply(group.material)
-            internal = partial(shell.shell_stresses, x, r, m, ply, t)
+            internal = partial(shell.shell_stresses, x, r, m, common.ply(group.material), t)
             made = shell.shell(x, d, narrow, *given)
             blocks.append(Block(group.name, cells, SIX, *made, rigid=True, internal=internal))
     for member in (*structure.groups, *structure.springs, *structure.masses):

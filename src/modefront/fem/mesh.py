@@ -127,8 +127,7 @@ def read_mesh(path: str | Path) -> Mesh:
     """
     path = Path(path)
     if importlib.util.find_spec("meshio") is None:
-        expected = "meshio for meshes (`pip install modefront[mesh]`)"
-        raise wrong(path, expected, "no such package")
+        raise wrong(path, "meshio for meshes (`pip install modefront[mesh]`)", "no such package")
     size = file_size(path, "a mesh", MOST_DATA)
     memory = min(available_memory(), MEMORY + PER_BYTE * size)
     arrays, parts = isolated(f"{__name__}:read_with_meshio", path, READABLE, memory=memory)

@@ -37,8 +37,7 @@ class DofTable:
 
     def of_direction(self, direction: str) -> list[tuple[int, float]]:
         """Return all degrees of freedom of nodes in a direction, each with the weight 1."""
-        number = number_of(direction)
-        chosen = np.flatnonzero((self.direction == number) & (self.node > 0))
+        chosen = np.flatnonzero((self.direction == number_of(direction)) & (self.node > 0))
         return [(dof, 1.0) for dof in chosen.tolist()]
 
     def sensor(self, node: int, direction: str | Sequence[float]) -> list[tuple[int, float]]:

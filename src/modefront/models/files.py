@@ -149,8 +149,7 @@ def _matlab(path: Path, name: str) -> Any:
         return hdf5.variable(path, _chosen(path, name, hdf5.variables(path)))
     known = {each: shape for each, shape, _ in scipy.io.whosmat(path)}
     chosen = _chosen(path, name, known)
-    found = scipy.io.loadmat(path, variable_names=[chosen], chars_as_strings=False)
-    A = found[chosen]
+    A = scipy.io.loadmat(path, variable_names=[chosen], chars_as_strings=False)[chosen]
     if A.dtype.kind not in "biufc":
         raise ValueError(f"'{chosen}' is no matrix of numbers")
     if scipy.sparse.issparse(A):

@@ -325,8 +325,7 @@ def select(
     for row, (name, spec) in enumerate(sensors.items()):
         for dof, weight in [(spec, 1.0)] if isinstance(spec, int | np.integer) else spec:
             if not 0 <= dof < size:
-                expected = f"a degree of freedom from 0 to {size - 1}"
-                raise wrong(f"{place} '{name}'", expected, dof)
+                raise wrong(f"{place} '{name}'", f"a degree of freedom from 0 to {size - 1}", dof)
             selection[row, dof] += weight
     return selection.tocsr()
 

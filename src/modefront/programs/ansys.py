@@ -136,8 +136,7 @@ def _labels(path: Path, options: JobOptions, size: int) -> DofTable:
         listed = sorted((int(a), int(b), directions.get(c.upper(), 0)) for a, b, c, *_ in rows)
         number, node, direction = np.array(listed, dtype=np.intp).reshape(-1, 3).T
         if not np.array_equal(number, np.arange(1, len(listed) + 1)):
-            expected = "one line for each equation: equation, node, direction"
-            raise wrong(mapping, expected, "others")
+            raise wrong(mapping, "one line for each equation: equation, node, direction", "others")
         return DofTable(node, direction, np.ones(len(listed)))
     is_mapped = all(file.is_file() for file in maps) and not options.dofs
     return _maps(*maps) if is_mapped else given_table(options, size)

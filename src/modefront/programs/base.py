@@ -290,8 +290,7 @@ def columns(path: Path, separator: str | None, kinds: str, *, comment: str) -> l
             table = np.loadtxt(path, form, comment, separator, ndmin=1, encoding="latin-1")
     except (ValueError, OverflowError, UserWarning) as error:
         numbers = {"i": r"[+-]?\d+", "f": NUMBER.pattern}
-        between = r"\s*[\s,.]\s*"
-        row = re.compile(between.join(numbers[kind] for kind in kinds), re.IGNORECASE)
+        row = re.compile(r"\s*[\s,.]\s*".join(numbers[kind] for kind in kinds), re.IGNORECASE)
         with path.open(encoding="latin-1") as file:
             rows = ((k, x.partition(comment)[0].strip()) for k, x in enumerate(file, start=1))
             bad = ((repr(x[:60]), f"line {k}") for k, x in rows if x and not row.fullmatch(x))

@@ -151,8 +151,7 @@ def _changed(old: str, new: str) -> Numbers | None:
 
 def write_changes(path: Path, changes: Sequence[Change]) -> None:
     """Write changes as JSON."""
-    text = json.dumps([asdict(each) for each in changes], indent=1)
-    write_text(path, text + "\n")
+    write_text(path, json.dumps([asdict(each) for each in changes], indent=1) + "\n")
 
 
 def read_changes(path: Path) -> list[Change]:

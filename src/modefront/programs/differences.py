@@ -269,8 +269,7 @@ def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]
     dofs = _support(term)
     if dofs.size == 0 or dofs.size > 60:  # decomposing many takes long
         return term, None if dofs.size else 0
-    dense = term[dofs][:, dofs].toarray()
-    values, vectors = np.linalg.eigh(dense)
+    values, vectors = np.linalg.eigh(term[dofs][:, dofs].toarray())
     limit = max(noise * float(np.abs(A.diagonal()[dofs]).max()), ACCUMULATED * np.abs(values).max())
     strong = np.abs(values) > limit
     rank = int(strong.sum())

@@ -78,8 +78,7 @@ def _deck(path: Path, options: base.JobOptions, notes: list[str]) -> "Bulk | Non
 
 def _from_op4(path: Path, options: base.JobOptions) -> base.Listed:
     matrices = read_op4(path)
-    names = _pair(path, matrices, options)
-    (K, digits), (M, others) = (matrices[name] for name in names)
+    (K, digits), (M, others) = (matrices[name] for name in _pair(path, matrices, options))
     deck = _deck(path, options, notes := list[str]())
     dofs, precision = base.given_table(options, K.shape[0]), max(digits, others)
     listed = base.Listed((path, path), (K, M), dofs, precision, notes=notes)

@@ -137,8 +137,7 @@ def _strings(matrix: _Columns, body: Ints) -> Ints:
             length, row = words[position] // STRING - 1, words[position] % STRING
         after = position + header + length
         if length <= 0 or row <= 0 or after > body.size:
-            found = f"strings that do not fill column {matrix.column} of '{matrix.name}'"
-            raise ValueError(found)
+            raise ValueError(f"strings that do not fill column {matrix.column} of '{matrix.name}'")
         keep[position : position + header] = False
         matrix.places.append((matrix.column, row, length))
         position = after
@@ -192,8 +191,7 @@ def _text(lines: Iterator[bytes]) -> Iterator[tuple[str, Op4Matrix]]:
             (total == strings + k * headers).all() for k in (0, 1)
         ):
             raise ValueError(f"other numbers of values in '{matrix.name}' than its headers say")
-        values = fixed_width(b"".join(texts), width)
-        yield matrix.matrix(values, given, 10.0 ** -int(form[2]))
+        yield matrix.matrix(fixed_width(b"".join(texts), width), given, 10.0 ** -int(form[2]))
 
 
 DmigMatrix: TypeAlias = tuple[Ints, Floats, float]

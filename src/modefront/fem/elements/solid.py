@@ -70,8 +70,7 @@ def solid(X: Floats, rho: float, C: Floats) -> common.Matrices:
     K = (P @ C.transpose(1, 3, 0, 2).reshape(9, 9)).reshape(count, n, n, 3, 3)
     K = common.symmetric(K.transpose(0, 1, 3, 2, 4).reshape(count, 3 * n, 3 * n))
     if 3 * n > size:  # the amplitudes of the modes are condensed out
-        K_ki = K[:, :size, size:]
-        within = K_ki @ np.linalg.solve(K[:, size:, size:], K[:, size:, :size])
+        within = K[:, :size, size:] @ np.linalg.solve(K[:, size:, size:], K[:, size:, :size])
         K = common.symmetric(K[:, :size, :size] - within)
     xi, w = kind.mass
     N, dN = kind.cell.shape(xi)

@@ -138,8 +138,7 @@ def _modes(models: Sequence[Floats], count: int) -> _Sought:
         Y = np.hstack([modes.Phi[:, :count] for modes in found]) / np.sqrt(lam - space.sigma)
 
         def residuals_of(some: Ints) -> Floats:
-            X = space.combine(Y[:, some])
-            return residuals(space.pencil, thetas[some], lam[some], X)
+            return residuals(space.pencil, thetas[some], lam[some], space.combine(Y[:, some]))
 
         return Y, lam, residuals_of
 
