@@ -107,7 +107,7 @@ def _from_full(words: _Words, path: Path) -> Listed:
     else:
         M = _rows(words, long(27, 28), terms, size)
     notes = ["there is a damping matrix, which is left out"] if int(header[34]) else []
-    return Listed((path, path), (K, M), dofs, free=identifiers > 0, notes=notes)
+    return Listed((path, path), (K, M), dofs, free=lambda *_: identifiers > 0, notes=notes)
 
 
 def _rows(words: _Words, position: int, terms: int, size: int) -> scipy.sparse.coo_array:

@@ -192,8 +192,8 @@ class Listed:
     # node and direction of each row; those of `given_table` where no file tells them
     dofs: DofTable
     precision: float = 1e-15  # relative error of the numbers, that of binary doubles unless given
-    # which rows are not held, (N,), or what returns it, given both matrices; None for all
-    free: Bools | Callable[[Matrix, Matrix], Bools] | None = None
+    # returns which rows are not held, (N,), given both matrices
+    free: Callable[[Matrix, Matrix], Bools] = lambda K, _: np.ones(K.shape[0], bool)
     # whether files say how many entries they have; else those that are cut off at a line show by
     # mass without stiffness, which is refused
     counted: bool = True
@@ -229,8 +229,7 @@ def parts_of_job(path: Path, program: str, *given: str) -> Read:
         found = f"none at {alone.size} of them, the first {table.label(int(alone[0]))}"
         expected = "stiffness at all degrees of freedom that have mass (is the file cut off?)"
         raise wrong(listed.files[0], expected, found)
-    unheld = listed.free(K, M) if callable(listed.free) else listed.free
-    free = np.arange(table.size) if unheld is None else np.flatnonzero(unheld)
+    free = np.flatnonzero(listed.free(K, M))
     if free.size < table.size:
         notes.append(f"{table.size - free.size} degrees of freedom that are held are left out")
         K, M = K[free][:, free].tocsr(), M[free][:, free].tocsr()
