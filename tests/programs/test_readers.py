@@ -164,7 +164,8 @@ def test_a_line_of_calculix_that_is_no_row_is_shown(tmp_path: Path) -> None:
     write_calculix(tmp_path / "a", K, M, labels())
     (tmp_path / "a.inp").write_text("*STEP\n")
     refused("calculix", tmp_path / "a", r"a\.inp: file: expected nodes \(\*NODE\), found none")
-    (tmp_path / "a.inp").unlink()
+    (tmp_path / "a.inp").write_text("*NODE, INPUT=nodes.inp\n")
+    assert read("calculix", tmp_path / "a").mesh is not None
     file = tmp_path / "a.sti"
     lines = file.read_text().splitlines()
     for wrong in ("5 x 1.0", "5 6", "5 6 1.0 1.0", "5 6 1.0e"):

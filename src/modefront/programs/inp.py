@@ -74,8 +74,9 @@ def read_deck(path: Path) -> Deck:
     if not path.is_file():
         raise FileNotFoundError(f"no file {path.name}")
     ended(path)
-    more = False
+    more = False  # whether other lines make nodes, or these may be in another file
     for keyword, options, rows in _blocks(path):
+        more |= "INPUT" in options or keyword in ("NGEN", "NFILL", "NCOPY", "NMAP")
         if take := _TAKEN.get(keyword):
             try:
                 take(deck, options, rows)
@@ -87,8 +88,6 @@ def read_deck(path: Path) -> Deck:
             deck.guides += [options.get(name, "") for name in ("REF NODE", "ROT NODE")]
         elif keyword in ("PART", "INSTANCE"):
             deck.parts = True
-        elif keyword in ("INCLUDE", "NGEN", "NFILL", "NCOPY", "NMAP"):
-            more = True  # they make nodes, or may have them in another file
     if not deck.parts and not more:
         if not deck.nodes:
             raise wrong(path, "nodes (*NODE)", "none")
