@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from scipy.io import savemat
@@ -52,12 +53,15 @@ def _write(folder: Path, ending: str) -> str:
         return '[sensors]\na = "1Z"\nb = "2-Z"\n'
     if ending == "npy":
         np.save(path, Y.T)
+    elif ending == "7.3.mat":
+        with h5py.File(path, "w") as file:  # which keeps columns as rows
+            file["y"], file["fs"] = Y.T, [[16.0]]
     else:
         savemat(path, {"y": Y, "fs": 16.0})
     return arrays
 
 
-@pytest.mark.parametrize("ending", ["csv", "uff", "npy", "mat"])
+@pytest.mark.parametrize("ending", ["csv", "uff", "npy", "mat", "7.3.mat"])
 def test_every_format_gives_the_records(tmp_path: Path, ending: str) -> None:
     more = _write(tmp_path, ending)
     (tmp_path / "t.toml").write_text(f'{HEAD}files = ["y.{ending}"]\n{more}')
