@@ -29,7 +29,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import wrong
-from modefront.fem.elements.common import Matrices, attachment, congruence, symmetric
+from modefront.fem.elements.common import Matrices, attachment, symmetric
 from modefront.fem.section import Material, Section
 from modefront.rounding import COMPUTED
 
@@ -177,7 +177,7 @@ def beam(
     if released:
         a = release(K, released) @ a
     elongation = L[:, None] * (df[:, :1, U] @ a)[:, 0]
-    K, M, K_G = (congruence(a, each) for each in (K, M, K_G))
+    K, M, K_G = (symmetric(np.swapaxes(a, 1, 2) @ (each @ a)) for each in (K, M, K_G))
     return ({0: K}, {0: M}), Axial(elongation, L, E * A, K_G)
 
 

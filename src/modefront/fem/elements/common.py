@@ -85,11 +85,6 @@ def attachment(r: Floats, R: Floats | None = None) -> Floats:
     return A.reshape(count, nodes, 6, 6 * nodes)
 
 
-def congruence(A: Floats, K: Floats) -> Floats:
-    """A^T K A, symmetric to the last digit."""
-    return symmetric(np.swapaxes(A, -1, -2) @ (K @ A))
-
-
 VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
 """Numbers of the components ij of stress and strain in the order 11, 22, 33, 23, 13, 12."""
 

@@ -39,8 +39,11 @@ def membrane(each: Elements, t: float, material: Ply) -> Rows:
     share = 1 / (1 + (np.max(rise, axis=0) / t) ** 2)[:, 0, 0]
     in_plane = np.stack([each.U[:, :, 0], each.U[:, :, 1], each.theta], 2)
     in_plane = in_plane.reshape(len(share), 9, -1)
-    B = basic_strain(each.x[..., :2], 1.5 * share) @ in_plane + curved_sides(each)
-    T, K_theta = higher_stiffness(each.x[..., :2], D)
+    # In Felippa's notation x_ij = x_i - x_j; node k of the cyclic triple (i, j, k).
+    X, Y = np.moveaxis(each.x[:, :, None, :2] - each.x[:, None, :, :2], -1, 0)
+    twice_A = X[:, 1, 0] * Y[:, 2, 0] - X[:, 2, 0] * Y[:, 1, 0]
+    B = basic_strain(X, Y, 1.5 * share) / twice_A[:, None, None] @ in_plane + curved_sides(each)
+    T, K_theta = higher_stiffness(X, Y, twice_A / 2, D)
     nu2 = material.D[0, 1] ** 2 / material.D[0, 0] / material.D[1, 1]
     beta = 0.75 * max((1 - 4 * nu2) / 2, 0.01)
     weights = np.stack([D, beta * K_theta], 1)
@@ -66,12 +69,9 @@ def curved_sides(each: Elements) -> Floats:
     return np.asarray(np.linalg.solve(np.stack(natural, 1), np.stack(strains, 1)))
 
 
-def basic_strain(x: Floats, alpha: Floats) -> Floats:
-    """Return B (elements, 3, 9) with alpha (elements,), DOFs u, v, theta node by node."""
-    # In Felippa's notation x_ij = x_i - x_j; node k of the cyclic triple (i, j, k).
-    d = x[:, :, None] - x[:, None]
-    X, Y = d[..., 0], d[..., 1]
-    L = np.zeros((len(x), 3, 3, 3))
+def basic_strain(X: Floats, Y: Floats, alpha: Floats) -> Floats:
+    """Return 2 A B (elements, 3, 9) with alpha (elements,), DOFs u, v, theta node by node."""
+    L = np.zeros((len(X), 3, 3, 3))
     for n in range(3):
         j, k = (n + 1) % 3, (n + 2) % 3
         y_jk, x_kj = Y[:, j, k], X[:, k, j]
@@ -80,18 +80,15 @@ def basic_strain(x: Floats, alpha: Floats) -> Floats:
         L[:, 0, n, 2] = alpha / 6 * y_jk * (Y[:, n, k] - Y[:, j, n])
         L[:, 1, n, 2] = alpha / 6 * x_kj * (X[:, k, n] - X[:, n, j])
         L[:, 2, n, 2] = alpha / 3 * (X[:, k, n] * Y[:, n, k] - X[:, n, j] * Y[:, j, n])
-    twice_A = X[:, 1, 0] * Y[:, 2, 0] - X[:, 2, 0] * Y[:, 1, 0]
-    return np.asarray(L.reshape(-1, 3, 9) / twice_A[:, None, None])
+    return L.reshape(-1, 3, 9)
 
 
-def higher_stiffness(x: Floats, D: Floats) -> tuple[Floats, Floats]:
+def higher_stiffness(X: Floats, Y: Floats, area: Floats, D: Floats) -> tuple[Floats, Floats]:
     """Return T (elements, 3, 9), DOFs u, v, theta node by node, and K_theta (elements, 3, 3)."""
-    d = x[:, :, None] - x[:, None]
-    X, Y = d[..., 0], d[..., 1]
-    A = ((X[:, 1, 0] * Y[:, 2, 0] - X[:, 2, 0] * Y[:, 1, 0]) / 2)[:, None, None]
-    l2 = np.stack([(d[:, i, j] ** 2).sum(-1) for i, j in ((1, 0), (2, 1), (0, 2))], -1)
-    T = np.zeros((len(x), 3, 9))
-    T_e = np.zeros((len(x), 3, 3))
+    A = area[:, None, None]
+    l2 = np.stack([X[:, i, j] ** 2 + Y[:, i, j] ** 2 for i, j in ((1, 0), (2, 1), (0, 2))], -1)
+    T = np.zeros((len(X), 3, 9))
+    T_e = np.zeros((len(X), 3, 3))
     for n in range(3):
         j, k = (n + 1) % 3, (n + 2) % 3
         T[:, :, 3 * n] = X[:, k, j, None] / (4 * A[..., 0])
@@ -103,7 +100,7 @@ def higher_stiffness(x: Floats, D: Floats) -> tuple[Floats, Floats]:
         T_e[:, 2, n] = (Y[:, j, k] * X[:, k, n] + X[:, k, j] * Y[:, n, k]) * l2[:, n]
     T_e /= 4 * A**2
     D_natural = np.swapaxes(T_e, 1, 2) @ D @ T_e
-    K_theta = np.zeros((len(x), 3, 3))
+    K_theta = np.zeros((len(X), 3, 3))
     for n in range(3):
         Q = (DISTORTIONS[n] + DISTORTIONS[(n + 1) % 3]) / 3 * A / l2[:, :, None]
         K_theta += np.swapaxes(Q, 1, 2) @ D_natural @ Q
