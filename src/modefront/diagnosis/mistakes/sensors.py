@@ -122,8 +122,13 @@ def odd_sensor(old: Explanation) -> Iterator[Mistake]:
 
 
 def reversed_value(old: Explanation) -> Iterator[Mistake]:
-    """Yield single components, of shapes that one data set alone has, with the other sign."""
+    """Yield single components, of shapes that one data set alone has, with the other sign.
+
+    Magnitudes have none.
+    """
     state, names = old.state, old.data
+    if any(each.kind == "unsigned-shapes" for each in old.mistakes):
+        return
     once = state.seen & (state.seen.any(axis=2).sum(axis=0) == 1)[:, None]
     for k, r, s in np.argwhere(once).tolist():
         numbers = {"mode": names.modes[r], "sensor": names.sensors[s]}
