@@ -19,7 +19,7 @@ from modefront.front.subproblems import Least
 from modefront.optim.sqp import Solution
 from modefront.study.estimate import SHORT, TIMED, duration, estimate
 from modefront.study.examples import write_example
-from modefront.work.progress import State, listening, note, note_iteration
+from modefront.work.progress import State, listening, note, note_iteration, together
 from modefront.work.task import Costs
 
 
@@ -34,7 +34,7 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     costs = Costs()
     lines = _Lines("a study of a bridge", costs, lambda: now, began=0.0)
     assert drawn(lines, 80)[1] == "starting"
-    lines.take(State("front", 2, 1, 27, (100.0, 400.0)))
+    lines.take(State("front", 2, 1, (100.0, 400.0)))
     now, costs.eigenproblems = 30.0, 143
     with listening(lines.hear):
         note("search 7 of 60")
@@ -49,7 +49,7 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     with listening(lines.hear):
         note("search 8 of 60")
     assert "search 8 of 60, 143 models" in drawn(lines, 80)[1], "a new one has no steps yet"
-    lines.take(State("front", 3, 0, 27, (50.0, np.inf)))
+    lines.take(State("front", 3, 0, (50.0, np.inf)))
     now = 40.0
     assert drawn(lines, 80)[1] == "front, 143 models solved, 40 s or more"
     lines.is_done = True
@@ -58,15 +58,17 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
 
 def test_what_is_not_known_of_the_time_is_not_said() -> None:
     lines = _Lines("a study", Costs(), lambda: 0.0, began=0.0)
-    lines.take(State("predict", 3, 1, 9, (0.2, 40.0), (2, 8)))
+    lines.take(State("predict", 3, 1, (0.2, 40.0), 2, (8, 8)))
     assert drawn(lines, 80)[1] == "predictions 2 of 8, at most 40 s left"
-    lines.take(State("edges", 349, 1, 384, (0.0, np.inf), (349, 350)))
+    lines.take(State("bootstrap", 3, 1, (0.2, 40.0), 2, (8, 12)))
+    assert drawn(lines, 80)[1] == "bootstrap 2 of 8 to 12, at most 40 s left"
+    lines.take(State("edges", 349, 1, (0.0, np.inf), 349))
     assert drawn(lines, 80)[1] == "edges and weighted models 349, longer than expected"
 
 
 def test_nothing_is_cut_in_a_narrow_terminal() -> None:
     lines = _Lines("three-story C0, chain M0", Costs(), lambda: 0.0, began=0.0)
-    lines.take(State("probe-basis", 12, 1, 12345, (3000.0, 5000.0)))
+    lines.take(State("probe-basis", 12, 1, (3000.0, 5000.0)))
     lines.hear("search 12 of at most 1000000")
     text = " ".join(" ".join(drawn(lines, 40)).split())
     assert "…" not in text
@@ -77,8 +79,8 @@ def test_a_log_has_a_line_a_stage() -> None:
     stream = io.StringIO()
     log = _Log(Console(file=stream), "a\x1b[31m")
     for done in range(3):
-        log(State("front", done, 1, 20, (100.0 * done, 400.0)))
-    log(State("edges", 3, 0, 20, None))
+        log(State("front", done, 1, (100.0 * done, 400.0)))
+    log(State("edges", 3, 0, None))
     assert stream.getvalue() == (
         "a\\x1b[31m: 0 tasks done: front, at most 7 min left\n"
         "a\\x1b[31m: 3 tasks done: edges and weighted models\n"
@@ -103,7 +105,7 @@ def test_as_many_searches_are_timed_whatever_the_first_ones_take(
     found = estimate(mf.load(tmp_path / "study.toml"))
     assert found is not None
     assert len(now) == 1 + TIMED
-    assert found.plan.search == pytest.approx(10.0)
+    assert found.search == pytest.approx(10.0)
 
 
 def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Path) -> None:
@@ -111,24 +113,24 @@ def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Pat
     study = mf.load(tmp_path / "study.toml")
     short = estimate(study)
     assert short is not None
-    few, many = (sum(x) for x in zip(*short.plan.searches.values(), strict=True))
+    few, many = (sum(x) for x in zip(*short.searches.values(), strict=True))
     assert 20 < few < 85 < many < 1000, "a run makes about 85 searches"
-    assert not short.plan.other, "with weight = 0 there is no posterior to draw from"
+    assert not short.other, "with weight = 0 there is no posterior to draw from"
     least, most = short.range
-    assert least == pytest.approx(few * short.plan.search)
-    assert least < most < many * short.plan.search, "not all long"
+    assert least == pytest.approx(few * short.search)
+    assert least < most < many * short.search, "not all long"
     assert "searches of" in short.text
     started = estimate(study, 10.0)  # seconds until the study was read
     assert started is not None
-    before, after = np.subtract(started.range, started.plan.seconds)
+    before, after = np.subtract(started.range, together(started.plan.values()))
     assert before == pytest.approx(10.0)
     assert after < 20.0
     small = estimate(replace(study, search=Search(evaluations=100)))
     assert small is not None
-    assert small.plan.searches["edges"][1] < short.plan.searches["edges"][1]
+    assert small.searches["edges"][1] < short.searches["edges"][1]
     points = estimate(replace(study, pareto=mf.Pareto(points=9000)))
     assert points is not None
-    assert points.plan.searches["front"][0] > 100 * short.plan.searches["front"][0]
+    assert points.searches["front"][0] > 100 * short.searches["front"][0]
 
 
 def test_predictions_are_timed_with_few_samples(tmp_path: Path) -> None:
@@ -143,7 +145,7 @@ def test_predictions_are_timed_with_few_samples(tmp_path: Path) -> None:
     assert long is not None
     assert short is not None
     assert long.range[0] > SHORT + short.range[1]
-    assert long.plan.searches == short.plan.searches
+    assert long.searches == short.searches
     assert "for predictions" in long.text
     assert any("prediction 'noise': fewer samples" in text for text in long.advice)
     assert long.advice[-1].startswith("--workers")

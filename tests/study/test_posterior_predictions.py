@@ -244,7 +244,8 @@ def test_more_draws_cost_only_themselves(drawn: xr.Dataset, tmp_path: Path) -> N
     np.testing.assert_array_equal(data["posterior_frf_peak_std"], drawn["posterior_frf_peak_std"])
     # The last extent that is told is that of the work: of 8 models, 4 on axes, 7 drawn, and ranges.
     last = states[-1]
-    assert (last.done, last.running) == (last.expected, 0)
+    assert last.extent is not None
+    assert (last.of_stage, last.of_stage, last.running) == (*last.extent, 0)
     of_predictions = {state.done for state in states if state.stage == "predict"}
     assert max(of_predictions) - min(of_predictions) == 6 * (8 + 2 * 2 + 7 + 1) + 1
 

@@ -71,7 +71,7 @@ def analyse_front(
     sizes = front.scale if source is not None else None
     samples = uncertainty.bootstrap
     solutions = 1 if sizes is None else len(front.points)
-    work.expect({"second-derivatives": solutions, "bootstrap": samples})
+    work.expect({"second-derivatives": (solutions,) * 2, "bootstrap": (samples, samples)})
     part, points = _identifiable_part(problem, front, pareto, identifiability.flat, work)
     manifolds = _manifolds(problem, front, identifiability, work)
     reference = front.reference

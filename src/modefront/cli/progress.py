@@ -15,7 +15,7 @@ from rich.text import Text
 
 from modefront.study.estimate import duration
 from modefront.text import NAME, clean
-from modefront.work.progress import COUNTED, ITERATION, Plan, Progress, State, listening
+from modefront.work.progress import ITERATION, Progress, Span, State, listening
 from modefront.work.task import Costs, counted
 
 TITLES: Mapping[str, str] = {
@@ -45,7 +45,7 @@ WIDTH, LEAST = 24, 8
 
 
 @contextmanager
-def progress_bar(title: str, plan: Plan | None) -> Iterator[Progress]:
+def progress_bar(title: str, plan: Mapping[str, Span] | None) -> Iterator[Progress]:
     """Show how many tasks are done, what goes on and the time that is left by a plan of the run."""
     screen = Console(stderr=True)
     if not screen.is_terminal:
@@ -117,9 +117,11 @@ class _Lines:
             return f"done, {self.costs.model_evaluations} models solved"
         if self.state is None or not self.state.stage:
             return "starting"
-        done, expected = self.state.of_stage
-        count = f" {done} of {expected}" if self.state.stage in COUNTED else f" {done}"
-        parts = [_title(self.state.stage) + count * (expected > 1), *self.steps]
+        count = f" {self.state.of_stage}" * (self.state.of_stage > 0)
+        if self.state.extent is not None:
+            ends = dict.fromkeys(max(x, self.state.of_stage) for x in self.state.extent)
+            count = f" {self.state.of_stage} of {' to '.join(map(str, ends))}"
+        parts = [_title(self.state.stage) + count, *self.steps]
         if self.costs.model_evaluations:
             parts.append(f"{self.costs.model_evaluations} models solved")
         parts.append(_left(self.state, self.clock() - self.taken))

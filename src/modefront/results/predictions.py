@@ -243,7 +243,7 @@ def with_predictions(
                 limits.append(found("no-draws", str(error)))
     models = data.sizes["point"] + 2 * len(differences.theta if differences else ()) + len(samples)
     count = sum(models + 1 + (each.kind.check is not None) for each in runner.predictions)
-    runner.work.expect({"predict": count})
+    runner.work.expect({"predict": (count, count)})
     data = _at_points(data, runner, slack)
     values: Values = {}
     coordinates: dict[str, object] = {}

@@ -9,6 +9,7 @@ within the range.
 """
 
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,7 +33,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
 from modefront.uncertainty.inference import STARTS as MAXIMA
 from modefront.uncertainty.sampling import DRAWS, extent
-from modefront.work.progress import Plan, Span, together
+from modefront.work.progress import Span, together
 from modefront.work.task import seed_sequence, uncounted
 
 NEAR = 0.4, 2.0  # time of a search from a known model over that of one from anywhere, from and to
@@ -52,28 +53,36 @@ SAMPLES = 100  # samples with which a prediction is timed, and three times as ma
 class Estimate:
     """The time that a study will probably take."""
 
-    plan: Plan  # what each stage of the run takes
+    search: float  # seconds of a search
+    searches: Mapping[str, Span]  # searches of each stage
+    other: Mapping[str, Span]  # seconds of other stages
     # seconds of the program itself, which starts, reads the study and writes results
     start: Span = (0.0, 0.0)
     # what would make the run shorter, that of the longest part first; none for short runs
     advice: tuple[str, ...] = ()
 
     @property
+    def plan(self) -> dict[str, Span]:
+        """Seconds of each stage."""
+        searches = {x: (a * self.search, b * self.search) for x, (a, b) in self.searches.items()}
+        return {**searches, **self.other}
+
+    @property
     def range(self) -> Span:
         """Seconds in all, by one process."""
-        return together([self.plan.seconds, self.start])
+        return together([together(self.plan.values()), self.start])
 
     @property
     def text(self) -> str:
         """The estimate in a sentence."""
-        counts = (sum(ends) for ends in zip(*self.plan.searches.values(), strict=True))
+        counts = (sum(ends) for ends in zip(*self.searches.values(), strict=True))
         few, many = (max(int(float(f"{count:.0e}")), 1) for count in counts)
-        longest = self.plan.other.get("predict", (0.0, 0.0))
+        longest = self.other.get("predict", (0.0, 0.0))
         times = [" to ".join(map(duration, span)) for span in (self.range, longest)]
         share = f", {times[1]} for predictions" if longest[1] > self.range[1] / 10 else ""
         return (
             f"a run takes {times[0]} of a processor: the number of minima decides "
-            f"({few:,} to {many:,} searches of {duration(self.plan.search)} each{share})"
+            f"({few:,} to {many:,} searches of {duration(self.search)} each{share})"
         )
 
 
@@ -114,15 +123,16 @@ def estimate(study: Study, started: float = 0.0) -> Estimate | None:
             other["predict"] = least + spent / 2, most + 2 * spent
             text = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
             advice.append((2 * spent, text + ", or no slack" * (study.slack > 0)))
-    plan = Plan(search, {stage: span for stage, (span, _) in parts.items()}, other)
-    start, most = (started, 2 * started), plan.seconds[1]
+    searches = {stage: span for stage, (span, _) in parts.items()}
+    out = Estimate(search, searches, other, (started, 2 * started))
+    most = together(out.plan.values())[1]
     if most <= SHORT:
-        return Estimate(plan, start)
+        return out
     advice.sort(key=lambda part: -part[0])
     said = [text for seconds, text in advice if seconds > most / 4 and text]
     if problem.model.size >= 2000 and not is_reduced(problem.model):
         said.insert(0, 'a reduced basis ([model] reduction = "auto")')
-    return Estimate(plan, start, (*said, "--workers N with as many as there are cores"))
+    return replace(out, advice=(*said, "--workers N with as many as there are cores"))
 
 
 def duration(seconds: float) -> str:
@@ -202,6 +212,8 @@ def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
         text = f"fewer evaluations ([pareto] evaluations, now {pareto.evaluations})"
         out["front"] = (count, count), text
     out["optimal-weights"] = near(edges)
+    if n > 1:  # of points, where some of the front is flat
+        out["identifiable"] = (0.0, points * NEAR[1]), ""
     if study.noise.weight:
         out["most-probable"] = (1.0, float(MAXIMA)), ""
     equivalent = 8 * study.identifiability.models * n / evaluations

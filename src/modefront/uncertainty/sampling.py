@@ -239,7 +239,6 @@ def draw_models(
     stage = "sample-posterior"
     tasks = [Task((stage, "peak", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
     peaks = _mixture(noise, work.run(tasks))
-    work.expect({stage: 3 * CHAINS})
     chains: list[Chain | None] = [None] * CHAINS
     kept: list[Floats] = []
     rng = np.random.default_rng(seed_sequence(seed, stage, "near"))
@@ -247,6 +246,7 @@ def draw_models(
     near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), 0, work)
     warm, settled = True, False
     rounds = rounds or -(-LONGEST * count // (CHAINS * ROUND))
+    work.expect({stage: (2 * CHAINS, (WARM + rounds) * CHAINS)})
     for turn in range(WARM + rounds):
         steps = [
             Task(
@@ -278,7 +278,9 @@ def draw_models(
         if stuck or len(kept) == rounds or (settled and size >= count):
             break
         more_rounds = np.ceil(len(kept) * max(count / size - 1, 0.0))  # effective draws add up
-        work.expect({stage: CHAINS * int(np.clip(more_rounds, 1, rounds - len(kept)))})
+        # To expect half as many again is as wrong as the size may be of few rounds.
+        most = int(np.clip(2 * more_rounds, 1, rounds - len(kept)))
+        work.expect({stage: (CHAINS, CHAINS * most)})
     z = np.concatenate(kept, axis=1).reshape(-1, near.problem.start.size)
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
     order = np.linspace(0, len(z) - 1, min(count, len(z))).round().astype(int)

@@ -1,12 +1,13 @@
 """Progress of a run: its stage, tasks done, and the time that is left, as a range.
 
-A stage ends when a task of another one starts. A plan says from and to how many searches each
-stage takes, whatever the others take; a search takes as long as those of edges and front so far,
-and as planned before there are many.
+A stage ends when a task of another one starts. It takes as long as planned, whatever the others
+take. One that says how many tasks are to come, from and to, takes as long as those that it has had:
+of n tasks of the mean m and the variance s, k more take k m ± 2 sqrt(s (k + k² / n)), where s
+counts one task that is m beside the mean.
 """
 
 import math
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -14,18 +15,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from modefront.work.task import Costs
+from modefront.work.task import Costs, Count
 
 Span = tuple[float, float]  # from and to
-
-COUNTED = frozenset(("sample-posterior", "bootstrap", "predict", "second-derivatives"))
-"""Stages whose number of tasks is known when they begin."""
-
-SEARCHES = ("edges", "front")  # stages of which a task is a search
-
-MANY, SIMILAR = 8, (0.6, 1.6)
-"""Searches whose time counts as much as the planned one; time of a task that is left over the mean
-of those before, from and to."""
 
 
 def together(spans: Iterable[Span]) -> Span:
@@ -40,119 +32,106 @@ def together(spans: Iterable[Span]) -> Span:
 
 
 @dataclass(frozen=True)
-class Plan:
-    """Seconds of a search, searches of each stage from and to, and seconds of other stages."""
-
-    search: float = 0.0
-    searches: Mapping[str, Span] = field(default_factory=dict)
-    other: Mapping[str, Span] = field(default_factory=dict)
-
-    @property
-    def seconds(self) -> Span:
-        """Seconds of all stages."""
-        return together(self.of(stage, self.search) for stage in (*self.searches, *self.other))
-
-    def of(self, stage: str, search: float) -> Span:
-        """Return the seconds of a stage, where a search takes so many."""
-        few, many = self.searches.get(stage, (0.0, 0.0))
-        least, most = self.other.get(stage, (0.0, 0.0))
-        return few * search + least, many * search + most
-
-
-@dataclass(frozen=True)
 class State:
     """The state of a run: the stage of the last task that was started, and numbers of tasks.
 
-    ``left`` are the seconds until it ends, from and to, infinite where a search takes longer than
-    planned, None where nothing is; ``of_stage`` tasks of this stage that are done, and expected.
+    ``left`` are the seconds until it ends, from and to, infinite where a stage takes longer than
+    planned, None where nothing is; ``of_stage`` tasks of this stage that are done, and ``extent``
+    how many there are, from and to, None where this is not known.
     """
 
     stage: str
     done: int
     running: int
-    expected: int
     left: Span | None
-    of_stage: tuple[int, int] = (0, 0)
+    of_stage: int = 0
+    extent: Count | None = None
 
 
-# 11 fields: four are given, the others are its state.
+@dataclass
+class _Stage:
+    """What is known of a stage."""
+
+    done: int = 0  # tasks that have ended, of which some may have been kept
+    running: int = 0  # tasks that have started and not ended
+    extent: Count | None = None  # of all its tasks; None where this is not known
+    seconds: list[float] = field(default_factory=list)  # of tasks that were computed
+    has_ended: bool = False
+
+    def left(self, planned: Span) -> Span:
+        """Return the seconds that its tasks to come will take."""
+        count, spent = len(self.seconds), sum(self.seconds)
+        if self.extent is None or not count:
+            least, most = planned
+            low = 0.0 if self.done > count else max(least - spent, 0.0)
+            return low, most - spent if most > spent else math.inf
+        mean = spent / count
+        variance = (mean**2 + sum((x - mean) ** 2 for x in self.seconds)) / count
+        few, many = (max(x - self.done, self.running) for x in self.extent)
+        error = [2 * math.sqrt(variance * (x + x**2 / count)) for x in (few, many)]
+        return max(few * mean - error[0], 0.0), many * mean + error[1]
+
+
 @dataclass
 class Progress:
     """Follows the tasks of a run and calls ``report`` with its state after every change.
 
-    ``spent`` are the costs of tasks that were computed and not kept from an earlier run.
+    ``spent`` are the costs of tasks that were computed and not kept from an earlier run; ``plan``
+    has the seconds of the stages.
     """
 
     report: Callable[[State], object] = lambda _: None
     spent: Costs = field(default_factory=Costs)
     workers: int = 1
-    plan: Plan | None = None
-    _expected: Counter[str] = field(default_factory=Counter)
-    _done: Counter[str] = field(default_factory=Counter)
-    _running: Counter[str] = field(default_factory=Counter)
+    plan: Mapping[str, Span] | None = None
+    _stages: defaultdict[str, _Stage] = field(default_factory=lambda: defaultdict(_Stage))
     _stage: str = ""
-    _computed: Counter[str] = field(default_factory=Counter)
-    _seconds: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))
-    _ended: set[str] = field(default_factory=set)
 
-    def expect(self, stages: Mapping[str, int]) -> None:
-        """Note the number of tasks of each stage that are still to come."""
-        for stage, count in stages.items():
-            self._expected[stage] = self._done[stage] + count
+    def expect(self, stages: Mapping[str, Count]) -> None:
+        """Note the number of tasks of each stage that are still to come, from and to."""
+        for name, (few, many) in stages.items():
+            stage = self._stages[name]
+            if stage.extent is None:
+                stage.seconds.clear()  # of tasks that prepare those
+            stage.extent = stage.done + few, stage.done + many
         self.report(self.state)
 
     def start(self, stage: str) -> None:
         """Take note that a task of a stage is being computed, or taken from what is kept."""
         if stage != self._stage and self._stage:
-            before = self._stage
-            self._expected[before] = self._done[before] + self._running[before]
-            self._ended.add(self._stage)
-        self._ended.discard(stage)
+            self._stages[self._stage].has_ended = True
         self._stage = stage
-        self._running[stage] += 1
+        self._stages[stage].has_ended = False
+        self._stages[stage].running += 1
         self.report(self.state)
 
     def end(self, stage: str, seconds: float | None) -> None:
         """Take note that a task has ended; it took no ``seconds`` where its result was kept."""
-        self._running[stage] -= 1
-        self._done[stage] += 1
+        known = self._stages[stage]
+        known.running -= 1
+        known.done += 1
         if seconds is not None:
-            self._computed[stage] += 1
-            self._seconds[stage] += seconds
+            known.seconds.append(seconds)
         self.report(self.state)
 
     @property
     def state(self) -> State:
         """State of the run."""
-        stages = dict.fromkeys([*self._expected, *self._done, *self._running])
-        extents = {x: max(self._expected[x], self._done[x] + self._running[x]) for x in stages}
-        return State(
-            self._stage,
-            self._done.total(),
-            self._running.total(),
-            sum(extents.values()),
-            self._left(extents),
-            (self._done[self._stage], extents.get(self._stage, 0)),
-        )
+        stages = self._stages.values()
+        done, running = sum(x.done for x in stages), sum(x.running for x in stages)
+        known = self._stages[self._stage] if self._stage else _Stage()
+        return State(self._stage, done, running, self._left(), known.done, known.extent)
 
-    def _left(self, extents: Mapping[str, int]) -> Span | None:
+    def _left(self) -> Span | None:
         """Return the seconds that all stages to come will probably take; None without a plan."""
         if self.plan is None:
             return None
-        count = MANY + sum(self._computed[stage] for stage in SEARCHES)
-        taken = MANY * self.plan.search + sum(self._seconds[stage] for stage in SEARCHES)
-        spans: list[Span] = []
-        for stage in {*self.plan.searches, *self.plan.other} - self._ended:
-            low, high = self.plan.of(stage, taken / count)
-            spent, done = self._seconds[stage], self._computed[stage]
-            if done and stage in COUNTED:
-                mean = (extents[stage] - self._done[stage]) * spent / done
-                low, high = (factor * mean for factor in SIMILAR)
-            else:
-                high = high - spent if high > spent else math.inf
-                low = 0.0 if self._done[stage] > done else max(low - spent, 0.0)
-            spans.append((low, high))
-        least, most = together(spans)
+        told = {name: (0.0, 0.0) for name, x in self._stages.items() if x.extent and x.seconds}
+        least, most = together(
+            self._stages[name].left(planned)
+            for name, planned in {**told, **self.plan}.items()
+            if not self._stages[name].has_ended
+        )
         return least / self.workers, most / self.workers
 
 

@@ -26,7 +26,7 @@ from modefront.outputs import write_bytes, write_text
 from modefront.text import NAME, clean
 from modefront.work.codec import decode, encode
 from modefront.work.progress import Progress
-from modefront.work.task import Costs, Key, R, Task
+from modefront.work.task import Costs, Count, Key, R, Task
 from modefront.work.workers import Workers
 
 FOLDER, NOTE = "tasks", "study"
@@ -149,8 +149,8 @@ class Run:
     backend: Workers = field(default_factory=Workers)
     costs: dict[tuple[Key, Key], Costs] = field(default_factory=dict)
 
-    def expect(self, stages: Mapping[str, int]) -> None:
-        """Note the number of tasks of each stage that are still to come."""
+    def expect(self, stages: Mapping[str, Count]) -> None:
+        """Note the number of tasks of each stage that are still to come, from and to."""
         self.progress.expect(stages)
 
     def run(self, tasks: Sequence[Task[R]], /) -> list[R]:

@@ -79,6 +79,8 @@ Part = str | int | tuple[int, ...]
 
 Key = tuple[Part, ...]  # parts that name a task; the first one names its stage
 
+Count = tuple[int, int]  # from and to
+
 R = TypeVar("R")
 
 
@@ -126,8 +128,8 @@ class Executor(Protocol):
     def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
         """Return the results of independent tasks, in their order."""
 
-    def expect(self, stages: Mapping[str, int]) -> None:
-        """Take note of how many tasks of each stage are still to come, in the order of stages."""
+    def expect(self, stages: Mapping[str, Count]) -> None:
+        """Take note of how many tasks of each stage are still to come, from and to."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +140,7 @@ class Immediate:
         """Return the results of the tasks."""
         return [task() for task in tasks]
 
-    def expect(self, stages: Mapping[str, int]) -> None:
+    def expect(self, stages: Mapping[str, Count]) -> None:
         """Ignore the extent of the work."""
 
 
@@ -156,7 +158,7 @@ class Within:
         """Return the results of the tasks."""
         return self.inner.run([replace(x, turn=(*x.turn, *self.turn)) for x in tasks])
 
-    def expect(self, stages: Mapping[str, int]) -> None:
+    def expect(self, stages: Mapping[str, Count]) -> None:
         """Pass on the extent of the work."""
         self.inner.expect(stages)
 
