@@ -88,7 +88,7 @@ def test_files_of_a_set_are_measured_at_once_and_still_channels_are_left_out(
 @pytest.mark.parametrize(
     ("text", "more", "message"),
     [
-        (_csv("a,b,c"), "", "expected a column 'time' in s"),
+        (_csv("Zeit [s],a,b"), "", r"'columns' in \[\[set\]\] renames others"),
         (_csv("time,a,a"), "", "sensor 'a': expected each sensor once"),
         (_csv(rows=np.column_stack([T**2, *Y])), "", "time: expected a time axis of even steps"),
         (_csv(rows=np.column_stack([T, 0 * Y[0], 0 * Y[1]])), "", "a sensor that moves"),

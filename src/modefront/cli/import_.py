@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from modefront.cli.layout import plural
 from modefront.cli.terminal import say
 from modefront.errors import Fault, InputError
 from modefront.programs.base import JobOptions
-from modefront.study.importing import Imported, describe, import_deck, import_model, refuse_study
+from modefront.study.importing import Imported, import_deck, import_model, refuse_study
 
 
 def run_import(program: str, base: Path, options: JobOptions, output: Path, **given: Any) -> None:
@@ -55,7 +56,9 @@ def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
     for note in imported.notes:
         say(f"  {note}")
     for term in terms.terms:
-        say(f"{term.name}: {describe(term)}")
+        rank = "" if term.rank is None else f", of rank {term.rank}"
+        size = f"{plural(term.dofs, 'degree')} of freedom"
+        say(f"{term.name}: {' and '.join(term.matrices)}, at {size}{rank}")
     for error in imported.errors:
         say(f"the run for checking is what the terms say, to {error:.1e} of the greatest entry")
     if not checks:

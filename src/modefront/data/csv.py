@@ -308,11 +308,10 @@ def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[Said]:
         found = suggestion(name, known) if k < 20 else repr(clean(name, NAME))  # takes time
         faults.append((name, "the name of a quantity or of a sensor of the model", found))
     required = ("mode", "frequency", *(name for name in sensors if name + STD in counts))
-    missing = [name for name in required if name not in counts]
-    faults += [(name, "this column", "no such column") for name in missing]
+    none = "no such column ('columns' in [data] renames others)"
+    faults += [(name, "this column", none) for name in required if name not in counts]
     if sensors and counts.keys().isdisjoint(sensors):
-        expected = "the column of at least one sensor of the model"
-        faults.append((sensors[0], expected, "no such column"))
+        faults.append((sensors[0], "the column of at least one sensor of the model", none))
     several = [(name, count) for name, count in counts.items() if count > 1]
     return faults + [(name, "each column once", f"{n} of this name") for name, n in several]
 

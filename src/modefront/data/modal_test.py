@@ -113,6 +113,7 @@ def _of_file(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]
         header, _ = renamed(own, setup.columns, ())
         if header.count(TIME) != 1 or len(header) < 2:
             expected = "a column 'time' in s, and one for every sensor"
+            expected += " ('columns' in [[set]] renames others)"
             raise wrong(path, expected, ", ".join(header[:6]), "line 1")
         column = header.index(TIME)
         names = [name for name in header if name != TIME]

@@ -10,7 +10,6 @@ import re
 import shutil
 import subprocess
 import tempfile
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -24,7 +23,7 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion, writing
 from modefront.fem.structure import DIRECTIONS
-from modefront.inputs import fortran
+from modefront.inputs import fortran, wrong
 from modefront.models.dofs import number_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.parameters import exponents_of, form_of
@@ -41,7 +40,7 @@ from modefront.programs.changes import (
     text_of,
     write_changes,
 )
-from modefront.programs.differences import Differences, Term, Terms, condensed
+from modefront.programs.differences import Differences, Terms, condensed
 from modefront.programs.inp import DEEPEST, keyword_of
 from modefront.study.file import add_schema
 from modefront.text import Shown, file_name, one_line
@@ -110,8 +109,7 @@ class Imported(Shown):
 def refuse_study(folder: Path) -> None:
     """Raise InputError where a folder has a study."""
     if (study := folder / "study.toml").exists():
-        expected = "a folder without a study, as nothing is overwritten"
-        raise InputError(Fault(str(study), "file", expected, "an existing one"))
+        raise wrong(study, "a folder without a study, as nothing is overwritten", "an existing one")
 
 
 # 9 arguments and many lines: the jobs, and each option of the command by keyword, in turn.
@@ -181,13 +179,15 @@ def import_model(
     notes = list(nominal.notes)
     if program == "abaqus":  # nodes that others make move with the model, or are not told
         identified, gone, stayed = condensed(identified)
-        text = f"{gone} massless degrees of freedom of the program are eliminated exactly"
-        notes += [text] * bool(gone)
-        text = (
-            f"{stayed} degrees of freedom of the program are kept, without nodes: they have mass, "
-            "or several terms act on them, so that to eliminate them were not exact"
-        )
-        notes += [text] * bool(stayed)
+        if gone:
+            notes.append(
+                f"{gone} massless degrees of freedom of the program are eliminated exactly"
+            )
+        if stayed:
+            notes.append(
+                f"{stayed} degrees of freedom of the program are kept, without nodes: they have "
+                "mass, or several terms act on them, so that to eliminate them were not exact"
+            )
     frequencies, floating = _frequencies(identified, modes, notes, progress)
     changed: dict[str, list[Change]] = {}  # by the first run of each parameter
     for name, path, theta in runs:
@@ -249,21 +249,22 @@ def _runs(
     """Return parameter, job and values of all parameters of every run."""
     names = list(parameters)
     given = {name: [x] if isinstance(x, int | float) else list(x) for name, x in factors.items()}
-    places = [("--factor", name) for name in given]
-    places += [("--check", name) for _, values in checks for name in values]
+    named = {"--factor": given, "--check": [name for _, values in checks for name in values]}
     faults = [
         Fault("", option, "a parameter", suggestion(name, names))
-        for option, name in places
+        for option, known in named.items()
+        for name in known
         if name not in names
     ]
-    expected = "a factor above 0, and not 1"
-    faults += [
-        Fault("", f"--factor {name}", expected, f"{factor:g}")
-        for name, each in given.items()
-        for factor in each
-        if name in names and (not 0 < factor < np.inf or factor == 1)
-    ]
-    refuse(faults)
+    refuse(
+        faults
+        + [
+            Fault("", f"--factor {name}", "a factor above 0, and not 1", f"{factor:g}")
+            for name, each in given.items()
+            for factor in each
+            if name in names and (not 0 < factor < np.inf or factor == 1)
+        ]
+    )
     out = []
     for k, (name, jobs) in enumerate(parameters.items()):
         paths = [jobs] if isinstance(jobs, str | Path) else list(jobs)
@@ -285,6 +286,7 @@ def model_of(terms: Terms) -> MatrixModel:
 def _frequencies(
     terms: Terms, modes: int | None, notes: list[str], progress: Callable[[str], None]
 ) -> tuple[Floats | None, bool]:
+    """Return frequencies in Hz, None where they are not wanted, and whether the model floats."""
     size = terms.dofs.size
     if modes == 0 or (modes is None and size > LARGE):
         notes.append("frequencies are not computed (--modes computes them)")
@@ -293,22 +295,18 @@ def _frequencies(
         raise InputError(Fault("", "mass", "a mass matrix that is not zero", "only zeros"))
     progress("computing the frequencies of the nominal model")
     model = model_of(terms)
-    massless = int((sum(A.diagonal() for A in mass.values()) == 0).sum())
-    if massless:
+    if massless := int((sum(A.diagonal() for A in mass.values()) == 0).sum()):
         notes.append(f"{massless} degrees of freedom have no mass, which is allowed")
-    count = min(modes or SHOWN, size - massless)
-    theta = np.ones(len(terms.parameters))
+    count = max(min(modes or SHOWN, size - massless), 1)
     try:
-        lowest = model.full_modes(theta, max(count, 1))
+        lowest = model.full_modes(np.ones(len(terms.parameters)), count)
     except ModelError as error:
-        expected = "matrices with modes"
-        raise InputError(Fault("", "the nominal model", expected, str(error))) from None
+        fault = Fault("", "the nominal model", "matrices with modes", str(error))
+        raise InputError(fault) from None
     frequencies = np.sqrt(np.maximum(lowest.lam, 0.0)) / (2 * np.pi)
-    floating = bool((lowest.lam == 0).any())
-    if floating:
-        count = int((lowest.lam == 0).sum())
-        notes.append(f"{count} rigid-body modes or mechanisms: floating = true is written")
-    return frequencies, floating
+    if floating := int((lowest.lam == 0).sum()):
+        notes.append(f"{floating} rigid-body modes or mechanisms: floating = true is written")
+    return frequencies, floating > 0
 
 
 def _study(imported: Imported, folder: Path) -> str:
@@ -346,13 +344,6 @@ def _study(imported: Imported, folder: Path) -> str:
     for group, what in (("frequencies", "frequency"), ("shapes", "shape")):
         lines.append(f'\n[[group]]\nname = "{group}"\n{what} = "all"')
     return "\n".join(lines) + "\n"
-
-
-def describe(term: Term) -> str:
-    """Return the description of a term."""
-    what = " and ".join(term.matrices)
-    rank = "" if term.rank is None else f", of rank {term.rank}"
-    return f"{what}, at {term.dofs} degree{'s' * (term.dofs != 1)} of freedom{rank}"
 
 
 FACTORS, CHECK = (2.0, 0.5, 1.5, 0.75), (1.5, 0.7, 1.3, 0.8)
@@ -463,18 +454,16 @@ def import_deck(
     lines = list(lines_of(path))
     targets = _targets(path, lines, parameters)
     terms: Functions = {**_of_thickness(lines, targets), **(functions or {})}
-    terms_of = Counter[str]()
-    for quantity in QUANTITIES:
-        terms_of |= Counter({name: len(x) for name, x in _of_quantity(terms, quantity).items()})
-    factors = {name: list(FACTORS[: terms_of[name] or 1]) for name in targets}
+    in_terms = [_of_quantity(terms, quantity) for quantity in QUANTITIES]
+    count = {name: max(len(x.get(name, "1")) for x in in_terms) for name in targets}
+    factors = {name: FACTORS[: count[name]] for name in targets}
     jobs = {f"{name}-{factor:g}": {name: factor} for name in targets for factor in factors[name]}
     check = dict(zip(targets, cycle(CHECK), strict=False))
     with writing(folder):
         folder.mkdir(exist_ok=True)
-    runs: dict[str, Mapping[str, float]] = {"nominal": {}, **jobs, "check": check}
-    for job, values in {**runs, "frequencies": {}}.items():
+    for job, values in {"nominal": {}, **jobs, "check": check, "frequencies": {}}.items():
         progress(f"running {run} {folder / job}")
-        of_targets, stored = {targets[name]: x for name, x in values.items()}, job in runs
+        of_targets, stored = {targets[x]: y for x, y in values.items()}, job != "frequencies"
         text = job_text(path, lines, of_targets, stored=stored)
         _run(program, folder / job, text, ".sti" if stored else ".dat")
     imported = import_model(
@@ -500,15 +489,15 @@ def import_deck(
     computed, printed = imported.frequencies, printed_frequencies(folder / "frequencies.dat")
     if computed is None or not printed.size:
         return imported
-    count = min(computed.size, printed.size)
-    expected = printed[:count]
-    elastic = expected > 1e-3 * expected.max()  # others are those of a rigid body
-    error = np.abs(computed[:count][elastic] / expected[elastic] - 1).max(initial=0.0)
-    note = f"the first {count} frequencies are those that the program prints, to {error:.0e}"
+    computed, printed = (x[: min(computed.size, printed.size)] for x in (computed, printed))
+    elastic = printed > 1e-3 * printed.max()  # others are those of a rigid body
+    error = np.abs(computed[elastic] / printed[elastic] - 1).max(initial=0.0)
+    note = f"the first {len(printed)} frequencies are those that the program prints, to {error:.0e}"
     if error >= 1e-4:  # as the digits of the program do not explain
-        shown = " ".join(f"{x:.5g}" for x in expected)
-        of_matrices = f"up to {100 * error:.2g} % from those of its matrices"
-        note = f"the program prints {shown} Hz, {of_matrices}"
+        shown = " ".join(f"{x:.5g}" for x in printed)
+        note = (
+            f"the program prints {shown} Hz, up to {100 * error:.2g} % from those of its matrices"
+        )
     return replace(imported, notes=(*imported.notes, note))
 
 
@@ -518,14 +507,15 @@ def _of_thickness(
     """Return the terms of thicknesses in either matrix, with the parameter of their material."""
     names = {(each.kind, each.name.upper()): name for name, each in targets.items()}
     out: dict[str, dict[Quantity, list[str]]] = {}
-    for name, target in targets.items():
-        if target.kind == "section":
-            material = next(line.material for line in lines if target.columns(line))
-            factors = {x: names.get((kind, material), "1") for x, kind in OF_MATERIAL.items()}
-            out[name] = {
-                x: [f"{factor}{term.format(name)}".removeprefix("1*") for term in THICKNESS]
-                for x, factor in factors.items()
-            }
+    for name in (name for name, target in targets.items() if target.kind == "section"):
+        material = next(line.material for line in lines if targets[name].columns(line))
+        out[name] = {
+            quantity: [
+                f"{names.get((kind, material), '1')}{term.format(name)}".removeprefix("1*")
+                for term in THICKNESS
+            ]
+            for quantity, kind in OF_MATERIAL.items()
+        }
     return out
 
 
@@ -539,9 +529,9 @@ def _targets(path: Path, lines: Sequence[Line], parameters: Mapping[str, str]) -
             expected = f"NAME=WHAT:NAME, WHAT one of {', '.join(KEYWORDS)}"
             faults.append(Fault(str(path), place, expected, repr(text)))
         elif not any(target.columns(line) for line in lines):
-            names = {target.of(x) for x in lines if x.keyword == KEYWORDS[kind] and x.row}
-            found = suggestion(name, sorted(names - {""}))
-            faults.append(Fault(str(path), place, f"a name with *{KEYWORDS[kind]}", found))
+            names = {target.of(x) for x in lines if x.keyword == KEYWORDS[kind] and x.row} - {""}
+            expected = f"a name with *{KEYWORDS[kind]}"
+            faults.append(Fault(str(path), place, expected, suggestion(name, sorted(names))))
         out[parameter] = target
     refuse(faults)
     return out
@@ -552,7 +542,7 @@ def lines_of(path: Path, depth: int = 0) -> Iterator[Line]:
     try:
         texts = text_of(path).splitlines()
     except OSError as error:
-        raise InputError(Fault(str(path), "file", "a deck of CalculiX", reason(error))) from None
+        raise wrong(path, "a deck of CalculiX", reason(error)) from None
     line = Line("")
     for k, text in enumerate(texts, start=1):
         number = 0 if depth else k
@@ -591,7 +581,7 @@ def job_text(
                     items[k] = re.sub(r"^( -?\d+)(e|$)", r"\1.\2", number)  # ccx wants a point
         out.append(",".join(items))
     if not found:
-        raise InputError(Fault(str(path), "deck", "a step with *FREQUENCY", "none"))
+        raise wrong(path, "a step with *FREQUENCY", "none", "deck")
     return "\n".join(out) + "\n"
 
 
@@ -608,7 +598,7 @@ def _run(program: str, job: Path, text: str, result: str) -> None:
     errors = done.stdout.split("*ERROR", 2)[1:]
     if errors or not made.is_file() or not made.stat().st_size:
         found = one_line(errors[0] if errors else done.stdout[-400:], 400) or "nothing"
-        raise InputError(Fault(str(job), "job", f"a run of {program} that writes {result}", found))
+        raise wrong(job, f"a run of {program} that writes {result}", found, "job")
 
 
 def printed_frequencies(path: Path) -> Floats:
