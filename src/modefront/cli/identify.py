@@ -3,12 +3,15 @@
 from pathlib import Path
 from typing import Any
 
+import click
+
 from modefront.cli.layout import Screen
 from modefront.cli.terminal import say, say_next
 from modefront.errors import UnfinishedError
 from modefront.identification.modal_test import IdentifiedTest, identify, writable
+from modefront.results.remarks import digest
 
-MOST_FINDINGS = 8  # lines of what to look at; a file beside holds all
+MOST_FINDINGS = 8  # sentences on what to look at; a file beside holds all
 
 
 def run_identify(
@@ -25,6 +28,8 @@ def run_identify(
 
     Raises InputError where the input is wrong, and UnfinishedError where no mode was found.
     """
+    if band and band[0] >= band[1]:
+        raise click.UsageError(f"--band: expected LOW below HIGH, found {band[0]:g} {band[1]:g}")
     writable(output)
     chosen = {key: by_hand[key] or () for key in ("keep", "drop", "seeds")}
     test = identify(path, band, **chosen)
@@ -43,12 +48,9 @@ def run_identify(
         written.append(write_identification(test, report))
     if found:
         _print_modes(screen, test)
-    more = len(test.warnings) > MOST_FINDINGS
-    for text in test.warnings[: MOST_FINDINGS - more]:
-        say(f"warning: {text}", err=True)
-    if more:
-        rest = len(test.warnings) - MOST_FINDINGS + 1
-        say(f'and {rest} more warnings: "warnings" in …-identification.json', err=True)
+    where = '"warnings" in …-identification.json'
+    for text in digest([f"warning: {text}" for text in test.warnings], where, MOST_FINDINGS):
+        say(text, err=True)
     for file in written:
         say(f"wrote {file}")
     if not found:

@@ -1,17 +1,19 @@
 """``modefront import``: its options and its output."""
 
+from collections import defaultdict
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from modefront.cli.layout import plural
 from modefront.cli.terminal import say
-from modefront.errors import Fault, InputError
+from modefront.errors import wrong
 from modefront.programs.base import JobOptions
 from modefront.study.importing import Imported, import_deck, import_model, refuse_study
 
 
-def run_import(program: str, base: Path, options: JobOptions, output: Path, **given: Any) -> None:
+def run_import(program: str, base: Path, output: Path, **given: Any) -> None:
     """Read the jobs of a program, or make and run those of a deck; write a study, and print it.
 
     The options that may be repeated are given as they are written: ``parameters`` as NAME=RUN, or
@@ -19,6 +21,7 @@ def run_import(program: str, base: Path, options: JobOptions, output: Path, **gi
     as RUN:NAME=VALUE,….
     """
     refuse_study(output)
+    options = JobOptions(*(given[x] for x in ("stiffness_name", "mass_name", "dofs", "deck")))
     terms = [_pair("--function", x, "NAME=TERM,TERM, such as t=t,t^3") for x in given["functions"]]
     common: dict[str, Any] = {
         "functions": {name: [term.strip() for term in x.split(",")] for name, x in terms},
@@ -27,23 +30,21 @@ def run_import(program: str, base: Path, options: JobOptions, output: Path, **gi
     }
     if given["run"] is not None:
         if program != "calculix":
-            raise InputError(Fault("", "--run", "calculix", f"'{program}', whose jobs you make"))
-        for option in ("factors", "checks"):
-            if given[option]:
-                expected = "no such option beside --run, which makes the jobs itself"
-                raise InputError(Fault("", f"--{option[:-1]}", expected, given[option][0]))
+            raise wrong("--run", "calculix", f"'{program}', whose jobs you make")
+        for option in (x for x in ("factors", "checks") if given[x]):
+            expected = "no such option beside --run, which makes the jobs itself"
+            raise wrong(f"--{option[:-1]}", expected, given[option][0])
         whats = [_pair("--parameter", text, "NAME=WHAT:NAME") for text in given["parameters"]]
         imported = import_deck(base, dict(whats), run=given["run"], **common)
         _print(imported, imported.write(output), 1)
         return
-    runs: dict[str, list[Path]] = {}
+    runs, factors = defaultdict[str, list[Path]](list), defaultdict[str, list[float]](list)
     for text in given["parameters"]:
         name, run = _pair("--parameter", text, "NAME=RUN")
-        runs.setdefault(name, []).append(Path(run))
-    factors: dict[str, list[float]] = {}
+        runs[name].append(Path(run))
     for text in given["factors"]:
         name, factor = _pair("--factor", text, "NAME=FACTOR")
-        factors.setdefault(name, []).append(_number("--factor", factor))
+        factors[name].append(_number("--factor", factor))
     checks = [_check(text) for text in given["checks"]]
     more: dict[str, Any] = {"factors": factors, "checks": checks, "options": options}
     imported = import_model(program, base, runs, **more, **common)
@@ -76,24 +77,21 @@ def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
 def _pair(option: str, text: str, form: str) -> tuple[str, str]:
     name, sign, value = text.partition("=")
     if not sign or not name.strip() or not value.strip():
-        raise InputError(Fault("", option, form, repr(text)))
+        raise wrong(option, form, repr(text))
     return name.strip(), value.strip()
 
 
 def _check(text: str) -> tuple[Path, dict[str, float]]:
     form = "RUN:NAME=VALUE,NAME=VALUE"
-    run, sign, values = text.rpartition(":")
-    if not sign or not run.strip():
-        raise InputError(Fault("", "--check", form, repr(text)))
+    run, _, values = text.rpartition(":")
+    if not run.strip():
+        raise wrong("--check", form, repr(text))
     pairs = [_pair("--check", part, form) for part in values.split(",")]
     return Path(run), {name: _number("--check", value) for name, value in pairs}
 
 
 def _number(option: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not 0 < abs(value) < float("inf"):
-        raise InputError(Fault("", option, "a number that is not 0", repr(text)))
-    return value
+    with suppress(ValueError):
+        if 0 < abs(float(text)) < float("inf"):
+            return float(text)
+    raise wrong(option, "a number that is not 0", repr(text))

@@ -52,21 +52,22 @@ def _repeated(
     return click.option(flag, f"{flag.removeprefix('--')}s", help=text, **more)
 
 
-LISTS = ("models", "points", "minima", "uncertainty", "predictions", "findings")
-"""Full lists that ``show`` prints."""
+LISTS = {
+    "models": "The main models.",
+    "points": "All models.",
+    "minima": "All minima.",
+    "uncertainty": "All scatter.",
+    "predictions": "All predictions.",
+    "findings": "All findings.",
+}
+"""Full lists that ``show`` prints, each with the help of its option."""
 
 
 def _full_lists(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command with an option for each of `LISTS`."""
-    for name in reversed(LISTS):
-        others = {
-            "models": "The main models.",
-            "points": "All models.",
-            "uncertainty": "All scatter.",
-        }
-        text = others.get(name, f"All {name}.")
-        option = click.option(f"--{name}", "lists", flag_value=name, multiple=True, help=text)
-        command = option(command)
+    for name, text in reversed(LISTS.items()):
+        more: dict[str, Any] = {"flag_value": name, "multiple": True, "help": text}
+        command = click.option(f"--{name}", "lists", **more)(command)
     return command
 
 
@@ -124,12 +125,9 @@ def check(study: Path, every: bool) -> None:
     print_findings(loaded, findings, every=every)
     say_estimate(estimate(loaded, started))
     say(f"a search ends after {loaded.search.evaluations:,} evaluations: [search] evaluations")
-    if not findings.sound and findings.mistakes:
-        raise UnfinishedError(
-            "the derivatives cannot be proved before what is warned of first is put right"
-        )
     if not findings.sound:
-        raise UnfinishedError(str(findings.cause))
+        first = "the derivatives cannot be proved before what is warned of first is put right"
+        raise UnfinishedError(first if findings.mistakes else str(findings.cause))
     say_next("run", study)
 
 
@@ -221,12 +219,7 @@ def run(
 @_full_lists
 @click.option("--all", "every", is_flag=True, help="All of these lists.")
 def show(
-    directory: Path,
-    form: str,
-    figures: bool,
-    picture: str,
-    lists: tuple[str, ...],
-    every: bool,
+    directory: Path, form: str, figures: bool, picture: str, lists: tuple[str, ...], every: bool
 ) -> None:
     """Print the results in DIRECTORY, or full lists of them."""
     from modefront.cli.show import as_json, print_results
@@ -243,7 +236,7 @@ def show(
     elif figures and not (lists or every):
         say_next("report", directory)
     else:
-        print_results(data, LISTS if every else lists, directory)
+        print_results(data, tuple(LISTS) if every else lists, directory)
 
 
 @cli.command()
@@ -322,13 +315,11 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
     metavar="4.6,13.8",
     help="Frequencies in Hz at which there is to be a mode, whatever its evidence.",
 )
-def identify(band: tuple[float, float] | None, **given: Any) -> None:
+def identify(**given: Any) -> None:
     """Turn the frequency response functions of TEST into modal data."""
     from modefront.cli.identify import run_identify
 
-    if band and band[0] >= band[1]:
-        raise click.UsageError(f"--band: expected LOW below HIGH, found {band[0]:g} {band[1]:g}")
-    run_identify(band=band, **given)
+    run_identify(**given)
 
 
 @cli.command("import")
@@ -373,17 +364,14 @@ def identify(band: tuple[float, float] | None, **given: Any) -> None:
     "--modes", type=click.IntRange(0), help="Frequencies to compute  [default: 6 if it is quick]"
 )
 @_output(help="Folder for the study; one that has none.", required=True)
-def import_(program: str, base: Path, output: Path, **given: Any) -> None:
+def import_(**given: Any) -> None:
     """Turn the matrices of a finite-element PROGRAM into a study.
 
     BASE is the job at the nominal values.
     """
     from modefront.cli.import_ import run_import
-    from modefront.programs.base import JobOptions
 
-    names = ("stiffness_name", "mass_name", "dofs", "deck")
-    options = JobOptions(*(given.pop(name) for name in names))
-    run_import(program, base, options, output, **given)
+    run_import(**given)
 
 
 @cli.command()
@@ -416,9 +404,8 @@ def _signals() -> Iterator[list[int]]:
     if threading.current_thread() is not threading.main_thread():
         yield heard
         return
-    names = ("SIGINT", "SIGTERM", "SIGHUP")
-    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    before = {x: signal.getsignal(x) for x in numbers if signal.getsignal(x) != signal.SIG_IGN}
+    known = (getattr(signal, name, None) for name in ("SIGINT", "SIGTERM", "SIGHUP"))
+    before = {x: signal.getsignal(x) for x in known if x and signal.getsignal(x) != signal.SIG_IGN}
 
     def interrupt(number: int, _: object) -> None:
         heard.append(number)
@@ -475,8 +462,7 @@ def _status(heard: list[int]) -> int:
         complain(f"modefront: {error}")
     except (OSError, MemoryError) as error:  # such as a full disk
         _abandon_output()
-        where = getattr(error, "filename", None)
-        place = f"{where}: " if where else ""
+        place = f"{where}: " if (where := getattr(error, "filename", None)) else ""
         complain(f"modefront: {place}{reason(error)}; what was done is kept")
     except Exception as error:
         if os.environ.get("MODEFRONT_TRACEBACK"):
