@@ -1,8 +1,8 @@
 """Results and comparisons in the terminal, an overview or full lists, and as JSON."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import chain, groupby
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from rich.console import Console
 from modefront._typing import Floats
 from modefront.cli.layout import BLANK, Line, Screen, number, plural
 from modefront.cli.terminal import command, say_next
-from modefront.datasets import Array, ArrayDataset, Dataset
+from modefront.datasets import Dataset
 from modefront.findings.catalogue import Severity
 from modefront.findings.record import meaning_of
 from modefront.front.point import INTERNAL, Kind, position, preferred
@@ -206,14 +206,10 @@ def print_points(screen: Screen, data: Dataset) -> None:
     columns = [("J {}", "objective", ".5g"), ("error {}", "error", ".4g"), ("{}", "theta", ".5g")]
     _print(screen, data, "models: * Pareto optimal among these, ! not converged", columns, marks)
     measured = data["measured_frequency"].values
-    error = 100 * (data["frequency"].values / measured - 1)
-    shown = {x: Array(data[x].dims, data[x].values) for x in ("label", "mode", "frequency", "mac")}
-    known = ArrayDataset(
-        {**shown, "": replace(shown["frequency"], values=np.round(error, 2) + 0.0)}
-    )
+    error = np.round(100 * (data["frequency"].values / measured - 1), 2) + 0.0
     title = f"frequencies in Hz and MAC; measured: {', '.join(f'{x:.4g}' for x in measured)}"
-    columns = [("f{}", "frequency", ".4g"), ("error f{} %", "", "+.2f"), ("MAC {}", "mac", ".4f")]
-    _print(screen, known, title, columns)
+    of_modes = [("error f{} %", error, "+.2f"), ("MAC {}", "mac", ".4f")]
+    _print(screen, data, title, [("f{}", "frequency", ".4g"), *of_modes])
     if "certified" in data:
         marks = ["!" * int(not x) for x in data["certified"].values]
         columns = [("eigenvalue {}", "eigenvalue_error", ".1e"), ("shape {}", "shape_error", ".1e")]
@@ -236,15 +232,13 @@ def print_uncertainty(screen: Screen, data: Dataset) -> None:
         rows = [[str(x), str(y)] for x, y in doubts if y]
         screen.table("where linearised standard deviations are approximate", ["model", "why"], rows)
     if "posterior_std" in data:
-        modes = data["mode"].values
+        of = (("{}", "", "parameter"), ("f{} Hz", "frequency_", "mode"), ("MAC {}", "mac_", "mode"))
         rows = [
-            [str(title), number(std, ".3g", "")]
-            for titles, name in (
-                (data["parameter"].values, ""),
-                ([f"f{r} Hz" for r in modes], "frequency_"),
-                ([f"MAC {r}" for r in modes], "mac_"),
+            [text.format(title), number(std, ".3g", "")]
+            for text, name, names in of
+            for title, std in zip(
+                data[names].values, data[f"posterior_{name}std"].values, strict=True
             )
-            for title, std in zip(titles, data[f"posterior_{name}std"].values, strict=True)
         ]
         title = f"posterior around {preferred(data.attrs)}: standard deviations{_rough(data)}"
         screen.table(title, ["of", "std"], rows)
@@ -255,15 +249,15 @@ def print_uncertainty(screen: Screen, data: Dataset) -> None:
 def print_findings_of(screen: Screen, data: Dataset) -> None:
     """Print the verdict and all findings, each with what it means and what to do."""
     said = [([text], meaning_of(text)) for text in verdict(data)]
-    for _, of_kind in groupby(findings_of(data, full=True), lambda finding: finding.kind):
+    for _, of_kind in groupby(findings_of(data, full=True), attrgetter("kind")):
         every = list(of_kind)
-        said.append(([str(finding) for finding in every], every[0].meaning))
+        said.append(([*map(str, every)], every[0].meaning))
     screen.say("")
     for sentences, meaning in said:
         for sentence in sentences:
             screen.say(sentence, start="- ")
-        for text in meaning:
-            for line in (x for x in text.splitlines() if not x.startswith("```")):
+        for line in "\n".join(meaning).splitlines():
+            if not line.startswith("```"):
                 screen.say(line, start="    ")
 
 
@@ -289,22 +283,23 @@ def _print(
     screen: Screen,
     data: Dataset,
     title: str,
-    columns: Sequence[tuple[str, str, str]],
+    columns: Sequence[tuple[str, str | Floats, str]],
     marks: Sequence[str] = (),
     of: str = "label",
 ) -> None:
     """Print a table with a row for each of what ``of`` names, and ``marks`` beside these.
 
-    Columns have a title with a place for a name, the variable (rows, names), and the format.
+    Columns have a title with a place for a name, the variable (rows, names), or values (rows,
+    modes), and the format.
     """
-    rows = []
-    for i, name in enumerate(data[of].values):
-        cells = [number(x, form) for _, values, form in columns for x in data[values].values[i]]
-        rows.append([str(name), *marks[i : i + 1], *cells])
-    titles = [
-        text.format(name)
-        for text, values, _ in columns
-        for name in data[data[values].dims[1]].values
+    known = [
+        (x, data[y].values, data[y].dims[1], form) if isinstance(y, str) else (x, y, "mode", form)
+        for x, y, form in columns
+    ]
+    titles = [text.format(name) for text, _, names, _ in known for name in data[names].values]
+    rows = [
+        [str(name), *marks[i : i + 1], *(number(x, form) for _, y, _, form in known for x in y[i])]
+        for i, name in enumerate(data[of].values)
     ]
     first = ["model" if of == "label" else "of", *[""] * bool(marks)]
     screen.table(title, [*first, *titles], rows, keys=len(first))
@@ -426,11 +421,12 @@ def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
         common = f"{len(x.common)} parameters" if many else ", ".join(x.common) or "none"
         distances = map(_cell, (x.least, x.greatest, x.reference))
         pairs.append([f"{names[x.first]} and {names[x.second]}", common, *distances])
-    title = (
+    screen.table(
         "distances in the common parameters, over their bounds in the first: of the two nearest "
-        "models, of the farthest one from the other study, and of the reference models"
+        "models, of the farthest one from the other study, and of the reference models",
+        ["studies", "common", "least", "greatest", "references"],
+        pairs,
     )
-    screen.table(title, ["studies", "common", "least", "greatest", "references"], pairs)
     say_next("report", *folders)
 
 

@@ -37,7 +37,6 @@ from modefront.residuals.groups import MODE_NUMBERS, Group, faults
 from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.study.definition import Origin, Study, label_faults, undrawn
 from modefront.study.kinds import KINDS
-from modefront.study.kinds.sensors import ModelKind
 from modefront.study.measured import COVARIANCE, FILE, PLACE, READERS, read_data
 from modefront.text import NAME as LENGTH
 from modefront.text import clean
@@ -294,10 +293,17 @@ def study_schema() -> dict[str, Any]:
     meaning = "share by which objectives of models may be greater that count in ranges"
     slack = opt.Option("slack", SLACK, default=0, meaning=meaning).schema
     predict = {key: opt.array(opt.schema_of(each), 1) for key, each in CLASSES.items()}
+    reduction = [each for each in opt.options(Reduction) if each.name == "reduction"]
+    models = {
+        name: opt.of_options([*opt.options(kind.table), *reduction * kind.is_reducible])
+        if kind.table
+        else opt.TABLE
+        for name, kind in KINDS.items()
+    }
     tables = {
         "study": opt.of_options(of_header()),
         "data": _data(),
-        "model": opt.chosen("kind", {name: _model(kind) for name, kind in KINDS.items()}),
+        "model": opt.chosen("kind", models),
         "parameter": opt.array(opt.schema_of(Parameter), 1),
         "group": opt.array({**opt.of_options(of_group()), "anyOf": has_modes}, 1),
         "weighted": opt.array(opt.schema_of(Weighted), 1),
@@ -356,14 +362,6 @@ def _data() -> opt.Schema:
         "else": {"properties": {"sensors": False}, **opt.OPEN},
     }
     return {**table, "if": universal, **without}
-
-
-def _model(kind: ModelKind) -> opt.Schema:
-    """Return the schema of ``[model]`` of one kind, without the key ``kind``."""
-    if kind.table is None:
-        return opt.TABLE
-    known = [x for x in opt.options(Reduction) if x.name == "reduction" and kind.is_reducible]
-    return opt.of_options([*opt.options(kind.table), *known])
 
 
 FAMILIES: tuple[Family[Any], ...] = (CLASSES, KINDS, RESIDUALS, METHODS, READERS)

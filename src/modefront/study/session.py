@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -20,7 +21,7 @@ from modefront.analysis.certified import (
 )
 from modefront.analysis.front import analyse_front
 from modefront.datasets import Dataset
-from modefront.errors import Fault, InputError, writing
+from modefront.errors import writing
 from modefront.front.front import Front
 from modefront.front.indicators import coverage
 from modefront.front.options import Pareto, ParetoOptions, Weighted
@@ -29,6 +30,7 @@ from modefront.front.point import Kind, Point
 from modefront.front.search import Search
 from modefront.identifiability.combinations import Identifiability, unchanged_groups
 from modefront.identifiability.sensitivity import superfluous
+from modefront.inputs import wrong
 from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text
 from modefront.predictions import Prediction
@@ -136,10 +138,9 @@ def run(
     UnfinishedError
         If the work cannot be done; what is done is kept.
     """
-    if isinstance(workers, AbstractContextManager):
-        carrier = workers
-    else:
-        carrier = backend(workers, scheduler)
+    carrier = (
+        workers if isinstance(workers, AbstractContextManager) else backend(workers, scheduler)
+    )
     study = as_study(study)
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
@@ -157,10 +158,9 @@ def run(
     tasks = _tasks(study, folder)
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    for path in (tasks.parent, tasks):
-        if path.is_symlink():
-            found = f"a link to {path.readlink()}: remove it, or choose another folder with -o"
-            raise InputError(Fault(str(path), "folder", "a folder of its own", found))
+    for path in (path for path in (tasks.parent, tasks) if path.is_symlink()):
+        found = f"a link to {path.readlink()}: remove it, or choose another folder with -o"
+        raise wrong(path, "a folder of its own", found, "folder")
     with writing(tasks.parent):
         tasks.parent.mkdir(exist_ok=True)
     with locked(folder):
@@ -222,8 +222,8 @@ def worked(study: Study, work: Run) -> Dataset:
         find = partial(most_probable, problem, noise)
         maxima = certified_best(problem, find, known, work)
         front = replace(front, points=[*front.points, Point(Kind.MOST_PROBABLE, maxima[0])])
-        count = max(DRAWS, study.uncertainty.draws)
-        inference = infer(noise, [x.theta for x in maxima], count, seed, work)
+        draws = max(DRAWS, study.uncertainty.draws)
+        inference = infer(noise, [x.theta for x in maxima], draws, seed, work)
     options = study.pareto, study.identifiability, study.uncertainty
     analysis = analyse_front(problem, front, *options, seed, work)
     (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
@@ -276,7 +276,5 @@ def _attributes(study: Study, work: Run, front: Front) -> dict[str, str | int | 
 
 def _set_aside(path: Path) -> None:
     if path.exists():
-        number = 1
-        while (aside := path.with_name(f"{path.stem}.{number}{path.suffix}")).exists():
-            number += 1
-        path.rename(aside)
+        names = (path.with_name(f"{path.stem}.{k}{path.suffix}") for k in count(1))
+        path.rename(next(name for name in names if not name.exists()))

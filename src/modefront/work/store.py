@@ -12,6 +12,7 @@ import re
 import socket
 import tempfile
 import warnings
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
@@ -158,28 +159,24 @@ class Run:
 
         Raises ValueError for a key that another task of the run had.
         """
-        results: dict[int, R] = {}
-        names = [task.identity for task in tasks]
-        for k, task in enumerate(tasks):
-            if names[k] in self.costs or names[k] in names[:k]:
+        names, results = Counter(task.identity for task in tasks), dict[tuple[Key, Key], R]()
+        for task in tasks:
+            if names[task.identity] > 1 or task.identity in self.costs:
                 raise ValueError(f"two tasks are named {task.name}")
-        for k, task in enumerate(tasks):
-            kept = self.store.read(task) if self.store else None
-            if kept is not None:
+        for task in tasks:
+            if self.store and (kept := self.store.read(task)):
                 self.progress.start(task.stage)
-                results[k], self.costs[names[k]] = kept
+                results[task.identity], self.costs[task.identity] = kept
                 self.progress.end(task.stage, None)
-        left = [k for k in range(len(tasks)) if k not in results]
-        chosen = [tasks[k] for k in left]
-        for position, done in self.backend.compute(chosen, self.progress.start):
-            task = chosen[position]
-            results[left[position]] = done.result
-            self.costs[task.identity] = done.costs
+        left = [task for task in tasks if task.identity not in results]
+        for position, done in self.backend.compute(left, self.progress.start):
+            task = left[position]
+            results[task.identity], self.costs[task.identity] = done.result, done.costs
             self.progress.spent.add(done.costs)
             if self.store:
                 self.store.write(task, done.result, done.costs, done.seconds)
             self.progress.end(task.stage, done.seconds)
-        return [results[k] for k in range(len(tasks))]
+        return [results[task.identity] for task in tasks]
 
     def total(self, chosen: Callable[[str], bool] = lambda _: True) -> Costs:
         """Return the costs of the tasks of the chosen stages."""

@@ -294,10 +294,8 @@ class Workers:
         while call.pending or call.alone or call.flying:
             if self._is_for_this_process(call):
                 k = call.pending.popleft()
-                begun(call.tasks[k].stage)
-                done = computed(tasks[k])
-                self._learn(tasks[k], done.seconds)
-                yield k, done
+                begun(tasks[k].stage)
+                yield k, self._learnt(tasks[k], computed(tasks[k]))
                 continue
             self._send(call, begun)
             for future in wait(call.flying, return_when=FIRST_COMPLETED).done:
@@ -376,9 +374,8 @@ class Workers:
             self._submit(call, positions, message, lacked.union(reply.lacking))
             return
         for k, done in zip(positions, reply.done, strict=False):
-            self._learn(call.tasks[k], done.seconds)
             spend(done.costs)
-            yield k, done
+            yield k, self._learnt(call.tasks[k], done)
         if reply.error is None:
             return
         failed, *others = positions[len(reply.done) :]
@@ -398,9 +395,10 @@ class Workers:
         text = f"task '{task.name}' could not be done: {reason}, twice; all others are kept"
         call.errors[position] = UnfinishedError(text)
 
-    def _learn(self, task: Task[Any], seconds: float) -> None:
+    def _learnt(self, task: Task[Any], done: Done) -> Done:
         kind = _kind(task)
-        self._seconds[kind] = (self._seconds.get(kind, seconds) + seconds) / 2
+        self._seconds[kind] = (self._seconds.get(kind, done.seconds) + done.seconds) / 2
+        return done
 
 
 def _kind(task: Task[Any]) -> str:
@@ -421,10 +419,8 @@ def backend(
         raise wrong("workers", f"a whole number from 1 to {MOST}", workers)
     if scheduler is not None and workers > 1:
         raise wrong("workers", "1, since the cluster has its own", workers)
-    pool: Pool | None = None
-    if scheduler is not None:
-        pool = Cluster(scheduler)
-    elif workers > 1:
+    pool: Pool | None = Cluster(scheduler) if scheduler is not None else None
+    if workers > 1:
         pool = LocalPool(workers, warm)
     with Workers(pool) as out:
         yield out
