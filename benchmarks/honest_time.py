@@ -16,8 +16,7 @@ machine does: all clocks of the process are. A line a study has
 - the range that ``check`` foretells, the time that the run took, and whether that is in the range;
 - ``shown``: how many of the times that progress shows after the first tenth of the run are right,
   where those of the last second are left out. They are read after every task and just before the
-  next one, as in a terminal. A number of seconds is right if it is within a factor of three of the
-  true one, and a range if it contains it;
+  next one, as in a terminal. A range is right if it contains the true time;
 - ``silent``: the share of the run after its first tenth in which progress shows no time.
 """
 
@@ -37,9 +36,6 @@ from small_structures import make
 import modefront as mf
 from modefront.study.estimate import estimate
 from modefront.work.progress import Progress, Span, State
-
-FACTOR = 3.0
-"""Ratio to the true time within which a number of seconds is right."""
 
 FIRST, LAST = 0.1, 1.0
 """Share of a run, and seconds before its end, in which the time that is shown is not judged."""
@@ -153,7 +149,7 @@ def shown(row: dict[str, Any]) -> tuple[int, int, float]:
         if left is None:
             silent += end - max(at, FIRST * total)
             continue
-        low, high = left if isinstance(left, list | tuple) else (left / FACTOR, left * FACTOR)
+        low, high = left
         for moment in {at, end}:
             true = total - moment
             if moment >= FIRST * total and true > LAST:

@@ -16,9 +16,9 @@ import scipy.sparse
 
 from modefront._typing import Floats, Ints
 from modefront.data.uff import dataset_55
-from modefront.errors import Fault, InputError, ModelError, UnfinishedError, suggestion, writing
+from modefront.errors import InputError, ModelError, UnfinishedError, suggestion, writing
 from modefront.front.point import preferred
-from modefront.inputs import read_text_bytes
+from modefront.inputs import read_text_bytes, wrong
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs, write_dofs
 from modefront.models.geometry import Cells
 from modefront.options import read_toml
@@ -90,16 +90,16 @@ def export(
     point = point or preferred(data.attrs)
     if point not in labels:
         nearest = suggestion(point, labels)
-        raise InputError(Fault(str(folder / FILE), "--point", "the label of a model", nearest))
+        raise wrong(folder / FILE, "the label of a model", nearest, "--point")
     name, digest = (str(data.attrs.get(key, "")) for key in ("study", "inputs"))
     if not digest:
         expected = "results of a study in a file (of others, results.model(label) has the matrices)"
-        raise InputError(Fault(str(folder / FILE), "study", expected, f"'{name}', made in Python"))
+        raise wrong(folder / FILE, expected, f"'{name}', made in Python", "study")
     if study is None:
         loaded = _find_study(folder, name, digest)
     elif (loaded := load(study)).digest != digest:
         expected = f"the study of the results in '{folder}'"
-        raise InputError(Fault(str(study), "study", expected, "other inputs: run it again"))
+        raise wrong(Path(study), expected, "other inputs: run it again", "study")
     model = Results(data, loaded.problem).model(point)
     output = Path(output) if output else folder / file_name(f"export-{point}")
     try:
@@ -144,13 +144,11 @@ def _find_study(results: Path, name: str, digest: str) -> Study:
         except (InputError, KeyError, TypeError):
             continue
         try:
-            study = load(file)
+            if (study := load(file)).digest == digest:
+                return study
+            changed.append(file)
         except InputError as error:
             broken = broken or error
-            continue
-        if study.digest == digest:
-            return study
-        changed.append(file)
     if broken and not changed:
         raise broken
     expected = f"the study '{name}' where it was run, beside the results or in this folder"
@@ -159,7 +157,7 @@ def _find_study(results: Path, name: str, digest: str) -> Study:
         named = " and ".join(f"'{file}'" for file in changed[:3])
         found = f"{named} with other inputs than those of the results: changed since the run"
         expected = f"the study '{name}' as it was run (pass --study FILE, or run it again)"
-    raise InputError(Fault(str(results), "study", expected, found))
+    raise wrong(results, expected, found, "study")
 
 
 def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[str]:
@@ -207,12 +205,13 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[
     changes = read_changes(known) if known.is_file() else []
     lines = [f"updated values, model '{model.label}'"]
     for name, value in model.theta.items():
-        lines += ["", f"{name} = {value:.9g}"]
-        of_parameter = [change for change in changes if change.parameter == name]
-        for change in of_parameter:
-            lines += [f"  {change.file}, line {change.line}:", f"  {change.updated(value).strip()}"]
-        if not of_parameter:
-            lines.append("  a factor of what was changed for this parameter")
+        said = [
+            f"  {change.file}, line {change.line}:\n  {change.updated(value).strip()}"
+            for change in changes
+            if change.parameter == name
+        ]
+        said = said or ["  a factor of what was changed for this parameter"]
+        lines += ["", f"{name} = {value:.9g}", *said]
     write_text(folder / "deck.txt", "\n".join(lines) + "\n")
     return missing
 

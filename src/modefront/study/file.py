@@ -154,14 +154,11 @@ def of_header() -> tuple[opt.Option, ...]:
 def read_parameters(root: opt.Table) -> tuple[list[str], tuple[Parameter, ...]]:
     """Return the names that tables give to parameters, and the parameters in which all is right."""
     tables = root.tables("parameter", required=True)
-    out = []
-    for table in tables:
-        if table.values.get("name") == "base":
-            table.fault("name", "another name: 'base' is the constant term", "'base'")
-        out.append(table.record(Parameter))
+    read = tuple(parameter for table in tables if (parameter := table.record(Parameter)))
     names = opt.names_of(tables)
+    for table in (table for table in tables if table.values.get("name") == "base"):
+        table.fault("name", "another name: 'base' is the constant term", "'base'")
     root.note(opt.each_once("[[parameter]]", names))
-    read = tuple(parameter for parameter in out if parameter is not None)
     free = {parameter.name for parameter in read if parameter.free}
     for parameter in read:
         if parameter.tie and parameter.tie not in free:
@@ -221,16 +218,14 @@ def read_groups(root: opt.Table, data: ModalData | None) -> tuple[Group, ...]:
             for a, b in data.pairs
             if single & {a, b}
         ]
-        if members in held:  # their objectives could not differ
-            expected = f"other members than those of '{held[members]}'"
+        if (first := held.setdefault(members, name)) != name:  # objectives could not differ
+            expected = f"other members than those of '{first}'"
             equal.append(Fault("", "[[group]]", expected, f"'{name}'"))
-        held.setdefault(members, name)
-    if data is not None:
-        count = sum(int(kind.measured(data).sum()) for kind in RESIDUALS.values())
-        if len(tables) > count:
-            nouns = " and ".join(kind.plural for kind in RESIDUALS.values())
-            expected = f"at most {count} groups, as many as measured {nouns}"
-            root.fault("[[group]]", expected, str(len(tables)))
+    count = sum(int(kind.measured(data).sum()) for kind in RESIDUALS.values()) if data else 0
+    if data and len(tables) > count:
+        nouns = " and ".join(kind.plural for kind in RESIDUALS.values())
+        expected = f"at most {count} groups, as many as measured {nouns}"
+        root.fault("[[group]]", expected, str(len(tables)))
     root.note([*equal, *opt.each_once("[[group]]", opt.names_of(tables))])
     return tuple(out)
 
@@ -238,16 +233,13 @@ def read_groups(root: opt.Table, data: ModalData | None) -> tuple[Group, ...]:
 def read_weights(root: opt.Table, groups: Sequence[str]) -> tuple[Weighted, ...]:
     """Return the weights that a study gives; no name may be one of the labels of other models."""
     tables = root.tables("weighted", required=False)
-    out = []
-    for table in tables:
-        weighted = table.record(Weighted)
-        if weighted is not None:
-            table.note(weighted.faults(groups))
-            out.append(weighted)
+    out = [(table, table.record(Weighted)) for table in tables]
+    for table, weighted in out:
+        table.note(weighted.faults(groups) if weighted else ())
         for name in opt.names_of([table]):
             table.note(label_faults(name, groups))
     root.note(opt.each_once("[[weighted]]", opt.names_of(tables)))
-    return tuple(out)
+    return tuple(weighted for _, weighted in out if weighted)
 
 
 def read_predictions(

@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import cycle
+from itertools import chain, cycle
 from pathlib import Path
 from typing import NamedTuple
 
@@ -206,7 +206,7 @@ def import_model(
         floating,
         tuple(errors),
         tuple(notes),
-        tuple(change for each in changed.values() for change in each),
+        tuple(chain(*changed.values())),
         program,
         deck_text(nominal_path),
     )
@@ -575,10 +575,9 @@ def job_text(
             ending = ", SOLVER=MATRIXSTORAGE" if stored else "\n10" * (not counted)
             items, found = [f"*FREQUENCY{ending}"], True
         for target, factor in factors.items():
-            for k in target.columns(line):
-                if k < len(items) and items[k].strip():
-                    number = f" {fortran(items[k].strip()) * factor:.12g}"
-                    items[k] = re.sub(r"^( -?\d+)(e|$)", r"\1.\2", number)  # ccx wants a point
+            for k in (k for k in target.columns(line) if k < len(items) and items[k].strip()):
+                number = f" {fortran(items[k].strip()) * factor:.12g}"
+                items[k] = re.sub(r"^( -?\d+)(e|$)", r"\1.\2", number)  # ccx wants a point
         out.append(",".join(items))
     if not found:
         raise wrong(path, "a step with *FREQUENCY", "none", "deck")

@@ -267,8 +267,8 @@ def _scales(model: opt.Table, parameters: Sequence[str]) -> list[fem.Parameter]:
     out: list[fem.Parameter] = []
     for name, scale in model.entries("scale", "a table { quantity = ..., of = [...] }"):
         if name not in parameters:
-            expected, found = "the name of a parameter", suggestion(name, parameters)
-            model.fault(f"scale {name}", expected, found)
+            nearest = suggestion(name, parameters)
+            model.fault(f"scale {name}", "the name of a parameter", nearest)
         elif values := scale.read(opt.options(fem.Parameter)):
             out.append(fem.Parameter(name, **values))
     return out
