@@ -86,20 +86,11 @@ class _Lines:
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         now, done = self.clock(), self.state.done if self.state else 0
-        count = f"{done} tasks  {timedelta(seconds=int(now - self.began))}"
-        if options.max_width < len(self.title) + len(count) + LEAST:
-            yield Text(f"{self.title}  {count}", overflow="fold")
-        else:
-            grid = Table.grid(
-                Column(no_wrap=True),
-                Column(ratio=1),
-                Column(no_wrap=True),
-                padding=(0, 1),
-                expand=True,
-            )
-            bar = ProgressBar(total=1.0, completed=self.share(now))
-            grid.add_row(Text(self.title), bar, Text(count))
-            yield grid
+        grid = Table.grid("", Column(ratio=1, min_width=LEAST), "", padding=(0, 1), expand=True)
+        count = Text(f"{done} tasks  {timedelta(seconds=int(now - self.began))}")
+        bar = ProgressBar(total=1.0, completed=self.share(now))
+        grid.add_row(Text(self.title), bar, count)
+        yield grid
         yield Text(self.words, overflow="fold")
 
     def share(self, now: float) -> float:

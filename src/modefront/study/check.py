@@ -172,10 +172,10 @@ def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[Finding
     for r in np.flatnonzero(nominal.quantities["coincident"]).tolist():
         yield found("coincident", str(problem.data.modes[r]))
     names, full = problem.model.parameters, full_of(problem.model)
-    ends = {"lower": problem.lower, "upper": problem.upper}
-    for j in np.flatnonzero((problem.start == ends["lower"]) | (problem.start == ends["upper"])):
+    for j in np.flatnonzero((problem.start == problem.lower) | (problem.start == problem.upper)):
         yield found("nominal-at-bound", names[j], bound=float(problem.start[j]))
-    for name, theta in ends.items():  # a basis may not hold what makes a matrix indefinite
+    # A basis may not hold what makes a matrix indefinite.
+    for name, theta in (("lower", problem.lower), ("upper", problem.upper)):
         try:
             replace(problem, model=full).modes(theta, derivatives=False)
         except ModelError as error:

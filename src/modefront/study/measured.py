@@ -97,9 +97,9 @@ def _read(reader: DataReader, path: Path, sensors: tuple[str, ...] | None) -> Mo
     file_size(path, "a file of modal data")
     try:
         data = reader.read(path, sensors)
-    except InputError:
-        raise
     except Exception as error:  # a user's function may raise anything
+        if isinstance(error, InputError):
+            raise
         raise wrong(path, "a file of modal data", reason(error)) from error
     if sensors is not None and tuple(data.sensors) != sensors:
         found = ", ".join(data.sensors)

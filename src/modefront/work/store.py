@@ -181,7 +181,6 @@ class Run:
     def total(self, chosen: Callable[[str], bool] = lambda _: True) -> Costs:
         """Return the costs of the tasks of the chosen stages."""
         out = Costs()
-        for (key, _), costs in self.costs.items():
-            if chosen(str(key[0])):
-                out.add(costs)
+        for costs in (costs for (key, _), costs in self.costs.items() if chosen(str(key[0]))):
+            out.add(costs)
         return out
