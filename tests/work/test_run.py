@@ -332,10 +332,8 @@ def test_the_time_left_follows_a_plan() -> None:
 def test_the_time_of_tasks_that_are_alike_is_soon_known() -> None:
     follow, states = progress()
     follow.plan = {"bootstrap": (1.0, 1000.0)}
-    follow.start("bootstrap")
-    follow.end("bootstrap", 0.001)  # what prepares the tasks that are expected
     follow.expect({"bootstrap": (90, 190)})
-    ratios: list[float] = []
+    ratios = list[float]()
     for _ in range(80):
         follow.start("bootstrap")
         follow.end("bootstrap", 2.0)
@@ -346,6 +344,9 @@ def test_the_time_of_tasks_that_are_alike_is_soon_known() -> None:
         ratios.append(most / many)
     assert ratios[0] > 2.0
     assert ratios[-1] < 1.5
+    follow.start("other")
+    assert states[-1].left is not None
+    assert states[-1].left[0] > 0, "it is to go on"
 
 
 def test_parts_are_all_short_and_not_all_long_at_once() -> None:

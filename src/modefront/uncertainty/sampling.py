@@ -237,7 +237,7 @@ def draw_models(
     most; None for as many as so many effective draws may take.
     """
     stage = "sample-posterior"
-    tasks = [Task((stage, "peak", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
+    tasks = [Task(("peaks", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
     peaks = _mixture(noise, work.run(tasks))
     chains: list[Chain | None] = [None] * CHAINS
     kept: list[Floats] = []
@@ -246,8 +246,9 @@ def draw_models(
     near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), 0, work)
     warm, settled = True, False
     rounds = rounds or -(-LONGEST * count // (CHAINS * ROUND))
-    work.expect({stage: (2 * CHAINS, (WARM + rounds) * CHAINS)})
     for turn in range(WARM + rounds):
+        if warm:
+            work.expect({stage: (2 * CHAINS, (WARM + rounds - turn) * CHAINS)})
         steps = [
             Task(
                 (stage, k + 1, turn + 1),
@@ -262,7 +263,7 @@ def draw_models(
         if warm:
             beyond = [x.z[-1] for x in found if x.beyond]
             tasks = [
-                Task((stage, "beyond", turn + 1, k + 1), Standardised(noise.problem).evaluate, (z,))
+                Task(("peaks", turn + 1, k + 1), Standardised(noise.problem).evaluate, (z,))
                 for k, z in enumerate(beyond)
             ]
             more = _mixture(noise, work.run(tasks))
@@ -294,7 +295,7 @@ def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> 
     z (n, p) are their standardised parameters. Returned is also what share of them counts.
     """
     tasks = [
-        Task(("sample-posterior", "draws", k + 1), _weighed, (noise, near, part))
+        Task(("draws", k + 1), _weighed, (noise, near, part))
         for k, part in enumerate(np.array_split(z, CHAINS))
     ]
     parts = zip(*work.run(tasks), strict=True)
@@ -335,7 +336,7 @@ def _nearer(noise: NoiseModel, z: Floats, turn: int, work: Executor) -> NoiseMod
     if not isinstance(problem.model, ReducedModel):
         return noise
     theta = np.array([Standardised(problem).theta(x)[0] for x in z])
-    (V,) = work.run([Task(("sample-posterior", "space", turn), problem.model.space, (theta,))])
+    (V,) = work.run([Task(("space", turn), problem.model.space, (theta,))])
     if len(V) < SMALL or 2 * V.shape[1] > len(V):
         return noise
     return replace(noise, problem=replace(problem, model=problem.model.within(V)))

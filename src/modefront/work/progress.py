@@ -1,9 +1,9 @@
 """Progress of a run: its stage, tasks done, and the time that is left, as a range.
 
 A stage ends when a task of another one starts. It takes as long as planned, whatever the others
-take. One that says how many tasks are to come, from and to, takes as long as those that it has had:
-of n tasks of the mean m and the variance s, k more take k m ± 2 sqrt(s (k + k² / n)), where s
-counts one task that is m beside the mean.
+take. One that says how many tasks are to come, from and to, does not end before, and takes as long
+as those that it has had: k more take from k (m - 2 s) to k (m + 2 s), where m is their mean, and s
+their standard deviation, which counts one that is m beside the mean.
 """
 
 import math
@@ -66,10 +66,9 @@ class _Stage:
             low = 0.0 if self.done > count else max(least - spent, 0.0)
             return low, most - spent if most > spent else math.inf
         mean = spent / count
-        variance = (mean**2 + sum((x - mean) ** 2 for x in self.seconds)) / count
+        std = math.sqrt((mean**2 + sum((x - mean) ** 2 for x in self.seconds)) / count)
         few, many = (max(x - self.done, self.running) for x in self.extent)
-        error = [2 * math.sqrt(variance * (x + x**2 / count)) for x in (few, many)]
-        return max(few * mean - error[0], 0.0), many * mean + error[1]
+        return few * max(mean - 2 * std, 0.0), many * (mean + 2 * std)
 
 
 @dataclass
@@ -91,15 +90,14 @@ class Progress:
         """Note the number of tasks of each stage that are still to come, from and to."""
         for name, (few, many) in stages.items():
             stage = self._stages[name]
-            if stage.extent is None:
-                stage.seconds.clear()  # of tasks that prepare those
             stage.extent = stage.done + few, stage.done + many
         self.report(self.state)
 
     def start(self, stage: str) -> None:
         """Take note that a task of a stage is being computed, or taken from what is kept."""
         if stage != self._stage and self._stage:
-            self._stages[self._stage].has_ended = True
+            before = self._stages[self._stage]
+            before.has_ended = before.extent is None or before.done >= before.extent[0]
         self._stage = stage
         self._stages[stage].has_ended = False
         self._stages[stage].running += 1
