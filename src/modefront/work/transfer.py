@@ -64,22 +64,15 @@ class Sender:
 
     def message(self, tasks: Sequence[Task[Any]]) -> Message:
         """Return tasks as bytes. Raises what `pickle` raises for what cannot be pickled."""
-        stream = io.BytesIO()
-        pickler = _Pickler(stream, self)
-        pickler.dump(list(tasks))
-        memory = max((x.footprint for x in pickler.met.values()), default=0.0)
+        pickled = _Pickler(self, list(tasks))
+        memory = max((x.footprint for x in pickled.met.values()), default=0.0)
         memory += max((task.memory for task in tasks), default=0.0)
-        return Message(stream.getvalue(), tuple(pickler.met), memory)
+        return Message(pickled.content, tuple(pickled.met), memory)
 
     def objects(self, names: Sequence[str]) -> dict[str, bytes]:
         """Return shared objects by their names, in this order."""
         values = {name: found() for name, found in self._objects.values()}
-        out = {}
-        for name in names:
-            stream = io.BytesIO()
-            _Pickler(stream, self, values[name]).dump(values[name])
-            out[name] = stream.getvalue()
-        return out
+        return {name: _Pickler(self, values[name]).content for name in names}
 
     def name(self, value: Shared) -> str:
         """Return the name of a shared object; another version of it has another name."""
@@ -95,12 +88,14 @@ class Sender:
 
 
 class _Pickler(pickle.Pickler):
-    """Pickles tasks, or a shared ``root``, with names of shared objects that are ``met``."""
+    """Pickles tasks, or a shared object, with names of the shared objects that are ``met``."""
 
-    def __init__(self, stream: io.BytesIO, sender: Sender, root: Shared | None = None) -> None:
-        super().__init__(stream, pickle.HIGHEST_PROTOCOL)
+    def __init__(self, sender: Sender, root: object) -> None:
+        super().__init__(stream := io.BytesIO(), pickle.HIGHEST_PROTOCOL)
         self.sender, self.root = sender, root
         self.met: dict[str, Shared] = {}
+        self.dump(root)
+        self.content = stream.getvalue()
 
     def persistent_id(self, value: Any) -> str | None:
         if not is_shared(value) or value is self.root:

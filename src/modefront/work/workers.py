@@ -26,7 +26,7 @@ from typing import Any, Protocol
 
 from threadpoolctl import threadpool_limits
 
-from modefront.errors import Fault, InputError, UnfinishedError, wrong
+from modefront.errors import UnfinishedError, wrong
 from modefront.inputs import available_memory
 from modefront.work.task import Done, Key, Task, computed, spend
 from modefront.work.transfer import Message, Reply, Sender, work
@@ -184,12 +184,11 @@ class Cluster:
     ready = True
 
     def __init__(self, address: str) -> None:
-        place = "--scheduler"
         try:
             distributed: Any = importlib.import_module("distributed")
         except ImportError:
             expected = "the extra 'cluster': pip install modefront[cluster]"
-            raise InputError(Fault("", place, expected, "no package 'distributed'")) from None
+            raise wrong("--scheduler", expected, "no package 'distributed'") from None
         self.lost = (distributed.KilledWorker,)
         self.gone = (CancelledError, OSError, distributed.client.ClosedClientError)
         try:
@@ -197,7 +196,7 @@ class Cluster:
             self._client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
         except ValueError as error:
             expected = "an address like tcp://HOST:PORT"
-            raise InputError(Fault("", place, expected, f"{address}: {error}")) from None
+            raise wrong("--scheduler", expected, f"{address}: {error}") from None
         except OSError:
             raise UnfinishedError(f"no Dask scheduler answers at {address}") from None
         try:
@@ -345,7 +344,7 @@ class Workers:
             return self._sender.message([call.tasks[k] for k in positions])
         except (PicklingError, AttributeError, TypeError) as error:
             expected = "a model that other processes can import: functions of a module"
-            raise InputError(Fault("", "workers", expected, str(error))) from None
+            raise wrong("workers", expected, error) from None
 
     def _submit(
         self,
