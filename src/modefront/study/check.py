@@ -34,6 +34,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.optim.problem import Evaluation, at_bounds
 from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
+from modefront.results.remarks import digest
 from modefront.rounding import TINY
 from modefront.study.definition import Study
 from modefront.study.file import as_study
@@ -87,11 +88,9 @@ class Findings(Shown):
 
     def __repr__(self) -> str:
         """Return the first warnings, one a line."""
-        warnings = self.warnings
-        agree, count = "agree with" if self.sound else "DIFFER FROM", len(warnings)
-        more = [f"and {count - knowledge.SHOWN} more: see warnings"] * (count > knowledge.SHOWN)
-        first = f"Findings: derivatives {agree} finite differences; {count or 'no'} warnings"
-        return "\n".join([first, *warnings[: knowledge.SHOWN], *more])
+        agree, count = "agree with" if self.sound else "DIFFER FROM", len(self.warnings) or "no"
+        first = f"Findings: derivatives {agree} finite differences; {count} warnings"
+        return "\n".join([first, *digest(self.warnings, "see warnings", knowledge.SHOWN)])
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -214,13 +213,12 @@ def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequ
     """
     faults = []
     for i in unchanged:
-        remarks = [member.remark for member in problem.members[i]]
+        remarks = dict.fromkeys(member.remark for member in problem.members[i])
         found = (
             "none: no parameter changes them within its bounds, so there is nothing to update; "
             "remove the group, or give it other members or the model other parameters"
         )
-        if all(remarks):  # any model fits it
-            found += f" ({'; '.join(dict.fromkeys(remarks))})"
+        found += f" ({'; '.join(remarks)})" * all(remarks)  # any model fits it
         place = f"[[group]] '{problem.objectives[i]}'"
         faults.append(Fault(file, place, "residuals that a parameter changes", found))
     refuse(faults)

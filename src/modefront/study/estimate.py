@@ -186,11 +186,10 @@ def _search(study: Study) -> tuple[float, float] | None:
 
 def _seconds(problem: UpdatingProblem) -> tuple[float, Evaluation]:
     """Return the seconds of an evaluation of the nominal model, and that."""
-    for _ in range(2):  # the first time also makes what others share
-        began = time.process_time()
-        nominal = problem.evaluate(problem.start, second=True)
-        spent = time.process_time() - began
-    return spent, nominal
+    problem.evaluate(problem.start, second=True)  # makes what others share
+    began = time.process_time()
+    nominal = problem.evaluate(problem.start, second=True)
+    return time.process_time() - began, nominal
 
 
 def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
@@ -226,12 +225,10 @@ def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
 
 def _points(study: Study) -> int:
     """Return how many points the front will probably have."""
-    n = len(study.problem.groups)
-    if n == 1:
-        return 1
-    if study.pareto.method not in ("nbi", "weights"):
-        return study.pareto.population
-    return size(n, study.pareto.points or default_points(n))
+    n, pareto = len(study.problem.groups), study.pareto
+    if n > 1 and pareto.method not in ("nbi", "weights"):
+        return pareto.population
+    return size(n, pareto.points or default_points(n)) if n > 1 else 1
 
 
 def _seconds_of(prediction: Prediction, problem: UpdatingProblem) -> float:

@@ -62,17 +62,14 @@ def read_directions(place: opt.Table) -> list[tuple[str, Any]]:
     given = place.values.get("direction")
     several = isinstance(given, list) and any(isinstance(x, str) for x in given)
     value = place.value("direction", SEVERAL if several else DIRECTION)
-    axes = place.value("axes", AXES, None)
-    out = []
+    axes, out = place.value("axes", AXES, None), list[tuple[str, Any]]()
     for direction in (value or ()) if several else [value][: value is not None]:
         axis = str(direction).removeprefix("-")
         if axes is not None and isinstance(direction, str) and axis not in DIRECTIONS[:3]:
             place.fault("direction", "x, y or z where axes are given", f"'{direction}'")
-            continue
-        if axes is not None:
-            local = unit_vector(direction)[:3] @ axes_of(axes)
-        known = direction if axes is None else local.tolist()
-        out.append((axis if several else "", known))
+        else:
+            local = direction if axes is None else unit_vector(direction)[:3] @ axes_of(axes)
+            out.append((axis if several else "", opt.plain(local)))
     return out
 
 
