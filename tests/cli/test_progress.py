@@ -52,8 +52,11 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     lines.take(State("front", 3, 0, (50.0, np.inf)))
     now = 40.0
     assert drawn(lines, 80)[1] == "front, 143 models solved, 40 s or more"
+    lines.take(State("front", 3, 0, (5.0, 60.0)))
+    now = 101.0
+    assert drawn(lines, 80)[1] == "front, 143 models solved, longer than expected"
     lines.is_done = True
-    assert drawn(lines, 80)[0].rstrip().endswith(" 3 tasks  0:00:40")
+    assert drawn(lines, 80)[0].rstrip().endswith(" 3 tasks  0:01:41")
 
 
 def test_what_is_not_known_of_the_time_is_not_said() -> None:

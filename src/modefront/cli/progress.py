@@ -145,7 +145,7 @@ def _left(state: State, since: float = 0.0) -> str:
     if state.left is None:
         return ""
     least, most = (max(x - since, 0.0) for x in state.left)
-    if most == math.inf:
+    if most == math.inf or most <= 0 < round(state.left[1]):
         return f"{duration(round(least))} or more" if least >= 1 else "longer than expected"
     if most < 1:
         return ""

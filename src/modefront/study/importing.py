@@ -341,8 +341,8 @@ def _study(imported: Imported, folder: Path) -> str:
         lines.append(f"base = {{ {base} }}")
     for name in imported.terms.parameters:
         lines.append(f"\n[[parameter]]\nname = {quoted(name)}\nnominal = 1.0\nbounds = [0.5, 2.0]")
-    for group, what in (("frequencies", "frequency"), ("shapes", "shape")):
-        lines.append(f'\n[[group]]\nname = "{group}"\n{what} = "all"')
+    groups = {"frequencies": "frequency", "shapes": "shape"}
+    lines += [f'\n[[group]]\nname = "{x}"\n{what} = "all"' for x, what in groups.items()]
     return "\n".join(lines) + "\n"
 
 
