@@ -129,7 +129,12 @@ def _of_nodes(
             if (place := modes.place(value)) is None:
                 places.fault(name, f"one of {known}", suggestion(value, names))
         elif places and name in given:
-            place = _given(places, name, modes)
+            inner, place = places.table(name, 'node and direction, such as "12Z"'), None
+            if inner and (chosen := inner.read(OF_PLACE)):
+                if at := np.flatnonzero(modes.nodes == chosen["node"]).tolist():
+                    place = at[0], unit_vector(chosen["direction"])
+                else:
+                    inner.fault("node", "a node of the test", str(chosen["node"]))
         elif (place := modes.place(name) or _by_coordinates(modes, in_space, s)) is None:
             expected = f"{name} = node and direction, one of {known}: the file does not say "
             table.fault("sensors", f"{expected}which sensor is which", "nothing")
@@ -146,19 +151,6 @@ def _of_nodes(
             what = f"{modes.nodes[node]} along {axis_name(direction)}, which is 0 in all modes"
             table.fault(f"sensors {name}", f"one of {known}", what)
     return modes.at(placed) if len(table.faults) == before else None
-
-
-def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | None:
-    """Return node and direction of a sensor of which ``[data.sensors]`` gives them in a table."""
-    inner = places.table(name, 'node and direction, such as "12Z"')
-    known = inner.read(OF_PLACE) if inner else None
-    if inner is None or known is None:
-        return None
-    position = np.flatnonzero(modes.nodes == known["node"])
-    if not position.size:
-        inner.fault("node", "a node of the test", str(known["node"]))
-        return None
-    return int(position[0]), unit_vector(known["direction"])
 
 
 def _by_coordinates(
