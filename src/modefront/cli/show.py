@@ -35,7 +35,16 @@ def models_in(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]
     models, best = _first_models(data), position(data)
     theta, f = data["theta"].values, data["frequency"].values[best]
     change = np.abs(theta[best] - theta[models[0]]) / np.ptp(data["bounds"].values, axis=1)
-    error, predicted = np.abs(f / data["measured_frequency"].values - 1), _predicted(data, models)
+    error = np.abs(f / data["measured_frequency"].values - 1)
+    predicted = [
+        [
+            f"  {each.name}, {x.place}: {x.variable.title}",
+            *(f"{number(x.values[i], '.3g')} {_deviation(x) * (i == best)}" for i in models),
+        ]
+        for each in predictions_in(data)
+        for x in each.quantities
+        if x.variable in each.kind.ranged[:1]  # the main ones
+    ]
     order = {
         name: np.argsort(-np.nan_to_num(x), kind="stable")
         for name, x in (("parameter", change), ("mode", error))
@@ -70,20 +79,6 @@ def _first_models(data: Dataset) -> list[int]:
     kinds = data["kind"].values
     nominal, edges = (np.flatnonzero(kinds == x.value) for x in (Kind.NOMINAL, Kind.EDGE))
     return list(dict.fromkeys([*nominal.tolist(), position(data), *edges.tolist()]))
-
-
-def _predicted(data: Dataset, models: Sequence[int]) -> list[list[str]]:
-    """Return the rows of the main quantities of predictions, of models."""
-    best = position(data)
-    return [
-        [
-            f"  {each.name}, {x.place}: {x.variable.title}",
-            *(f"{number(x.values[i], '.3g')} {_deviation(x) * (i == best)}" for i in models),
-        ]
-        for each in predictions_in(data)
-        for x in each.quantities
-        if x.variable in each.kind.ranged[:1]
-    ]
 
 
 def _table(screen: Screen, data: Dataset, predictions: Sequence[list[str]] = ()) -> list[Line]:

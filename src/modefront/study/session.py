@@ -186,9 +186,8 @@ def run(
 
 def of_another_program(study: Study, folder: Path) -> list[Path]:
     """Return what other versions of the program have kept of a study's work, and this one not."""
-    name = f"{study.work[:12]}-"
-    kept = sorted((folder / FOLDER).glob(f"{name}*")) if study.work else []
-    return kept if kept and not _tasks(study, folder).exists() else []
+    kept = sorted((folder / FOLDER).glob(f"{study.work[:12]}-*")) if study.work else []
+    return [] if _tasks(study, folder).exists() else kept
 
 
 def _tasks(study: Study, folder: Path) -> Path:

@@ -93,16 +93,6 @@ FILE, HOLDER = "lock", "lock-holder"
 file that says which process holds the lock."""
 
 
-def _has_locks(folder: Path) -> bool:
-    """Return whether the drive of a folder has locks of the operating system."""
-    with tempfile.TemporaryDirectory(dir=folder) as probe:
-        try:
-            with FileLock(Path(probe, FILE), fallback_to_soft=False):
-                return True
-        except OSError:
-            return False
-
-
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
     """Hold the lock of a folder of results while a run works in it; its tasks have a folder.
@@ -127,8 +117,12 @@ def locked(folder: Path) -> Iterator[None]:
                     text = holder.read_text("utf-8", "replace")
                     known = clean(f"the run of {text}", NAME)
             found = f"{known}: wait until it has ended, or choose another folder with -o"
-            if not _has_locks(folder / FOLDER):
-                found += f"; if it was killed, remove '{path}', as this drive has no locks"
+            with tempfile.TemporaryDirectory(dir=folder / FOLDER) as probe:
+                try:
+                    with FileLock(Path(probe, FILE), fallback_to_soft=False):
+                        pass
+                except OSError:
+                    found += f"; if it was killed, remove '{path}', as this drive has no locks"
             raise InputError(Fault(str(folder), "folder", "no other run in it", found)) from None
         except OSError:
             lock.release()
