@@ -26,25 +26,16 @@ doi:10.1155/2004/523692; Cauberghe, Guillaume, Verboven, Vanlanduit & Parloo, Me
 Process. 19 (2005) 989-1014, doi:10.1016/j.ymssp.2004.08.003 (the constraint).
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats
+from modefront.rounding import TINY
 
 ARC = 0.92  # share of the unit circle that the band covers: all of it would join its ends
 LEAST_DAMPING = 1e-3  # damping ratio of poles that the decay of an exponential window leaves none
 PORTION = 1 << 11  # lines of which the powers of z are held at once
 SINGULAR = 1e-13  # relative size of eigenvalues of R that are rounding
-
-
-@dataclass(frozen=True)
-class Poles:
-    """Poles with their participation factors."""
-
-    value: Complexes  # (poles,) in rad/s, stable ones within the arc and of positive frequency
-    participation: Complexes  # (poles, references)
 
 
 Moments = tuple[Complexes, Complexes, Complexes]
@@ -69,17 +60,10 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
     return out[0], out[1], out[2]
 
 
-def _toeplitz(values: Complexes, p: int) -> Complexes:
-    """Return the matrix with entries values[m' - m], m and m' from 0 to p; lags are last."""
-    centre = values.shape[-1] // 2
-    index = np.arange(p + 1)
-    out: Complexes = values[..., centre + index[None, :] - index[:, None]]
-    return out
-
-
 def _reduced(sums: Moments, p: int) -> Complexes:
     """Return M, (powers and references) squared."""
-    R, S, T = (_toeplitz(x, p) for x in sums)  # the last axes are (p + 1, p + 1)
+    lag = np.arange(p + 1) - np.arange(p + 1)[:, None] + len(sums[0]) // 2
+    R, S, T = (x[..., lag] for x in sums)  # Toeplitz in the last axes, (p + 1, p + 1)
     M = T.transpose(2, 0, 3, 1).reshape((p + 1) * len(T), -1)
     value, vector = la.eigh(R)
     kept = value > SINGULAR * value[-1]
@@ -89,16 +73,18 @@ def _reduced(sums: Moments, p: int) -> Complexes:
     return M - half.conj().T @ half
 
 
-def poles(sums: Moments, p: int, shift: float, rate: float, decay: float = 0.0) -> Poles:
-    """Return the stable poles of one order, of z = exp(i rate (omega - shift)).
+def poles(
+    sums: Moments, p: int, shift: float, rate: float, decay: float = 0.0
+) -> tuple[Complexes, Complexes]:
+    """Return the stable poles of one order and participation factors, (poles, references).
 
-    They are those without the ``decay`` in 1/s that an exponential window added to them. What
-    decays by less than half of that is noise; others that come out unstable get the damping ratio
-    `LEAST_DAMPING`.
+    Poles, in rad/s, are of z = exp(i rate (omega - shift)), of positive frequency, and are those
+    without the ``decay`` in 1/s that an exponential window added to them. What decays by less than
+    half of that is noise; others that come out unstable get the damping ratio `LEAST_DAMPING`.
     """
     n_in, M = len(sums[2]), _reduced(sums, p)
     M = (M + M.conj().T) / 2
-    scale = np.sqrt(np.maximum(M.diagonal().real, np.finfo(float).tiny))
+    scale = np.sqrt(np.maximum(M.diagonal().real, TINY))
     rest = slice(n_in, None)
     normal = M[rest, rest] / np.outer(scale[rest], scale[rest])
     right = -M[rest, :n_in] / scale[rest, None]
@@ -117,7 +103,7 @@ def poles(sums: Moments, p: int, shift: float, rate: float, decay: float = 0.0) 
         value.real = np.minimum(value.real + decay, -LEAST_DAMPING * np.abs(value))
     participation = _participation(alpha.reshape(p, n_in, n_in), 1 / inverse[good])
     order = np.argsort(value[good].imag)
-    return Poles(value[good][order], participation[order])
+    return value[good][order], participation[order]
 
 
 def _participation(A: Complexes, z: Complexes) -> Complexes:

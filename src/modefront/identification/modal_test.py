@@ -22,7 +22,7 @@ from modefront.identification.record import Identification, Rejected
 from modefront.identification.sets import CombinedModes, combine
 from modefront.inputs import wrong
 from modefront.outputs import write_text
-from modefront.text import Shown
+from modefront.text import Shown, json_of
 
 POOR_FIT = 0.5  # residual of a function over its norm from which on it is pointed out
 NAMED = 3  # functions that are fitted poorly, modes and warnings that are named
@@ -125,9 +125,8 @@ class IdentifiedTest(Shown):
             if self.data.shape_covariance is not None:
                 written.append(path.with_name(path.stem + "-covariance.csv"))
                 write_covariance(written[-1], self.data)
-        text = json.dumps(self.as_plain(), indent=1, allow_nan=False)
         written.append(path.with_name(path.stem + "-identification.json"))
-        write_text(written[-1], text + "\n")
+        write_text(written[-1], json.dumps(self.as_plain(), indent=1) + "\n")
         return written
 
     def as_plain(self) -> dict[str, Any]:
@@ -136,7 +135,9 @@ class IdentifiedTest(Shown):
             {"name": name} | _plain_set(identification)
             for name, identification in zip(self.names, self.identified, strict=True)
         ]
-        return {"test": self.test.name, "warnings": self.warnings, "sets": sets}
+        said = {"test": self.test.name, "warnings": self.warnings, "sets": sets}
+        out: dict[str, Any] = json.loads(json_of(said))
+        return out
 
     def __repr__(self) -> str:
         """Return the modes, a line each, and the first warnings."""
@@ -317,45 +318,36 @@ def _warnings(identification: Identification) -> list[str]:
     return out
 
 
-def _pairs(values: Any) -> list[list[float | None]]:
-    return [[known(float(x.real)), known(float(x.imag))] for x in np.asarray(values, complex)]
-
-
-def known(value: float) -> float | None:
-    """Return a number for JSON, None where it is not finite."""
-    return value if np.isfinite(value) else None
-
-
 def _plain_set(identification: Identification) -> dict[str, Any]:
-    """Return what was identified of one data set as plain data."""
+    """Return what was identified of one data set."""
     functions, residuals = identification.functions, identification.functions.residuals
     return {
-        "references": list(functions.data.references),
-        "responses": list(identification.responses),
-        "band": list(identification.band),
+        "references": functions.data.references,
+        "responses": identification.responses,
+        "band": identification.band,
         "chi2": residuals.chi2,
         "correlation_factor": residuals.widening,
-        "force_noise": [float(np.sqrt(b)) for b in residuals.force],
-        "residual": [[known(float(x)) for x in row] for row in residuals.share],
+        "force_noise": np.sqrt(residuals.force),
+        "residual": residuals.share,
         "residual_terms": functions.residual_terms,
         "evaluations": identification.evaluations,
         "converged": identification.converged,
         "modes": [
             {
-                **{
-                    key: getattr(mode, key)
-                    for key in ("frequency", "frequency_std", "damping", "damping_std")
-                },
-                "pole": [mode.pole.real, mode.pole.imag],
-                "shape": _pairs(mode.shape.complex_shape),
-                "real_shape_std": [known(float(x)) for x in mode.shape_std],
+                "frequency": mode.frequency,
+                "frequency_std": mode.frequency_std,
+                "damping": mode.damping,
+                "damping_std": mode.damping_std,
+                "pole": (mode.pole.real, mode.pole.imag),
+                "shape": mode.shape.complex_shape.view(float).reshape(-1, 2),
+                "real_shape_std": mode.shape_std,
                 "phase_collinearity": mode.shape.collinearity,
                 "loss": mode.shape.loss,
-                "participation": _pairs(mode.participation),
+                "participation": mode.participation.view(float).reshape(-1, 2),
                 "evidence": mode.evidence.gain,
                 "support": mode.evidence.support,
                 "visibility": mode.evidence.visibility,
-                "flags": list(mode.evidence.flags),
+                "flags": mode.evidence.flags,
             }
             for mode in identification.modes
         ],

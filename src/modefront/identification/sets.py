@@ -22,7 +22,6 @@ from modefront.identification.scan import alike
 WIDTH = 5.0  # distance within which frequencies may belong to the same mode
 LEAST_MAC = 0.5  # MAC from which on shapes may be of the same mode
 SIGNIFICANT = 0.95  # level of the test of homogeneity; the 5 % that is usual
-ANGLES = 180  # ratios of two shapes of unit norm that are tried, as angles
 ROUNDING = 1e-12  # least variance of a component of a shape
 MOST_STEPS = 50  # steps of Gauss and Newton, at most
 TOLERANCE = 1e-10  # change of the norm of a setup's part of a shape below which the shape is found
@@ -147,45 +146,42 @@ def _agreement(of_a: ModesOfSet, a: int, of_b: ModesOfSet, b: int, least: float)
     common = [name for name in of_a[0] if name in of_b[0]]
     if abs(x.frequency - y.frequency) > reach or not common:
         return 0.0
-    shapes, planes = [], []
+    shapes, planes, places = [], [], []
     for mode, own, (names, modes) in zip((x, y), half, (of_a, of_b), strict=True):
         close = [
             each.shape.plane
             for each in modes
             if abs(each.frequency - mode.frequency) <= each.damping * each.frequency + own
         ]
-        places = [names.index(name) for name in common]
-        shapes.append(la.orth(mode.shape.plane[places]))
-        planes.append(la.orth(np.hstack(close)[places]))
+        places.append([names.index(name) for name in common])
+        shapes.append(la.orth(mode.shape.plane[places[-1]]))
+        planes.append(la.orth(np.hstack(close)[places[-1]]))
     (own_a, own_b), (plane_a, plane_b) = shapes, planes
 
     def mac(first: Floats, second: Floats) -> float:
         return float(np.linalg.norm(first.T @ second, 2) ** 2) if first.size * second.size else 0.0
 
     near = max(mac(own_a, plane_b), mac(plane_a, own_b))
-    if near <= least and _apart(of_a[0], x, of_b[0], y) > WIDTH:
+    if near <= least and _apart((x, y), places) > WIDTH:
         return 0.0
     return 1 + mac(own_a, own_b) * float(alike(x.pole, np.array(y.pole)))
 
 
-def _apart(of_a: Sequence[str], a: ModeEstimate, of_b: Sequence[str], b: ModeEstimate) -> float:
+def _apart(modes: Sequence[ModeEstimate], places: Sequence[Sequence[int]]) -> float:
     """Return how many deviations shapes of any scale are apart at common sensors.
 
-    Infinitely many where covariances are not known.
+    It is the misfit of one shape for both, and infinite where covariances are not known.
     """
-    shared = [(of_a.index(name), of_b.index(name)) for name in of_a if name in of_b]
-    if a.shape_covariance is None or b.shape_covariance is None:
-        return np.inf
-    i, j = np.array(shared).T
-    angle = np.linspace(0, np.pi, ANGLES, endpoint=False)
-    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    difference = c * a.shape.shape[i] + s * b.shape.shape[j]
-    C = c[..., None] ** 2 * a.shape_covariance[np.ix_(i, i)]
-    C = C + s[..., None] ** 2 * b.shape_covariance[np.ix_(j, j)] + ROUNDING * np.eye(len(i))
-    if not np.isfinite(C).all():
-        return np.inf
-    squares = np.sum(difference * np.linalg.solve(C, difference[..., None])[..., 0], axis=1)
-    return float(np.sqrt(squares.min()))
+    shapes, covariances, common = [], [], np.arange(len(places[0]))
+    for mode, own in zip(modes, places, strict=True):
+        C = mode.shape_covariance
+        if C is None or not np.isfinite(C := C[np.ix_(own, own)]).all():
+            return np.inf
+        size = float(np.linalg.norm(mode.shape.shape[own])) or 1.0
+        shapes.append(mode.shape.shape[own] / size)
+        covariances.append(C / size**2 + ROUNDING * np.eye(len(own)))
+    misfit = merged_shape([common, common], shapes, covariances, len(common))[2]
+    return float(np.sqrt(max(misfit, 0.0)))
 
 
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:

@@ -14,8 +14,8 @@ from scipy.spatial.distance import squareform
 from modefront._typing import Bools, Complexes, Floats, Ints
 from modefront.data.responses import ORDERS, FrequencyResponses
 from modefront.identification import lscf
-from modefront.identification.lscf import Poles
 from modefront.linalg.small import mac
+from modefront.rounding import TINY
 
 MOST_POLES = 160  # poles at the highest order: some four for each of forty modes
 MOST_ORDERS = 25  # orders of a diagram; more add no information to clusters of poles
@@ -42,6 +42,8 @@ class StabilisationDiagram:
     participation: Complexes  # (poles, references)
     stable: Bools  # (poles,) whether the nearest pole of the order below is within `CUT`
     orders: tuple[int, ...]  # all orders
+    # positions of the poles that are nearest to the median of their clusters, by frequency
+    clusters: Ints
 
     @property
     def frequency(self) -> Floats:
@@ -56,8 +58,8 @@ class StabilisationDiagram:
         return out
 
 
-def diagram_of(data: FrequencyResponses, variance: Floats) -> tuple[StabilisationDiagram, Poles]:
-    """Return the diagram of functions by least squares (`lscf`), and the poles of its clusters.
+def diagram_of(data: FrequencyResponses, variance: Floats) -> StabilisationDiagram:
+    """Return the diagram of functions by least squares (`lscf`).
 
     ``variance`` weights the lines; any of its axes may be 1. A cluster is on `LEAST_ORDERS` orders.
     """
@@ -70,48 +72,42 @@ def diagram_of(data: FrequencyResponses, variance: Floats) -> tuple[Stabilisatio
     sums = lscf.moments(data.H, weight / weight.max(), z, max(orders))
     kept = []
     for order in orders:
-        p = lscf.poles(sums, order, omega[0], rate, data.decay)
-        good = -p.value.real < MOST_DAMPING * np.abs(p.value)
-        kept.append(Poles(p.value[good], p.participation[good]))
+        lam, L = lscf.poles(sums, order, omega[0], rate, data.decay)
+        good = -lam.real < MOST_DAMPING * np.abs(lam)
+        kept.append((lam[good], L[good]))
     s: Complexes = np.asarray(1j * omega + data.decay, complex)
     # shapes are taken from every n-th line, and from those next to poles
     lines: Bools = np.arange(len(s)) % -(-len(s) // SHAPE_LINES) == 0
-    found = np.concatenate([poles.value.imag for poles in kept])
-    nearest = np.searchsorted(s.imag, found)[:, None] + np.arange(-NEXT, NEXT + 1)
+    pole, participation = (np.concatenate(parts) for parts in zip(*kept, strict=True))
+    nearest = np.searchsorted(s.imag, pole.imag)[:, None] + np.arange(-NEXT, NEXT + 1)
     lines[np.clip(nearest, 0, len(s) - 1)] = True
     H, q = data.H[..., lines], ORDERS[data.quantity]
-    shapes = [shapes_of(poles, H, s[lines], q) for poles in kept]
-    distance = [np.full(len(kept[0].value), np.inf)]
-    for (below, psi_below), (now, psi) in pairwise(zip(kept, shapes, strict=True)):
-        d = _distances(now.value, psi, below.value, psi_below)
+    shapes = [shapes_of(*poles, H, s[lines], q) for poles in kept]
+    distance = [np.full(len(shapes[0]), np.inf)]
+    for ((below, _), psi_below), ((now, _), psi) in pairwise(zip(kept, shapes, strict=True)):
+        d = _distances(now, psi, below, psi_below)
         distance.append(d.min(axis=1, initial=np.inf))
-    stable = np.concatenate(distance) < CUT
-    diagram = StabilisationDiagram(
-        np.repeat(orders, [len(poles.value) for poles in kept]),
-        np.concatenate([poles.value for poles in kept]),
-        np.concatenate([poles.participation for poles in kept]),
-        stable,
-        tuple(orders),
-    )
-    return diagram, _clusters(diagram, np.concatenate(shapes))
+    order, stable = np.repeat(orders, list(map(len, shapes))), np.concatenate(distance) < CUT
+    clusters = _clusters(order, pole, np.flatnonzero(stable), np.concatenate(shapes)[stable])
+    return StabilisationDiagram(order, pole, participation, stable, tuple(orders), clusters)
 
 
-def shapes_of(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:
+def shapes_of(lam: Complexes, L: Complexes, H: Complexes, s: Complexes, q: int) -> Complexes:
     """Return shapes of the poles of one order, (poles, responses), by linear least squares."""
-    n, n_in = poles.participation.shape
+    n, n_in = L.shape
     size = abs(s[-1])
     front = (s / size) ** q
-    modal = front * size / (s - poles.value[:, None])
+    modal = front * size / (s - lam[:, None])
     residual = np.stack([front, front * (size / s) ** 2])
     normal = np.zeros((n + 2 * n_in, n + 2 * n_in), complex)
     right = np.zeros((n + 2 * n_in, H.shape[1]), complex)
     for j in range(n_in):
         basis = np.zeros((n + 2 * n_in, len(s)), complex)
-        basis[:n] = poles.participation[:, j, None] * modal
+        basis[:n] = L[:, j, None] * modal
         basis[n + 2 * j : n + 2 * j + 2] = residual
         normal += basis.conj() @ basis.T
         right += basis.conj() @ H[j].T
-    scale = 1 / np.sqrt(np.maximum(normal.diagonal().real, np.finfo(float).tiny))
+    scale = 1 / np.sqrt(np.maximum(normal.diagonal().real, TINY))
     scaled = normal * np.outer(scale, scale) + 1e-13 * np.eye(len(scale))
     out: Complexes = (scale[:, None] * la.solve(scaled, scale[:, None] * right))[:n]
     return out
@@ -124,22 +120,22 @@ def _distances(a: Complexes, psi_a: Complexes, b: Complexes, psi_b: Complexes) -
     return out
 
 
-def _clusters(diagram: StabilisationDiagram, psi: Complexes) -> Poles:
-    """Return the pole of each cluster that is nearest to the median of its members."""
-    stable, number = np.flatnonzero(diagram.stable), np.ones(diagram.stable.sum(), int)
+def _clusters(order: Ints, pole: Complexes, stable: Ints, psi: Complexes) -> Ints:
+    """Return the pole of each cluster of stable ones that is nearest to the median of its members.
+
+    ``psi`` are the shapes of the stable ones.
+    """
+    number = np.ones(len(stable), int)
     if len(stable) > 1:
-        pole, psi = diagram.pole[stable], psi[stable]
-        d = _distances(pole, psi, pole, psi)
+        d = _distances(pole[stable], psi, pole[stable], psi)
         tree = linkage(squareform((d + d.T) / 2, checks=False), "average")
         number = fcluster(tree, CUT, "distance")
     chosen = []
     for members in (stable[number == k] for k in np.unique(number)):
-        poles = diagram.pole[members]
-        middle = np.median(poles.real) + 1j * np.median(poles.imag)
-        if len(np.unique(diagram.order[members])) >= LEAST_ORDERS:
-            chosen.append(int(members[np.abs(poles - middle).argmin()]))
-    chosen.sort(key=lambda k: diagram.pole[k].imag)
-    return Poles(diagram.pole[chosen], diagram.participation[chosen])
+        middle = np.median(pole[members].real) + 1j * np.median(pole[members].imag)
+        if len(np.unique(order[members])) >= LEAST_ORDERS:
+            chosen.append(int(members[np.abs(pole[members] - middle).argmin()]))
+    return np.array(sorted(chosen, key=lambda k: pole[k].imag), int)
 
 
 def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) -> Floats:
@@ -177,7 +173,7 @@ def multivariate_indicators(data: FrequencyResponses) -> Floats:
     B = quadrature.swapaxes(1, 2) @ quadrature
     total = A + B
     size = np.trace(total, axis1=1, axis2=2)[:, None, None] / total.shape[1]
-    total = total + (LEAST * np.maximum(size, np.finfo(float).tiny)) * np.eye(total.shape[1])
+    total = total + (LEAST * np.maximum(size, TINY)) * np.eye(total.shape[1])
     root = np.linalg.inv(np.linalg.cholesky(total))
     out: Floats = np.linalg.eigvalsh(root @ A @ root.swapaxes(1, 2)).T
     return np.clip(out, 0, 1)

@@ -200,23 +200,22 @@ def _force_influence(
     """
     n = follows.shape[1]
     E, T, X = columns(fit)
-    first, H = T.shape[1], fit.functions
     for j in np.flatnonzero(force).tolist():
-        for products in _force_products(fit.task, E, H[j], j, force[j]):
+        weighted = fit.task.weight[j] * fit.functions[j]
+        for products in _force_products(fit.task, E, weighted, j, force[j]):
             y = np.concatenate([products.real, products.imag], axis=2)
             alpha = inverse @ np.einsum("iqa,iqk->ak", X[j], y, optimize=True)
-            yield alpha, fit.inverse[:, :n] @ (T[j].T @ y[:, :first]) - follows @ alpha
+            yield alpha, fit.inverse[:, :n] @ (T[j].T @ y[:, : T.shape[1]]) - follows @ alpha
 
 
 def _force_products(
-    task: Problem, E: Complexes, H: Complexes, j: int, b: float
+    task: Problem, E: Complexes, weighted: Complexes, j: int, b: float
 ) -> Iterator[Complexes]:
     """Yield products of the primitives with what errors of force j do, (responses, Q, errors).
 
     Errors are independent at every line or, where the noise is known in time, at every sample;
     samples closer than lines of the band can tell apart are taken together.
     """
-    weighted = task.weight[j] * H
     if not task.force_noise:
         portion = max(CHUNK // max(weighted.shape[0] * len(E), 1), 1)
         for start in range(0, len(task.s), portion):

@@ -15,11 +15,10 @@ import scipy.linalg as la
 from scipy.sparse.csgraph import connected_components
 from scipy.stats import chi2, norm
 
-from modefront._typing import Bools, Complexes, Floats
+from modefront._typing import Bools, Floats
 from modefront.data.modal_test import Records
 from modefront.data.responses import FrequencyResponses
 from modefront.identification import harmonics, selection, spectra, spectral_density
-from modefront.identification.lscf import Poles
 from modefront.identification.record import (
     Evidence,
     FittedFunctions,
@@ -156,12 +155,11 @@ def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float])
 def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDiagram, list[Local]]:
     """Return the diagram of half spectra and its clusters within the band as modes."""
     data, variance = spectra.half_spectra(records, low, high)
-    diagram, all_poles = diagram_of(data, variance)
-    f = np.abs(all_poles.value) / (2 * np.pi)
-    inside = (f >= low) & (f <= high)
-    poles = Poles(lam := all_poles.value[inside], all_poles.participation[inside])
-    s: Complexes = np.asarray(2j * np.pi * data.frequency + data.decay)
-    psi = shapes_of(poles, data.H, s, 0) * records.values.std(axis=1)
+    diagram = diagram_of(data, variance)
+    f = diagram.frequency[diagram.clusters]
+    inside = diagram.clusters[(f >= low) & (f <= high)]
+    lam, s = diagram.pole[inside], np.asarray(2j * np.pi * data.frequency + data.decay)
+    psi = shapes_of(lam, diagram.participation[inside], data.H, s, 0) * records.values.std(axis=1)
     zeta = np.clip(-lam.real / np.abs(lam), *DAMPING)
     rows = zip(np.abs(lam).tolist(), zeta.tolist(), psi, strict=True)
     return diagram, [Local(omega, z, real_shape(shape).shape) for omega, z, shape in rows]

@@ -60,11 +60,11 @@ def identify(
     else:
         first = fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
     small, shared = _principal(data, first)
-    diagram, poles = stabilisation.diagram_of(small, shared)
+    diagram = stabilisation.diagram_of(small, shared)
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
         small, shared = data, first
     task, omega, _ = problem(small, shared)
-    lam, L = poles.value / omega, poles.participation
+    lam, L = diagram.pole[diagram.clusters] / omega, diagram.participation[diagram.clusters]
     fit = selection.refit(evaluate(task, lam, L), lam, L)
     fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
     fit = selection.grow(selection.backward(fit, modes)[0], modes)
