@@ -40,14 +40,13 @@ import scipy.linalg as la
 from modefront._typing import Complexes, Floats, Ints
 from modefront.identification.problem import RESIDUALS, Problem, combined, gram, primitives
 from modefront.identification.scan import Scan, scan
+from modefront.rounding import TINY
 
 FINE, COARSE = 1e-4, 1e-2
 """Squared steps in standard deviations that end an iteration: for results, and for choices."""
 
 MOST_EVALUATIONS = 40
 """Evaluations after which a fit has failed; simulated tests take three to fifteen."""
-
-TINY = float(np.finfo(float).tiny)
 
 ROUNDING = 1e-13  # share of the squares of a column that may be rounding
 BEND = 1 / 8  # width of a block of lines over the distance of the nearest pole

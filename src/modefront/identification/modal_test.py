@@ -18,7 +18,7 @@ from modefront.data.modal_test import ByHand, ModalTest, read_test
 from modefront.data.uff import write_uff55
 from modefront.errors import Fault, InputError, UnfinishedError
 from modefront.identification.methods import ambient, hammer
-from modefront.identification.record import Identification, Rejected
+from modefront.identification.record import Identification, ModeEstimate, Rejected
 from modefront.identification.sets import CombinedModes, combine
 from modefront.inputs import wrong
 from modefront.outputs import write_text
@@ -231,13 +231,13 @@ def _chosen(
     out = (numbers > 0) & ~held & np.isin(numbers, chosen.drop)
     if chosen.keep:
         out |= (numbers > 0) & ~held & ~np.isin(numbers, chosen.keep)
-    rejected = [
-        Rejected(float(mode.frequency), float(mode.damping), "left out by hand")
-        for mode, gone in zip(each.modes, out, strict=True)
-        if gone
-    ]
-    modes = tuple(mode for mode, gone in zip(each.modes, out, strict=True) if not gone)
-    kept = replace(each, modes=modes, rejected=(*each.rejected, *rejected))
+    modes, rejected = list[ModeEstimate](), list(each.rejected)
+    for mode, gone in zip(each.modes, out, strict=True):
+        if gone:
+            rejected.append(Rejected(mode.frequency, mode.damping, "left out by hand"))
+        else:
+            modes.append(mode)
+    kept = replace(each, modes=tuple(modes), rejected=tuple(rejected))
     return kept, tuple(numbers[~out].tolist())
 
 

@@ -9,8 +9,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from modefront._typing import Complexes, Floats
-
-DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
+from modefront.rounding import TINY
 
 WINDOW = 21  # lines of a running median
 LINES_A_HAT = 30  # lines a hat function, enough for its coefficient to be known within some 20 %
@@ -30,14 +29,12 @@ def variance_from_differences(H: Complexes) -> Floats:
 
     It is the running median of squared differences, which peaks do not reach.
     """
-    lines, size = H.shape[-1] - len(DIFFERENCE) + 1, np.sqrt(np.sum(DIFFERENCE**2))
-    known = np.where(np.isfinite(H), H, 0) / size
-    raw = square(np.asarray(sum(c * known[..., k : k + lines] for k, c in enumerate(DIFFERENCE))))
-    raw = np.pad(raw, [(0, 0), (0, 0), (2, 2)], mode="edge")
+    known = np.where(np.isfinite(H), H, 0) / np.sqrt(70)  # 1 + 16 + 36 + 16 + 1
+    raw = np.pad(square(np.diff(known, 4)), [(0, 0), (0, 0), (2, 2)], mode="edge")
     medians = median_filter(raw, (1, 1, WINDOW), mode="nearest") / np.log(2)  # of mean 1: ln 2
     power = ROUNDING * np.mean(square(known), axis=-1, keepdims=True)
     least = np.maximum(power, 1e-3 * np.median(medians, axis=-1, keepdims=True))
-    return np.where(np.isfinite(H), np.maximum(medians, least + np.finfo(float).tiny), np.nan)
+    return np.where(np.isfinite(H), np.maximum(medians, least + TINY), np.nan)
 
 
 def fitted_variance(raw: Floats, H: Complexes) -> Floats:
@@ -65,9 +62,9 @@ def fitted_variance(raw: Floats, H: Complexes) -> Floats:
     p = block(np.where(known, power, 0.0)) * share
     D = block(hats) / block(np.ones(lines))
     mean = q.sum(axis=1, keepdims=True) / np.maximum((count > 0).sum(axis=1, keepdims=True), 1)
-    mean = np.maximum(mean, np.finfo(float).tiny)
+    mean = np.maximum(mean, TINY)
     q = q / mean
-    size = np.maximum(p.mean(axis=1, keepdims=True), np.finfo(float).tiny)
+    size = np.maximum(p.mean(axis=1, keepdims=True), TINY)
     p = p / size
     c, b = np.full((len(q), len(D)), 0.5), np.full((len(q), 1), 0.5)
     for _ in range(ITERATIONS):
@@ -79,7 +76,7 @@ def fitted_variance(raw: Floats, H: Complexes) -> Floats:
             / np.maximum((down * p).sum(axis=1, keepdims=True), 1e-300)
         )
     v = c @ hats + b * power / size
-    floor = np.maximum(1e-4 * np.median(v, axis=1, keepdims=True), np.finfo(float).tiny)
+    floor = np.maximum(1e-4 * np.median(v, axis=1, keepdims=True), TINY)
     out = np.maximum(v, floor) * mean
     out = np.maximum(out, ROUNDING * power.mean(axis=1, keepdims=True))
     out[~known.any(axis=1)] = np.nan

@@ -3,7 +3,6 @@
 The *primitives* are those of `modefront.identification.modal_model`.
 """
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -49,11 +48,6 @@ class Problem:
     def weights(self) -> Floats:
         """The weights, of the shape of ``H``."""
         return np.broadcast_to(self.weight, self.H.shape)
-
-    @property
-    def correlation(self) -> float:
-        """Sum of the correlations of the noise of a line with all lines, x coth x for x = d T."""
-        return self.decay / math.tanh(self.decay) if self.decay else 1.0
 
 
 def problem(data: FrequencyResponses, variance: Floats) -> tuple[Problem, float, float]:

@@ -11,6 +11,7 @@ from scipy.ndimage import percentile_filter
 from modefront._typing import Complexes, Floats
 from modefront.identification.noise import square
 from modefront.identification.problem import Problem, gram
+from modefront.rounding import TINY
 
 HEAVIEST = 0.1  # greatest damping ratio of the poles that are looked for in residuals
 
@@ -24,8 +25,6 @@ DRAWS, SEED = 1000, 1
 
 MOST_PLACES = 1 << 18  # places of the grid of lines, at most
 PORTION = 32  # responses whose products with poles are computed at once
-
-TINY = float(np.finfo(float).tiny)
 
 ROUNDING = 1e-12
 """Share of the greatest energy of a pole's function in the lines below which there is none."""
@@ -128,8 +127,9 @@ def scan(task: Problem, r: Complexes, misfit: float, E: Complexes, T: Floats) ->
         kept = half < HEAVIEST * lam.imag
         out.append([x[kept] for x in (lam, 2 * most, factors, noise)])
     lam, gain, L, noise = (np.concatenate(each) for each in zip(*out, strict=True))
-    least = max(misfit, 1.0) * task.correlation
-    noise = np.maximum(noise / _expected(*task.live), least)
+    # the correlations of the noise of a line with all lines have the sum x coth x, x = d T
+    widening = task.decay / np.tanh(task.decay) if task.decay else 1.0
+    noise = np.maximum(noise / _expected(*task.live), max(misfit, 1.0) * widening)
     return Scan(lam, gain / noise, L, noise)
 
 

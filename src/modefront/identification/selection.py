@@ -27,6 +27,7 @@ from modefront.identification.problem import Problem
 from modefront.identification.scan import alike
 from modefront.identification.shapes import plane_basis
 from modefront.linalg.small import mac
+from modefront.rounding import TINY
 
 FALSE = 1e-3  # expected number of modes in a band that noise alone makes
 MOST_ROUNDS = 20  # rounds in which poles are added, at most
@@ -113,7 +114,7 @@ def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
             fit = maximise(task, fit.model.lam, fit.model.L)
         lam, L = fit.model.lam, fit.model.L
         over = -lam.real > OVERDAMPED * np.abs(lam)
-        unlike = fit.information.diagonal() / np.maximum(fit.size, np.finfo(float).tiny)
+        unlike = fit.information.diagonal() / np.maximum(fit.size, TINY)
         over |= unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
         if not over.any():
             break

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Complexes, Floats
-
-TINY = float(np.finfo(float).tiny)
+from modefront.rounding import TINY
 
 
 @dataclass(frozen=True)

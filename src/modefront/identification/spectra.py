@@ -15,6 +15,7 @@ from modefront.data.modal_test import RECORDED, Records
 from modefront.data.responses import FrequencyResponses
 from modefront.identification.noise import square
 from modefront.identification.spectral_density import Band
+from modefront.rounding import TINY
 
 REFERENCES = 4  # principal components that half spectra are taken with
 LAGS = 0.1  # longest lag over the length of the record: longer ones are mostly errors of estimation
@@ -80,7 +81,7 @@ def with_lines(records: Records, omega: Floats, change: Complexes) -> Records:
 def half_spectra(records: Records, low: float, high: float) -> tuple[FrequencyResponses, Floats]:
     """Return half spectra within a band in Hz, and their variance up to a factor, (1, 1, lines)."""
     y = scipy.signal.detrend(records.values, axis=1)
-    y = y / np.maximum(y.std(axis=1, keepdims=True), np.finfo(float).tiny)
+    y = y / np.maximum(y.std(axis=1, keepdims=True), TINY)
     samples = y.shape[1]
     lags = int(min(LAGS * samples, MOST_LINES * records.rate / (high - low)))
     size = scipy.fft.next_fast_len(samples + lags, real=True)

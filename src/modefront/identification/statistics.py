@@ -19,7 +19,8 @@ from modefront.identification.modal_model import Fit, columns
 from modefront.identification.noise import square
 from modefront.identification.problem import CHUNK, Problem, gram
 from modefront.identification.record import MOST_COVARIED, ModeEstimate, Residuals
-from modefront.identification.shapes import TINY, real_shape, real_shapes
+from modefront.identification.shapes import real_shape, real_shapes
+from modefront.rounding import TINY
 
 SIGNIFICANT = 3.0  # standard errors beyond which a correlation of the residuals is one
 SILENT = 1e-3  # probability that a response that holds nothing but noise is taken for one that does

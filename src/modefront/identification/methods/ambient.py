@@ -357,10 +357,6 @@ def _groups(setups: Sequence[_Setup], least: float = 0.0) -> list[dict[int, int]
     return mode_groups(local, least)
 
 
-def _sensors(setups: Sequence[_Setup]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(name for each in setups for name in each.records.sensors))
-
-
 def _completed(k: int, setups: Sequence[_Setup], groups: Sequence[dict[int, int]]) -> _Setup:
     """Return a setup in which all modes of the structure were tried.
 
@@ -385,7 +381,7 @@ def _combined(
     count: int | None,
 ) -> Identification:
     """Return the modes of the structure, and what is none."""
-    modes, sensors = [], _sensors(setups)
+    modes, sensors = [], tuple(dict.fromkeys(x for each in setups for x in each.records.sensors))
     sines = np.sort([omega for x in setups for omega in x.lines.sines]) / (2 * np.pi)
     apart = np.diff(sines, prepend=-np.inf) > max(1 / x.records.duration for x in setups)
     text = "a harmonic: its lines are those of a sine"

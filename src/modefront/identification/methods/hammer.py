@@ -25,6 +25,7 @@ from modefront.identification.record import (
 )
 from modefront.identification.statistics import mode_estimates, residuals
 from modefront.linalg.small import mac
+from modefront.rounding import TINY
 
 LEAST_LINES = 20
 """Lines of a band, at least: two modes with their residual terms have twelve numbers a function."""
@@ -168,18 +169,14 @@ def _result(
             own = estimates[r].frequency_std, estimates[r].damping_std
             f_std, zeta_std = np.hypot(own, splits).tolist()
             estimates[r] = replace(estimates[r], frequency_std=f_std, damping_std=zeta_std)
-    reasons = [
-        "damped too heavily for a mode" * bool(mode.damping > stabilisation.MOST_DAMPING)
-        if f[0] <= mode.frequency <= f[-1]
-        else "outside the band"
-        for mode in estimates
-    ]
-    kept = [k for k, why in enumerate(reasons) if not why]
-    rejected = [
-        Rejected(float(mode.frequency), float(mode.damping), why)
-        for mode, why in zip(estimates, reasons, strict=True)
-        if why
-    ]
+    kept, rejected = list[int](), list[Rejected]()
+    for k, mode in enumerate(estimates):
+        inside = f[0] <= mode.frequency <= f[-1]
+        why = "damped too heavily for a mode" if inside else "outside the band"
+        if inside and mode.damping <= stabilisation.MOST_DAMPING:
+            kept.append(k)
+        else:
+            rejected.append(Rejected(mode.frequency, mode.damping, why))
     shares = stabilisation.support(diagram, fit.model.lam * omega, gain)
     evidence = _evidence(fit, f, gain / selection.needed(task), shares, estimates, kept)
     modes = [replace(estimates[k], evidence=evidence[k]) for k in kept]
@@ -251,6 +248,6 @@ def _visibility(fit: Fit) -> Floats:
     E = primitives(resonances, model.lam, squares=False)[: 2 * len(model)]
     a = (model.L.T[:, None, :] * model.phi.T)[task.weight.any(axis=2)]  # (functions, modes)
     parts = np.abs(a.real[..., None] * E[::2] + a.imag[..., None] * E[1::2])
-    shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), np.finfo(float).tiny)
+    shares = parts / np.maximum(parts.sum(axis=1, keepdims=True), TINY)
     out: Floats = np.einsum("irr->ir", shares).max(axis=0, initial=0.0)
     return out
