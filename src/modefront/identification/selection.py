@@ -14,15 +14,7 @@ from scipy.special import gammaln
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
-from modefront.identification.modal_model import (
-    COARSE,
-    Fit,
-    evaluate,
-    maximise,
-    synthesise,
-    thinned,
-)
-from modefront.identification.noise import square
+from modefront.identification.modal_model import Fit, evaluate, maximise
 from modefront.identification.problem import Problem
 from modefront.identification.scan import alike
 from modefront.identification.shapes import plane_basis
@@ -38,9 +30,6 @@ OVERDAMPED = 0.9
 LEAST_UNLIKE = 1e-6
 """Least squared share of the derivative by a pole that no residual term can make up. In the normal
 equations rounding takes some 1e-8; poles within the band have 0.1 and more."""
-
-MOST_EVALUATIONS = 20
-"""Evaluations of the model for a choice, which need not be at the very maximum."""
 
 CLOSEST = 0.5
 """Distance of poles over the greater of their half bandwidths below which they are not told apart
@@ -99,30 +88,22 @@ def _wald(fit: Fit, of: Floats, free: Bools) -> float:
     return 2 * float(S[0, 0] - follows)
 
 
-def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
-    """Return the fit of the same data from other poles, without those that are residual terms.
+def refit(task: Problem, lam: Complexes, L: Complexes) -> Fit:
+    """Return the fit from initial poles, without those that are residual terms.
 
-    The maximum is sought on means of lines, and on all lines only where it is to be ``fine``.
     Poles that become overdamped, and those of which changes are changes of the residual terms,
     stand for what modes outside the band leave. They would make the information of all other
     parameters singular.
     """
-    task, few = fit.task, thinned(fit, lam)
     while True:
-        fit = maximise(few, lam, L, MOST_EVALUATIONS, COARSE)
-        if fine:
-            fit = maximise(task, fit.model.lam, fit.model.L)
+        fit = maximise(task, lam, L)
         lam, L = fit.model.lam, fit.model.L
         over = -lam.real > OVERDAMPED * np.abs(lam)
         unlike = fit.information.diagonal() / np.maximum(fit.size, TINY)
         over |= unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
         if not over.any():
-            break
+            return fit
         lam, L = lam[~over], L[~over]
-    if fit.task is task:
-        return fit
-    r = task.H - synthesise(task, fit.model)
-    return replace(fit, task=task, cost=float(np.sum(task.weight * square(r))))
 
 
 def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
@@ -152,7 +133,7 @@ def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
             gone = double & (gain == gain[double].min())
         elif not together:
             gone = gain == gain.min()
-        trial = refit(fit, lam[~gone], fit.model.L[~gone])
+        trial = refit(fit.task, lam[~gone], fit.model.L[~gone])
         lost = 2 * (trial.cost - fit.cost) / fit.found.noise_of(lam[gone]).min()
         together = lost - np.sort(gain[gone])[:-1].sum() < least
         if together or not needless or count is not None:
@@ -184,7 +165,7 @@ def grow(fit: Fit, count: int | None = None) -> Fit:
         if not new:
             break
         L = np.vstack([model.L, fit.found.L[new]])
-        trial, _ = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
+        trial, _ = backward(refit(task, np.append(model.lam, lam[new]), L), count)
         gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise[new])
         if len(trial.model) > len(model) or gained > needed(task):
             fit, blocked = trial, blocked[:0]
