@@ -44,7 +44,7 @@ def without_sine(
         near = slice(max(middle - 2 * NEAR, 0), middle + 2 * NEAR)
         root = model.root * (np.arange(len(model.root)) != r)[:, None]
         cost, white, _ = _likelihood(lines, near, replace(model, root=root))
-        taken, gain = _taken(lines, near, white @ _adjoint(white), middle - near.start)
+        taken, gain = _taken(lines, near, white @ white.conj().mT, middle - near.start)
         narrow = wide.zeta[r] > model.zeta[r]
         likely = _likelihood(lines, near, wide)[0] - cost + gain > n - 1
         if 2 * gain > least and (narrow or likely):
@@ -56,11 +56,11 @@ def without_sine(
     for part in np.array_split(white, blocks):  # the model counts as n lines beside each block
         known = (part.T @ part.conj() + n * np.eye(n)) / (len(part) + n)
         M += [np.linalg.inv(known)] * len(part)
-    gains = _gains(F, root @ np.array(M) @ _adjoint(root))
+    gains = _gains(F, root @ np.array(M) @ root.conj().mT)
     count = len(F) // blocks
     if gains.max() < 2 * (count + n) * beta.isf(chance, n + 0.5, count):
         return None
-    return _taken(lines, near, root @ _adjoint(root), int(gains.argmax()) / 2)[0], None
+    return _taken(lines, near, root @ root.conj().mT, int(gains.argmax()) / 2)[0], None
 
 
 def kurtosis(lines: Transforms, model: Density, mode: int, reach: float) -> tuple[float, float]:
@@ -73,7 +73,7 @@ def kurtosis(lines: Transforms, model: Density, mode: int, reach: float) -> tupl
     _, root, half = _likelihood(lines, near, model)
     N = (half @ half[:, mode].conj()[..., None])[..., 0]
     seen = N.conj() @ model.columns.T
-    weighted = np.einsum("ki,kij->kj", seen, root @ _adjoint(root))
+    weighted = np.einsum("ki,kij->kj", seen, root @ root.conj().mT)
     size = 4 * len(inside)
     a = np.abs(np.fft.ifft(np.sum(weighted * lines.F[:, near].T, axis=1), size)) ** 2
     rho = np.abs(np.fft.ifft(np.sum(weighted * seen.conj(), axis=1).real, size))
@@ -89,15 +89,11 @@ def _likelihood(
     g = model.profile(omega)[:, None, None]
     half = g * model.lifted(omega, lines.order) @ model.root
     moved = model.columns @ half
-    C = np.linalg.cholesky(moved @ _adjoint(moved) + g**2 * model.background)
-    root: Complexes = np.asarray(np.linalg.inv(C), complex).conj().swapaxes(1, 2)
+    C = np.linalg.cholesky(moved @ moved.conj().mT + g**2 * model.background)
+    root: Complexes = np.asarray(np.linalg.inv(C), complex).conj().mT
     misfit = np.sum(np.abs(np.einsum("kji,kj->ki", root.conj(), F)) ** 2)
     determinant = 2 * np.log(np.einsum("kii->ki", C).real).sum(axis=1)
     return float(lines.share[near] @ determinant + misfit), root, half
-
-
-def _adjoint(values: Complexes) -> Complexes:
-    return values.conj().swapaxes(1, 2)
 
 
 def _gains(F: Complexes, inverse: Complexes) -> Floats:

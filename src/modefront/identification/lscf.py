@@ -34,7 +34,6 @@ from modefront.rounding import TINY
 
 ARC = 0.92  # share of the unit circle that the band covers: all of it would join its ends
 LEAST_DAMPING = 1e-3  # damping ratio of poles that the decay of an exponential window leaves none
-PORTION = 1 << 11  # lines of which the powers of z are held at once
 SINGULAR = 1e-13  # relative size of eigenvalues of R that are rounding
 
 
@@ -50,14 +49,9 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
     """
     second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True)
     parts = weight, (weight * H).transpose(1, 0, 2), second
-    lags = np.arange(-highest, highest + 1)
-    out = [np.zeros((*part.shape[:-1], len(lags)), complex) for part in parts]
-    for start in range(0, len(z), PORTION):
-        lines = slice(start, start + PORTION)
-        powers = z[lines, None] ** lags
-        for total, part in zip(out, parts, strict=True):
-            total += part[..., lines] @ powers
-    return out[0], out[1], out[2]
+    powers = z[:, None] ** np.arange(-highest, highest + 1)
+    R, S, T = (part @ powers for part in parts)
+    return R, S, T
 
 
 def _reduced(sums: Moments, p: int) -> Complexes:

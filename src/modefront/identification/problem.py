@@ -5,7 +5,6 @@ The *primitives* are those of `modefront.identification.modal_model`.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import product
 
 import numpy as np
 
@@ -15,8 +14,6 @@ from modefront.data.responses import ORDERS, ForceNoise, FrequencyResponses
 RESIDUALS = (-4, -2, 0, 2)
 """Powers of s of the residual terms: what lightly damped modes below and above the band leave is
 even in s. Two on either side cost deviations a hundredth; one may shift frequencies by them."""
-
-CHUNK = 1 << 20  # numbers in an intermediate array of products
 
 
 @dataclass(frozen=True)
@@ -90,15 +87,11 @@ def gram(task: Problem, E: Complexes) -> Floats:
 
     There is one for all responses where they share their weights.
     """
-    flat = task.weight.reshape(-1, len(task.s))
-    M = np.zeros((len(flat), len(E), len(E)))
-    root, parts = np.sqrt(flat).repeat(2, axis=1), E.view(float)
-    size = max(CHUNK // max(len(E), 1), 1)
-    for start, k in product(range(0, parts.shape[1], size), range(len(M))):
-        lines = slice(start, start + size)
-        weighted = parts[:, lines] * root[k, lines]
-        M[k] += weighted @ weighted.T
-    return M.reshape(*task.weight.shape[:2], len(E), len(E))
+    M = np.zeros((*task.weight.shape[:2], len(E), len(E)))
+    for place in np.ndindex(M.shape[:2]):
+        weighted = E.view(float) * np.sqrt(task.weight[place]).repeat(2)
+        M[place] = weighted @ weighted.T
+    return M
 
 
 def combined(coefficients: Floats, E: Complexes) -> Complexes:

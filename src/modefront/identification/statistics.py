@@ -17,7 +17,7 @@ from scipy.stats import chi2
 from modefront._typing import Bools, Complexes, Floats
 from modefront.identification.modal_model import Fit, columns
 from modefront.identification.noise import square
-from modefront.identification.problem import CHUNK, Problem, gram
+from modefront.identification.problem import Problem, gram
 from modefront.identification.record import MOST_COVARIED, ModeEstimate, Residuals
 from modefront.identification.shapes import real_shape, real_shapes
 from modefront.rounding import TINY
@@ -27,6 +27,7 @@ SILENT = 1e-3  # probability that a response that holds nothing but noise is tak
 MOST_LAGS = 60  # lines over which correlations of the residuals are measured
 MOST_TIMES = 400  # samples of the noise of the force; they are taken together where there are more
 TOGETHER = 50  # samples of the noise of the force whose effects are computed at once
+CHUNK = 1 << 20  # numbers in an array of effects of lines that are computed at once
 
 
 def residuals(fit: Fit) -> Residuals:
@@ -86,12 +87,11 @@ def correlated_gram(task: Problem, E: Complexes, correlation: Complexes) -> Floa
     kernel[:lags] = correlation
     kernel[size - lags + 1 :] = correlation[:0:-1].conj()
     energy = scipy.fft.fft(kernel).real.repeat(2) / size
-    weight = task.weight.reshape(-1, lines)
-    M = np.empty((len(weight), len(E), len(E)))
-    for k in range(len(M)):
-        a = scipy.fft.fft(np.sqrt(weight[k]) * E, size).view(float)
-        M[k] = (a * energy) @ a.T
-    return M.reshape(*task.weight.shape[:2], len(E), len(E))
+    M = np.empty((*task.weight.shape[:2], len(E), len(E)))
+    for place in np.ndindex(M.shape[:2]):
+        a = scipy.fft.fft(np.sqrt(task.weight[place]) * E, size).view(float)
+        M[place] = (a * energy) @ a.T
+    return M
 
 
 def _force(fit: Fit) -> Floats:
