@@ -28,12 +28,6 @@ POOR_FIT = 0.5  # residual of a function over its norm from which on it is point
 NAMED = 3  # functions that are fitted poorly, modes and warnings that are named
 LONG = 35  # minutes of records of ambient tests; modes of longer ones have a warning
 
-NARROW = (
-    f"standard deviations of records of more than {LONG} min are up to a quarter too small where "
-    "many modes share coloured forces"
-)
-"""The warning."""
-
 
 @dataclass(frozen=True, repr=False)
 class IdentifiedTest(Shown):
@@ -93,9 +87,13 @@ class IdentifiedTest(Shown):
             for name, identification in zip(self.names, self.identified, strict=True)
             for text in _warnings(identification)
         ]
-        long = any(x.values.shape[1] > 60 * LONG * x.rate for x in self.test.setups)
-        ambient = [NARROW] if long and self.modes.data.modes else []
-        return modes + spread + read + ambient + fitted
+        long = any(x.duration > 60 * LONG for x in self.test.setups)
+        if long and self.modes.data.modes:
+            read.append(
+                f"standard deviations of records of more than {LONG} min are up to a quarter too "
+                "small where many modes share coloured forces"
+            )
+        return modes + spread + read + fitted
 
     def write(self, path: Path | str) -> list[Path]:
         """Write modal data, in ``.uff`` as dataset 55, and all else beside it; return the files.

@@ -41,9 +41,8 @@ from modefront.identification.stabilisation import (
 
 REACH = 4.0
 """Half bandwidths on either side of a mode that its band has. With six, deviations are a fifth less
-(Au, Mech. Syst. Signal Process. 48 (2014) 15-33, doi:10.1016/j.ymssp.2013.07.004), but what modes
-far away contribute and colours of forces bend more over the band than the model follows: damping
-ratios of heavily damped modes in long records are off by up to two deviations."""
+(Au, Mech. Syst. Signal Process. 48 (2014) 15-33, doi:10.1016/j.ymssp.2013.07.004), but flanks and
+colours of forces bend more than the model follows."""
 
 OVERLAP = 4.0  # distance over the sum of half bandwidths within which modes are fitted at once
 LEAST_LINES = 40  # lines of a band, at least
