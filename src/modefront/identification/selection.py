@@ -109,38 +109,31 @@ def refit(task: Problem, lam: Complexes, L: Complexes) -> Fit:
 def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
     """Return the fit without modes that gain less than needed and doubles, and what modes gain.
 
-    The weakest go first, where a fit without them is no worse. The Wald statistic says too little
-    of close modes, whose shapes are large and cancel: what they gain is what that fit loses. Where
-    the ``count`` of modes is given, the strongest are kept instead. Only among modes that are
-    needed are shapes known well enough to tell a split peak, which one pole for both does not
-    explain as it does a pair. Of doubles, the weakest goes first.
+    The weakest goes first, where a fit without it is no worse. Shapes of close modes are large and
+    cancel, which the Wald statistic takes for little: they gain what that fit loses. Where the
+    ``count`` of modes is given, the strongest are kept instead. Only among modes that are needed
+    are shapes known well enough to tell a split peak, which one pole for both does not explain as
+    it does a pair.
     """
-    gain, together = gains(fit), True
+    gain = gains(fit)
     while len(fit.model):
         lam, least = fit.model.lam, needed(fit.task)
         if count is not None:
             least = np.sort(gain)[::-1][count - 1] if count < len(gain) else -np.inf
-        gone = np.zeros(len(lam), bool)
-        for r in gain.argsort()[: np.sum(gain < least)]:  # neighbours may stand for the same mode
-            gone[r] = (alike(lam[r], lam[gone]) < ALONE).all()
-        needless = gone.any()
-        if not needless:
+        weakest = int(gain.argmin())
+        if needed_all := gain[weakest] >= least:
             double = doubles(lam, fit.model.phi, gain, fit)
             for pair in paired(fit).model.pairs if double.any() else ():
                 double[list(pair)] = False
             if not double.any():
                 break
-            gone = double & (gain == gain[double].min())
-        elif not together:
-            gone = gain == gain.min()
-        trial = refit(fit.task, lam[~gone], fit.model.L[~gone])
-        lost = 2 * (trial.cost - fit.cost) / fit.found.noise_of(lam[gone]).min()
-        together = lost - np.sort(gain[gone])[:-1].sum() < least
-        if together or not needless or count is not None:
-            fit, together = trial, True
-            gain = gains(fit)
-        elif gone.sum() == 1:
-            gain[gone], together = lost, True
+            weakest = int(np.where(double, gain, np.inf).argmin())
+        trial = refit(fit.task, np.delete(lam, weakest), np.delete(fit.model.L, weakest, axis=0))
+        lost = 2 * (trial.cost - fit.cost) / fit.found.noise_of(lam[[weakest]])[0]
+        if needed_all or count is not None or lost < least:
+            fit, gain = trial, gains(trial)
+        else:
+            gain[weakest] = lost
     return fit, gain
 
 
