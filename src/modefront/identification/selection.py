@@ -22,7 +22,7 @@ from modefront.linalg.small import mac
 from modefront.rounding import TINY
 
 FALSE = 1e-3  # expected number of modes in a band that noise alone makes
-MOST_ROUNDS = 20  # rounds in which poles are added, at most
+MOST_ROUNDS = 100  # poles that are added, at most
 
 OVERDAMPED = 0.9
 """Damping ratio from which on a pole and its conjugate are nearly one and the same real pole."""
@@ -34,10 +34,6 @@ equations rounding takes some 1e-8; poles within the band have 0.1 and more."""
 CLOSEST = 0.5
 """Distance of poles over the greater of their half bandwidths below which they are not told apart
 without a difference of shapes."""
-
-TRACES = 10.0
-"""Gain of a pole over what the ones that are added already explain of it: a missing mode bends the
-fit of its neighbours, too."""
 
 ALONE = 0.25  # squared correlation with another pole below which a pole is judged for itself
 SAME = 0.95  # MAC of shapes that are the same
@@ -140,30 +136,25 @@ def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
 def grow(fit: Fit, count: int | None = None) -> Fit:
     """Return the fit with the modes that stand out of its residuals, until none does.
 
-    A pole that is not needed after all is tried again only in another fit. Where the ``count`` of
-    modes is given, as many are tried as lack.
+    The clearest comes first: a missing mode bends the fit of its neighbours, too. A pole that is
+    not needed after all is tried again only in another fit. Where the ``count`` of modes is given,
+    as many are tried as lack.
     """
     blocked: Complexes = np.zeros(0, complex)
     for _ in range(MOST_ROUNDS):
-        task, model, lam, gain = fit.task, fit.model, fit.found.lam, fit.found.gain
+        task, model, found = fit.task, fit.model, fit.found
         least = needed(task) if count is None else 0.0
-        most = len(lam) if count is None else count - len(model)
-        new: list[int] = []
-        for c in gain.argsort()[::-1]:
-            if gain[c] < least or len(new) >= most:
-                break
-            of_others = np.sum(gain[new] * alike(lam[c], lam[new]))
-            if gain[c] > TRACES * of_others and (alike(lam[c], blocked) < ALONE).all():
-                new.append(int(c))
-        if not new:
+        clearest = (k for k in found.gain.argsort()[::-1].tolist() if found.gain[k] >= least)
+        new = next((k for k in clearest if (alike(found.lam[k], blocked) < ALONE).all()), None)
+        if new is None or len(model) == count:
             break
-        L = np.vstack([model.L, fit.found.L[new]])
-        trial, _ = backward(refit(task, np.append(model.lam, lam[new]), L), count)
-        gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise[new])
+        L = np.vstack([model.L, found.L[new]])
+        trial, _ = backward(refit(task, np.append(model.lam, found.lam[new]), L), count)
+        gained = 2 * (fit.cost - trial.cost) / found.noise[new]
         if len(trial.model) > len(model) or gained > needed(task):
             fit, blocked = trial, blocked[:0]
         else:
-            blocked = np.append(blocked, lam[new])
+            blocked = np.append(blocked, found.lam[new])
     return fit
 
 
