@@ -516,11 +516,12 @@ def test_children_lie_within_the_bounds(seed: int) -> None:
     edges = [[0.0, 0.0], [1.0, 0.0]]
     state = state_of(problem, anchors(problem), [*edges, [0.5, 0.1], [-0.1, -2.0]])
     rng = np.random.default_rng(seed)
-    evolution = Evolution(rng)
+    evolution = Evolution(rng, lambda _: 0.0)
     assert not list(evolution.offers(state, 6)), "what is open is polished first"
     for place in state.places:
         place.closed = True
-    (offer,) = evolution.offers(state, 6)
+    offer, *more = evolution.offers(state, 6)
+    assert [x.chance for x in (offer, *more)] == [1 / 2, 1 / 3, 1 / 4, 1 / 5, 1 / 6, 1 / 7]
     (children,) = offer.arguments
     assert children.shape == (USUAL, 2)
     assert (children >= problem.lower).all()
@@ -536,11 +537,11 @@ def test_evolution_alone_comes_close_to_an_edge() -> None:
     for place in state.places:
         place.closed = True
     rng = np.random.default_rng(0)
-    evolution = Evolution(rng)
+    evolution = Evolution(rng, lambda _: 0.0)
     for _ in range(40):
         for place in state.places:
             place.closed = True
-        (offer,) = evolution.offers(state, 6)
+        offer = next(evolution.offers(state, 6))
         (outcome,) = state.run([Task(("children",), offer.function, (problem, *offer.arguments))])
         state.tell(-1, offer.start, outcome)
     assert np.abs(state.places[0].incumbent.theta).max() < 0.5
@@ -603,6 +604,59 @@ def test_offers_below_the_doubt_are_not_made_and_the_likeliest_come_first() -> N
     assert loop.turn == 1
     assert state.evaluations == 5
     assert at(np.ones(2)).theta.tolist() == [1.0, 1.0]
+
+
+def test_what_gains_most_for_its_cost_comes_first() -> None:
+    problem = box(circles, [-2, -2], [2, 2])
+    state = state_of(problem, anchors(problem), [[0.5, 0.0]])
+    order: list[int] = []
+
+    @dataclass
+    class Costly(Given):
+        count: int = 0
+
+        def offers(self, state: State, most: int, /) -> Iterator[Offer]:
+            if len(self.told) < 3:
+                yield evaluate_all(np.ones((self.count, 2)), 0.5)
+
+        def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float, /) -> None:
+            super().learn(state, offer, outcome, gain)
+            order.append(self.count)
+
+    class Cheap(Costly):
+        pass
+
+    run(state, Costly(np.zeros((0, 2)), count=30), Cheap(np.zeros((0, 2)), count=2))
+    assert order == [30, 2, 2, 30, 2, 30], "nothing is known of the first ones"
+
+
+def test_an_evolution_goes_on_while_unseen_minima_are_likely() -> None:
+    problem = box(circles, [-5, -5], [5, 5])
+    state = state_of(problem, anchors(problem), [[0.5, 0.0]])
+    for place in state.places:
+        place.closed = True
+    rng = np.random.default_rng(0)
+    idle = Evolution(rng, lambda _: 0.4, idle=98)
+    (offer,) = idle.offers(state, 1)
+    assert offer.chance == 0.4
+    assert offer.expected == 0.4 / 100
+
+
+def test_a_start_that_is_better_than_its_solution_stays() -> None:
+    problem = box(circles, [-2, -2], [2, 2])
+    (point,) = points_between(problem, [[0.0, 0.0], [1.0, 0.0]], 2)[1:2]
+    state = state_of(problem, [point], [[0.5, 0.0]])
+    (place,) = state.places
+    start = place.incumbent
+    worse = begin(problem.evaluate(np.array([0.5, 0.1]), second=True))
+    lost = point.gain(start.J, worse)
+    state.tolerance = 0.9 * lost
+    outcome = Outcome(worse, worse.theta[None], worse.J[None], 1)
+    state.tell(0, start, outcome)
+    assert place.incumbent is start
+    state.tolerance, place.closed = 1.1 * lost, False
+    state.tell(0, start, outcome)
+    assert place.incumbent is worse
 
 
 def test_at_the_budget_models_that_wait_for_evaluation_are_of_all_places() -> None:

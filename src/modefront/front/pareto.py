@@ -148,9 +148,12 @@ class _Run:
         """Search for all places up to a share of the budget, with what is proposed always and more.
 
         What proposers have gained so far says nothing of places that are new, so they start anew.
+        What is better at the end of it is solved in half of what is left.
         """
-        evolution = () if self.known else (Evolution(self.children),)
-        self.loop.run(stage, (Polish(), *more, *evolution), share)
+        evolution = () if self.known else (Evolution(self.children, self.starts.unseen),)
+        polish = Polish()
+        self.loop.run(stage, (polish, *more, *evolution), share)
+        self.loop.run(stage, (polish,), (1 + share) / 2)
 
     def _open(self) -> tuple[str, ...]:
         """Return what the search had not finished at its budget, as labels; once for all points."""

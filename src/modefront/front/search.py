@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from modefront.front.proposers.base import Offer, Proposer
+from modefront.front.proposers.base import USUAL, Offer, Proposer
 from modefront.front.state import State
 from modefront.options import Checked, number, whole
 from modefront.work.task import Key, Task
@@ -49,6 +49,8 @@ class Loop:
     state: State  # what is known
     search: Search  # when it ends
     turn: int = 0  # number of batches that were solved
+    # numbers of offers, and of evaluations that they took, by proposer and kind of subproblem
+    spent: dict[Key, tuple[int, int]] = field(default_factory=dict)
     # subproblems for which offers were left at the budget
     open: set[Key] = field(default_factory=set)
 
@@ -75,12 +77,26 @@ class Loop:
             ]
             outcomes = self.state.run(tasks, max(left, len(tasks)))
             for (proposer, offer), outcome in zip(chosen, outcomes, strict=True):
+                kind = self._kind(proposer, offer)
+                made, evaluations = self.spent.get(kind, (0, 0))
+                self.spent[kind] = made + 1, evaluations + outcome.evaluations
                 gain = self.state.tell(offer.place, offer.start, outcome)
                 if outcome.result is not None:
                     proposer.learn(self.state, offer, outcome, gain)
 
     def _offers(self, proposers: Sequence[Proposer]) -> list[tuple[Proposer, Offer]]:
-        """Return the offers worth making, the greatest chance first."""
+        """Return the offers worth making, those expected to gain most for their cost first."""
         asked = ((x, offer) for x in proposers for offer in x.offers(self.state, BATCH))
         offers = [(x, offer) for x, offer in asked if offer.chance >= self.search.doubt]
-        return sorted(offers, key=lambda each: -each[1].chance)
+        return sorted(offers, key=lambda each: -each[1].expected / self._cost(*each))
+
+    def _kind(self, proposer: Proposer, offer: Offer) -> Key:
+        """Return the kind of an offer."""
+        place = offer.place
+        of = self.state.places[place].subproblem.key[0] if place >= 0 else "models"
+        return (type(proposer).__name__, of)
+
+    def _cost(self, proposer: Proposer, offer: Offer) -> float:
+        """Return the evaluations that an offer is expected to take."""
+        made, evaluations = self.spent.get(self._kind(proposer, offer), (0, 0))
+        return (evaluations + USUAL) / (made + 1)

@@ -107,7 +107,9 @@ class State:
                 own = place.subproblem.gain(solution.J, place.incumbent)
                 gain = max(gain, own)
                 first = (solution.converged or is_incumbent) and not place.closed
-                if own > 0 or (first and own > -self.tolerance):
+                # what is better than the solution by no more than counts does not take its place
+                lost = place.subproblem.gain(place.incumbent.J, solution)
+                if own > 0 or (first and lost <= self.tolerance):
                     place.incumbent, is_incumbent = solution, True
             # a search that was cut off while it gained goes on from there
             ended = solution.status is not Status.EXHAUSTED or own <= self.tolerance

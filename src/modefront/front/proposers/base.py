@@ -22,7 +22,8 @@ class Offer:
 
     place: int  # number of the subproblem that is solved; -1 where models are only evaluated
     start: Solution  # model from which it is solved
-    chance: float  # probability that some subproblem gains
+    chance: float  # probability that some subproblem gains, at most
+    expected: float  # that probability, as it is expected
     function: Callable[..., Any]  # what is done with the problem and ``arguments``
     arguments: tuple[Any, ...]
 
@@ -37,14 +38,21 @@ class Proposer(Protocol):
         """Take note of what an offer of its own has led to."""
 
 
-def solve_from(k: int, place: Place, start: Solution, chance: float) -> Offer:
-    """Return the offer to solve the subproblem of a place, the k-th one, from a start."""
-    return Offer(k, start, chance, _solved, (place.subproblem, start, place.incumbent.J))
+def solve_from(
+    k: int, place: Place, start: Solution, chance: float, expected: float | None = None
+) -> Offer:
+    """Return the offer to solve the subproblem of a place, the k-th one, from a start.
+
+    The chance is as great as is expected if nothing else is.
+    """
+    arguments = (place.subproblem, start, place.incumbent.J)
+    return Offer(k, start, chance, chance if expected is None else expected, _solved, arguments)
 
 
-def evaluate_all(thetas: Floats, chance: float) -> Offer:
-    """Return the offer to evaluate models (., p) without derivatives."""
-    return Offer(-1, at(thetas[0]), chance, _evaluated, (thetas,))
+def evaluate_all(thetas: Floats, chance: float, expected: float | None = None) -> Offer:
+    """Return the offer to evaluate models (., p) without derivatives, likewise."""
+    start = at(thetas[0])
+    return Offer(-1, start, chance, chance if expected is None else expected, _evaluated, (thetas,))
 
 
 def at(theta: Floats) -> Solution:

@@ -103,7 +103,8 @@ class Starts:
                 known.thetas += self._block(state)
             for ahead in range(most):
                 chance = known.chance(place, state.tolerance, ahead)
-                yield solve_from(k, place, at(known.thetas[known.tries + ahead]), chance)
+                start = at(known.thetas[known.tries + ahead])
+                yield solve_from(k, place, start, chance, chance / (len(known.ends) + 1))
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
         """Count the start, and keep its minimum if it is new."""
@@ -113,6 +114,11 @@ class Starts:
         known.gains += gain > state.tolerance
         met = known.note(place, outcome.result, state.tolerance)
         known.lost += not met and gain <= state.tolerance
+
+    def unseen(self, state: State) -> float:
+        """Return the chance that a start gains at most, of the places that have had some."""
+        tried = (x for x in state.places if x.subproblem.key in self.minima)
+        return max((self.of(x).chance(x, state.tolerance) for x in tried), default=0.0)
 
     def of(self, place: Place) -> Minima:
         """Return the minima of a subproblem."""
