@@ -150,7 +150,7 @@ class _Run:
         What proposers have gained so far says nothing of places that are new, so they start anew.
         What is better at the end of it is solved in half of what is left.
         """
-        evolution = () if self.known else (Evolution(self.children, self.starts.unseen),)
+        evolution = () if self.known else (Evolution(self.children, self.starts.unseen, not more),)
         polish = Polish()
         self.loop.run(stage, (polish, *more, *evolution), share)
         self.loop.run(stage, (polish,), (1 + share) / 2)

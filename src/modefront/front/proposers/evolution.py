@@ -3,7 +3,7 @@
 Each child is the incumbent of a subproblem, in which some parameters are those of another known
 model or, in every second one, are moved by the difference of two (differential evolution: Storn &
 Price 1997, doi:10.1023/A:1008202821328), mutated (Deb & Agrawal 1995). Generations go on as long as
-they gain or unseen minima are likely.
+unseen minima are likely and, of places without starts, as they gain.
 """
 
 from collections.abc import Callable, Iterator
@@ -25,6 +25,7 @@ class Evolution:
 
     rng: np.random.Generator  # random numbers
     unseen: Callable[[State], float]  # returns the chance that there are minima to be found
+    alone: bool = True  # whether there are places without starts, which say what is unseen
     idle: int = 0  # generations since the last gain
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
@@ -33,7 +34,8 @@ class Evolution:
             unseen = self.unseen(state)
             for idle in range(self.idle, self.idle + most):
                 gains = 1 / (idle + 2)
-                yield evaluate_all(self._children(state), max(gains, unseen), gains * unseen)
+                most_likely = max(unseen, gains * self.alone)
+                yield evaluate_all(self._children(state), most_likely, gains * unseen)
 
     def learn(self, state: State, _: Offer, __: Outcome, gain: float) -> None:
         """Count the generation."""
