@@ -57,7 +57,7 @@ def front(problem: Known, equations: bool) -> tuple[list[Solution], Bools, Float
 def one_gap(problem: Known, equations: bool) -> tuple[Gap, list[Solution], Bools]:
     points, slack, scale = front(problem, equations)
     optimal = nondominated(np.array([x.J for x in points]))
-    (gap,) = gaps(problem, points, optimal, scale, slack=None if equations else slack)
+    (gap,) = gaps(problem, points, optimal, slack & (not equations), scale)
     return gap, points, optimal
 
 
@@ -86,4 +86,4 @@ def test_a_front_without_slack_has_no_gap() -> None:
     left = [k for k, x in enumerate(points) if x.theta[0] < LEFT - 1e-3]
     some = [points[k] for k in left]
     problem = box(disconnected, [0, -1], [0.651, 1])
-    assert gaps(problem, some, np.ones(len(some), dtype=bool), scale, slack=slack[left]) == []
+    assert gaps(problem, some, np.ones(len(some), dtype=bool), slack[left], scale) == []

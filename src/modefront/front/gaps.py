@@ -45,17 +45,15 @@ def gaps(
     problem: Problem,
     points: Sequence[Solution],
     optimal: Bools,
+    slack: Bools,
     scale: Floats,
     run: Callable[[Sequence[Task[Any]]], list[Any]] = IMMEDIATE.run,
-    slack: Bools | None = None,
 ) -> list[Gap]:
     """Return the gaps between points in their order along the front, of two objectives.
 
     ``optimal`` (points,) says which points are Pareto optimal among them, and ``slack`` (points, 2)
-    in which objective a point of the lattice has slack; none of them unless given. ``run`` carries
-    out tasks.
+    in which objective a point of the lattice has slack. ``run`` carries out tasks.
     """
-    slack = np.zeros((len(points), 2), dtype=np.bool_) if slack is None else slack
     tasks, sides = [], []
     kept = np.flatnonzero(optimal).tolist()
     for k, (a, b) in enumerate(pairwise(kept)):

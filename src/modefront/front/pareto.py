@@ -250,9 +250,8 @@ class _Run:
 
     def _drop_points(self) -> None:
         """Take the points of a front away."""
-        self.state.keep(
-            [x for x in self.state.places if x.subproblem.key[0] not in ("point", "sweep")]
-        )
+        left = [x for x in self.state.places if x.subproblem.key[0] not in ("point", "sweep")]
+        self.state.places = left
 
     def _lattice(self) -> list[tuple[Place, LatticePoint]]:
         """Return the places of the points of the lattice, with their subproblems."""
@@ -382,7 +381,7 @@ class _Run:
             if x.converged and x.beta is not None and self.options.programme == "bounds":
                 c = target.r * target.excess(x.beta, x.J)
                 slack[k] = (c.max() - c > RHO) & ~active_bounds(x.weights * target.unit)
-        return gaps(self.problem, points, optimal, target.scale, self._run, slack)
+        return gaps(self.problem, points, optimal, slack, target.scale, self._run)
 
     def _optimal(
         self,

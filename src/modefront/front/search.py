@@ -50,7 +50,7 @@ class Loop:
     search: Search  # when it ends
     turn: int = 0  # number of batches that were solved
     # numbers of offers, and of evaluations that they took, by proposer and kind of subproblem
-    spent: dict[Key, tuple[int, int]] = field(default_factory=dict)
+    spent: dict[Key, list[int]] = field(default_factory=dict)
     # subproblems for which offers were left at the budget
     open: set[Key] = field(default_factory=set)
 
@@ -77,9 +77,8 @@ class Loop:
             ]
             outcomes = self.state.run(tasks, max(left, len(tasks)))
             for (proposer, offer), outcome in zip(chosen, outcomes, strict=True):
-                kind = self._kind(proposer, offer)
-                made, evaluations = self.spent.get(kind, (0, 0))
-                self.spent[kind] = made + 1, evaluations + outcome.evaluations
+                like = self._like(proposer, offer)
+                like[:] = like[0] + 1, like[1] + outcome.evaluations
                 gain = self.state.tell(offer.place, offer.start, outcome)
                 if outcome.result is not None:
                     proposer.learn(self.state, offer, outcome, gain)
@@ -88,15 +87,14 @@ class Loop:
         """Return the offers worth making, those expected to gain most for their cost first."""
         asked = ((x, offer) for x in proposers for offer in x.offers(self.state, BATCH))
         offers = [(x, offer) for x, offer in asked if offer.chance >= self.search.doubt]
-        return sorted(offers, key=lambda each: -each[1].expected / self._cost(*each))
 
-    def _kind(self, proposer: Proposer, offer: Offer) -> Key:
-        """Return the kind of an offer."""
-        place = offer.place
-        of = self.state.places[place].subproblem.key[0] if place >= 0 else "models"
-        return (type(proposer).__name__, of)
+        def rate(each: tuple[Proposer, Offer]) -> float:
+            (made, took), (_, offer) = self._like(*each), each
+            return (offer.chance if offer.expected is None else offer.expected) * made / took
 
-    def _cost(self, proposer: Proposer, offer: Offer) -> float:
-        """Return the evaluations that an offer is expected to take."""
-        made, evaluations = self.spent.get(self._kind(proposer, offer), (0, 0))
-        return (evaluations + USUAL) / (made + 1)
+        return sorted(offers, key=rate, reverse=True)
+
+    def _like(self, proposer: Proposer, offer: Offer) -> list[int]:
+        """Return how many offers like one were made and what they took, with a usual one before."""
+        of = self.state.places[offer.place].subproblem.key[0] if offer.place >= 0 else ""
+        return self.spent.setdefault((type(proposer).__name__, of), [1, USUAL])

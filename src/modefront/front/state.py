@@ -37,12 +37,11 @@ class State:
     problem: Problem  # that is searched
     tolerance: float  # gain of a subproblem that counts
     work: Executor = IMMEDIATE  # carries out tasks
-    # subproblems with their incumbents, changed by `add` and `keep`
+    # subproblems with their incumbents
     places: list[Place] = field(default_factory=list)
     evaluations: int = 0  # so far
     # nondominated models of all evaluations, as the solutions that they are
     archive: Archive = field(init=False)
-    _orders: Order | None = None
 
     def __post_init__(self) -> None:
         self.archive = Archive(len(self.problem.objectives))
@@ -55,17 +54,11 @@ class State:
     def add(self, subproblems: Sequence[Subproblem]) -> None:
         """Add subproblems, with the best of the known models."""
         self.places += [Place(x, self.best(x)) for x in subproblems]
-        self._orders = None
-
-    def keep(self, places: Sequence[Place]) -> None:
-        """Keep some places only."""
-        self.places, self._orders = [*places], None
 
     @property
     def orders(self) -> Order:
         """The orders of all places."""
-        self._orders = self._orders or together([x.subproblem.order for x in self.places])
-        return self._orders
+        return together([x.subproblem.order for x in self.places])
 
     def best(self, subproblem: Subproblem) -> Solution:
         """Return the best of the known models in a subproblem."""
@@ -115,11 +108,12 @@ class State:
             ended = solution.status is not Status.EXHAUSTED or own <= self.tolerance
             place.closed = place.closed or (is_incumbent and ended)
         if self.places and len(outcome.J):
-            values = self.orders.value(outcome.J[:, None])
+            orders = self.orders
+            values = orders.value(outcome.J[:, None])
             best, models = values.argmin(axis=0), outcome.models
-            known = self.orders.value(np.array([x.incumbent.J for x in self.places]))
+            known = orders.value(np.array([x.incumbent.J for x in self.places]))
             # Among equals in its objective, an edge has an order of its own; weights are few too.
-            ahead = (values.min(axis=0) < known) | (self.orders.greatest == 0)
+            ahead = (values.min(axis=0) < known) | (orders.greatest == 0)
             for j in np.flatnonzero(ahead).tolist():
                 gain = max(gain, self._challenge(self.places[j], models[best[j]]))
         return gain

@@ -79,15 +79,15 @@ def solve_qp(qp: QuadraticProgramme) -> tuple[Floats, list[int]]:
         share = np.divide(bound - s, d, out=np.full(s.size, np.inf), where=d != 0)
         within, (joining, met) = float(share.min()), _met(qp, s, d, active)
         if met < min(within, 1):
-            s, active = _clipped(s + met * d, lo, hi), [*active, joining]
+            s, active = np.clip(s + met * d, lo, hi), [*active, joining]
             continue
         if within < 1:
             new = None if len(qp.C) else _projected(qp, s, d)
             held = share <= within if new is None else free & ((new <= lo) | (new >= hi))
-            s = np.where(held, bound, _clipped(s + within * d, lo, hi)) if new is None else new
+            s = np.where(held, bound, np.clip(s + within * d, lo, hi)) if new is None else new
             free = free & ~held
             continue
-        s = _clipped(s + d, lo, hi)
+        s = np.clip(s + d, lo, hi)
         if free.all() and len(active) < 2:
             break
         kappa = qp.multipliers(s, active, free)
@@ -109,7 +109,7 @@ def _projected(qp: QuadraticProgramme, s: Floats, d: Floats) -> Floats | None:
     """Return where a step d, or its half and so on, ends on the box; None where nothing falls."""
     slope = qp.g + qp.B @ s
     for halvings in range(HALVINGS):
-        new = _clipped(s + 0.5**halvings * d, qp.lo, qp.hi)
+        new = np.clip(s + 0.5**halvings * d, qp.lo, qp.hi)
         change = new - s
         if slope @ change + 0.5 * change @ qp.B @ change < 0:
             return new
@@ -130,11 +130,6 @@ def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools) -> Floats:
         floor = max(FLAT * curvature.max(), np.finfo(float).tiny ** 0.5)  # no overflow
         d[inside] = -T @ (slope / np.maximum(curvature, floor))
     return d
-
-
-def _clipped(s: Floats, lo: Floats, hi: Floats) -> Floats:
-    """Return the point of the box next to s."""
-    return np.minimum(np.maximum(s, lo), hi)
 
 
 def _met(qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int]) -> tuple[int, float]:

@@ -34,11 +34,6 @@ class Rows:
         return self.matrix @ J - self.offset if self.offset.size else self.offset
 
 
-def no_rows(objectives: int) -> Rows:
-    """Return no functions of so many objectives."""
-    return Rows(np.zeros((0, objectives)), np.zeros(0))
-
-
 @dataclass(frozen=True)
 class Linear:
     """f = w^T J, with a maximum of linear functions."""
@@ -77,7 +72,7 @@ class LogSum:
     @property
     def maximised(self) -> Rows:
         """No maximum."""
-        return no_rows(self.a.size)
+        return weighted(self.a).maximised
 
     def value(self, J: Floats) -> float:
         """Return I; minus infinity where an objective vanishes."""
@@ -102,7 +97,7 @@ returns f, ``gradient`` df/dJ (n,), ``hessian`` d2f/dJ2 (n, n), and ``maximised`
 
 def weighted(w: Floats) -> Linear:
     """Return min w^T J."""
-    return Linear(w, no_rows(w.size))
+    return Linear(w, Rows(np.zeros((0, w.size)), np.zeros(0)))
 
 
 def below(w: Floats, a: Floats, most: float) -> Linear:

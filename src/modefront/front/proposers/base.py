@@ -23,9 +23,9 @@ class Offer:
     place: int  # number of the subproblem that is solved; -1 where models are only evaluated
     start: Solution  # model from which it is solved
     chance: float  # probability that some subproblem gains, at most
-    expected: float  # that probability, as it is expected
     function: Callable[..., Any]  # what is done with the problem and ``arguments``
     arguments: tuple[Any, ...]
+    expected: float | None = None  # that probability, as it is expected; None where it is the same
 
 
 class Proposer(Protocol):
@@ -41,18 +41,14 @@ class Proposer(Protocol):
 def solve_from(
     k: int, place: Place, start: Solution, chance: float, expected: float | None = None
 ) -> Offer:
-    """Return the offer to solve the subproblem of a place, the k-th one, from a start.
-
-    The chance is as great as is expected if nothing else is.
-    """
+    """Return the offer to solve the subproblem of a place, the k-th one, from a start."""
     arguments = (place.subproblem, start, place.incumbent.J)
-    return Offer(k, start, chance, chance if expected is None else expected, _solved, arguments)
+    return Offer(k, start, chance, _solved, arguments, expected)
 
 
 def evaluate_all(thetas: Floats, chance: float, expected: float | None = None) -> Offer:
-    """Return the offer to evaluate models (., p) without derivatives, likewise."""
-    start = at(thetas[0])
-    return Offer(-1, start, chance, chance if expected is None else expected, _evaluated, (thetas,))
+    """Return the offer to evaluate models (., p) without derivatives."""
+    return Offer(-1, at(thetas[0]), chance, _evaluated, (thetas,), expected)
 
 
 def at(theta: Floats) -> Solution:
