@@ -191,7 +191,7 @@ def concrete_frame(count: int = 20) -> Iterator[Row]:
 def evolution() -> Iterator[Row]:
     """Yield hypervolumes beside those of evolutionary methods with as many evaluations."""
     for case in rugged.cases():
-        row = rugged.compare(case, 1, (20,))
+        row = rugged.compare(case, 1)
         best = max(row.others, key=lambda name: row.others[name])
         target = f"{row.others[best]:.4f} ({best}; true front {row.truth:.4f})"
         holds = row.volume >= row.others[best] - 1e-3
