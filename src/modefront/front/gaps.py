@@ -65,19 +65,15 @@ def gaps(
     out = []
     for (last, first, known), ends in zip(sides, run(tasks), strict=True):
         end, start = ends or (None, None)
-        if end and start and not _lies_between(end, start, scale):
+        width = (start.J - end.J) / scale if end and start else np.zeros(0)
+        if end and start and not (width[0] >= -RHO and width[1] <= RHO and np.ptp(width) > RHO):
+            # the start does not lie to the right of the end and below it, apart from it
             own, beyond = (end, first) if known[0] else (start, last)
             if not any(known) or np.abs((own.J - beyond.J) / scale).max() <= RHO:
                 continue  # the branch goes on to the other side
             end, start = (end, None) if known[0] else (None, start)
         out.append(Gap(last, first, end, start))
     return out
-
-
-def _lies_between(end: Solution, start: Solution, scale: Floats) -> bool:
-    """Return whether a start lies to the right of an end and below it, apart from it."""
-    width = (start.J - end.J) / scale
-    return bool(width[0] >= -RHO and width[1] <= RHO and np.ptp(width) > RHO)
 
 
 def _ends(

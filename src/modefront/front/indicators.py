@@ -4,7 +4,6 @@ Hypervolume (Zitzler & Thiele 1998, doi:10.1007/BFb0056872), IGD+ (Ishibuchi et 
 doi:10.1007/978-3-319-15892-1_8), and the longest branch of the shortest tree that joins all points.
 """
 
-import importlib.util
 from collections.abc import Iterable
 
 import numpy as np
@@ -33,10 +32,10 @@ def hypervolume(Y: Floats) -> float:
     if len(Y) == 0:
         return 0.0
     if Y.shape[1] > 2:
-        if importlib.util.find_spec("moocore") is None:
+        try:
+            import moocore
+        except ImportError:
             return float("nan")
-        import moocore
-
         return float(moocore.hypervolume(Y, ref=np.full(Y.shape[1], REFERENCE)))
     Y = Y[nondominated(Y, tolerance=0.0)]
     Y = Y[np.argsort(Y[:, 0], kind="stable")]

@@ -84,9 +84,8 @@ class _Run:
         rng = np.random.default_rng(seed_sequence(self.seed, "search"))
         self.children = np.random.default_rng(seed_sequence(self.seed, "evolution"))
         names, edges = self.problem.objectives, self.known.edges if self.known else ()
-        again: dict[Key, Sequence[Solution]] = {
-            ("edge", x): edge.minima for x, edge in zip(names, edges, strict=False)
-        }
+        pairs = zip(names, edges, strict=False)
+        again: dict[Key, Sequence[Solution]] = {("edge", x): edge.minima for x, edge in pairs}
         self.starts = Starts(rng, again if self.known else None)
         self.loop = Loop(self.state, self.search)
 
@@ -94,8 +93,7 @@ class _Run:
         """Return all that is found."""
         sizes = self._sizes()
         models = [point.solution for point in self.known.points] if self.known else []
-        starts = [at(x.theta) for x in self.state.distinct(models)]
-        self._evaluated(("known",), starts)
+        self._evaluated(("known",), [at(x.theta) for x in self.state.distinct(models)])
         anchors: list[Subproblem] = [
             Least(Lexicographic(i, sizes), x) for i, x in enumerate(self.problem.objectives)
         ]
@@ -119,15 +117,18 @@ class _Run:
         optimal = self._optimal(bests, evolved or self._points(target, bests)[0], sizes)
         arguments = (self.problem, self.a, sizes, self._weighted()[-1].solution)
         (iterated,) = self._run([Task(("iterated-weights",), iterate_weights, arguments)])
-        self._complete()
+        # At the budget, no search has started from some incumbents.
+        rest = [x for x in self.state.places if not x.incumbent.evaluation.derivatives]
+        begun = {x.incumbent.theta.tobytes(): x.incumbent for x in rest}
+        begun = dict(zip(begun, self._evaluated(("front",), begun.values()), strict=True))
+        for place in rest:
+            place.incumbent = begun[place.incumbent.theta.tobytes()]
         bests = self._reported(sizes, "end")
         points, places, beta = self._points(target, bests)
-        if evolved is not None:
-            points = evolved
         edges, weighted = self._edges(), self._weighted()
         weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
         method, ends = self.options.method, zip(self.problem.objectives, bests, strict=True)
-        along = [Point(Kind.FRONT, x, method, i + 1) for i, x in enumerate(points)]
+        along = [Point(Kind.FRONT, x, method, i + 1) for i, x in enumerate(evolved or points)]
         return Front(
             method,
             [*along, *(Point(Kind.EDGE, x, name) for name, x in ends), *weighted],
@@ -302,14 +303,6 @@ class _Run:
         """Return the models of given and of equal weights."""
         pairs = zip(self.weighted, self.state.places[self.n :], strict=False)
         return [Point(kind, place.incumbent, name) for (kind, name, _), place in pairs]
-
-    def _complete(self) -> None:
-        """Evaluate the derivatives of incumbents that no search has started from: at the budget."""
-        rest = [x for x in self.state.places if not x.incumbent.evaluation.derivatives]
-        models = {x.incumbent.theta.tobytes(): x.incumbent for x in rest}
-        found = dict(zip(models, self._evaluated(("front",), models.values()), strict=True))
-        for place in rest:
-            place.incumbent = found[place.incumbent.theta.tobytes()]
 
     def _evaluated(self, key: Key, models: Iterable[Solution]) -> list[Solution]:
         """Return starts at models, with derivatives."""

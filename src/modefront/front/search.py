@@ -63,10 +63,9 @@ class Loop:
         while offers := self._offers(proposers):
             left = most - self.state.evaluations
             if left <= 0:
-                places = self.state.places
+                keys = [place.subproblem.key for place in self.state.places]
                 for _, offer in offers:
-                    ended = places if offer.place < 0 else [places[offer.place]]
-                    self.open |= {place.subproblem.key for place in ended}
+                    self.open |= set(keys if offer.place < 0 else [keys[offer.place]])
                 break
             chosen = offers[:BATCH]
             self.turn += 1

@@ -77,14 +77,10 @@ class State:
         ]
         outcomes: list[Outcome] = self.work.run(recording)
         for outcome in outcomes:
-            self.note(outcome)
+            self.evaluations += outcome.evaluations
+            for model in outcome.models:
+                self.archive.add(model.J, model)
         return outcomes
-
-    def note(self, outcome: Outcome) -> None:
-        """Count the evaluations of a task, and archive its models."""
-        self.evaluations += outcome.evaluations
-        for model in outcome.models:
-            self.archive.add(model.J, model)
 
     def tell(self, k: int, start: Solution | None, outcome: Outcome) -> float:
         """Let what a search led to compete; return the greatest gain of a subproblem.

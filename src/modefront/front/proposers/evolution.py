@@ -34,8 +34,8 @@ class Evolution:
             unseen = self.unseen(state)
             for idle in range(self.idle, self.idle + most):
                 gains = 1 / (idle + 2)
-                most_likely = max(unseen, gains * self.alone)
-                yield evaluate_all(self._children(state), most_likely, gains * unseen)
+                bound = max(unseen, gains * self.alone)
+                yield evaluate_all(self._children(state), bound, gains * unseen)
 
     def learn(self, state: State, _: Offer, __: Outcome, gain: float) -> None:
         """Count the generation."""

@@ -117,8 +117,8 @@ class Starts:
 
     def unseen(self, state: State) -> float:
         """Return the chance that a start gains at most, of the places that have had some."""
-        tried = (x for x in state.places if x.subproblem.key in self.minima)
-        return max((self.of(x).chance(x, state.tolerance) for x in tried), default=0.0)
+        tried = [x for x in state.places if x.subproblem.key in self.minima]
+        return max(self.of(x).chance(x, state.tolerance) for x in tried) if tried else 0.0
 
     def of(self, place: Place) -> Minima:
         """Return the minima of a subproblem."""
