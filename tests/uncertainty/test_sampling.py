@@ -17,7 +17,7 @@ from modefront.models.parameters import Prior
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.inference import log_values, maximum
 from modefront.uncertainty.prior import NoiseModel, Standardised
-from modefront.uncertainty.sampling import CHAINS, DRAWS, Peak, agreement, draw_models
+from modefront.uncertainty.sampling import CHAINS, DRAWS, FINE, NEAR, Peak, agreement, draw_models
 from modefront.work.task import IMMEDIATE, Count, Task
 
 NU = 4.0
@@ -297,7 +297,8 @@ def test_draws_in_a_poor_basis_are_weighted(
         replace(noise_of(partial(line, mean=m, std=s), [0, 0], [1, 1], [1.0]), weight=1e8)
         for m, s in ((0.1, 0.2), (mean, std))
     )
-    monkeypatch.setattr("modefront.uncertainty.sampling._nearer", lambda *_: poor)
+    spaces = {NEAR: poor, FINE: exact}
+    monkeypatch.setattr("modefront.uncertainty.sampling._nearer", lambda _, __, x, *___: spaces[x])
     found = draw_models(exact, [np.array([0.1, 0.5])], count, 8, IMMEDIATE)
     assert found.settled == (std == 0.2)
     if found.settled:

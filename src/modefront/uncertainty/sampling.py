@@ -3,14 +3,14 @@ r"""Models drawn from the posterior: randomise then optimise, made exact by Metr
 docs/uncertainty.md has the equations. The parameters are functions of standard normal variables z.
 About a peak a model of normal variables :math:`\xi` and of variances s of the errors solves
 :math:`F(z) = L \xi` (Bardsley, Solonen, Haario & Laine 2014, doi:10.1137/140964023). Such models
-are proposals, independent of where a chain is. Steps of the stochastic Newton method go between
-(Martin et al. 2012, doi:10.1137/110845598), of a length that the warm-up finds; they lead beyond a
-fold of F, to models which become centres of further proposals. Chains go on until they agree and
-the effective sample is large enough (Vehtari et al. 2021, doi:10.1214/20-BA1221). They end at half
-of their length at most where none of their halves is worth more than one draw.
+are proposals, independent of where a chain is. F jumps where measured modes are paired with other
+modes of the model, and is as invertible there. Steps of the stochastic Newton method go between
+(Martin et al. 2012, doi:10.1137/110845598), of a length that the warm-up finds. Chains go on until
+they agree and the effective sample is large enough (Vehtari et al. 2021, doi:10.1214/20-BA1221).
+They end at half of their length at most where none of their halves is worth more than one draw.
 
 Where modes are those of a reduced basis, chains are those of a smaller one, and draws are weighted
-by what the basis itself says of them (Liu 2001, *Monte Carlo Strategies in Scientific Computing*,
+by what a finer one says of them (Liu 2001, *Monte Carlo Strategies in Scientific Computing*,
 section 2.5): a poor one leaves fewer of them, and these no less exact.
 """
 
@@ -38,15 +38,18 @@ DRAWS = 200  # effective draws for intervals: the 5 % quantile is known to 0.15 
 CHAINS, ROUND, LONGEST = 4, 50, 12
 """Chains, steps of a round of them, and steps at most of all chains over the draws."""
 
-WARM = 4  # rounds at most in which models that no peak proposes become centres of further proposals
 AGREE = 1.05  # deviation of all chains over that within them, from which they do not agree
 ACCEPTED = 0.35  # share of steps nearby that are taken, below which they become shorter
 APART = 1.0  # distance of two peaks, in standard deviations, below which one is enough
 FAINT = 1e-3  # probability of a peak over that of the greatest one, below which it is left out
 
 SMALL, SNAPSHOTS = 100, 40
-"""Columns of a basis from which steps are taken in a smaller one, and models whose modes span it
-at first."""
+"""Columns of a basis from which steps are taken in a smaller one; models whose modes span that."""
+
+NEAR, FINE = 3e-3, 1e-4
+"""Length of a direction that the smaller space may lack, root mean square over these models: a
+tenth of a usual error of shapes; that of the finer one, which leaves 2 % in the weights of draws.
+"""
 
 SOLVED, STEPS = 1e-3, 12  # error of the normal variables behind a model, and steps to it at most
 
@@ -97,15 +100,13 @@ class Peak:
     def behind(self, model: Model) -> Floats:
         """Return the normal variables (p + n,) behind a model."""
         xi = np.linalg.solve(np.linalg.cholesky(self.precision(model.s)), self.forward(model)[0])
-        return np.append(xi, -ndtri(gammainc(self.dof / 2, self.scale / model.s / 2)))
+        return np.append(xi, ndtri(gammainc(self.dof / 2, self.scale / model.s / 2)))
 
     def log_density(self, model: Model) -> float:
-        """Return ln q of a model and its variances; minus infinity beyond a fold of F."""
+        """Return ln q of a model and its variances."""
         F, slope = self.forward(model)
-        sign, size = np.linalg.slogdet(slope)
-        if sign <= 0:
-            return -np.inf
         A, s, half = self.precision(model.s), model.s, self.dof / 2
+        size = np.linalg.slogdet(slope)[1]
         size -= np.linalg.slogdet(A)[1] / 2 + F @ np.linalg.solve(A, F) / 2
         of_s = half * np.log(self.scale / 2) - gammaln(half) - (half + 1) * np.log(s)
         return float(size + (of_s - self.scale / (2 * s)).sum())
@@ -214,12 +215,11 @@ class Chain:
     z: Floats  # (steps, p) standardised parameters
     s: Floats  # (n,) variances at its end
     length: float  # b of proposals nearby
-    beyond: bool  # whether no peak proposes the model at its end
 
 
 def extent(count: int) -> tuple[int, int]:
     """Return how many steps all chains take for so many effective draws, from and to."""
-    return 2 * CHAINS * ROUND, WARM * CHAINS * ROUND + LONGEST * count
+    return 2 * CHAINS * ROUND, CHAINS * ROUND + LONGEST * count
 
 
 # 6 arguments: what is drawn from, how many, and how.
@@ -243,12 +243,12 @@ def draw_models(
     kept: list[Floats] = []
     rng = np.random.default_rng(seed_sequence(seed, stage, "near"))
     around = [peaks[k].top.newton(1.0) for k in rng.choice(len(peaks), SNAPSHOTS)]
-    near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), 0, work)
-    warm, settled = True, False
+    near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), NEAR, 0, work)
+    settled = False
     rounds = rounds or -(-LONGEST * count // (CHAINS * ROUND))
-    for turn in range(WARM + rounds):
-        if warm:
-            work.expect({stage: (2 * CHAINS, (WARM + rounds - turn) * CHAINS)})
+    for turn in range(1 + rounds):
+        if warm := turn == 0:
+            work.expect({stage: (2 * CHAINS, (1 + rounds) * CHAINS)})
         steps = [
             Task(
                 (stage, k + 1, turn + 1),
@@ -261,16 +261,9 @@ def draw_models(
         found = work.run(steps)
         chains = [*found]
         if warm:
-            beyond = [x.z[-1] for x in found if x.beyond]
-            tasks = [
-                Task(("peaks", turn + 1, k + 1), Standardised(noise.problem).evaluate, (z,))
-                for k, z in enumerate(beyond)
-            ]
-            more = _mixture(noise, work.run(tasks))
-            peaks, warm = [*peaks, *more], bool(more) and turn + 1 < WARM
             if near is not noise:
                 some = np.vstack([x.z[:: CHAINS * ROUND // SNAPSHOTS] for x in found])
-                near = _nearer(noise, some, turn + 1, work)
+                near = _nearer(noise, some, NEAR, 1, work)
             continue
         kept.append(np.array([x.z for x in found]))
         ratio, size = agreement(np.concatenate(kept, axis=1))
@@ -285,7 +278,9 @@ def draw_models(
     z = np.concatenate(kept, axis=1).reshape(-1, near.problem.start.size)
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
     order = np.linspace(0, len(z) - 1, min(count, len(z))).round().astype(int)
-    draws, share = _counted(noise, near, rng.permutation(z[order]), work)
+    z = rng.permutation(z[order])
+    fine = noise if near is noise else _nearer(noise, z[:SNAPSHOTS], FINE, 2, work)
+    draws, share = _counted(fine, near, z, work)
     return replace(draws, settled=settled and size * share >= count / 2)
 
 
@@ -327,16 +322,19 @@ def _weighed(noise: NoiseModel, near: NoiseModel, z: Floats) -> tuple[Floats, ..
     return theta, frequency, mac, np.array(weight)
 
 
-def _nearer(noise: NoiseModel, z: Floats, turn: int, work: Executor) -> NoiseModel:
+def _nearer(
+    noise: NoiseModel, z: Floats, lacking: float, number: int, work: Executor
+) -> NoiseModel:
     """Return the posterior in the space of the modes at standardised parameters z (models, p).
 
-    The same where the model is not a reduced one, its basis is small, or this space not much less.
+    Directions shorter than ``lacking`` are left out. The same where the model is not a reduced one,
+    its basis is small, or this space not much less.
     """
     problem = noise.problem
     if not isinstance(problem.model, ReducedModel):
         return noise
     theta = np.array([Standardised(problem).theta(x)[0] for x in z])
-    (V,) = work.run([Task(("space", turn), problem.model.space, (theta,))])
+    (V,) = work.run([Task(("space", number), problem.model.space, (theta, lacking))])
     if len(V) < SMALL or 2 * V.shape[1] > len(V):
         return noise
     return replace(noise, problem=replace(problem, model=problem.model.within(V)))
@@ -358,8 +356,6 @@ def _mixture(noise: NoiseModel, found: Sequence[Evaluation]) -> list[Peak]:
         ways = [new.behind(Model(y.at, new.expected)) - new.behind(new.top) for y in peaks]
         if all(np.linalg.norm(way) > APART for way in ways):
             peaks.append(new)
-    if not peaks:
-        return []
     value = [noise.programme.value(x.at.J) for x in peaks]
     size = [np.linalg.slogdet(x.precision(x.expected))[1] for x in peaks]
     share = softmax(-(np.array(value) + np.array(size)) / 2)
@@ -389,7 +385,7 @@ def _advanced(
         out.append(here.z)
         if warm:
             length = min(length * float(np.exp((chance - ACCEPTED) / np.sqrt(1 + t / 4))), 1.0)
-    return Chain(np.array(out), here.s, length, not np.isfinite(of.log_density(here)))
+    return Chain(np.array(out), here.s, length)
 
 
 @dataclass(frozen=True)
@@ -412,8 +408,6 @@ class Sampler:
     def across(self, here: Model, rng: np.random.Generator) -> Model:
         """Return the model after a step to one that is independent of it."""
         weight = here.log_posterior(self.logs) - self.log_density(here)
-        if not np.isfinite(weight):
-            return here
         count = len(self.peaks)
         peak = self.peaks[rng.choice(count, p=np.full(count, 1 / count))]
         new = peak.model(self.target, rng.normal(size=here.z.size + here.s.size))

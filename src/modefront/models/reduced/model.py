@@ -29,10 +29,6 @@ SHARE = 0.1  # remainder of a correction over all of it, where it need not be ex
 FAR = 30.0  # condition of K over that of the factor up to which a snapshot has no factor of its own
 WORST = 6  # models of a snapshot that are corrected at once, the worst ones
 
-HARDLY = 3e-3
-"""Length of a direction that a space of modes may lack, root mean square over some models: a tenth
-of a usual error of shapes; the square is an error of eigenvalues."""
-
 TOLERANCE = 1e-8  # default relative error of eigenvalues
 MEMORY = 4.0  # default limit of the memory of a basis in GiB
 
@@ -192,18 +188,18 @@ class ReducedModel(Shown):
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return FullModes(pairs.lam[:count], Phi, None)
 
-    def space(self, thetas: Floats) -> Floats:
+    def space(self, thetas: Floats, lacking: float) -> Floats:
         """Return coordinates (columns, n) in the basis that span its modes at some parameters.
 
-        Directions in which modes of unit energy have less than `HARDLY`, root mean square, are left
-        out, and spare modes, but for as many as there are modes.
+        Directions in which modes of unit energy have less than ``lacking``, root mean square, are
+        left out, and spare modes, but for as many as there are modes.
         """
         _, K, M, _ = self._projected()
         used = self.first.modes
         X = [dense.decompose(K.at(x), M.at(x), used).X[:, :used] for x in thetas]
         U, sizes, _ = np.linalg.svd(np.hstack(X), full_matrices=False)
         spend(Costs(reduced=len(thetas)))
-        kept = np.count_nonzero(sizes > HARDLY * np.sqrt(len(thetas)))
+        kept = np.count_nonzero(sizes > lacking * np.sqrt(len(thetas)))
         return np.asarray(U[:, : max(kept, self.count)])
 
     def within(self, V: Floats) -> "ReducedModel":
