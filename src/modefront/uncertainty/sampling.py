@@ -111,6 +111,16 @@ class Peak:
         of_s = half * np.log(self.scale / 2) - gammaln(half) - (half + 1) * np.log(s)
         return float(size + (of_s - self.scale / (2 * s)).sum())
 
+    def reaches(self, target: Standardised, model: Model) -> bool:
+        """Return whether the normal variables behind a model lead to it, and to no other one.
+
+        Where the derivative of F has a negative determinant, only Newton's method can tell.
+        """
+        if np.linalg.slogdet(self.forward(model)[1])[0] > 0:
+            return True
+        found = self.model(target, self.behind(model))
+        return found is not None and np.abs(found.z - model.z).max() < np.sqrt(SOLVED)
+
     def model(self, target: Standardised, u: Floats) -> Model | None:
         """Return the model of normal variables (p + n,) by Newton's method; None without one.
 
@@ -281,7 +291,7 @@ def draw_models(
     z = rng.permutation(z[order])
     fine = noise if near is noise else _nearer(noise, z[:SNAPSHOTS], FINE, 2, work)
     draws, share = _counted(fine, near, z, work)
-    return replace(draws, settled=settled and size * share >= count / 2)
+    return replace(draws, settled=settled and min(size, count) * share >= count / 2)
 
 
 def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> tuple[Draws, float]:
@@ -408,17 +418,27 @@ class Sampler:
     def across(self, here: Model, rng: np.random.Generator) -> Model:
         """Return the model after a step to one that is independent of it."""
         weight = here.log_posterior(self.logs) - self.log_density(here)
-        count = len(self.peaks)
-        peak = self.peaks[rng.choice(count, p=np.full(count, 1 / count))]
+        if not np.isfinite(weight):
+            return here
+        peak = self.peaks[rng.choice(len(self.peaks))]
         new = peak.model(self.target, rng.normal(size=here.z.size + here.s.size))
         if new is None:
             return here
-        change = new.log_posterior(self.logs) - self.log_density(new) - weight
+        change = new.log_posterior(self.logs) - self.log_density(new, peak) - weight
         return _taken(here, new, change, rng)[0]
 
-    def log_density(self, model: Model) -> float:
-        """Return the logarithm of the sum of what all peaks propose."""
-        return float(np.logaddexp.reduce([peak.log_density(model) for peak in self.peaks]))
+    def log_density(self, model: Model, by: Peak | None = None) -> float:
+        """Return the logarithm of the sum of what all peaks propose, ``by`` one of them or not.
+
+        It is minus infinity for a model to which they do not lead.
+        """
+        q = np.array([peak.log_density(model) for peak in self.peaks])
+        counted = [
+            x
+            for x, peak in zip(q, self.peaks, strict=True)
+            if x > q.max() + np.log(FAINT) and (peak is by or peak.reaches(self.target, model))
+        ]
+        return float(np.logaddexp.reduce(counted, initial=-np.inf))
 
     def nearby(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
         """Return the model after a step of the stochastic Newton method."""
