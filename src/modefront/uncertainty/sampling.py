@@ -256,21 +256,15 @@ def draw_models(
     near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), NEAR, 0, work)
     settled = False
     rounds = rounds or -(-LONGEST * count // (CHAINS * ROUND))
+    work.expect({stage: (2 * CHAINS, (1 + rounds) * CHAINS)})
     for turn in range(1 + rounds):
-        if warm := turn == 0:
-            work.expect({stage: (2 * CHAINS, (1 + rounds) * CHAINS)})
-        steps = [
-            Task(
-                (stage, k + 1, turn + 1),
-                _advanced,
-                (near, peaks, chain, warm),
-                seed_sequence(seed, stage, k + 1, turn + 1),
-            )
-            for k, chain in enumerate(chains)
-        ]
+        steps = []
+        for k, chain in enumerate(chains):
+            key, of = (stage, k + 1, turn + 1), (near, peaks, chain)
+            steps.append(Task(key, _advanced, of, seed_sequence(seed, *key)))
         found = work.run(steps)
         chains = [*found]
-        if warm:
+        if turn == 0:  # the warm-up
             if near is not noise:
                 some = np.vstack([x.z[:: CHAINS * ROUND // SNAPSHOTS] for x in found])
                 near = _nearer(noise, some, NEAR, 1, work)
@@ -373,27 +367,21 @@ def _mixture(noise: NoiseModel, found: Sequence[Evaluation]) -> list[Peak]:
 
 
 def _advanced(
-    noise: NoiseModel,
-    peaks: Sequence[Peak],
-    chain: Chain | None,
-    warm: bool,
-    *,
-    rng: np.random.Generator,
+    noise: NoiseModel, peaks: Sequence[Peak], chain: Chain | None, *, rng: np.random.Generator
 ) -> Chain:
-    """Return the next round of a chain; a warm-up adapts the lengths of steps."""
+    """Return the next round of a chain; the first one adapts the lengths of steps."""
     target = Standardised(noise.problem)
-    of = Sampler(target, noise.logs, peaks)
-    length = 1.0 if chain is None or warm else chain.length
+    of, out = Sampler(target, noise.logs, peaks), []
     if chain is None:
         top = peaks[rng.choice(len(peaks))].top
-        z, s = top.z, top.s
+        z, s, length = top.z, top.s, 1.0
     else:
-        z, s = chain.z[-1], chain.s
-    here, out = Model(target.evaluate(z), s), []
+        z, s, length = chain.z[-1], chain.s, chain.length
+    here = Model(target.evaluate(z), s)
     for t in range(ROUND):
         here, chance = of.after(here, length, rng)
         out.append(here.z)
-        if warm:
+        if chain is None:
             length = min(length * float(np.exp((chance - ACCEPTED) / np.sqrt(1 + t / 4))), 1.0)
     return Chain(np.array(out), here.s, length)
 
