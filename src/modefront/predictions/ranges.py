@@ -27,13 +27,7 @@ from modefront._typing import Floats
 from modefront.front.dominance import undominated
 from modefront.front.subproblems import RHO
 from modefront.optim.lexicographic import EXACT, RANK, TIE
-from modefront.optim.problem import (
-    Evaluation,
-    Problem,
-    Wrapped,
-    infeasible,
-    room,
-)
+from modefront.optim.problem import Evaluation, Problem, Wrapped, infeasible, room
 from modefront.optim.scalarisation import achievement
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.options import number
@@ -164,13 +158,10 @@ class Equivalent:
         for factor in FACTORS:
             programme = achievement(w, rows, d, factor)
             found = solve(target, programme, begin(found.evaluation), _ENOUGH)
-            if self._as_good(found):
+            J = self.problem.evaluate(found.theta, derivatives=False).J
+            if (self.level * (1 + SAME) >= J).all():
                 return found
         return None
-
-    def _as_good(self, found: Solution) -> bool:
-        J = self.problem.evaluate(found.theta, derivatives=False).J
-        return bool((self.level * (1 + SAME) - J >= 0).all())
 
     def _with(self, q: Values, size: float) -> Callable[[Problem, Floats, bool, bool], Evaluation]:
         """Return the evaluation of the equations, or the objectives, and of q over its size."""
