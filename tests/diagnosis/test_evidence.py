@@ -15,7 +15,7 @@ from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.evidence import Fits, step
 from modefront.diagnosis.mistakes.record import Explanation
 from modefront.diagnosis.mistakes.values import other_quantity
-from modefront.diagnosis.state import SPREAD, State, median, scaled
+from modefront.diagnosis.state import SPREAD, State, median, scaled, stacked
 from modefront.models.chain import chain
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem
@@ -85,14 +85,12 @@ def fits_of(theta: Floats, scatter: float = 0.0) -> Fits:
 def test_a_fit_finds_the_structure_from_which_the_data_come() -> None:
     theta = np.array([1.2, 0.8, 1.1])
     fits = fits_of(theta)
-    (result,) = fits.fitted([fits.plain], [np.zeros(3)])
-    assert result is not None
+    (result,) = fits.fitted([fits.plain])
     np.testing.assert_allclose(fits.plain.theta(result.x), theta, rtol=0.03)
     rows = fits.plain.rows.copy()
     rows[2] *= -1
-    right, reversed_ = fits.ahead(
-        [fits.plain, replace(fits.plain, rows=rows)], [result.x, result.x]
-    )
+    both = stacked([fits.plain, replace(fits.plain, rows=rows)])
+    right, reversed_ = fits.at(both, np.stack([result.x] * 2)).ahead
     assert right == pytest.approx(result.cost, abs=0.1)
     assert reversed_ > result.cost + 10
 
@@ -108,12 +106,9 @@ def test_parameters_are_the_same_beside_other_nominal_values() -> None:
 def test_the_cost_ahead_is_between_those_before_and_after_a_step() -> None:
     """The parabola lies above the cost, as its weights are those of Student's distribution."""
     fits = fits_of(np.array([1.2, 0.8, 1.1]), 0.05)
-    (best,) = fits.fitted([fits.plain], [np.zeros(3)])
-    assert best is not None
-    (near,) = fits.at([fits.plain], [best.x + np.array([0.1, -0.1, 0.1])])
-    assert near is not None
-    (after,) = fits.at([fits.plain], [near.x + step(near.g, near.H, 0.0)])
-    assert after is not None
+    (best,), plain = fits.fitted([fits.plain]), stacked([fits.plain])
+    near = fits.at(plain, best.x[None] + np.array([0.1, -0.1, 0.1])).of(0)
+    after = fits.at(plain, near.x[None] + step(near.g, near.H, 0.0)).of(0)
     assert near.cost > after.cost + 0.5
     assert after.cost < near.ahead < (after.cost + near.cost) / 2
 
@@ -138,13 +133,26 @@ def test_explanations_cost_the_same_together_and_alone() -> None:
         replace(fits.plain, shape=without),
         replace(fits.plain, start=3 * one),
     ]
-    xs = [np.full(1, 0.1 * k) for k in range(4)]
-    together = fits.at(states, xs)
-    alone = [fits.at([state], [x])[0] for state, x in zip(states, xs, strict=True)]
+    xs, every = np.arange(4.0)[:, None] / 10, stacked(states)
+    together, some = fits.at(every, xs), fits.at(every.of(np.array([1, 3])), xs[[1, 3]])
+    alone = [fits.at(stacked([state]), x[None]).of(0) for state, x in zip(states, xs, strict=True)]
     for name in ("cost", "ahead", "H"):
-        some, others = ([getattr(x, name) for x in many] for many in (together, alone))
-        np.testing.assert_allclose(some, others, rtol=1e-12)
-    assert np.unique([round(float(x.cost), 3) for x in alone if x]).size == 4
+        values = np.array([getattr(x, name) for x in alone])
+        np.testing.assert_allclose(getattr(together, name), values, rtol=1e-12)
+        np.testing.assert_allclose(getattr(some, name), values[[1, 3]], rtol=1e-12)
+    assert np.unique(together.cost.round(3)).size == 4
+
+
+def test_explanations_start_from_the_better_of_two_starts() -> None:
+    """Where the model has no modes, a cost is infinite."""
+    fits = fits_of(np.array([1.2, 0.8, 1.1]))
+    plain = replace(fits.plain, unit=np.ones(3))
+    states, x = [plain, replace(plain, start=np.full(3, -5.0))], np.array([0.2, -0.2, 0.1])
+    ((_, begun),) = fits.begun(states, (plain, x))
+    np.testing.assert_allclose(begun.x[0], x)
+    assert np.isinf(begun.ahead).tolist() == [False, True]
+    costs = [float(x.cost) for x in fits.fitted(states, (plain, x))]
+    assert costs[0] <= begun.cost[0] < costs[1] == np.inf
 
 
 def test_values_that_scatter_little_are_no_more_probable_as_eigenvalues() -> None:
@@ -156,7 +164,6 @@ def test_values_that_scatter_little_are_no_more_probable_as_eigenvalues() -> Non
     data = modal_data(f, np.tile(modes.phi.T, (40, 1, 1)), model.sensors)
     one, groups = np.ones(1), (Group("f", frequency="all"),)
     fits = Fits(compare(UpdatingProblem(model, data, groups, one / 5, 5 * one, one)))
-    (point,) = fits.at([fits.plain], [np.zeros(1)])
-    assert point is not None
+    point = fits.at(stacked([fits.plain]), np.zeros((1, 1))).of(0)
     for mistake in other_quantity(Explanation(fits, (), fits.plain, point, 0.0)):
         assert mistake.change(fits.plain).noise > fits.plain.noise - 1e-6

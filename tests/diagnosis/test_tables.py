@@ -137,8 +137,7 @@ def test_values_cost_the_same_whatever_leaves_them_out() -> None:
     plain = fits.plain
     without = changed("shape", np.s_[..., 7], np.nan)(plain)
     assert without.left_out == pytest.approx(5 * NOTHING)
-    (point,) = fits.at([plain], [np.zeros(2)])
-    assert point is not None
+    (point,) = fits.fitted([plain])
     for mistake in shifted_values(Explanation(fits, (), plain, point, 0.0)):
         lost = np.isfinite(plain.shape).sum() - np.isfinite(mistake.change(plain).shape).sum()
         assert mistake.change(plain).left_out == pytest.approx(NOTHING * lost)

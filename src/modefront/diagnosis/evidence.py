@@ -13,16 +13,16 @@ logarithms where their bounds are positive. They are fitted by Gauss-Newton step
 :math:`(\nu + 1) / (\nu + r_k^2 / \sigma^2)`, the pairs taken anew at every step.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Bools, Floats, Ints
 from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.state import State, loss, ratio, scaled, stacked
 from modefront.errors import ModelError
@@ -82,15 +82,20 @@ class Points(NamedTuple):
     g: Floats
     H: Floats
 
-    def at(self, k: int) -> "Points":
-        """Return one of several states."""
+    def of(self, k: Any) -> "Points":
+        """Return one of several states, or some."""
         return Points(*(each[k] for each in self))
 
+    def update(self, k: Ints, new: "Points") -> None:
+        """Put others in the places k."""
+        for values, others in zip(self, new, strict=True):
+            values[k] = others
 
-def step(g: Floats, H: Floats, damping: float) -> Floats:
+
+def step(g: Floats, H: Floats, damping: Any) -> Floats:
     """Return the step of a fit (..., p): that of Gauss and Newton with more of H's diagonal."""
     diagonal = np.einsum("...ii->...i", H)[..., None] + ACCUMULATED
-    H = H + damping * diagonal * np.eye(g.shape[-1])
+    H = H + np.asarray(damping)[..., None, None] * diagonal * np.eye(g.shape[-1])
     return np.clip(np.linalg.solve(H, -g[..., None])[..., 0], -LONGEST, LONGEST)
 
 
@@ -117,69 +122,6 @@ def log_frequencies(frequency: Floats) -> Floats:
     return np.log(np.maximum(frequency, np.maximum(least, TINY)))
 
 
-# More than 60 lines: the cost and its slopes share all residuals.
-def points(state: State, xs: Sequence[Floats], modes: Sequence[Modes], pairs: Any = None) -> Points:
-    """Return states, with an axis in front, each beside modes, with the best or given pairs."""
-    x, frequency = np.stack(xs), np.stack([each.frequency for each in modes])
-    logs, phi = log_frequencies(frequency), state.rows @ np.stack([each.phi for each in modes])
-    known, c, scale = state.known, state.mean, state.motion[:, None]
-    mac = mac_values(c, known, phi)
-    if pairs is None:
-        some = zip(pair_costs(mac, state.logs, logs), state.candidates.tolist(), strict=True)
-        pairs = np.array([assigned(each[:, :count]) for each, count in some])
-    (n, p), k = x.shape, np.arange(len(x))[:, None]
-    f, logs, mac = frequency[k, pairs], logs[k, pairs], mac[k, np.arange(pairs.shape[1]), pairs]
-    used = known & (known.sum(axis=-1, keepdims=True) > 1)
-    chi, weight = used * phi.swapaxes(1, 2)[k, pairs], used / scale**2
-    flat = used.reshape(len(used), -1)
-    for _ in range(3):
-        square = (weight * chi**2).sum(axis=-1, keepdims=True)
-        beta = ratio((weight * chi * c).sum(axis=-1, keepdims=True), square)
-        r_s = used * (beta * chi - c) / scale
-        of_shapes, sigma = scaled(r_s.reshape(flat.shape), SHAPE, OF_MODEL, flat)
-        weight = used / (1 + (r_s / sigma[:, None, None]) ** 2 / OF_MODEL) / scale**2
-    elastic = np.isfinite(state.logs) & (f > RIGID * frequency.max(axis=1)[:, None])
-    r_f = np.where(elastic, logs - state.logs, 0.0)
-    of_frequencies, sigma_f = scaled(r_f, FREQUENCY, OF_MODEL, elastic)
-    prior = loss(x / OFF, OF_PARAMETERS).sum(axis=-1)
-    total = of_shapes + of_frequencies + prior + state.noise
-    unit = np.where(state.unit == 0, state.theta(x), state.unit)[:, None]
-    of_each = list(zip(state.rows, modes, pairs, strict=True))
-    df = np.stack([each.dfrequency[i] for _, each, i in of_each]) * unit
-    dchi = np.stack([first_axis(R, each.dphi[:, i]) for R, each, i in of_each])
-    dr = beta[..., None] * dchi.swapaxes(1, 2) * unit[:, None]
-    square = (weight * chi**2).sum(axis=-1, keepdims=True)
-    along = ratio(np.einsum("brs,brsp->brp", weight * chi, dr), square)
-    dr = used[..., None] * (dr - chi[..., None] * along[:, :, None]) / scale[..., None]
-    of_f, of_s = sigma_f[:, None], sigma[:, None]
-    r = np.concatenate([r_f / of_f, x / OFF, r_s.reshape(flat.shape) / of_s], axis=1)
-    J = [elastic[..., None] * ratio(df, f[..., None]) / of_f[..., None]]
-    J += [np.broadcast_to(np.eye(p) / OFF, (n, p, p)), dr.reshape(n, -1, p) / of_s[..., None]]
-    nu = np.repeat([OF_MODEL, OF_PARAMETERS, OF_MODEL], [each.shape[1] for each in J])
-    w, slopes = (nu + 1) / (nu + r**2), np.concatenate(J, axis=1)
-    g = np.einsum("bmp,bm->bp", slopes, w * r)
-    H = slopes.swapaxes(1, 2) @ (w[..., None] * slopes)
-    dx = step(g, H, DAMPING)[..., None]
-    ahead = total + ((g[..., None] + H @ dx / 2) * dx).sum(axis=(1, 2))
-    return Points(x, total, ahead, pairs, mac, beta[..., 0], sigma, g, H)
-
-
-def point(state: State, x: Floats, modes: Modes, pairs: Ints | None = None) -> Points:
-    """Return one state beside modes, with the best or given pairs."""
-    return points(stacked([state]), [x], [modes], None if pairs is None else pairs[None]).at(0)
-
-
-def unlikeness(states: Sequence[State], modes: Modes) -> Floats:
-    """Return how unlike a model the modes of all data sets are in each of several states.
-
-    Each is compared with the model mode that is nearest to it by c, whatever it was before.
-    """
-    state = stacked(states)
-    mac = mac_values(state.psi, state.seen, state.rows[:, None] @ modes.phi)
-    cost = pair_costs(mac, np.log(state.frequency), log_frequencies(modes.frequency))
-    return np.asarray(cost.min(axis=-1).sum(axis=(-2, -1)))
-
-
 class Fits:
     """Costs and fits of explanations of a comparison, of which ``plain`` is without mistakes.
 
@@ -193,12 +135,14 @@ class Fits:
         count = min(problem.model.size, comparison.frequency.size)
         model: Model = problem.model
         geometry, rows = None, np.eye(len(data.sensors))
-        basis = rows
+        moves = np.zeros((0, 3, len(rows)))
         if matrices is not None:
-            model, basis = in_space_of_modes(matrices, count, problem)
-            geometry, rows = matrices.geometry, matrices.selection @ basis
+            geometry = matrices.geometry
             if geometry is None or len(geometry.axes) == 1:
                 geometry = chain_geometry(matrices.size, matrices.selection)
+            model, basis = in_space_of_modes(matrices, count, problem)
+            rows = matrices.selection @ basis
+            moves = (geometry.motion @ basis).reshape(-1, 3, basis.shape[1])
         std = ratio(data.frequency_std, data.frequency)
         start, ends = problem.start, np.stack([problem.lower, problem.upper])
         positive, size = ends[0] > 0, np.where(start == 0, ends[1] - ends[0], np.abs(start))
@@ -214,61 +158,145 @@ class Fits:
             rows=rows,
             start=start,
             unit=np.where(positive, 0.0, size),
-            basis=basis,
+            moves=moves,
             geometry=geometry,
         )
         self.together = max(1, NUMBERS // (data.shape.size * (1 + len(start))))
 
-        @lru_cache(max(64, KEPT // (basis.shape[1] * count * (1 + len(start)))))
-        def solved(theta: bytes) -> Modes | None:
+        def solved(derivatives: bool, theta: bytes) -> Modes | None:
             """Return the modes at parameters; None where there are none."""
             with suppress(ModelError):
-                modes = model.modes(np.frombuffer(theta), count)
-                known = np.isfinite(modes.dlam).all() and np.isfinite(modes.dphi).all()
-                return modes if known else None
+                modes = model.modes(np.frombuffer(theta), count, derivatives=derivatives)
+                slopes = (modes.dlam, modes.dphi) if derivatives else ()
+                return modes if all(np.isfinite(x).all() for x in slopes) else None
             return None
 
-        self.modes = solved
+        numbers = KEPT // (sum(rows.shape) * count)
+        self.modes = lru_cache(max(64, numbers // (1 + len(start))))(partial(solved, True))
+        self.alone = lru_cache(max(64, numbers))(partial(solved, False))
+        self.nominal = self.modes(start.tobytes())
 
-    def at(self, states: Sequence[State], xs: Sequence[Floats]) -> list[Points | None]:
-        """Return states at parameters x of each; None where the model has no modes."""
-        out: list[Points | None] = [None] * len(states)
-        tried = (self.modes(each.theta(x).tobytes()) for each, x in zip(states, xs, strict=True))
-        known = [(k, modes) for k, modes in enumerate(tried) if modes]
-        for first in range(0, len(known), self.together):
-            some, modes = zip(*known[first : first + self.together], strict=True)
-            many = points(stacked([states[k] for k in some]), [xs[k] for k in some], modes)
-            for i, k in enumerate(some):
-                out[k] = many.at(i)
+    def unlike(self, states: Sequence[State], x: Floats, start: Floats) -> Floats:
+        """Return how unlike a model the modes of all data sets are in each of several states.
+
+        Each is compared with the model mode that is nearest to it by c, whatever it was before: at
+        parameters x beside nominal values ``start``, and at other nominal values where these are.
+        """
+        state = stacked(states)
+        x = x * (state.start == start).all(axis=1, keepdims=True)
+        modes, known = self._solved(self.alone, state.theta(x))
+        phi = state.rows @ np.stack([each.phi[-state.rows.shape[-1] :] for each in modes])
+        logs = log_frequencies(np.stack([each.frequency for each in modes]))
+        mac = mac_values(state.psi, state.seen, phi[:, None])
+        cost = pair_costs(mac, np.log(state.frequency), logs[:, None]).min(axis=-1)
+        return np.where(known, cost.sum(axis=(-2, -1)), np.inf)
+
+    def _solved(self, solve: Any, theta: Floats) -> tuple[list[Modes], Bools]:
+        """Return the modes at several parameters, and where there are; else the nominal ones."""
+        modes = [solve(each.tobytes()) for each in theta]
+        every: Any = [each or self.nominal for each in modes]
+        return every, np.array([bool(each) for each in modes])
+
+    # More than 60 lines: the cost and its slopes share all residuals.
+    def at(self, state: State, x: Floats, pairs: Any = None) -> Points:
+        """Return several states at parameters x, with the best or given pairs.
+
+        Costs are infinite where the model has no modes.
+        """
+        modes, exists = self._solved(self.modes, state.theta(x))
+        frequency, (n, s, _) = np.stack([each.frequency for each in modes]), state.rows.shape
+        moved = (state.rows != self.plain.rows).any(axis=-1)
+        elsewhere = [(k, moved[k], state.rows[k, moved[k]]) for k in np.flatnonzero(moved.any(1))]
+        logs, phi = log_frequencies(frequency), np.stack([each.phi[:s] for each in modes])
+        for k, some, rows in elsewhere:
+            phi[k, some] = rows @ modes[k].phi[s:]
+        known, c, scale = state.known, state.mean, state.motion[:, None]
+        mac = mac_values(c, known, phi)
+        if pairs is None:
+            some = zip(pair_costs(mac, state.logs, logs), state.candidates.tolist(), strict=True)
+            pairs = np.array([assigned(each[:, :count]) for each, count in some])
+        row, mode = np.arange(n)[:, None], np.arange(pairs.shape[1])
+        f, logs, mac = frequency[row, pairs], logs[row, pairs], mac[row, mode, pairs]
+        used = known & (known.sum(axis=-1, keepdims=True) > 1)
+        chi, weight = used * phi.swapaxes(1, 2)[row, pairs], used / scale**2
+        flat, sigma = used.reshape(n, -1), np.full(n, SHAPE)
+        for _ in range(3):
+            square = (weight * chi**2).sum(axis=-1, keepdims=True)
+            beta = ratio((weight * chi * c).sum(axis=-1, keepdims=True), square)
+            r_s = used * (beta * chi - c) / scale
+            of_shapes, sigma = scaled(r_s.reshape(flat.shape), SHAPE, OF_MODEL, flat, sigma)
+            weight = used / (1 + (r_s / sigma[:, None, None]) ** 2 / OF_MODEL) / scale**2
+        elastic = np.isfinite(state.logs) & (f > RIGID * frequency.max(axis=1)[:, None])
+        r_f = np.where(elastic, logs - state.logs, 0.0)
+        of_frequencies, sigma_f = scaled(r_f, FREQUENCY, OF_MODEL, elastic)
+        prior = loss(x / OFF, OF_PARAMETERS).sum(axis=-1)
+        total = np.where(exists, of_shapes + of_frequencies + prior + state.noise, np.inf)
+        # The slopes of all residuals, each times the root of its weight.
+        D = np.stack([each.dphi[:s, i] for each, i in zip(modes, pairs, strict=True)])
+        for k, some, rows in elsewhere:
+            D[k, some] = first_axis(rows, modes[k].dphi[s:, pairs[k]])
+        D = D.swapaxes(1, 2)
+        square = (weight * chi**2).sum(axis=-1)[..., None, None]
+        D = D - chi[..., None] * ratio((weight * chi)[:, :, None] @ D, square)
+        r_s /= sigma[:, None, None]
+        r_f, of_f = r_f / sigma_f[:, None], elastic / sigma_f[:, None]
+        root_s, root_f = (np.sqrt((OF_MODEL + 1) / (OF_MODEL + r**2)) for r in (r_s, r_f))
+        D *= (used * root_s * beta / scale / sigma[:, None, None])[..., None]
+        df = np.stack([each.dfrequency[i] for each, i in zip(modes, pairs, strict=True)])
+        df = ratio(df, f[..., None]) * (of_f * root_f)[..., None]
+        J = np.concatenate([D.reshape(n, -1, x.shape[1]), df], axis=1)
+        r = np.concatenate([(root_s * r_s).reshape(flat.shape), root_f * r_f], axis=1)
+        unit = np.where(state.unit == 0, state.theta(x), state.unit)
+        of_prior = (OF_PARAMETERS + 1) / (OF_PARAMETERS + (x / OFF) ** 2) / OFF**2
+        g = unit * (r[:, None] @ J)[:, 0] + of_prior * x
+        H = unit[:, :, None] * (J.swapaxes(1, 2) @ J) * unit[:, None]
+        H += of_prior[..., None] * np.eye(x.shape[1])
+        dx = step(g, H, DAMPING)[..., None]
+        ahead = total + ((g[..., None] + H @ dx / 2) * dx).sum(axis=(1, 2))
+        return Points(x, total, ahead, pairs, mac, beta[..., 0], sigma, g, H)
+
+    def begun(
+        self, states: Sequence[State], near: tuple[State, Floats] | None = None
+    ) -> Iterator[tuple[State, Points]]:
+        """Yield some states after others, at their nominal parameters or those of another state.
+
+        They are where the cost is less ahead.
+        """
+        for first in range(0, len(states), self.together):
+            state = stacked(states[first : first + self.together])
+            best = self.at(state, 0 * state.start)
+            if near:
+                other, x = near
+                new = self.at(state, np.clip(state.x(other.theta(x)), *self.ends))
+                better = np.flatnonzero(new.ahead < best.ahead)
+                best.update(better, new.of(better))
+            yield state, best
+
+    def fitted(
+        self, states: Sequence[State], near: tuple[State, Floats] | None = None
+    ) -> list[Points]:
+        """Return the points at the end of fits, each from the better one of its starts."""
+        out: list[Points] = []
+        for state, here in self.begun(states, near):
+            damping = np.where(np.isfinite(here.cost), DAMPING, np.nan)
+            for _ in range(STEPS):
+                k = np.flatnonzero(np.isfinite(damping))
+                if not k.size:
+                    break
+                x = here.x[k] + step(here.g[k], here.H[k], damping[k])
+                new = self.at(state.of(k), np.clip(x, *self.ends))
+                gain, better = here.cost[k] - new.cost, new.cost <= here.cost[k]
+                here.update(k[better], new.of(better))
+                damping[k] = np.where(better, damping[k] / 5, np.maximum(10 * damping[k], 0.1))
+                damping[k[better & (gain < ENOUGH)]] = np.nan
+            out += [here.of(i) for i in range(len(here.cost))]
         return out
-
-    def ahead(self, states: Sequence[State], xs: Sequence[Floats]) -> Floats:
-        """Return the costs of states a step from x of each; infinite where no modes are."""
-        return np.array([float(x.ahead) if x else np.inf for x in self.at(states, xs)])
-
-    def fitted(self, states: Sequence[State], xs: Sequence[Floats]) -> list[Points | None]:
-        """Return the points at the end of fits from parameters x; None where there are no modes."""
-        here = self.at(states, xs)
-        damping = {k: DAMPING for k, each in enumerate(here) if each}
-        for _ in range(STEPS):
-            before = [(k, each) for k, each in enumerate(here) if each and k in damping]
-            ahead = [np.clip(x.x + step(x.g, x.H, damping[k]), *self.ends) for k, x in before]
-            ends = self.at([states[k] for k, _ in before], ahead)
-            for (k, old), new in zip(before, ends, strict=True):
-                if new is None or new.cost > old.cost:
-                    damping[k] = max(10 * damping[k], 0.1)
-                    continue
-                here[k] = new
-                damping[k] /= 5
-                if old.cost - new.cost < ENOUGH:
-                    del damping[k]
-        return here
 
 
 def in_space_of_modes(
     matrices: MatrixModel, count: int, problem: UpdatingProblem
 ) -> tuple[MatrixModel, Floats]:
-    """Return a model with all of its coordinates as sensors, and its basis V (N, n).
+    """Return a model with its coordinates as further sensors, and its basis V (N, n).
 
     A large one is reduced to modes at the nominal parameters and at others by chance.
     """
@@ -287,5 +315,5 @@ def in_space_of_modes(
         A = getattr(sparse, name)
         terms = A.project([V], V)
         parts[name] = DenseAffine((terms + terms.transpose(0, 2, 1)) / 2, A.coefficients)
-    every = scipy.sparse.eye_array(V.shape[1], format="csr")
-    return replace(matrices, selection=every, **parts), V
+    rows = np.vstack([matrices.selection @ V, np.eye(V.shape[1])])
+    return replace(matrices, selection=scipy.sparse.csr_array(rows), **parts), V

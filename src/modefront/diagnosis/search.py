@@ -8,14 +8,14 @@ from operator import attrgetter
 
 import numpy as np
 
-from modefront._typing import Floats
 from modefront.diagnosis.comparison import Comparison, of_few_sets
-from modefront.diagnosis.evidence import ENOUGH, Fits, point, unlikeness
+from modefront.diagnosis.evidence import ENOUGH, Fits
 from modefront.diagnosis.mistakes import sensors, values
 from modefront.diagnosis.mistakes.record import Explanation, Mistake
-from modefront.diagnosis.state import State
-from modefront.findings.record import Finding
-from modefront.pairing.match import match
+from modefront.diagnosis.state import State, stacked
+from modefront.findings.knowledge import enumeration
+from modefront.findings.record import Finding, found
+from modefront.pairing.match import POOR, match
 
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
@@ -24,7 +24,7 @@ PROMISING, FITTED, VARIANTS = 100, 10, 3
 """Mistakes of each kind of which costs are looked at, claims by which an explanation is extended,
 and mistakes of a claim that are fitted."""
 
-BEAM, MOST = 6, 6
+BEAM, MOST = 3, 6
 """Single claims to which others are added, before they are to the best explanation, and most
 mistakes."""
 
@@ -35,6 +35,9 @@ LEFT = 1.0  # difference of costs that fits leave
 MIXED = LEFT
 """Price of an explanation in which mistakes are said of values that are moved later: where both
 orders fit alike, the one that moves them first is said first."""
+
+NEAR = 2 * CLEAR
+"""Difference of costs from the best up to which explanations of several mistakes are fitted."""
 
 SEEN = 0.02  # increase of a MAC value that is worth its name
 
@@ -105,21 +108,12 @@ class Search:
     def fit(self, several: Sequence[tuple[Mistake, ...]], near: Explanation | None = None) -> None:
         """Fit explanations by some mistakes each, from the best of nominal and near parameters."""
         states = [undone(self.fits.plain, mistakes) for mistakes in several]
-        xs = [[np.zeros(len(self.fits.plain.start))] * len(states)]
-        if near:
-            xs += [[near.point.x] * len(states), self._same(states, near)]
-        best = np.argmin([self.fits.ahead(states, x) for x in xs], axis=0)
-        ends = self.fits.fitted(states, [xs[i][k] for k, i in enumerate(best)])
+        ends = self.fits.fitted(states, (near.state, near.point.x) if near else None)
         for mistakes, state, at in zip(several, states, ends, strict=True):
-            if at is not None:
+            if np.isfinite(at.cost):
                 cost = float(at.cost) + sum(x.price for x in mistakes) + mixed(mistakes)
                 key, new = key_of(mistakes), Explanation(self.fits, mistakes, state, at, cost)
                 self.known[key] = min(self.known.get(key, new), new, key=COST)
-
-    def _same(self, states: Iterable[State], near: Explanation) -> list[Floats]:
-        """Return x of the same parameters in other states, within the bounds."""
-        theta = near.state.theta(near.point.x)
-        return [np.clip(state.x(theta), *self.fits.ends) for state in states]
 
     def extend(self, old: Explanation) -> None:
         """Fit the most promising explanations with a mistake more."""
@@ -129,60 +123,67 @@ class Search:
         some = []
         for kind, every in kinds.items():
             price = float(np.log(len(every) / PROBABILITY[kind]))
-            new = [replace(x, price=x.price + price) for x in every if x.claim not in old.claims]
-            some += self._alike(new, old)
+            new = self._alike([x for x in every if x.claim not in old.claims], old)
+            some += [replace(x, price=x.price + price) for x in new]
         tried = [((*old.mistakes, one), one) for one in some]
         states = [one.change(old.state) for one in some]
         if any(each.moves for each in old.mistakes):  # it may be said of the values as given
-            tried += [((one, *old.mistakes), one) for one in some]
-            states += [undone(self.fits.plain, mistakes) for mistakes, _ in tried[len(some) :]]
+            for one, state in list(zip(some, states, strict=True)):
+                first = undone(self.fits.plain, (one, *old.mistakes))
+                if not np.array_equal(first.shape, state.shape, equal_nan=True):
+                    tried.append(((one, *old.mistakes), one))
+                    states.append(first)
         # Parameters have made up for mistakes: what one costs where these are says little.
-        xs = ([x] * len(states) for x in (old.point.x, 0 * old.point.x))
-        costs = np.min([self.fits.ahead(states, x) for x in xs], axis=0)
+        begun = self.fits.begun(states, (old.state, old.point.x))
+        costs = np.concatenate([each.ahead for _, each in begun])
         costs += [one.price + mixed(mistakes) for mistakes, one in tried]
         claims: dict[tuple[str, ...], dict[object, tuple[Mistake, ...]]] = {}
-        for mistakes, one in (tried[k] for k in np.argsort(costs, kind="stable")):
+        near = min(map(COST, self.known.values())) + NEAR if old.mistakes else np.inf
+        for k in np.argsort(costs, kind="stable")[: np.count_nonzero(costs < near)].tolist():
+            mistakes, one = tried[k]
             claims.setdefault(one.claim, {}).setdefault(key_of(mistakes), mistakes)
         best = list(claims.values())[:FITTED]
         self.fit([x for each in best for x in list(each.values())[:VARIANTS]], old)
 
     def _alike(self, some: list[Mistake], old: Explanation) -> list[Mistake]:
         """Return mistakes; of many, those without which modes are most like those of the model."""
-        together = self.fits.together
         if len(some) <= PROMISING:
             return some
-        unlike = [
-            unlikeness([x.change(old.state) for x in some[k : k + together]], old.modes)
-            for k in range(0, len(some), together)
-        ]
-        costs = np.concatenate(unlike)
+        together, costs = self.fits.together, list[float]()
+        for k in range(0, len(some), together):
+            states = [one.change(old.state) for one in some[k : k + together]]
+            costs += self.fits.unlike(states, old.point.x, old.state.start).tolist()
         return [some[k] for k in np.flatnonzero(costs <= np.sort(costs)[PROMISING - 1])]
 
     def best(self) -> Explanation | None:
         """Return the best explanation; the best ones are extended, the first one first."""
-        self.fit([()])
-        if not self.known:
+        if self.fits.nominal is None:
             return None
+        self.fit([()])
         (plain,), extended = self.known.values(), set[object]()
         while True:
             best = min(self.known.values(), key=COST)
+            alone = sorted((x for x in self.known.values() if len(x.mistakes) == 1), key=COST)
             fewer = list(combinations(best.mistakes, max(len(best.mistakes) - 1, 0)))
-            self.fit([some for some in fewer if key_of(some) not in self.known], best)
+            tried = {key_of(some): some for some in fewer}
+            for one in (x.mistakes[0] for x in alone if x.claims <= best.claims):
+                some = tuple(one if x.claim == one.claim else x for x in best.mistakes)
+                tried[key_of(some)] = some
+            self.fit([some for key, some in tried.items() if key not in self.known], best)
             # What one explains may be hidden by another one, so that it is not worth its price.
-            gaining = [x for x in self.known.values() if x.point.cost < plain.point.cost - LEFT]
-            alone = sorted((x for x in gaining if len(x.mistakes) == 1), key=COST)
-            most = list(dict.fromkeys(x.claims for x in alone))[:BEAM]
-            level = [*(x.mistakes for x in alone if x.claims in most), best.mistakes, *fewer]
+            gaining = [x for x in alone if x.point.cost < plain.point.cost - LEFT]
+            firsts = sorted({x.claims: x for x in reversed(gaining)}.values(), key=COST)[:BEAM]
+            level = [*(x.mistakes for x in firsts), best.mistakes, *fewer]
             keys = [key_of(some) for some in level if len(some) < MOST]
-            new = [key for key in keys if key in self.known and key not in extended]
-            if new:
-                extended.add(new[0])
-                self.extend(self.known[new[0]])
+            new = next((x for x in keys if x in self.known and x not in extended), None)
+            if new is not None:
+                extended.add(new)
+                self.extend(self.known[new])
                 continue
             # A rival may only have been fitted from where its way is barred.
             rivals = list(self.known.values())
-            states = [each.state for each in rivals]
-            costs = self.fits.ahead(states, self._same(states, best))
+            begun = self.fits.begun([x.state for x in rivals], (best.state, best.point.x))
+            costs = np.concatenate([each.ahead for _, each in begun])
             nearer = costs < np.array([x.point.cost for x in rivals]) - ENOUGH
             self.fit([rivals[k].mistakes for k in np.flatnonzero(nearer)], best)
             if min(map(COST, self.known.values())) > best.cost - ENOUGH:
@@ -230,7 +231,18 @@ def diagnose(comparison: Comparison) -> list[Finding]:
     if best is None:
         return []
     named = search.named(best)
-    return [*named.values(), *distant_pairs(search, named)]
+    return [*named.values(), *distant_pairs(search, named), *poor_pairs(search, best, named)]
+
+
+def poor_pairs(search: Search, best: Explanation, named: Iterable[Mistake]) -> Iterator[Finding]:
+    """Yield the modes, if any, that no model mode is like after a fit without some mistakes."""
+    mistakes, names = tuple(named), search.fits.comparison.data.modes
+    search.fit([mistakes], best)
+    mac = search.known.get(key_of(mistakes), best).point.mac
+    said = {x for one in mistakes for x in one.subject}
+    poor = [str(names[r]) for r in np.flatnonzero(mac < POOR) if str(names[r]) not in said]
+    if poor:
+        yield found("poor-pair", enumeration(poor), many=len(poor) > 1, poor=POOR)
 
 
 def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]:
@@ -248,9 +260,10 @@ def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]
     # The covariance is of other shapes.
     data = replace(data, frequency=state.frequency, shape=state.shape, shape_covariance=None)
     low, rules = int(state.candidates), (rule, replace(rule, window=WINDOW))
-    f, phi = modes.frequency[:low], (state.rows @ modes.phi)[:, :low]
+    f, phi = modes.frequency[:low], state.rows @ modes.phi[-state.rows.shape[1] :, :low]
+    every, x = stacked([state]), 0 * state.start[None]
     pairs, mended = (match(each, data, f, phi) for each in rules)
-    cost, least = (point(state, 0 * state.start, modes, x.index).cost for x in (pairs, mended))
+    cost, least = (fits.at(every, x, each.index[None]).cost for each in (pairs, mended))
     changed = (pairs.index != mended.index) & (cost > least + CLEAR)
     for r in np.flatnonzero(changed).tolist():
         q, near, value = int(pairs.index[r]), int(mended.index[r]), pairs.mac[r]

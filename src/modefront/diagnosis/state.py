@@ -27,6 +27,7 @@ NU, FREQUENCY, SHAPE = 100.0, 0.005, 0.03
 OF_MODEL = 0.08  # scale that is expected of what no parameter describes, in shapes of mean square 1
 DAMPING = float(np.log(0.01))  # logarithm of the damping ratio that is expected, with a scale of 1
 ROUNDS = 8  # rounds of the iterations for the shape that data sets have in common and for a scale
+SETTLED = 1e-7  # change of the logarithm of a scale after which the next one is rounding
 SPREAD = 0.5  # spread s of logarithms of scales
 
 NOTHING = 0.5
@@ -44,17 +45,27 @@ def loss(r: Floats, nu: float) -> Floats:
     return np.asarray((nu + 1) / 2 * np.log1p(r**2 / nu))
 
 
-def scaled(r: Floats, expected: float, nu: float, weight: Floats) -> tuple[Floats, Floats]:
+def scaled(
+    r: Floats, expected: float, nu: float, weight: Floats, near: Floats | None = None
+) -> tuple[Floats, Floats]:
     """Return C of residuals r (..., n) with weights, and the scale sigma with which it is least."""
     square, total, log = r**2, weight.sum(axis=-1), np.zeros(r.shape[:-1])
+    log += 0.0 if near is None else np.log(near / expected)
     for _ in range(ROUNDS):
         q = square / (nu * (expected * np.exp(log[..., None])) ** 2 + square)
-        slope = total - (nu + 1) * (weight * q).sum(axis=-1) + log / SPREAD**2
-        curvature = 2 * (nu + 1) * (weight * q * (1 - q)).sum(axis=-1) + 1 / SPREAD**2
-        log -= np.clip(slope / curvature, -1.0, 1.0)
+        slope = total - (nu + 1) * np.einsum("...n,...n->...", weight, q) + log / SPREAD**2
+        q -= q**2
+        curvature = 2 * (nu + 1) * np.einsum("...n,...n->...", weight, q) + 1 / SPREAD**2
+        change = np.clip(slope / curvature, -1.0, 1.0)
+        log -= change
+        if np.abs(change).max(initial=0.0) < SETTLED:
+            break
     sigma = expected * np.exp(log)
     of_residuals = (weight * loss(r / sigma[..., None], nu)).sum(axis=-1)
     return of_residuals + total * np.log(sigma) + (log / SPREAD) ** 2 / 2, sigma
+
+
+SHARED = ("unit", "moves", "geometry")  # what no mistake changes in the arrays
 
 
 # 11 fields: all that a mistake may change, in the arrays that explanations are stacked in.
@@ -62,7 +73,7 @@ def scaled(r: Floats, expected: float, nu: float, weight: Floats) -> tuple[Float
 class State:
     """Data and model under an explanation, or under each of several, as further axes in front.
 
-    What was not measured, or is left out, is NaN. Units, basis and geometry are those of all.
+    What was not measured, or is left out, is NaN. Units, motion and geometry are those of all.
     """
 
     frequency: Floats  # frequency, damping: (..., sets, modes) frequencies in Hz and damping ratios
@@ -76,7 +87,7 @@ class State:
     start: Floats  # (..., parameters) nominal values
     # (parameters,) units of what is added to parameters; 0 where they are changed by factors
     unit: Floats
-    basis: Floats  # (N, n) motion of the degrees of freedom with these coordinates
+    moves: Floats  # (nodes, 3, n) displacement of the nodes with these coordinates
     # places and directions of the sensors; None for a model without matrices
     geometry: Geometry | None
 
@@ -89,6 +100,13 @@ class State:
         """Return x of parameters."""
         factors = np.where(self.unit == 0, ratio(theta, self.start), 1.0)
         return np.log(factors) + ratio(theta - self.start, self.unit)
+
+    def of(self, chosen: Ints) -> "State":
+        """Return some of several states, with what is known of them."""
+        new = replace(self)
+        known = {name: x[chosen] for name, x in vars(self).items() if name not in SHARED}
+        vars(new).update(known)
+        return new
 
     @cached_property
     def seen(self) -> Bools:
@@ -176,8 +194,8 @@ class State:
 
 def stacked(states: Sequence[State]) -> State:
     """Return several states as one."""
-    arrays = [each.name for each in fields(State)[:-3]]
-    parts: Any = {name: np.stack([getattr(each, name) for each in states]) for name in arrays}
+    names = [each.name for each in fields(State) if each.name not in SHARED]
+    parts: Any = {name: np.stack([getattr(each, name) for each in states]) for name in names}
     return replace(states[0], **parts)
 
 

@@ -17,6 +17,7 @@ from modefront.optim.scalarisation import LogSum
 from modefront.options import Checked, number, whole
 from modefront.rounding import TINY
 
+POOR = 0.5  # MAC below which a pair is poor
 OUTSIDE = 1e3  # cost of a candidate outside the window of frequencies
 
 UNSEEN = 1e-6

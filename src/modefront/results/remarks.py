@@ -14,6 +14,7 @@ from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found, from_text, in_order
 from modefront.front.point import Kind, front_points, preferred
 from modefront.optim.problem import at_bounds
+from modefront.pairing.match import POOR
 from modefront.predictions.base import predictions_in
 from modefront.rounding import ACCUMULATED
 
@@ -29,7 +30,6 @@ ARRIVED = 1e-5
 """Distance of two optimally weighted models, over the ranges, below which they are the same: a
 hundred times the tolerance of a step, which minima that are nearly flat miss by as much."""
 
-POOR = 0.5  # MAC below which a pair is poor
 WIDE = 1.02  # ratio of greatest to least prediction from which a spread is worth a sentence
 
 

@@ -55,6 +55,7 @@ HARMLESS = {
     "far-from-model",
     "beyond-candidates",
     "foreign-mode",
+    "poor-pair",
 }
 """Mistakes that leave the residuals as they are, or that need not be mistakes."""
 

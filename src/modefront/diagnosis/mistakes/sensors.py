@@ -56,12 +56,13 @@ def _rescaled(state: State, sets: list[int], s: int, factor: float) -> State:
 
     A density of values is one over their unit, which changes with the factor and the mean square.
     """
-    shape = state.shape.copy()
-    shape[sets, :, s] /= factor
-    new = replace(state, shape=shape)
-    units = np.nansum(np.log(new.size / state.size) * new.seen.sum(axis=2))
-    units += new.seen[sets, :, s].sum() * np.log(abs(factor))
-    return replace(new, left_out=state.left_out + units)
+    shape, old = state.shape.copy(), state.shape[sets, :, s]
+    shape[sets, :, s] = old / factor
+    measured, count = np.isfinite(old), state.seen[sets].sum(axis=2)
+    share = np.nan_to_num(old / state.size[sets]) ** 2 / np.maximum(count, 1)
+    of_size = (count * np.log1p(share * (factor**-2 - 1))).sum() / 2
+    cost = of_size + measured.sum() * np.log(abs(factor))
+    return replace(state, shape=shape, left_out=state.left_out + cost)
 
 
 def exchanged_sensors(old: Explanation) -> Iterator[Mistake]:
@@ -99,9 +100,9 @@ def unsigned_shapes(old: Explanation) -> Iterator[Mistake]:
     if (values.min(axis=2) * values.max(axis=2) < 0).any():
         return
     unknown = replace(state, shape=np.full(state.shape.shape, np.nan))
-    (end,) = fits.fitted([unknown], [0 * state.start])
-    if end is not None and (modes := fits.modes(state.theta(end.x).tobytes())):
-        phi = state.rows @ modes.phi
+    (end,) = fits.fitted([unknown])
+    if modes := fits.modes(state.theta(end.x).tobytes()):
+        phi = state.rows @ modes.phi[-state.rows.shape[1] :]
         mac = mac_values(np.abs(state.mean), state.known, np.abs(phi))
         cost = pair_costs(mac, state.logs, log_frequencies(modes.frequency))
         signs = np.sign(phi[:, assigned(cost[:, : state.candidates])].T)
@@ -181,8 +182,8 @@ def _relocated(state: State, sensors: Sequence[int], **changed: Any) -> State:
     for name, values in parts.items():
         values[sensors] = changed[name]
     geometry, rows = replace(state.geometry, **parts), state.rows.copy()
-    weights = geometry.weights(geometry.sensor_nodes[sensors], geometry.sensor_directions[sensors])
-    rows[sensors] = weights @ state.basis
+    nodes, directions = geometry.sensor_nodes[sensors], geometry.sensor_directions[sensors]
+    rows[sensors] = np.einsum("si,sin->sn", directions, state.moves[nodes])
     return replace(state, geometry=geometry, rows=rows)
 
 
@@ -195,8 +196,8 @@ def wrong_place(old: Explanation) -> Iterator[Mistake]:
     can = np.diff(geometry.motion.indptr).reshape(-1, 3) > 0  # nodes x axes
     there = {s: np.flatnonzero(can[:, along[s] != 0].any(axis=1)) for s in old.measured}
     there = {s: nodes[nodes != given[s]] for s, nodes in there.items()}
-    shapes = geometry.displacement(state.basis @ old.modes.phi[:, old.point.pairs])
-    shapes *= old.point.beta[:, None, None]
+    phi = old.modes.phi[len(names) :, old.point.pairs] * old.point.beta
+    shapes = (state.moves @ phi).transpose(2, 0, 1)
     x = np.where(state.known, state.mean, np.nan)
     for s, nodes in there.items():
         r = (shapes[:, nodes] @ along[s] - x[:, [s]]) / (old.point.sigma * state.motion[s])
@@ -254,6 +255,6 @@ def counted_from_one(old: Explanation) -> Iterator[Mistake]:
         return
     every, nodes = list(range(geometry.sensor_nodes.size)), geometry.sensor_nodes - 1
     what = "degrees of freedom" if len(geometry.axes) == 1 else "nodes"
-    if abs(geometry.weights(nodes, geometry.sensor_directions)).sum(axis=1).all():
-        change = partial(_relocated, sensors=every, sensor_nodes=nodes)
+    change = partial(_relocated, sensors=every, sensor_nodes=nodes)
+    if change(old.state).rows.any(axis=1).all():
         yield Mistake("counted-from-one", (what,), change, {"what": what})

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.diagnosis.evidence import FREQUENCY, RIGID, log_frequencies, mac_values, point
+from modefront.diagnosis.evidence import FREQUENCY, RIGID, log_frequencies, mac_values
 from modefront.diagnosis.mistakes.record import MANY, Explanation, Mistake, changed
-from modefront.diagnosis.state import NOTHING, State, median
+from modefront.diagnosis.state import NOTHING, State, median, stacked
 from modefront.findings.catalogue import UNITS
 from modefront.findings.knowledge import enumeration
 from modefront.pairing.match import assigned
@@ -235,7 +235,8 @@ def _foreign(state: State, r: int) -> State:
 def later_mode(old: Explanation) -> Iterator[Mistake]:
     """Yield measured modes that are like model modes beyond those among which pairs are sought."""
     state, own, f = old.state, old.point, old.modes.frequency
-    free = point(replace(state, candidates=np.array(f.size)), own.x, old.modes)
+    every = stacked([replace(state, candidates=np.array(f.size))])
+    free = old.fits.at(every, own.x[None]).of(0)
     for r in np.flatnonzero(free.pairs >= state.candidates).tolist():
         later, modes = int(free.pairs[r]) + 1, old.data.modes
         numbers = {"later": later, "f": float(old.fits.comparison.frequency[later - 1])}
