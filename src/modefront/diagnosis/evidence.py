@@ -185,11 +185,15 @@ class Fits:
         state = stacked(states)
         x = x * (state.start == start).all(axis=1, keepdims=True)
         modes, known = self._solved(self.alone, state.theta(x))
-        phi = state.rows @ np.stack([each.phi[-state.rows.shape[-1] :] for each in modes])
+        phi = state.rows @ self._coordinates(modes)
         logs = log_frequencies(np.stack([each.frequency for each in modes]))
         mac = mac_values(state.psi, state.seen, phi[:, None])
         cost = pair_costs(mac, np.log(state.frequency), logs[:, None]).min(axis=-1)
         return np.where(known, cost.sum(axis=(-2, -1)), np.inf)
+
+    def _coordinates(self, modes: Sequence[Modes]) -> Floats:
+        """Return the modes at the coordinates of the model, (models, n, modes)."""
+        return np.stack([each.phi[-self.plain.rows.shape[1] :] for each in modes])
 
     def _solved(self, solve: Any, theta: Floats) -> tuple[list[Modes], Bools]:
         """Return the modes at several parameters, and where there are; else the nominal ones."""
@@ -205,11 +209,7 @@ class Fits:
         """
         modes, exists = self._solved(self.modes, state.theta(x))
         frequency, (n, s, _) = np.stack([each.frequency for each in modes]), state.rows.shape
-        moved = (state.rows != self.plain.rows).any(axis=-1)
-        elsewhere = [(k, moved[k], state.rows[k, moved[k]]) for k in np.flatnonzero(moved.any(1))]
-        logs, phi = log_frequencies(frequency), np.stack([each.phi[:s] for each in modes])
-        for k, some, rows in elsewhere:
-            phi[k, some] = rows @ modes[k].phi[s:]
+        logs, phi = log_frequencies(frequency), state.rows @ self._coordinates(modes)
         known, c, scale = state.known, state.mean, state.motion[:, None]
         mac = mac_values(c, known, phi)
         if pairs is None:
@@ -232,17 +232,17 @@ class Fits:
         prior = loss(x / OFF, OF_PARAMETERS).sum(axis=-1)
         total = np.where(exists, of_shapes + of_frequencies + prior + state.noise, np.inf)
         # The slopes of all residuals, each times the root of its weight.
-        D = np.stack([each.dphi[:s, i] for each, i in zip(modes, pairs, strict=True)])
-        for k, some, rows in elsewhere:
-            D[k, some] = first_axis(rows, modes[k].dphi[s:, pairs[k]])
-        D = D.swapaxes(1, 2)
+        moved = (state.rows != self.plain.rows).any(axis=(1, 2))
+        of_each = list(zip(modes, pairs, state.rows, moved, strict=True))
+        dphi = [first_axis(R, m.dphi[s:, i]) if far else m.dphi[:s, i] for m, i, R, far in of_each]
+        D = np.stack(dphi).swapaxes(1, 2)
         square = (weight * chi**2).sum(axis=-1)[..., None, None]
         D = D - chi[..., None] * ratio((weight * chi)[:, :, None] @ D, square)
         r_s /= sigma[:, None, None]
         r_f, of_f = r_f / sigma_f[:, None], elastic / sigma_f[:, None]
         root_s, root_f = (np.sqrt((OF_MODEL + 1) / (OF_MODEL + r**2)) for r in (r_s, r_f))
         D *= (used * root_s * beta / scale / sigma[:, None, None])[..., None]
-        df = np.stack([each.dfrequency[i] for each, i in zip(modes, pairs, strict=True)])
+        df = np.stack([m.dfrequency[i] for m, i, _, _ in of_each])
         df = ratio(df, f[..., None]) * (of_f * root_f)[..., None]
         J = np.concatenate([D.reshape(n, -1, x.shape[1]), df], axis=1)
         r = np.concatenate([(root_s * r_s).reshape(flat.shape), root_f * r_f], axis=1)

@@ -20,9 +20,8 @@ from modefront.pairing.match import POOR, match
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
-PROMISING, FITTED, VARIANTS = 100, 10, 3
-"""Mistakes of each kind of which costs are looked at, claims by which an explanation is extended,
-and mistakes of a claim that are fitted."""
+PROMISING, FITTED = 100, 30
+"""Mistakes of each kind of which costs are looked at, and those of all kinds that are fitted."""
 
 BEAM, MOST = 3, 6
 """Single claims to which others are added, before they are to the best explanation, and most
@@ -137,13 +136,9 @@ class Search:
         begun = self.fits.begun(states, (old.state, old.point.x))
         costs = np.concatenate([each.ahead for _, each in begun])
         costs += [one.price + mixed(mistakes) for mistakes, one in tried]
-        claims: dict[tuple[str, ...], dict[object, tuple[Mistake, ...]]] = {}
         near = min(map(COST, self.known.values())) + NEAR if old.mistakes else np.inf
-        for k in np.argsort(costs, kind="stable")[: np.count_nonzero(costs < near)].tolist():
-            mistakes, one = tried[k]
-            claims.setdefault(one.claim, {}).setdefault(key_of(mistakes), mistakes)
-        best = list(claims.values())[:FITTED]
-        self.fit([x for each in best for x in list(each.values())[:VARIANTS]], old)
+        first = np.argsort(costs, kind="stable")[:FITTED].tolist()
+        self.fit([tried[k][0] for k in first if costs[k] < near], old)
 
     def _alike(self, some: list[Mistake], old: Explanation) -> list[Mistake]:
         """Return mistakes; of many, those without which modes are most like those of the model."""
@@ -216,10 +211,8 @@ class Search:
                 without = next(x for x in known if x.claims in (rest, frozenset()))
                 before, after = without.point.mac, best.point.mac
                 r = int(np.argmax(np.nan_to_num(after - before)))
-                text = (
-                    f" (without, MAC {best.data.modes[r]} is {after[r]:.2f} after a fit, and not "
-                )
-                evidence = f"{text}{before[r]:.2f})" * bool(after[r] - before[r] >= SEEN)
+                text = f" (without, MAC {best.data.modes[r]} is {after[r]:.2f} after a fit,"
+                evidence = f"{text} and not {before[r]:.2f})" * bool(after[r] - before[r] >= SEEN)
                 out[one] = replace(one.finding, others=others, evidence=evidence, gain=float(gain))
         return out
 
@@ -247,11 +240,8 @@ def poor_pairs(search: Search, best: Explanation, named: Iterable[Mistake]) -> I
 
 def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]:
     """Yield the pairs without some mistakes that a window mends, if they are clearly better."""
-    rule, data, fits = (
-        search.fits.comparison.problem.pairing,
-        search.fits.comparison.data,
-        search.fits,
-    )
+    fits, problem = search.fits, search.fits.comparison.problem
+    rule, data = problem.pairing, problem.data
     state = undone(fits.plain, [one for one in named if one.kind not in FOREIGN])
     modes = fits.modes(state.start.tobytes())
     if rule.method == "order" or modes is None:
@@ -261,9 +251,9 @@ def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]
     data = replace(data, frequency=state.frequency, shape=state.shape, shape_covariance=None)
     low, rules = int(state.candidates), (rule, replace(rule, window=WINDOW))
     f, phi = modes.frequency[:low], state.rows @ modes.phi[-state.rows.shape[1] :, :low]
-    every, x = stacked([state]), 0 * state.start[None]
     pairs, mended = (match(each, data, f, phi) for each in rules)
-    cost, least = (fits.at(every, x, each.index[None]).cost for each in (pairs, mended))
+    every = stacked([state, state]), np.zeros((2, len(state.start)))
+    cost, least = fits.at(*every, np.stack([pairs.index, mended.index])).cost
     changed = (pairs.index != mended.index) & (cost > least + CLEAR)
     for r in np.flatnonzero(changed).tolist():
         q, near, value = int(pairs.index[r]), int(mended.index[r]), pairs.mac[r]

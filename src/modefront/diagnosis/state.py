@@ -104,8 +104,7 @@ class State:
     def of(self, chosen: Ints) -> "State":
         """Return some of several states, with what is known of them."""
         new = replace(self)
-        known = {name: x[chosen] for name, x in vars(self).items() if name not in SHARED}
-        vars(new).update(known)
+        vars(new).update({k: x[chosen] for k, x in vars(self).items() if k not in SHARED})
         return new
 
     @cached_property

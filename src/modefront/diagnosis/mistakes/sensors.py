@@ -32,12 +32,11 @@ def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
 
     In all, in one, or in two of three: of more sets, most are right.
     """
-    every = list(range(len(sets)))
-    some = [[k] for k in every] if len(sets) > 1 else []
-    some += [[j for j in every if j != k] for k in every] if len(sets) == 3 else []
-    name = "set{} {}".format
-    of_sets = [(x, name("s" * (len(x) > 1), enumeration([sets[k] for k in x]))) for x in some]
-    return [(every, "all data"), *of_sets]
+    every = range(len(sets))
+    sizes = (1, 2) if len(sets) == 3 else (1,) * (len(sets) > 1)
+    some = [list(x) for n in sizes for x in combinations(every, n)]
+    names = [f"set{'s' * (len(x) > 1)} {enumeration([sets[k] for k in x])}" for x in some]
+    return [(list(every), "all data"), *zip(some, names, strict=True)]
 
 
 def wrong_factor(old: Explanation) -> Iterator[Mistake]:
@@ -143,13 +142,10 @@ def copied_sensor(old: Explanation) -> Iterator[Mistake]:
     A copy says nothing on its own: its values cost as much as those that fit as well as is usual.
     """
     shape, names = old.state.shape, old.data.sensors
-    same = [
-        (s, t)
-        for s, t in permutations(old.measured, 2)
-        if np.array_equal(shape[:, :, s], shape[:, :, t], equal_nan=True)
-        and np.nan_to_num(shape[..., s]).any()
-    ]
-    for s, t in same:
+    for s, t in permutations(old.measured, 2):
+        same = np.array_equal(shape[:, :, s], shape[:, :, t], equal_nan=True)
+        if not same or not np.nan_to_num(shape[..., s]).any():
+            continue
         sets = old.state.seen[:, :, s].sum(axis=0)
         of_model, of_noise = (sets > 0).sum(), np.maximum(sets - 1, 0).sum()
         usual = np.log(SHAPE) * of_model + np.log(NOISE) * of_noise
@@ -225,8 +221,7 @@ def wrong_direction(old: Explanation) -> Iterator[Mistake]:
     if geometry is None or len(geometry.axes) == 1:
         return
     given, axes, names = geometry.sensor_directions, geometry.axes, old.data.sensors
-    along = np.where(np.abs(given).max(axis=1) > ALONG, np.abs(given).argmax(axis=1), -1)
-    turned = []
+    along, turned = np.where(abs(given).max(axis=1) > ALONG, abs(given).argmax(axis=1), -1), []
     for (a, b), sign in product(permutations(axes, 2), (1.0, -1.0)):
         some, turn = np.flatnonzero(along == a).tolist(), np.zeros((3, 3))
         turn[a, b] = sign
@@ -238,12 +233,9 @@ def wrong_direction(old: Explanation) -> Iterator[Mistake]:
     for some, turn in turned:
         each = given[some], given[some] @ turn
         before, after = (list(dict.fromkeys(map(axis_name, x))) for x in each)
-        numbers = {
-            "sensors": enumeration([names[s] for s in some], MANY),
-            "s": "s"[len(some) - 1 :],
-        }
+        numbers = {"sensors": enumeration([names[s] for s in some], MANY)}
+        numbers |= {"s": "s" * (len(some) == 1), "turn": " in turn" * (len(after) > 1)}
         numbers |= {"given": enumeration(before), "better": enumeration(after)}
-        numbers["turn"] = " in turn" * (len(after) > 1)
         change = partial(_relocated, sensors=some, sensor_directions=each[1])
         yield Mistake("wrong-direction", tuple(names[s] for s in some), change, numbers)
 

@@ -115,6 +115,11 @@ def wrong_nominal_value(old: Explanation) -> Iterator[Mistake]:
 LOOKS = {RAD: ": rad/s for Hz", 1 / RAD: ": Hz for rad/s", 60.0: ": per minute for Hz"}
 """Causes of factors on the frequencies of a set."""
 
+DIFFERED = (
+    "the structure differed (mass, temperature, supports): update with one of the sets, or say by "
+    "frequency_std how far frequencies scatter"
+)
+
 
 def set_factor(old: Explanation) -> Iterator[Mistake]:
     """Yield the median ratio of the frequencies of each set to those of the others."""
@@ -124,17 +129,17 @@ def set_factor(old: Explanation) -> Iterator[Mistake]:
         if np.isfinite(ratios).sum() < 2:
             continue
         factor = float(np.exp(np.nanmedian(ratios)))
-        is_unit = abs(factor - 1) > 0.4
-        numbers = {
-            "set": name,
-            "other": enumeration([*sets[:k], *sets[k + 1 :]], 2),
-            "size": f"{factor:.3g} times" if is_unit else f"{100 * (factor - 1):+.1f} % off",
-            "looks": next((x for y, x in LOOKS.items() if abs(np.log(factor / y)) < 0.1), ""),
-            "mend": "give all data sets in Hz"
-            if is_unit
-            else "the structure differed (mass, temperature, supports): update with one of the "
-            "sets, or say by frequency_std how far frequencies scatter",
-        }
+        numbers = {"set": name, "other": enumeration([*sets[:k], *sets[k + 1 :]], 2)}
+        if abs(factor - 1) > 0.4:
+            looks = next((x for y, x in LOOKS.items() if abs(np.log(factor / y)) < 0.1), "")
+            numbers |= {
+                "size": f"{factor:.3g} times",
+                "looks": looks,
+                "mend": "give all data sets in Hz",
+            }
+        else:
+            size = f"{100 * (factor - 1):+.1f} % off"
+            numbers |= {"size": size, "looks": "", "mend": DIFFERED}
         yield Mistake("set-factor", (name,), changed("frequency", k, factor), numbers)
 
 
@@ -156,11 +161,9 @@ def other_numbers(old: Explanation) -> Iterator[Mistake]:
         index = assigned(np.where(known, cost, 1.0 - np.eye(len(cost))))
         rows = np.flatnonzero(index != np.arange(index.size))
         if rows.size:
-            wrong, right = (
-                enumeration([str(modes[r]) for r in x], MANY) for x in (rows, index[rows])
-            )
-            others = enumeration([*sets[:k], *sets[k + 1 :]], 2)
-            numbers = {"set": name, "other": others, "modes": wrong, "of": right}
+            numbers = {"set": name, "other": enumeration([*sets[:k], *sets[k + 1 :]], 2)}
+            for what, r in (("modes", rows), ("of", index[rows])):
+                numbers[what] = enumeration([str(modes[i]) for i in r], MANY)
             change = partial(_renumbered, k=k, index=index)
             yield Mistake("set-numbers", (name,), change, numbers, moves=True)
 
@@ -241,8 +244,5 @@ def later_mode(old: Explanation) -> Iterator[Mistake]:
         later, modes = int(free.pairs[r]) + 1, old.data.modes
         numbers = {"later": later, "f": float(old.fits.comparison.frequency[later - 1])}
         numbers |= {"mac": free.mac[r], "best": own.mac[r], "spare": later - len(modes)}
-        change, price = (
-            partial(replace, candidates=np.array(later)),
-            np.log(f.size - state.candidates),
-        )
-        yield Mistake("beyond-candidates", (str(modes[r]),), change, numbers, float(price))
+        change, price = partial(replace, candidates=np.array(later)), f.size - int(state.candidates)
+        yield Mistake("beyond-candidates", (str(modes[r]),), change, numbers, float(np.log(price)))
