@@ -17,7 +17,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache, partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import scipy.sparse
@@ -61,6 +61,9 @@ one."""
 KEPT, NUMBERS = 2**25, 2**18
 """Numbers of the models that are kept, as many explanations are compared at the same parameters,
 and of an array of those that are compared at once: both bound the memory."""
+
+
+Near: TypeAlias = tuple[State, Floats] | None  # another state, and x of its parameters
 
 
 class Points(NamedTuple):
@@ -144,23 +147,13 @@ class Fits:
             rows = matrices.selection @ basis
             moves = (geometry.motion @ basis).reshape(-1, 3, basis.shape[1])
         std = ratio(data.frequency_std, data.frequency)
+        std, candidates = np.where(std > 0, std, np.nan), np.array(comparison.candidates)
         start, ends = problem.start, np.stack([problem.lower, problem.upper])
         positive, size = ends[0] > 0, np.where(start == 0, ends[1] - ends[0], np.abs(start))
         logs = np.log(np.where(positive, ends / size, 1.0)) + np.log([[1 / WIDER], [WIDER]])
-        self.ends = np.where(positive, logs, (ends - start) / size)
-        self.plain = State(
-            frequency=data.frequency,
-            damping=data.damping,
-            shape=data.shape,
-            std=np.where(std > 0, std, np.nan),
-            left_out=np.zeros(()),
-            candidates=np.array(comparison.candidates),
-            rows=rows,
-            start=start,
-            unit=np.where(positive, 0.0, size),
-            moves=moves,
-            geometry=geometry,
-        )
+        self.ends, unit = np.where(positive, logs, (ends - start) / size), size * ~positive
+        measured = data.frequency, data.damping, data.shape, std
+        self.plain = State(*measured, np.zeros(()), candidates, rows, start, unit, moves, geometry)
         self.together = max(1, NUMBERS // (data.shape.size * (1 + len(start))))
 
         def solved(derivatives: bool, theta: bytes) -> Modes | None:
@@ -184,22 +177,21 @@ class Fits:
         """
         state = stacked(states)
         x = x * (state.start == start).all(axis=1, keepdims=True)
-        modes, known = self._solved(self.alone, state.theta(x))
-        phi = state.rows @ self._coordinates(modes)
-        logs = log_frequencies(np.stack([each.frequency for each in modes]))
-        mac = mac_values(state.psi, state.seen, phi[:, None])
+        _, exists, frequency, phi = self._solved(self.alone, state, x)
+        mac, logs = mac_values(state.psi, state.seen, phi[:, None]), log_frequencies(frequency)
         cost = pair_costs(mac, np.log(state.frequency), logs[:, None]).min(axis=-1)
-        return np.where(known, cost.sum(axis=(-2, -1)), np.inf)
+        return np.where(exists, cost.sum(axis=(-2, -1)), np.inf)
 
-    def _coordinates(self, modes: Sequence[Modes]) -> Floats:
-        """Return the modes at the coordinates of the model, (models, n, modes)."""
-        return np.stack([each.phi[-self.plain.rows.shape[1] :] for each in modes])
+    def _solved(self, solve: Any, state: State, x: Floats) -> tuple[Any, Bools, Floats, Floats]:
+        """Return the modes of states, where there are any, their frequencies and sensors' shapes.
 
-    def _solved(self, solve: Any, theta: Floats) -> tuple[list[Modes], Bools]:
-        """Return the modes at several parameters, and where there are; else the nominal ones."""
-        modes = [solve(each.tobytes()) for each in theta]
-        every: Any = [each or self.nominal for each in modes]
-        return every, np.array([bool(each) for each in modes])
+        Those of the nominal model stand where there are none.
+        """
+        found = [solve(theta.tobytes()) for theta in state.theta(x)]
+        modes: Any = [each or self.nominal for each in found]
+        phi = state.rows @ np.stack([each.phi[-state.rows.shape[2] :] for each in modes])
+        frequency = np.stack([each.frequency for each in modes])
+        return modes, np.array([bool(each) for each in found]), frequency, phi
 
     # More than 60 lines: the cost and its slopes share all residuals.
     def at(self, state: State, x: Floats, pairs: Any = None) -> Points:
@@ -207,9 +199,8 @@ class Fits:
 
         Costs are infinite where the model has no modes.
         """
-        modes, exists = self._solved(self.modes, state.theta(x))
-        frequency, (n, s, _) = np.stack([each.frequency for each in modes]), state.rows.shape
-        logs, phi = log_frequencies(frequency), state.rows @ self._coordinates(modes)
+        modes, exists, frequency, phi = self._solved(self.modes, state, x)
+        logs, (n, s, _) = log_frequencies(frequency), state.rows.shape
         known, c, scale = state.known, state.mean, state.motion[:, None]
         mac = mac_values(c, known, phi)
         if pairs is None:
@@ -255,9 +246,7 @@ class Fits:
         ahead = total + ((g[..., None] + H @ dx / 2) * dx).sum(axis=(1, 2))
         return Points(x, total, ahead, pairs, mac, beta[..., 0], sigma, g, H)
 
-    def begun(
-        self, states: Sequence[State], near: tuple[State, Floats] | None = None
-    ) -> Iterator[tuple[State, Points]]:
+    def begun(self, states: Sequence[State], near: Near = None) -> Iterator[tuple[State, Points]]:
         """Yield some states after others, at their nominal parameters or those of another state.
 
         They are where the cost is less ahead.
@@ -272,9 +261,7 @@ class Fits:
                 best.update(better, new.of(better))
             yield state, best
 
-    def fitted(
-        self, states: Sequence[State], near: tuple[State, Floats] | None = None
-    ) -> list[Points]:
+    def fitted(self, states: Sequence[State], near: Near = None) -> list[Points]:
         """Return the points at the end of fits, each from the better one of its starts."""
         out: list[Points] = []
         for state, here in self.begun(states, near):

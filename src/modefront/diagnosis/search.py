@@ -30,39 +30,17 @@ mistakes."""
 EITHER = 3  # explanations that the data cannot tell apart and that are named nevertheless, at most
 WINDOW = 1.5  # window of frequencies that is advised
 LEFT = 1.0  # difference of costs that fits leave
-
-MIXED = LEFT
-"""Price of an explanation in which mistakes are said of values that are moved later: where both
-orders fit alike, the one that moves them first is said first."""
-
-NEAR = 2 * CLEAR
-"""Difference of costs from the best up to which explanations of several mistakes are fitted."""
-
+NEAR = 2 * CLEAR  # difference of costs up to which explanations of several mistakes are fitted
 SEEN = 0.02  # increase of a MAC value that is worth its name
 
 MISTAKES: Sequence[Callable[[Explanation], Iterator[Mistake]]] = (
-    values.frequency_factor,
-    values.other_quantity,
-    values.set_factor,
-    values.other_numbers,
-    values.exchanged_shapes,
-    sensors.wrong_factor,
-    sensors.exchanged_sensors,
-    sensors.opposite_order,
-    sensors.unsigned_shapes,
-    sensors.copied_sensor,
-    sensors.shifted_values,
-    sensors.counted_from_one,
-    sensors.wrong_direction,
-    sensors.wrong_place,
-    sensors.reversed_value,
-    sensors.odd_sensor,
-    values.wrong_nominal_value,
-    values.odd_value,
-    values.wrong_frequency,
-    values.damping_in_percent,
-    values.foreign_mode,
-    values.later_mode,
+    *(values.frequency_factor, values.other_quantity, values.set_factor, values.other_numbers),
+    *(values.exchanged_shapes, sensors.wrong_factor, sensors.exchanged_sensors),
+    *(sensors.opposite_order, sensors.unsigned_shapes, sensors.copied_sensor),
+    *(sensors.shifted_values, sensors.counted_from_one, sensors.wrong_direction),
+    *(sensors.wrong_place, sensors.reversed_value, sensors.odd_sensor),
+    *(values.wrong_nominal_value, values.odd_value, values.wrong_frequency),
+    *(values.damping_in_percent, values.foreign_mode, values.later_mode),
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
 
@@ -81,8 +59,11 @@ COST = attrgetter("cost")
 
 
 def mixed(mistakes: Sequence[Mistake]) -> float:
-    """Return the price of moving values to their sensors after others were said of these."""
-    return MIXED * any(b.moves > a.moves for a, b in pairwise(mistakes))
+    """Return the price of moving values after mistakes were said of them.
+
+    Where both orders fit alike, the one that moves them first is said first.
+    """
+    return LEFT * any(b.moves > a.moves for a, b in pairwise(mistakes))
 
 
 def key_of(mistakes: Sequence[Mistake]) -> object:
@@ -126,8 +107,9 @@ class Search:
             some += [replace(x, price=x.price + price) for x in new]
         tried = [((*old.mistakes, one), one) for one in some]
         states = [one.change(old.state) for one in some]
-        if any(each.moves for each in old.mistakes):  # it may be said of the values as given
-            for one, state in list(zip(some, states, strict=True)):
+        moved = any(each.moves for each in old.mistakes)
+        for one, state in list(zip(some, states, strict=True)) if old.mistakes else ():
+            if moved or one.moves:  # either may be said of the values as given
                 first = undone(self.fits.plain, (one, *old.mistakes))
                 if not np.array_equal(first.shape, state.shape, equal_nan=True):
                     tried.append(((one, *old.mistakes), one))

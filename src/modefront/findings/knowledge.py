@@ -134,7 +134,7 @@ def alike(
 
     Sets of more than `TOGETHER` parameters of which every two are alike are said at once.
     """
-    two = {(i, j): value for i, j, value in pairs(gram) if not {i, j} & set(idle)}
+    two = dict.fromkeys(pair for pair in pairs(gram) if not set(pair) & set(idle))
     sets: list[list[int]] = []
     for pair in two:
         if not any(set(pair) <= set(parameters) for parameters in sets):
@@ -148,7 +148,7 @@ def alike(
             named = enumeration([names[i] for i in sorted(parameters)])
             subject = named if len(parameters) <= NAMED else f"{len(parameters)} parameters"
             out.append(found("alike", subject, many=True, where=where))
-            two = {pair: value for pair, value in two.items() if not set(pair) <= set(parameters)}
+            two = dict.fromkeys(pair for pair in two if not set(pair) <= set(parameters))
     return out + [found("alike", f"{names[i]} and {names[j]}", where=where) for i, j in two]
 
 

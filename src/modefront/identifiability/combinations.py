@@ -103,12 +103,6 @@ def combinations(
     return decompose(G * (scale or scale_at(problem, theta)).unit, least)
 
 
-def gram(evaluation: Evaluation, weights: Floats, scale: Scale) -> Floats:
-    """Return G^T G, shape (parameters, parameters), of all groups with weights (groups,)."""
-    H = np.tensordot(weights, evaluation.gauss_newton, axes=1)
-    return np.asarray(H / 2 * np.outer(scale.unit, scale.unit))
-
-
 def cosines(gram: Floats) -> Floats:
     """Return cosines between the columns of G, (p, p), from G^T G; 0 for columns that vanish."""
     length = np.sqrt(np.diag(gram))
@@ -123,18 +117,15 @@ def index(gram: Floats) -> float:
     >>> round(index(np.array([[1.0, 0.6], [0.6, 1.0]])), 4)
     1.5811
     """
-    return _index_of(float(np.linalg.eigvalsh(cosines(gram))[0]))
-
-
-def pairs(gram: Floats) -> list[tuple[int, int, float]]:
-    """Return the pairs of parameters with a critical index, most alike first."""
-    least = 1 - np.abs(cosines(gram))
-    two = np.argwhere(np.triu(least <= CRITICAL**-2, 1)).tolist()
-    return sorted(((i, j, _index_of(least[i, j])) for i, j in two), key=lambda pair: -pair[2])
-
-
-def _index_of(least: float) -> float:
+    least = float(np.linalg.eigvalsh(cosines(gram))[0])
     return least**-0.5 if least > _LARGEST**-2 else np.inf
+
+
+def pairs(gram: Floats) -> list[tuple[int, int]]:
+    """Return the pairs of parameters with a critical index, most alike first."""
+    least = np.maximum(1 - np.abs(cosines(gram)), _LARGEST**-2)
+    two = np.argwhere(np.triu(least <= CRITICAL**-2, 1)).tolist()
+    return sorted(((i, j) for i, j in two), key=lambda pair: float(least[pair]))
 
 
 def sizes(problem: UpdatingProblem) -> Floats:
@@ -258,6 +249,7 @@ def determination(problem: UpdatingProblem, evaluation: Evaluation) -> Determina
     groups: list[tuple[str, int | None]] = [(x.name, i) for i, x in enumerate(problem.groups)]
     groups += [(ALL, None)] * (len(groups) > 1)
     of = [(name, combinations(problem, evaluation, i, weights, scale)) for name, i in groups]
-    effects = gram(evaluation, weights, scale)
-    effects[idle] = effects[:, idle] = 0.0
+    unit = np.where(np.isin(np.arange(scale.unit.size), idle), 0.0, scale.unit)
+    H = np.tensordot(weights, evaluation.gauss_newton, axes=1)
+    effects = H / 2 * np.outer(unit, unit)
     return Determination(scale, idle, of, effects)

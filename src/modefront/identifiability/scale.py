@@ -13,6 +13,7 @@ A combination of parameters that scales all of K or all of M is looked for in th
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 from weakref import ref
 
 import numpy as np
@@ -45,8 +46,7 @@ SHIFT = 1e-3
 """Share of the least measured eigenvalue that is added to a K with rigid-body modes, times M."""
 
 
-@dataclass(frozen=True)
-class Scaling:
+class Scaling(NamedTuple):
     """A change of the parameters that scales matrices as a whole."""
 
     of: str  # "stiffness matrix", "mass matrix", or both
@@ -66,8 +66,7 @@ class Scale:
     @cached_property
     def scalings(self) -> list[Scaling]:
         """Changes that scale matrices as a whole, looked for when they are first asked for."""
-        model = self.model
-        return [] if model is None else whole_scalings(model, self.theta, self.unit)
+        return whole_scalings(self.model, self.theta, self.unit) if self.model else []
 
 
 def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:

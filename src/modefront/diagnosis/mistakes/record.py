@@ -6,7 +6,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.diagnosis.evidence import Fits, Points
 from modefront.diagnosis.state import NOTHING, State
@@ -19,7 +18,6 @@ BETTER = ("better", "factor", "looks", "place", "sensor", "what", "of", "quantit
 """Names and numbers of sentences that tell mistakes of the same claim from each other."""
 
 Change: TypeAlias = Callable[[State], State]
-Claims = frozenset[tuple[str, ...]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +61,7 @@ class Explanation:
     cost: float
 
     @property
-    def claims(self) -> Claims:
+    def claims(self) -> frozenset[tuple[str, ...]]:
         """What is claimed."""
         return frozenset(each.claim for each in self.mistakes)
 
@@ -87,9 +85,7 @@ class Explanation:
         return sensors
 
 
-def changed(
-    part: str, place: Any, new: Callable[[Floats], Floats] | float, cost: float = 0.0
-) -> Change:
+def changed(part: str, place: Any, new: Any, cost: float = 0.0) -> Change:
     """Return the change of some values of a part of the state, for a cost.
 
     They become what a function makes of them, or are divided by a factor, of which NaN leaves out.

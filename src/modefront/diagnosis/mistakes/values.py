@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Ints
 from modefront.diagnosis.evidence import FREQUENCY, RIGID, log_frequencies, mac_values
 from modefront.diagnosis.mistakes.record import MANY, Explanation, Mistake, changed
 from modefront.diagnosis.state import NOTHING, State, median, stacked
@@ -58,13 +58,9 @@ def other_quantity(old: Explanation) -> Iterator[Mistake]:
     for quantity, (a, b) in QUANTITIES.items() if known.size else ():
         given, cost = np.exp(old.state.logs[known[0]]), -np.log(abs(b)) * np.isfinite(f).sum()
         numbers: dict[str, Any] = {"quantity": quantity, "mode": old.data.modes[known[0]]}
-        numbers |= {"given": float(given), "better": float(_power(given, a, b))}
-        change = changed("frequency", ..., partial(_power, a=a, b=b), cost)
+        numbers |= {"given": float(given), "better": float(a * given**b)}
+        change = changed("frequency", ..., lambda g, a=a, b=b: a * g**b, cost)
         yield Mistake("other-quantity", ("frequencies",), change, numbers)
-
-
-def _power(g: Floats, a: float, b: float) -> Floats:
-    return a * g**b
 
 
 def damping_in_percent(old: Explanation) -> Iterator[Mistake]:
