@@ -107,9 +107,8 @@ class Search:
             some += [replace(x, price=x.price + price) for x in new]
         tried = [((*old.mistakes, one), one) for one in some]
         states = [one.change(old.state) for one in some]
-        moved = any(each.moves for each in old.mistakes)
         for one, state in list(zip(some, states, strict=True)) if old.mistakes else ():
-            if moved or one.moves:  # either may be said of the values as given
+            if any(x.moves for x in (*old.mistakes, one)):  # others may be said of values as given
                 first = undone(self.fits.plain, (one, *old.mistakes))
                 if not np.array_equal(first.shape, state.shape, equal_nan=True):
                     tried.append(((one, *old.mistakes), one))
@@ -150,7 +149,9 @@ class Search:
             # What one explains may be hidden by another one, so that it is not worth its price.
             gaining = [x for x in alone if x.point.cost < plain.point.cost - LEFT]
             firsts = sorted({x.claims: x for x in reversed(gaining)}.values(), key=COST)[:BEAM]
-            level = [*(x.mistakes for x in firsts), best.mistakes, *fewer]
+            same = [x for x in self.known.values() if x.claims == best.claims]
+            near = [x for x in sorted(same, key=COST) if x.cost < best.cost + CLEAR]
+            level = [*(x.mistakes for x in (*firsts, *near)), *fewer]
             keys = [key_of(some) for some in level if len(some) < MOST]
             new = next((x for x in keys if x in self.known and x not in extended), None)
             if new is not None:

@@ -234,8 +234,7 @@ def _foreign(state: State, r: int) -> State:
 def later_mode(old: Explanation) -> Iterator[Mistake]:
     """Yield measured modes that are like model modes beyond those among which pairs are sought."""
     state, own, f = old.state, old.point, old.modes.frequency
-    every = stacked([replace(state, candidates=np.array(f.size))])
-    free = old.fits.at(every, own.x[None]).of(0)
+    free = old.fits.at(stacked([replace(state, candidates=np.array(f.size))]), own.x[None]).of(0)
     for r in np.flatnonzero(free.pairs >= state.candidates).tolist():
         later, modes = int(free.pairs[r]) + 1, old.data.modes
         numbers = {"later": later, "f": float(old.fits.comparison.frequency[later - 1])}
