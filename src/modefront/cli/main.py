@@ -190,7 +190,7 @@ def run(
             done = run_study(loaded, directory, fresh=fresh, progress=progress, workers=carrier)
         data = done.data
     try:
-        print_summary(data, directory, progress.spent)
+        print_summary(data, study, directory, progress.spent)
         if sys.stdout is not None:
             sys.stdout.flush()
     except BrokenPipeError:  # as by `| head`: the status is that of the run all the same

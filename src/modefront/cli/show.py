@@ -314,8 +314,11 @@ def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
         screen.say(f"shorter with: {'; '.join(expected.advice)}")
 
 
-def print_summary(data: Dataset, folder: Path, costs: Costs) -> None:
-    """Print what a run has found and what this run of it has cost, in a few lines."""
+def print_summary(data: Dataset, study: Path, folder: Path, costs: Costs) -> None:
+    """Print what a run has found and what this run of it has cost, in a few lines.
+
+    Where no model is to be used, the check of the study may say why.
+    """
     screen = Screen.of_output()
     screen.say(f"{data.attrs.get('study', '')}: results in {folder}", style="bold")
     failures = [str(x) for x in findings_of(data) if x.severity is Severity.FAILURE]
@@ -331,6 +334,8 @@ def print_summary(data: Dataset, folder: Path, costs: Costs) -> None:
     }
     said = [f"{count} {what} in {s:.3g} s" for what, (count, s) in spent.items() if count]
     screen.say(f"this time: {', '.join(said) or 'nothing was solved'}")
+    if not data.attrs["reference"]:
+        screen.say(f"mistakes of model and data, if any: {command('check', study)}")
     say_next("show", folder)
 
 
