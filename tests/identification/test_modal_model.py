@@ -12,6 +12,7 @@ from modefront.identification.modal_model import (
     Fit,
     evaluate,
     maximise,
+    thinned,
 )
 from modefront.identification.problem import Problem, gram, primitives, problem
 from modefront.identification.statistics import correlated_gram, windowed_correlation
@@ -76,6 +77,21 @@ def test_gram_matrices_are_those_of_the_stacked_columns() -> None:
     columns = np.sqrt(task.weight[1, 2]) * E
     stacked = np.hstack([columns.real, columns.imag])
     assert gram(task, E)[1, 2] == pytest.approx(stacked @ stacked.T, rel=1e-10)
+
+
+def test_means_of_residuals_have_nearly_the_maximum_of_all_lines() -> None:
+    f = np.arange(1.0, 30.0, 0.02)
+    H = accelerance(f, THREE_STORY, THREE_STORY_DAMPING, three_story_shapes(), [0, 2])
+    noise = 1e-3 * np.abs(H).std() * circular(np.random.default_rng(1), H.shape)
+    data = frequency_responses(f, H + noise)
+    task, omega, _ = problem(data, np.full(H.shape, (1e-3 * np.abs(H).std()) ** 2))
+    fit = maximise(task, *_somewhere(omega))
+    few = thinned(fit, fit.model.lam)
+    assert 3 * len(few.s) < len(task.s)
+    again = maximise(few, 1.0005 * fit.model.lam, fit.model.L)
+    moved = again.model.lam - fit.model.lam
+    deviation = np.sqrt(fit.inverted(fit.observed).diagonal()[:6] / 2)
+    assert (np.abs(moved.view(float)) < 0.3 * deviation).all()
 
 
 def test_exact_data_give_exact_modes() -> None:

@@ -42,12 +42,14 @@ from modefront.identification.problem import RESIDUALS, Problem, combined, gram,
 from modefront.identification.scan import Scan, scan
 from modefront.rounding import TINY
 
-TOLERANCE = 1e-4  # squared step in standard deviations that ends an iteration
+FINE, COARSE = 1e-4, 1e-2
+"""Squared steps in standard deviations that end an iteration: for results, and for choices."""
 
 MOST_EVALUATIONS = 40
 """Evaluations after which a fit has failed; simulated tests take three to fifteen."""
 
 ROUNDING = 1e-13  # share of the squares of a column that may be rounding
+BEND = 1 / 8  # width of a block of lines over the distance of the nearest pole
 
 
 @dataclass(frozen=True)
@@ -240,6 +242,30 @@ def synthesise(task: Problem, model: ModalModel) -> Complexes:
     return combined(np.concatenate([modal, model.residual.transpose(1, 2, 0)], axis=-1), E)
 
 
+def thinned(fit: Fit, lam: Complexes) -> Problem:
+    """Return the problem of a fit with means of lines over which functions of poles bend little.
+
+    They are poles of the fit and those that come, ``lam``. Means are those of the residuals, which
+    bend less than the functions, and vanish with them.
+    """
+    task, first = fit.task, [0]
+    f = task.s.imag
+    distance = np.abs(task.s - np.concatenate([fit.model.lam, lam, [0]])[:, None]).min(axis=0)
+    beyond = np.searchsorted(f, f + BEND * distance).tolist()
+    while first[-1] < len(f):
+        first.append(max(beyond[first[-1]], first[-1] + 1))
+    if 2 * len(first) > len(f):
+        return task
+    blocks = first[:-1]
+    s = np.asarray(np.add.reduceat(task.s, blocks) / np.diff(first), complex)
+    weight = np.add.reduceat(task.weight, blocks, axis=-1)
+    mean = np.add.reduceat(task.weight * fit.residual, blocks, axis=-1)
+    mean /= np.where(weight > 0, weight, np.inf)
+    out = replace(task, s=s, weight=weight)
+    H = synthesise(out, fit.model) + mean
+    return replace(out, H=np.where(weight > 0, H, 0))
+
+
 def _best(inverse: Floats, T: Floats, rho: Floats) -> Floats:
     """Return the linear parameters, (responses, linear), from products with the primitives."""
     right = np.einsum("jqa,jiq->ia", T, rho)
@@ -248,24 +274,29 @@ def _best(inverse: Floats, T: Floats, rho: Floats) -> Floats:
 
 
 def maximise(
-    task: Problem, lam: Complexes, L: Complexes, pairs: tuple[tuple[int, int], ...] = ()
+    task: Problem,
+    lam: Complexes,
+    L: Complexes,
+    most: int = MOST_EVALUATIONS,
+    tolerance: float = FINE,
+    pairs: tuple[tuple[int, int], ...] = (),
 ) -> Fit:
     """Return the maximum-likelihood fit from initial poles and participation factors.
 
     Levenberg-Marquardt in alpha. The iteration ends where the squared length of a step, in
-    standard deviations of the parameters, is below `TOLERANCE`, and fails after `MOST_EVALUATIONS`.
-    Modes of ``pairs`` keep one pole.
+    standard deviations of the parameters, is below ``tolerance``, and fails after ``most``
+    evaluations. Modes of ``pairs`` keep one pole.
     """
     fit = evaluate(task, lam, L / np.abs(L).max(axis=1, keepdims=True), pairs)
     damping, evaluations = 0.0, 1
     converged = not len(lam)
-    while evaluations < MOST_EVALUATIONS and not converged:
+    while evaluations < most and not converged:
         step = _step(fit, damping)
         decrement = float(step @ fit.information @ step)
         noise = max(2 * fit.cost / max(task.count, 1), 1.0)
         trial = evaluate(task, *_moved(fit.model, step), pairs)
         evaluations += 1
-        converged = 2 * decrement <= TOLERANCE * noise
+        converged = 2 * decrement <= tolerance * noise
         if trial.cost <= fit.cost * (1 + 1e-14):
             fit, damping = trial, 0.0 if damping < 1e-6 else damping / 10
         else:

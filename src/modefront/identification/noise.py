@@ -14,6 +14,7 @@ from modefront.rounding import TINY
 WINDOW = 21  # lines of a running median
 LINES_A_HAT = 30  # lines a hat function, enough for its coefficient to be known within some 20 %
 MOST_HATS = 16  # hat functions over the band: noise of sensors and amplifiers is smooth
+MOST_BLOCKS = 600  # blocks of lines that raw values are averaged over before the fit
 ITERATIONS = 60  # multiplicative steps, after which coefficients change by less than their errors
 ROUNDING = 1e-14  # least variance over the mean square of a function: files hold some seven digits
 
@@ -43,24 +44,40 @@ def fitted_variance(raw: Floats, H: Complexes) -> Floats:
     known at all lines of each function with at least one raw value.
     """
     lines = raw.shape[-1]
-    flat, p = raw.reshape(-1, lines), np.nan_to_num(square(H.reshape(-1, lines)))
+    flat = raw.reshape(-1, lines)
+    power = np.nan_to_num(square(H.reshape(-1, lines)))
     number = int(np.clip(lines // LINES_A_HAT, 2, MOST_HATS))
     knots = np.linspace(0, max(lines - 1, 1), number)
     hats = np.array([np.interp(np.arange(lines), knots, unit) for unit in np.eye(number)])
-    known, power = np.isfinite(flat), p.mean(axis=1, keepdims=True)
-    q = np.where(known, flat, 0.0)
-    mean = q.sum(axis=1, keepdims=True) / np.maximum(known.sum(axis=1, keepdims=True), 1)
+    known = np.isfinite(flat)
+    blocks = np.linspace(0, lines, min(lines, MOST_BLOCKS) + 1).astype(int)[:-1]
+
+    def block(values: Floats) -> Floats:
+        out: Floats = np.add.reduceat(values, blocks, axis=-1)
+        return out
+
+    count = block(known.astype(float))
+    share = 1 / np.maximum(count, 1)
+    q = block(np.where(known, flat, 0.0)) * share
+    p = block(np.where(known, power, 0.0)) * share
+    D = block(hats) / block(np.ones(lines))
+    mean = q.sum(axis=1, keepdims=True) / np.maximum((count > 0).sum(axis=1, keepdims=True), 1)
     mean = np.maximum(mean, TINY)
-    q, p = q / mean, p / np.maximum(power, TINY)
-    c, b = np.full((len(q), number), 0.5), np.full((len(q), 1), 0.5)
+    q = q / mean
+    size = np.maximum(p.mean(axis=1, keepdims=True), TINY)
+    p = p / size
+    c, b = np.full((len(q), len(D)), 0.5), np.full((len(q), 1), 0.5)
     for _ in range(ITERATIONS):
-        v = np.maximum(c @ hats + b * p, 1e-12)
-        up, down = q / v**2, known / v
-        c = c * ((up @ hats.T) / np.maximum(down @ hats.T, 1e-300))
-        b = b * (np.vecdot(up, p) / np.maximum(np.vecdot(down, p), 1e-300))[:, None]
-    v = c @ hats + b * p
+        v = np.maximum(c @ D + b * p, 1e-12)
+        up, down = count * q / v**2, count / v
+        c = c * ((up @ D.T) / np.maximum(down @ D.T, 1e-300))
+        b = b * (
+            (up * p).sum(axis=1, keepdims=True)
+            / np.maximum((down * p).sum(axis=1, keepdims=True), 1e-300)
+        )
+    v = c @ hats + b * power / size
     floor = np.maximum(1e-4 * np.median(v, axis=1, keepdims=True), TINY)
     out = np.maximum(v, floor) * mean
-    out = np.maximum(out, ROUNDING * power)
+    out = np.maximum(out, ROUNDING * power.mean(axis=1, keepdims=True))
     out[~known.any(axis=1)] = np.nan
     return out.reshape(raw.shape)

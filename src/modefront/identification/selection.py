@@ -14,7 +14,15 @@ from scipy.special import gammaln
 from scipy.stats import chi2
 
 from modefront._typing import Bools, Complexes, Floats
-from modefront.identification.modal_model import Fit, evaluate, maximise
+from modefront.identification.modal_model import (
+    COARSE,
+    Fit,
+    evaluate,
+    maximise,
+    synthesise,
+    thinned,
+)
+from modefront.identification.noise import square
 from modefront.identification.problem import Problem
 from modefront.identification.scan import alike
 from modefront.identification.shapes import plane_basis
@@ -22,7 +30,7 @@ from modefront.linalg.small import mac
 from modefront.rounding import TINY
 
 FALSE = 1e-3  # expected number of modes in a band that noise alone makes
-MOST_ROUNDS = 100  # poles that are added, at most
+MOST_ROUNDS = 20  # rounds in which poles are added, at most
 
 OVERDAMPED = 0.9
 """Damping ratio from which on a pole and its conjugate are nearly one and the same real pole."""
@@ -31,9 +39,16 @@ LEAST_UNLIKE = 1e-6
 """Least squared share of the derivative by a pole that no residual term can make up. In the normal
 equations rounding takes some 1e-8; poles within the band have 0.1 and more."""
 
+MOST_EVALUATIONS = 20
+"""Evaluations of the model for a choice, which need not be at the very maximum."""
+
 CLOSEST = 0.5
 """Distance of poles over the greater of their half bandwidths below which they are not told apart
 without a difference of shapes."""
+
+TRACES = 10.0
+"""Gain of a pole over what the ones that are added already explain of it: a missing mode bends the
+fit of its neighbours, too."""
 
 ALONE = 0.25  # squared correlation with another pole below which a pole is judged for itself
 SAME = 0.95  # MAC of shapes that are the same
@@ -84,77 +99,97 @@ def _wald(fit: Fit, of: Floats, free: Bools) -> float:
     return 2 * float(S[0, 0] - follows)
 
 
-def refit(task: Problem, lam: Complexes, L: Complexes) -> Fit:
-    """Return the fit from initial poles, without those that are residual terms.
+def refit(fit: Fit, lam: Complexes, L: Complexes, fine: bool = False) -> Fit:
+    """Return the fit of the same data from other poles, without those that are residual terms.
 
+    The maximum is sought on means of lines, and on all lines only where it is to be ``fine``.
     Poles that become overdamped, and those of which changes are changes of the residual terms,
     stand for what modes outside the band leave. They would make the information of all other
     parameters singular.
     """
+    task, few = fit.task, thinned(fit, lam)
     while True:
-        fit = maximise(task, lam, L)
+        fit = maximise(few, lam, L, MOST_EVALUATIONS, COARSE)
+        if fine:
+            fit = maximise(task, fit.model.lam, fit.model.L)
         lam, L = fit.model.lam, fit.model.L
         over = -lam.real > OVERDAMPED * np.abs(lam)
         unlike = fit.information.diagonal() / np.maximum(fit.size, TINY)
         over |= unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
         if not over.any():
-            return fit
+            break
         lam, L = lam[~over], L[~over]
+    if fit.task is task:
+        return fit
+    r = task.H - synthesise(task, fit.model)
+    return replace(fit, task=task, cost=float(np.sum(task.weight * square(r))))
 
 
 def backward(fit: Fit, count: int | None = None) -> tuple[Fit, Floats]:
     """Return the fit without modes that gain less than needed and doubles, and what modes gain.
 
-    The weakest goes first, where a fit without it is no worse. Shapes of close modes are large and
-    cancel, which the Wald statistic takes for little: they gain what that fit loses. Where the
-    ``count`` of modes is given, the strongest are kept instead. Only among modes that are needed
-    are shapes known well enough to tell a split peak, which one pole for both does not explain as
-    it does a pair.
+    The weakest go first, where a fit without them is no worse. The Wald statistic says too little
+    of close modes, whose shapes are large and cancel: what they gain is what that fit loses. Where
+    the ``count`` of modes is given, the strongest are kept instead. Only among modes that are
+    needed are shapes known well enough to tell a split peak, which one pole for both does not
+    explain as it does a pair. Of doubles, the weakest goes first.
     """
-    gain = gains(fit)
+    gain, together = gains(fit), True
     while len(fit.model):
         lam, least = fit.model.lam, needed(fit.task)
         if count is not None:
             least = np.sort(gain)[::-1][count - 1] if count < len(gain) else -np.inf
-        weakest = int(gain.argmin())
-        if needed_all := gain[weakest] >= least:
+        gone = np.zeros(len(lam), bool)
+        for r in gain.argsort()[: np.sum(gain < least)]:  # neighbours may stand for the same mode
+            gone[r] = (alike(lam[r], lam[gone]) < ALONE).all()
+        needless = gone.any()
+        if not needless:
             double = doubles(lam, fit.model.phi, gain, fit)
             for pair in paired(fit).model.pairs if double.any() else ():
                 double[list(pair)] = False
             if not double.any():
                 break
-            weakest = int(np.where(double, gain, np.inf).argmin())
-        trial = refit(fit.task, np.delete(lam, weakest), np.delete(fit.model.L, weakest, axis=0))
-        lost = 2 * (trial.cost - fit.cost) / fit.found.noise_of(lam[[weakest]])[0]
-        if needed_all or count is not None or lost < least:
-            fit, gain = trial, gains(trial)
-        else:
-            gain[weakest] = lost
+            gone = double & (gain == gain[double].min())
+        elif not together:
+            gone = gain == gain.min()
+        trial = refit(fit, lam[~gone], fit.model.L[~gone])
+        lost = 2 * (trial.cost - fit.cost) / fit.found.noise_of(lam[gone]).min()
+        together = lost - np.sort(gain[gone])[:-1].sum() < least
+        if together or not needless or count is not None:
+            fit, together = trial, True
+            gain = gains(fit)
+        elif gone.sum() == 1:
+            gain[gone], together = lost, True
     return fit, gain
 
 
 def grow(fit: Fit, count: int | None = None) -> Fit:
     """Return the fit with the modes that stand out of its residuals, until none does.
 
-    The clearest comes first: a missing mode bends the fit of its neighbours, too. A pole that is
-    not needed after all is tried again only in another fit. Where the ``count`` of modes is given,
-    as many are tried as lack.
+    A pole that is not needed after all is tried again only in another fit. Where the ``count`` of
+    modes is given, as many are tried as lack.
     """
     blocked: Complexes = np.zeros(0, complex)
     for _ in range(MOST_ROUNDS):
-        task, model, found = fit.task, fit.model, fit.found
+        task, model, lam, gain = fit.task, fit.model, fit.found.lam, fit.found.gain
         least = needed(task) if count is None else 0.0
-        clearest = (k for k in found.gain.argsort()[::-1].tolist() if found.gain[k] >= least)
-        new = next((k for k in clearest if (alike(found.lam[k], blocked) < ALONE).all()), None)
-        if new is None or len(model) == count:
+        most = len(lam) if count is None else count - len(model)
+        new: list[int] = []
+        for c in gain.argsort()[::-1]:
+            if gain[c] < least or len(new) >= most:
+                break
+            of_others = np.sum(gain[new] * alike(lam[c], lam[new]))
+            if gain[c] > TRACES * of_others and (alike(lam[c], blocked) < ALONE).all():
+                new.append(int(c))
+        if not new:
             break
-        L = np.vstack([model.L, found.L[new]])
-        trial, _ = backward(refit(task, np.append(model.lam, found.lam[new]), L), count)
-        gained = 2 * (fit.cost - trial.cost) / found.noise[new]
+        L = np.vstack([model.L, fit.found.L[new]])
+        trial, _ = backward(refit(fit, np.append(model.lam, lam[new]), L), count)
+        gained = 2 * (fit.cost - trial.cost) / np.median(fit.found.noise[new])
         if len(trial.model) > len(model) or gained > needed(task):
             fit, blocked = trial, blocked[:0]
         else:
-            blocked = np.append(blocked, found.lam[new])
+            blocked = np.append(blocked, lam[new])
     return fit
 
 

@@ -1,8 +1,8 @@
 r"""Hammer tests: from frequency response functions of one data set to its modes.
 
-The steps are those of docs/methods/identification.md. Modes are chosen from responses over their
-noise with common weights, of which all have one set of equations, then tested again in the fit of
-all functions, each with its own variance.
+The steps are those of docs/methods/identification.md. Modes are chosen from principal responses
+with common weights, of which all responses have one set of equations, then tested again in the fit
+of all functions, each with its own variance.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from modefront.data.responses import FrequencyResponses
 from modefront.identification import selection, stabilisation
 from modefront.identification.modal_model import Fit, evaluate
 from modefront.identification.noise import fitted_variance, square, variance_from_differences
-from modefront.identification.problem import RESIDUALS, Problem, primitives, problem
+from modefront.identification.problem import RESIDUALS, primitives, problem
 from modefront.identification.record import (
     Evidence,
     FittedFunctions,
@@ -30,6 +30,7 @@ from modefront.rounding import TINY
 LEAST_LINES = 20
 """Lines of a band, at least: two modes with their residual terms have twelve numbers a function."""
 
+PRINCIPAL = 48  # principal responses from which the modes are chosen where there are more responses
 FEW = 0.5  # share of the orders below which a mode is flagged, and phase collinearity
 VISIBLE = 1 / 3  # share in the sum of all modes at its frequency below which a mode is flagged
 
@@ -59,23 +60,27 @@ def identify(
         first = variance_from_differences(data.H)
     else:
         first = fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
-    scaled, shared = _over_noise(data, first)
-    diagram = stabilisation.diagram_of(scaled, shared)
+    small, shared = _principal(data, first)
+    diagram = stabilisation.diagram_of(small, shared)
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
-        scaled, shared = data, first
-    task, omega, _ = problem(scaled, shared)
+        small, shared = data, first
+    task, omega, _ = problem(small, shared)
     lam, L = diagram.pole[diagram.clusters] / omega, diagram.participation[diagram.clusters]
-    fit = selection.refit(task, lam, L)
+    fit = selection.refit(evaluate(task, lam, L), lam, L)
     fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
     fit = selection.grow(selection.backward(fit, modes)[0], modes)
     task, omega, size = problem(data, first)
     fit = evaluate(task, fit.model.lam, fit.model.L)
     for _ in range(2):
         fit = selection.refit(_reweighted(fit, kind), fit.model.lam, fit.model.L)
-    fit, gain = selection.backward(fit, modes)
+    while True:
+        last = selection.refit(fit, fit.model.lam, fit.model.L, fine=True)
+        fit, gain = selection.backward(last, modes)
+        if fit is last:
+            break
     if len(seeds):
         start = selection.seeded(fit, 2 * np.pi * np.array(seeds) / omega)
-        fit = selection.refit(fit.task, *start)
+        fit = selection.refit(fit, *start, fine=True)
         gain = selection.gains(fit)
     return _result(data, fit, gain, omega, size, diagram)
 
@@ -93,27 +98,39 @@ def weighting(data: FrequencyResponses) -> str:
     return "scaled" if data.scaled else "given"
 
 
-def _over_noise(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
-    """Return responses over their noise, and the variance of their mean, (references, 1, lines)."""
-    live: Bools = np.any(data.measured, axis=(0, 2))
-    level = np.ones(len(live))
+def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
+    """Return responses over their noise, principal ones where they are many, and their variance.
+
+    It is that of the mean response, (references, 1, lines).
+    """
+    n_in, n_out, lines = data.H.shape
+    live = data.measured.any(axis=(0, 2))
+    level = np.ones(n_out)
     level[live] = np.sqrt(np.nanmedian(variance[:, live], axis=(0, 2)))
-    level = np.where(live & (level > 0), level, np.inf)[:, None]
-    H = np.asarray(np.where(data.measured, data.H, 0) / level, complex)
-    relative = np.where(np.isfinite(variance), variance, 0) / level**2
+    level = np.where(live & (level > 0), level, np.inf)
+    H = np.asarray(np.where(data.measured, data.H, 0) / level[:, None], complex)
+    relative = np.where(np.isfinite(variance), variance, 0) / level[:, None] ** 2
     known = np.maximum(np.sum(relative > 0, axis=1, keepdims=True), 1)
     shared = np.sum(relative, axis=1, keepdims=True) / known
-    return replace(data, H=H, variance=None), np.where(shared > 0, shared, np.inf)
+    shared = np.where(shared > 0, shared, np.inf)
+    names = data.responses
+    if n_out > PRINCIPAL:
+        # real combinations: complex ones would not be conjugate at conjugate poles
+        flat = np.ascontiguousarray(H.transpose(1, 0, 2)).reshape(n_out, -1).view(float)
+        U = np.linalg.eigh(flat @ flat.T)[1][:, -PRINCIPAL:]
+        H = (U.T @ flat).view(complex).reshape(PRINCIPAL, n_in, lines).transpose(1, 0, 2)
+        names = tuple(f"principal {i + 1}" for i in range(PRINCIPAL))
+    return replace(data, H=H, responses=names, variance=None), shared
 
 
-def _reweighted(fit: Fit, kind: str) -> Problem:
-    """Return the problem of a fit with the weights of the smooth variance of its residuals.
+def _reweighted(fit: Fit, kind: str) -> Fit:
+    """Return a fit whose data are weighted by the smooth variance of its residuals.
 
     Where the variance is given it stays; where it is known up to a factor it gets that.
     """
     task, H = fit.task, fit.functions
     if kind == "given":
-        return task
+        return fit
     used, raw = task.weight > 0, square(fit.residual)
     raw *= task.count / fit.freedom
     if task.weight.shape != H.shape:
@@ -126,7 +143,7 @@ def _reweighted(fit: Fit, kind: str) -> Problem:
         weight = task.weight / np.where(factor > 0, factor, 1.0)
     else:
         weight = np.where(used, 1 / fitted_variance(raw, np.where(used, H, np.nan)), 0.0)
-    return replace(task, weight=weight)
+    return replace(fit, task=replace(task, weight=weight))
 
 
 def _result(
