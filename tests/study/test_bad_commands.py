@@ -68,7 +68,7 @@ def test_misuse_of_the_command_line(
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        (b"", "results.nc: file: expected results in netCDF, found "),
+        (b"", "results.nc: file: expected results of a finished run, found an empty file"),
         (b"no netCDF", "results.nc: file: expected results in netCDF, found "),
         (b"\x89HDF\r\n\x1a\n" + b"\x00" * 500, "results.nc: file: expected results in netCDF, fou"),
     ],

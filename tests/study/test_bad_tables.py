@@ -52,8 +52,9 @@ test_contradictions_of_tables_and_files = refuses(*CONTRADICTIONS)
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        (b"", "study: expected a table [study], found nothing"),
-        (b"", "parameter: expected at least one table [[parameter]], found nothing"),
+        (b"", "file: expected a study file, found an empty file"),
+        (b"# nothing", "study: expected a table [study], found nothing"),
+        (b"# nothing", "parameter: expected at least one table [[parameter]], found nothing"),
         (b"\xff\xfe\x00", "file: expected TOML in UTF-8, found the byte 0xff at position 0"),
         (STUDY.encode("utf-16"), "file: expected TOML in UTF-8, found "),
         (b"\x00" * 100, "file: expected TOML in UTF-8, found "),
