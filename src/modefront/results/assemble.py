@@ -289,15 +289,18 @@ def with_intervals(data: ArrayDataset, noise: NoiseModel, inference: Inference) 
     """Return results with what the posterior says.
 
     A quantile is such that the next draw is below it with its probability. Of draws that do not
-    settle, and of a model that lacks something or cannot be used, none is called determined.
+    settle, and of a model that lacks something or cannot be used, none is called determined, nor is
+    a parameter that a bound holds, and not the data.
     """
     draws, fit, widths = inference.draws, inference.fit, prior_widths(noise.problem)
     freed, unfixed = inference.freed, inference.unfixed
     settled = draws.settled and not np.any(refused(fit["misfit"], fit["nominal_misfit"]))
-    (side,) = data["at_bound"].values[data["kind"].values == Kind.MOST_PROBABLE.value]
+    best = data["kind"].values == Kind.MOST_PROBABLE.value
+    (side,), (theta,) = (data[name].values[best] for name in ("at_bound", "theta"))
+    held = side * (freed.theta - theta) > 0 if freed else np.zeros(side.size, dtype=np.bool_)
     interval = intervals(draws.theta, side, data["bounds"].values)
     share = (interval[:, 2] - interval[:, 0]) / widths
-    known = (share < DETERMINED) & (settled and not (fit["lack_of_fit"] < CHANCE).any())
+    known = (share < DETERMINED) & ~held & (settled and not (fit["lack_of_fit"] < CHANCE).any())
     place = np.where(known, 0, np.where(share > OPEN, 2, 1))
     values = {
         **fit,
