@@ -104,11 +104,12 @@ def read_csv(
         With every row and column in which something is wrong.
     """
     table = read_table(Path(path), "a file of modal data")
-    header, used = renamed(table.header, columns or {}, (STD,))
+    own = table.header
+    header, used = renamed(own, columns or {}, (STD,))
     refuse(
-        Fault(str(path), f"columns {clean(name, NAME)!r}", "a column of it", close)
+        Fault(str(path), f"columns {clean(name, NAME)!r}", "a column of it", suggestion(name, own))
         for name in columns or {}
-        if name not in used and (close := suggestion(name, table.header))
+        if name not in used
     )
     if len(header) > 20_000:
         raise wrong(table.path, "up to 20000 columns", str(len(header)), f"line {table.line}")

@@ -151,8 +151,10 @@ class UpdatingProblem(Shown):
         if not derivatives:
             J = np.array([r @ r for r in self.vectors(modes, pairs)])
             return Evaluation(theta, J, quantities=quantities)
-        residuals = self.residuals_at(modes, pairs)
-        rest = self._curvature(modes, pairs) if second else None
+        if second:
+            residuals, rest = self._with_curvature(modes, pairs)
+        else:
+            residuals, rest = self.residuals_at(modes, pairs), None
         J = np.array([x.r @ x.r for x in residuals])
         dJ = np.array([2 * x.r @ x.dr for x in residuals])
         H = np.array([2 * x.dr.T @ x.dr for x in residuals])
@@ -193,18 +195,21 @@ class UpdatingProblem(Shown):
             "mac": mac_slopes(self.data, pairs, modes.phi, modes.dphi),
         }
 
-    def _curvature(self, modes: Modes, pairs: Pairs) -> Floats | None:
-        """Return second derivatives of J beyond Gauss-Newton's, None where they are not known."""
-        sums = []
+    def _with_curvature(
+        self, modes: Modes, pairs: Pairs
+    ) -> tuple[tuple[Residual, ...], Floats | None]:
+        """Return these, and second derivatives of J beyond Gauss-Newton's where they are known."""
+        residuals, curvatures = [], []
         for row in self._stacks:
-            parts = [stack.with_curvature(modes, pairs)[2] for stack in row]
-            sums.append([sum(getattr(x, name) for x in parts) for name in ("w", "v", "own")])
-        w, v, own = map(np.array, zip(*sums, strict=True))
+            r, dr, parts = zip(*(x.with_curvature(modes, pairs) for x in row), strict=True)
+            residuals.append(Residual(np.concatenate(r), np.concatenate(dr)))
+            curvatures.append([sum(getattr(x, name) for x in parts) for name in ("w", "v", "own")])
+        w, v, own = map(np.array, zip(*curvatures, strict=True))
         try:
             of_modes = modes.second_derivatives(w, v)
         except ModelError:  # an iteration fails that first derivatives do not need
-            return None
-        return None if of_modes is None else np.asarray(own + of_modes)
+            of_modes = None
+        return tuple(residuals), None if of_modes is None else own + of_modes
 
     def vectors(self, modes: Modes, pairs: Pairs) -> list[Floats]:
         """Return the residual vector of each group without derivatives."""
