@@ -123,10 +123,10 @@ def test_a_snapshot_is_exact_with_its_derivatives(full: MatrixModel) -> None:
 def test_a_space_of_modes_has_these_and_is_smaller(full: MatrixModel) -> None:
     model, thetas = reduced(full), np.random.default_rng(4).uniform(0.5, 2.3, (6, 3))
     model.take(SnapshotRequest(np.array([1.4, 0.7, 2.1]), 10))
-    V = model.space(thetas, 3e-3)
+    V = model.space(thetas, 8, 3e-3)
     assert V.shape[0] == model.columns
     assert V.shape[1] < 0.8 * model.columns
-    alike = model.space(np.tile(thetas[0], (2, 1)), 3e-3)
+    alike = model.space(np.tile(thetas[0], (2, 1)), 8, 3e-3)
     assert alike.shape[1] == model.count, "modes that are the same span all that are asked for"
     sent = pickle.loads(pickle.dumps(model.within(V)))
     for theta in thetas:

@@ -12,13 +12,15 @@ import scipy.stats
 from exact import Residuals, squares
 from scipy.special import ndtr, ndtri
 
+import modefront as mf
 from modefront._typing import Floats
 from modefront.models.parameters import Prior
+from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.inference import log_values, maximum
-from modefront.uncertainty.prior import NoiseModel, Standardised
+from modefront.uncertainty.prior import NoiseModel, NoisePrior, Standardised
 from modefront.uncertainty.sampling import CHAINS, DRAWS, FINE, NEAR, Peak, agreement, draw_models
-from modefront.work.task import IMMEDIATE, Count, Task
+from modefront.work.task import IMMEDIATE, Count, Task, counted
 
 NU = 4.0
 
@@ -310,3 +312,36 @@ def test_draws_in_a_poor_basis_are_weighted(
         known = scipy.stats.truncnorm(-0.5, 4.5, loc=0.1, scale=0.2)
         assert scipy.stats.kstest(found.theta[:, 0], known.cdf).pvalue > 0.01
         assert scipy.stats.kstest(found.theta[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01
+
+
+def test_draws_in_a_basis_know_modes_above_one_that_is_not_measured(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A chain of 120 stories in three parts; its posterior is nearly Gaussian about the peak."""
+    names, measured = ("k1", "k2", "k3"), [0, 1, 3, 4]
+    stories = [name for name in names for _ in range(40)]
+    model = mf.chain(names, [20.0] * 120, [8e7] * 120, stiffness_parameters=stories)
+    truth, rng = np.array([0.9, 1.3, 0.8]), np.random.default_rng(3)
+    true = model.modes(truth, 5)
+    frequency = true.frequency[measured] * (1 + 0.005 * rng.normal(size=4))
+    data = mf.modal_data(frequency, true.phi.T[measured, ::8], model.sensors[::8])
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    parameters = [mf.Parameter(x, nominal=1.0, bounds=(0.3, 3.0)) for x in names]
+    problem = mf.updating_problem(
+        model, data, groups, parameters=parameters, reduction=mf.Reduction(1e-8)
+    )
+    basis = problem.model
+    assert isinstance(basis, ReducedModel)
+    for theta in rng.uniform(0.5, 2.0, (12, 3)):
+        basis.take(SnapshotRequest(theta, basis.count))
+    noise = NoisePrior().of(problem, None)
+    assert noise is not None
+    top = maximum(noise, truth)
+    monkeypatch.setattr("modefront.uncertainty.sampling.SMALL", 0)
+    with counted() as costs:
+        draws = draw_models(noise, [top.theta], 100, 1, IMMEDIATE)
+    assert draws.settled
+    assert costs.reduced < 2000
+    std = np.sqrt(np.diag(np.linalg.inv(noise.precision(noise.problem.evaluate(top.theta)))))
+    assert np.all(np.abs(draws.theta.mean(axis=0) - top.theta) < 0.5 * std)
+    assert draws.theta.std(axis=0) == pytest.approx(std, rel=0.4)

@@ -28,6 +28,7 @@ from modefront.models.reduced.model import ReducedModel
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import begin, solve
+from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import ACCUMULATED
 from modefront.uncertainty.prior import FARTHEST, NoiseModel, Standardised
 from modefront.work.codec import record
@@ -331,17 +332,29 @@ def _nearer(
 ) -> NoiseModel:
     """Return the posterior in the space of the modes at standardised parameters z (models, p).
 
-    Directions shorter than ``lacking`` are left out. The same where the model is not a reduced one,
-    its basis is small, or this space not much less.
+    Directions shorter than ``lacking`` are left out; unless they are as short as `FINE`, also modes
+    above all those that are paired. The same where the model is not a reduced one, its basis is
+    small, or this space not much less.
     """
     problem = noise.problem
     if not isinstance(problem.model, ReducedModel):
         return noise
     theta = np.array([Standardised(problem).theta(x)[0] for x in z])
-    (V,) = work.run([Task(("space", number), problem.model.space, (theta, lacking))])
+    (V,) = work.run([Task(("space", number), _space, (problem, theta, lacking))])
     if len(V) < SMALL or 2 * V.shape[1] > len(V):
         return noise
     return replace(noise, problem=replace(problem, model=problem.model.within(V)))
+
+
+def _space(problem: UpdatingProblem, theta: Floats, lacking: float) -> Floats:
+    """Return the coordinates of that space in the basis, see `ReducedModel.space`."""
+    model = problem.model
+    assert isinstance(model, ReducedModel)
+    used = model.count
+    if lacking > FINE:
+        found = [problem.evaluate(x, derivatives=False).quantities for x in theta]
+        used = max(int(np.max(x["paired_mode"])) for x in found if x)
+    return model.space(theta, used, lacking)
 
 
 def _peak(noise: NoiseModel, theta: Floats) -> Evaluation:

@@ -188,14 +188,13 @@ class ReducedModel(Shown):
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return FullModes(pairs.lam[:count], Phi, None)
 
-    def space(self, thetas: Floats, lacking: float) -> Floats:
-        """Return coordinates (columns, n) in the basis that span its modes at some parameters.
+    def space(self, thetas: Floats, used: int, lacking: float) -> Floats:
+        """Return coordinates (columns, n) in the basis that span ``used`` modes at parameters.
 
         Directions in which modes of unit energy have less than ``lacking``, root mean square, are
-        left out, and spare modes, but for as many as there are modes.
+        left out, but for as many as there are modes.
         """
         _, K, M, _ = self._projected()
-        used = self.first.modes
         X = [dense.decompose(K.at(x), M.at(x), used).X[:, :used] for x in thetas]
         U, sizes, _ = np.linalg.svd(np.hstack(X), full_matrices=False)
         spend(Costs(reduced=len(thetas)))
