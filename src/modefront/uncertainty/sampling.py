@@ -353,7 +353,7 @@ def _space(problem: UpdatingProblem, theta: Floats, lacking: float) -> Floats:
     used = model.count
     if lacking > FINE:
         found = [problem.evaluate(x, derivatives=False).quantities for x in theta]
-        used = max(int(np.max(x["paired_mode"])) for x in found if x)
+        used = max((int(np.max(x["paired_mode"])) for x in found if x), default=used)
     return model.space(theta, used, lacking)
 
 
