@@ -11,6 +11,7 @@ from modefront.data.modal import modal_data
 from modefront.diagnosis.comparison import COMPARED, compare, of_few_sets
 from modefront.errors import InputError
 from modefront.models.chain import chain
+from modefront.models.matrices import matrices
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.study.check import cause_of, check, compared
@@ -118,3 +119,32 @@ def with_sets(problem: UpdatingProblem, count: int) -> UpdatingProblem:
     again: dict[str, Any] = {name: np.concatenate([getattr(data, name)] * count) for name in parts}
     sets = tuple(map(str, range(count)))
     return replace(problem, data=replace(data, sets=sets, **again))
+
+
+@pytest.mark.parametrize(
+    ("shapes", "known"),
+    [
+        (
+            Group("shapes", shape="all"),
+            [
+                "modes 1, 2 of the nominal model coincide with others: their shapes are not "
+                "defined; write subspace in place of shape in [[group]]"
+            ],
+        ),
+        (Group("shapes", subspace="all"), []),
+    ],
+)
+def test_shapes_of_modes_that_coincide_are_compared_by_their_subspace(
+    shapes: Group, known: list[str]
+) -> None:
+    """Two masses that move along x and y alike: two pairs of modes."""
+    low, high = np.diag([1e4, 0.0]), np.array([[1e4, -1e4], [-1e4, 1e4]])
+    stiffness = {"low": np.kron(np.eye(2), low), "high": np.kron(np.eye(2), high)}
+    sensors = {"x1": 0, "x2": 1, "y1": 2, "y2": 3}
+    model = matrices(["low", "high"], stiffness, {"base": np.eye(4)}, sensors)
+    shape = np.array([[0.5, 0.9, -0.3, -0.5], [0.3, 0.5, 0.5, 0.9]])
+    data = modal_data(np.array([9.9, 10.1]), shape, model.sensors)
+    groups = [Group("frequencies", frequency="all"), shapes]
+    bounds = {"low": (0.3, 3.0), "high": (0.3, 3.0)}
+    problem = updating_problem(model, data, groups, bounds, {"low": 1.0, "high": 1.0})
+    assert [x for x in check(problem).warnings if "coincide" in x] == known

@@ -34,6 +34,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.optim.problem import Evaluation, at_bounds
 from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
+from modefront.residuals.shape import ShapeResiduals
 from modefront.results.remarks import digest
 from modefront.rounding import TINY
 from modefront.study.definition import Study
@@ -169,8 +170,12 @@ def excluding_bounds(study: Study) -> tuple[Finding, ...]:
 
 def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[Finding]:
     """Warn of modes that coincide, of bounds, of elements, and of so much that a run takes long."""
-    for r in np.flatnonzero(nominal.quantities["coincident"]).tolist():
-        yield found("coincident", str(problem.data.modes[r]))
+    members = [x for row in problem.members for x in row if isinstance(x, ShapeResiduals)]
+    single = {x.modes[0] for x in members if not x.cluster}
+    same = single.intersection(np.flatnonzero(nominal.quantities["coincident"]).tolist())
+    if same:
+        modes = ", ".join(str(problem.data.modes[r]) for r in sorted(same))
+        yield found("coincident", modes, many=len(same) > 1)
     names, full = problem.model.parameters, full_of(problem.model)
     for j in np.flatnonzero((problem.start == problem.lower) | (problem.start == problem.upper)):
         yield found("nominal-at-bound", names[j], bound=float(problem.start[j]))
