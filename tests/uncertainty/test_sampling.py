@@ -16,10 +16,21 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.models.parameters import Prior
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
+from modefront.optim.problem import Evaluation
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.inference import log_values, maximum
 from modefront.uncertainty.prior import NoiseModel, NoisePrior, Standardised
-from modefront.uncertainty.sampling import CHAINS, DRAWS, FINE, NEAR, Peak, agreement, draw_models
+from modefront.uncertainty.sampling import (
+    CHAINS,
+    DRAWS,
+    FINE,
+    NEAR,
+    SOLVED,
+    Peak,
+    agreement,
+    draw_models,
+    find_peak,
+)
 from modefront.work.task import IMMEDIATE, Count, Task, counted
 
 NU = 4.0
@@ -46,7 +57,7 @@ def test_one_group_of_linear_residuals_has_students_distribution() -> None:
     exact, (J,), *_ = np.linalg.lstsq(A, y)
     assert best.theta == pytest.approx(exact, abs=1e-5)
     at = Standardised(noise.problem).evaluate(ndtri((best.theta + 3) / 6))
-    of = Peak(at, noise.logs)
+    of = Peak(at, noise.logs, np.zeros(0))
     assert of.dof == pytest.approx([6 + NU - 2], rel=1e-3)
     assert of.scale == pytest.approx([J + NU], rel=1e-3)
     draws = draw_models(noise, [best.theta], 800, 1, IMMEDIATE).theta
@@ -190,6 +201,38 @@ def test_thirty_parameters_with_flat_directions() -> None:
         assert scipy.stats.kstest(column, scipy.stats.uniform(-1, 2).cdf).pvalue > 1e-3
 
 
+def test_second_derivatives_lead_to_models_in_fewer_evaluations() -> None:
+    """Than first ones alone; the model is the same one."""
+
+    def valley(theta: Floats) -> Residuals:
+        x, y = theta
+        r = np.array([(y + 0.2 * x**2) / 0.05, (x - 0.2) / 0.1])
+        return [(r, np.array([[8 * x, 20 + 0 * x], [10 + 0 * x, 0 * x]]))]
+
+    noise = noise_of(valley, [-3, -3], [3, 3], [2.0])
+    at, curved = find_peak(noise, np.zeros(2))
+    counts = []
+    for second in (curved, 0 * curved):
+        target = Counting(noise.problem)
+        peak, u = Peak(at, noise.logs, second), np.array([0.8, -0.9, 0.3])
+        found = peak.model(target, u)
+        assert found is not None
+        assert peak.behind(found) == pytest.approx(u, abs=SOLVED)
+        counts.append(target.evaluations)
+    assert counts[0] < counts[1]
+
+
+@dataclass(eq=False)
+class Counting(Standardised):
+    """A standardised problem that counts its evaluations."""
+
+    evaluations: int = 0
+
+    def evaluate(self, *args: Any, **options: Any) -> Evaluation:
+        self.evaluations += 1
+        return super().evaluate(*args, **options)
+
+
 def test_chains_that_stay_apart_do_not_agree() -> None:
     """Two basins of which chains know one each; one chain that crawls has a small sample."""
     rng = np.random.default_rng(0)
@@ -286,7 +329,7 @@ def test_derivatives_beyond_all_bounds_leave_a_peak() -> None:
         return [(steep @ theta, steep)]
 
     noise = noise_of(meet, [-1] * 6, [1] * 6, [40.0])
-    peak = Peak(Standardised(noise.problem).evaluate(np.zeros(6)), noise.logs)
+    peak = Peak(Standardised(noise.problem).evaluate(np.zeros(6)), noise.logs, np.zeros(0))
     assert np.linalg.eigvalsh(peak.precision(np.ones(1))).min() > 0
 
 

@@ -52,7 +52,8 @@ NEAR, FINE = 3e-3, 1e-4
 tenth of a usual error of shapes; that of the finer one, which leaves 2 % in the weights of draws.
 """
 
-SOLVED, STEPS = 1e-3, 12  # error of the normal variables behind a model, and steps to it at most
+SOLVED, STEPS = 1e-2, 12  # error of the normal variables behind a model, and steps to it at most
+BENT = 0.5  # length of differences for second derivatives, in standard deviations
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,8 @@ class Peak:
 
     at: Evaluation  # the evaluation of the standardised problem there
     logs: LogSum  # -2 ln p of the squares of the residuals, with the variances integrated out
+    # (n, p, p, p) products of the derivatives and the second derivatives of each group's residuals
+    curved: Floats
 
     @cached_property
     def top(self) -> Model:
@@ -95,37 +98,33 @@ class Peak:
 
     def forward(self, model: Model) -> tuple[Floats, Floats]:
         """Return F (p,) of a model and its derivative (p, p)."""
-        F = model.z + self.top.dr.T @ (model.over * model.r)
-        return F, np.eye(len(F)) + self.top.dr.T @ (model.over[:, None] * model.dr)
+        G = self.top.dr.T * model.over
+        return model.z + G @ model.r, np.eye(len(G)) + G @ model.dr
 
     def behind(self, model: Model) -> Floats:
         """Return the normal variables (p + n,) behind a model."""
         xi = np.linalg.solve(np.linalg.cholesky(self.precision(model.s)), self.forward(model)[0])
         return np.append(xi, ndtri(gammainc(self.dof / 2, self.scale / model.s / 2)))
 
-    def log_density(self, model: Model) -> float:
-        """Return ln q of a model and its variances."""
+    def log_density(self, model: Model) -> tuple[float, float]:
+        """Return ln q of a model and its variances, and the sign of the determinant there."""
         F, slope = self.forward(model)
-        A, s, half = self.precision(model.s), model.s, self.dof / 2
-        size = np.linalg.slogdet(slope)[1]
-        size -= np.linalg.slogdet(A)[1] / 2 + F @ np.linalg.solve(A, F) / 2
+        L, s, half = np.linalg.cholesky(self.precision(model.s)), model.s, self.dof / 2
+        xi, (sign, size) = np.linalg.solve(L, F), np.linalg.slogdet(slope)
+        size -= np.log(L.diagonal()).sum() + xi @ xi / 2
         of_s = half * np.log(self.scale / 2) - gammaln(half) - (half + 1) * np.log(s)
-        return float(size + (of_s - self.scale / (2 * s)).sum())
+        return float(size + (of_s - self.scale / (2 * s)).sum()), float(sign)
 
     def reaches(self, target: Standardised, model: Model) -> bool:
-        """Return whether the normal variables behind a model lead to it, and to no other one.
-
-        Where the derivative of F has a negative determinant, only Newton's method can tell.
-        """
-        if np.linalg.slogdet(self.forward(model)[1])[0] > 0:
-            return True
+        """Return whether the normal variables behind a model lead to it, and to no other one."""
         found = self.model(target, self.behind(model))
         return found is not None and np.abs(found.z - model.z).max() < np.sqrt(SOLVED)
 
     def model(self, target: Standardised, u: Floats) -> Model | None:
         """Return the model of normal variables (p + n,) by Newton's method; None without one.
 
-        Steps become shorter until the next one does (Deuflhard's natural monotonicity).
+        Steps become shorter until the next one does (Deuflhard's natural monotonicity). The first
+        one is bent as second derivatives say.
         """
         p = self.at.theta.size
         below = ndtr(np.clip(-u[p:], -FARTHEST, FARTHEST))
@@ -133,14 +132,16 @@ class Peak:
         L = np.linalg.cholesky(self.precision(here.s))
         F, slope = self.forward(here)
         missing = L @ u[:p] - F
-        for _ in range(STEPS):
+        for k in range(STEPS):
             if np.linalg.norm(np.linalg.solve(L, missing)) < SOLVED:
                 return here
             inverse = np.linalg.inv(slope)
-            step = inverse @ missing
+            step, bend = inverse @ missing, np.zeros(p)
+            if k == 0:
+                bend = inverse @ np.tensordot(1 / here.s, self.curved @ step @ step, axes=1) / -2
             share = min(1.0, 1 / np.abs(step).max())
             while True:
-                z = np.clip(here.z + share * step, -FARTHEST, FARTHEST)
+                z = np.clip(here.z + share * step + share**2 * bend, -FARTHEST, FARTHEST)
                 there = Model(target.evaluate(z), here.s)
                 if there.found.feasible:
                     F, slope = self.forward(there)
@@ -248,7 +249,7 @@ def draw_models(
     most; None for as many as so many effective draws may take.
     """
     stage = "sample-posterior"
-    tasks = [Task(("peaks", k + 1), _peak, (noise, x)) for k, x in enumerate(maxima)]
+    tasks = [Task(("peaks", k + 1), find_peak, (noise, x)) for k, x in enumerate(maxima)]
     peaks = _mixture(noise, work.run(tasks))
     chains: list[Chain | None] = [None] * CHAINS
     kept: list[Floats] = []
@@ -357,19 +358,31 @@ def _space(problem: UpdatingProblem, theta: Floats, lacking: float) -> Floats:
     return model.space(theta, used, lacking)
 
 
-def _peak(noise: NoiseModel, theta: Floats) -> Evaluation:
-    """Return the peak of the posterior of standardised parameters below a model theta (p,)."""
+def find_peak(noise: NoiseModel, theta: Floats) -> tuple[Evaluation, Floats]:
+    """Return the peak of the posterior of standardised parameters below a model theta (p,).
+
+    With it comes `Peak.curved`, by differences along its axes; 0 along those without any.
+    """
     target = Standardised(noise.problem)
     start = target.evaluate(np.clip(target.z(theta), -2.0, 2.0))
-    return solve(target, noise.programme, begin(start)).evaluation
+    at = solve(target, noise.programme, begin(start)).evaluation
+    peak = Peak(at, noise.logs, np.zeros(0))
+    L = np.linalg.cholesky(peak.precision(peak.expected))
+    changes = np.zeros((at.theta.size, *peak.squares.shape))  # axes, n, p, p
+    for change, axis in zip(changes, np.linalg.inv(L), strict=True):
+        found = target.evaluate(np.clip(at.theta + BENT * axis, -FARTHEST, FARTHEST))
+        if found.feasible:
+            pairs = zip(at.residuals[:-1], found.residuals[:-1], strict=True)
+            change[:] = [x.dr.T @ (y.dr - x.dr) / BENT for x, y in pairs]
+    curved = np.tensordot(changes, L.T, axes=(0, 0))  # n, p, p, p
+    return at, (curved + curved.swapaxes(2, 3)) / 2
 
 
-def _mixture(noise: NoiseModel, found: Sequence[Evaluation]) -> list[Peak]:
+def _mixture(noise: NoiseModel, found: Sequence[tuple[Evaluation, Floats]]) -> list[Peak]:
     """Return the peaks that count, each once."""
-    logs = noise.logs
     peaks: list[Peak] = []
-    for x in sorted(found, key=lambda x: noise.programme.value(x.J)):
-        new = Peak(x, logs)
+    for at, curved in sorted(found, key=lambda x: noise.programme.value(x[0].J)):
+        new = Peak(at, noise.logs, curved)
         ways = [new.behind(Model(y.at, new.expected)) - new.behind(new.top) for y in peaks]
         if all(np.linalg.norm(way) > APART for way in ways):
             peaks.append(new)
@@ -418,28 +431,31 @@ class Sampler:
 
     def across(self, here: Model, rng: np.random.Generator) -> Model:
         """Return the model after a step to one that is independent of it."""
-        weight = here.log_posterior(self.logs) - self.log_density(here)
-        if not np.isfinite(weight):
-            return here
-        peak = self.peaks[rng.choice(len(self.peaks))]
-        new = peak.model(self.target, rng.normal(size=here.z.size + here.s.size))
+        k = int(rng.choice(len(self.peaks)))
+        new = self.peaks[k].model(self.target, rng.normal(size=here.z.size + here.s.size))
         if new is None:
             return here
-        change = new.log_posterior(self.logs) - self.log_density(new, peak) - weight
-        return _taken(here, new, change, rng)[0]
+        ahead, aback = (np.array([x.log_density(y) for x in self.peaks]) for y in (new, here))
+        gain = new.log_posterior(self.logs) - here.log_posterior(self.logs) - np.log(rng.random())
+        # Whether peaks lead to a model is only asked where it may decide.
+        if gain + np.logaddexp.reduce(aback[:, 0]) <= ahead[k, 0]:
+            return here
+        gain += self.log_density(here, aback)
+        taken = np.isfinite(gain) and gain > self.log_density(new, ahead, k)
+        return new if taken else here
 
-    def log_density(self, model: Model, by: Peak | None = None) -> float:
-        """Return the logarithm of the sum of what all peaks propose, ``by`` one of them or not.
+    def log_density(self, model: Model, each: Floats, by: int = -1) -> float:
+        """Return the logarithm of the sum of what peaks propose, ``by`` one of them or not.
 
-        It is minus infinity for a model to which they do not lead.
+        ``each`` (peaks, 2) is what `Peak.log_density` says. It is minus infinity for a model to
+        which they do not lead. Where the determinant is negative, only Newton's method can tell.
         """
-        q = np.array([peak.log_density(model) for peak in self.peaks])
-        counted = [
-            x
-            for x, peak in zip(q, self.peaks, strict=True)
-            if x > q.max() + np.log(FAINT) and (peak is by or peak.reaches(self.target, model))
-        ]
-        return float(np.logaddexp.reduce(counted, initial=-np.inf))
+        out, least = -np.inf, each[:, 0].max() + np.log(FAINT)
+        for k, (q, sign) in enumerate(each.tolist()):
+            peak = self.peaks[k]
+            if k == by or (q > least and (sign > 0 or peak.reaches(self.target, model))):
+                out = np.logaddexp(out, q)
+        return float(out)
 
     def nearby(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
         """Return the model after a step of the stochastic Newton method."""
