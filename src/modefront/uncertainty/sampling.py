@@ -52,7 +52,7 @@ NEAR, FINE = 3e-3, 1e-4
 tenth of a usual error of shapes; that of the finer one, which leaves 2 % in the weights of draws.
 """
 
-SOLVED, STEPS = 1e-2, 12  # error of the normal variables behind a model, and steps to it at most
+SOLVED, STEPS = 1e-2, 12  # error of the normal variables behind a model, and models to it at most
 BENT = 0.5  # length of differences for second derivatives, in standard deviations
 
 
@@ -131,28 +131,24 @@ class Peak:
         here = Model(self.at, self.scale / chdtri(self.dof, below))
         L = np.linalg.cholesky(self.precision(here.s))
         F, slope = self.forward(here)
-        missing = L @ u[:p] - F
-        for k in range(STEPS):
-            if np.linalg.norm(np.linalg.solve(L, missing)) < SOLVED:
-                return here
-            inverse = np.linalg.inv(slope)
-            step, bend = inverse @ missing, np.zeros(p)
-            if k == 0:
-                bend = inverse @ np.tensordot(1 / here.s, self.curved @ step @ step, axes=1) / -2
-            share = min(1.0, 1 / np.abs(step).max())
-            while True:
-                z = np.clip(here.z + share * step + share**2 * bend, -FARTHEST, FARTHEST)
-                there = Model(target.evaluate(z), here.s)
-                if there.found.feasible:
-                    F, slope = self.forward(there)
-                    missing = L @ u[:p] - F
-                    left = np.linalg.norm(inverse @ missing)
-                    if left <= (1 - share / 4) * np.linalg.norm(step):
-                        break
-                share /= 4
-                if share < SOLVED:
-                    return None
-            here = there
+        inverse, missing = np.linalg.inv(slope), L @ u[:p] - F
+        step = inverse @ missing
+        bend = inverse @ np.tensordot(1 / here.s, self.curved @ step @ step, axes=1) / -2
+        share = 1 / max(1.0, np.abs(step).max())
+        for _ in range(STEPS):
+            z = np.clip(here.z + share * step + share**2 * bend, -FARTHEST, FARTHEST)
+            there = Model(target.evaluate(z), here.s)
+            if there.found.feasible:
+                F, slope = self.forward(there)
+                missing = L @ u[:p] - F
+                if np.linalg.norm(inverse @ missing) <= (1 - share / 4) * np.linalg.norm(step):
+                    if np.linalg.norm(np.linalg.solve(L, missing)) < SOLVED:
+                        return there
+                    here, inverse, bend = there, np.linalg.inv(slope), np.zeros(p)
+                    step = inverse @ missing
+                    share = 1 / max(1.0, np.abs(step).max())
+                    continue
+            share /= 4
         return None
 
 
@@ -469,18 +465,13 @@ class Sampler:
         ratio = np.linalg.slogdet(behind)[1] - np.linalg.slogdet(precision)[1]
         ratio += ahead @ precision @ ahead - aback @ behind @ aback
         change = new.log_posterior(self.logs) - here.log_posterior(self.logs) + float(ratio) / 2
-        return _taken(here, new, change, rng)
+        chance = float(np.exp(min(change, 0.0)))
+        return (new if rng.random() < chance else here), chance
 
 
 def _drawn(mean: Floats, precision: Floats, rng: np.random.Generator) -> Floats:
     """Return a draw (p,) from a Gaussian."""
     return mean + np.linalg.solve(np.linalg.cholesky(precision).T, rng.normal(size=mean.size))
-
-
-def _taken(here: Model, new: Model, change: float, rng: np.random.Generator) -> tuple[Model, float]:
-    """Return the next model by Metropolis' rule, and the probability of the new one."""
-    probability = float(np.exp(min(change, 0.0)))
-    return (new if rng.random() < probability else here), probability
 
 
 def agreement(x: Floats) -> tuple[float, float]:
