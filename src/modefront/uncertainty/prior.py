@@ -222,15 +222,13 @@ class Standardised:
         del second
         parameters, slope = self.theta(theta)
         found = self.problem.evaluate(parameters, derivatives=derivatives)
+        J = np.append(found.J, theta @ theta)
         if not (derivatives and found.feasible):
-            return replace(found, theta=theta, J=np.append(found.J, theta @ theta))
-        residuals = (
-            *(Residual(x.r, x.dr * slope) for x in found.residuals),
-            Residual(theta, np.eye(theta.size)),
-        )
+            return replace(found, theta=theta, J=J)
+        own = Residual(theta, np.eye(theta.size))
+        residuals = (*(Residual(x.r, x.dr * slope) for x in found.residuals), own)
         dJ = np.array([2 * x.r @ x.dr for x in residuals])
         H = np.array([2 * x.dr.T @ x.dr for x in residuals])
-        J = np.append(found.J, theta @ theta)
         return Evaluation(theta, J, dJ, H, False, found.quantities, residuals)
 
 

@@ -62,8 +62,7 @@ class Peak:
 
     at: Evaluation  # the evaluation of the standardised problem there
     logs: LogSum  # -2 ln p of the squares of the residuals, with the variances integrated out
-    # (n, p, p, p) products of the derivatives and the second derivatives of each group's residuals
-    curved: Floats
+    curved: Floats  # (n, p, p, p) derivatives times second ones of the residuals of each group
 
     @cached_property
     def top(self) -> Model:
@@ -190,8 +189,7 @@ class Model:
 
     def log_posterior(self, logs: LogSum) -> float:
         """Return ln p of the model and its variances."""
-        b = self.found.J[:-1] + logs.floor
-        of_s = (logs.a / 2 + 1) * np.log(self.s) + b / (2 * self.s)
+        of_s = (logs.a / 2 + 1) * np.log(self.s) + (self.found.J[:-1] + logs.floor) / (2 * self.s)
         return float(-of_s.sum() - self.found.J[-1] / 2)
 
     def newton(self, b: float) -> tuple[Floats, Floats]:
@@ -370,8 +368,7 @@ def find_peak(noise: NoiseModel, theta: Floats) -> tuple[Evaluation, Floats]:
         if found.feasible:
             pairs = zip(at.residuals[:-1], found.residuals[:-1], strict=True)
             change[:] = [x.dr.T @ (y.dr - x.dr) / BENT for x, y in pairs]
-    curved = np.tensordot(changes, L.T, axes=(0, 0))  # n, p, p, p
-    return at, (curved + curved.swapaxes(2, 3)) / 2
+    return at, np.tensordot(changes, L.T, axes=(0, 0))
 
 
 def _mixture(noise: NoiseModel, found: Sequence[tuple[Evaluation, Floats]]) -> list[Peak]:

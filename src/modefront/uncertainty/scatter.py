@@ -398,10 +398,8 @@ def laplace(problem: Problem, evaluation: Evaluation, a: Floats) -> Posterior | 
     held = held_at_bounds(problem, evaluation, w)
     Q, free = spaces(problem, evaluation, w, held)
     B = span[:, None] * Q
-    second = np.tensordot(w, evaluation.H, axes=1) - evaluation.dJ.T @ (
-        (a / J**2)[:, None] * evaluation.dJ
-    )
-    half = B.T @ second @ B / 2
+    of_weights = evaluation.dJ.T @ ((a / J**2)[:, None] * evaluation.dJ)
+    half = B.T @ (np.tensordot(w, evaluation.H, axes=1) - of_weights) @ B / 2
     lam, V = np.linalg.eigh(half)
     if lam.size and lam[0] <= 0:
         return None
