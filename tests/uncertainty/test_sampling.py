@@ -26,6 +26,7 @@ from modefront.uncertainty.sampling import (
     FINE,
     NEAR,
     SOLVED,
+    Model,
     Peak,
     agreement,
     draw_models,
@@ -220,6 +221,23 @@ def test_second_derivatives_lead_to_models_in_fewer_evaluations() -> None:
         assert peak.behind(found) == pytest.approx(u, abs=SOLVED)
         counts.append(target.evaluations)
     assert counts[0] < counts[1]
+
+
+def test_a_peak_does_not_lead_beyond_a_jump_where_it_leads_to_other_models() -> None:
+    """The measured mode is paired with one mode on the right, and with another one on the left."""
+
+    def pairs(theta: Floats) -> Residuals:
+        x, y = theta
+        return [(np.array([(x - np.where(x > 0, 1, -1)) / 0.3]), np.array([[1 / 0.3, 0 * y]]))]
+
+    noise = noise_of(pairs, [-2, -2], [2, 2], [1.0])
+    at, curved = find_peak(noise, np.array([1.0, 0.0]))
+    peak = Peak(at, noise.logs, curved)
+    target = Standardised(noise.problem)
+    for x in (0.9, -0.9):
+        model = Model(target.evaluate(target.z(np.array([x, 0.1]))), peak.expected)
+        assert np.linalg.det(peak.forward(model)[1]) > 0
+        assert peak.reaches(target, model) == (x > 0)
 
 
 @dataclass(eq=False)

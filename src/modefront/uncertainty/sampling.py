@@ -41,7 +41,7 @@ CHAINS, ROUND, LONGEST = 4, 50, 12
 
 AGREE = 1.05  # deviation of all chains over that within them, from which they do not agree
 ACCEPTED = 0.35  # share of steps nearby that are taken, below which they become shorter
-APART = 1.0  # distance of two peaks, in standard deviations, below which one is enough
+APART = 1.0  # distance of two models, in standard deviations, below which one leads to the other
 FAINT = 1e-3  # probability of a peak over that of the greatest one, below which it is left out
 
 SMALL, SNAPSHOTS = 100, 40
@@ -105,19 +105,34 @@ class Peak:
         xi = np.linalg.solve(np.linalg.cholesky(self.precision(model.s)), self.forward(model)[0])
         return np.append(xi, ndtri(gammainc(self.dof / 2, self.scale / model.s / 2)))
 
-    def log_density(self, model: Model) -> tuple[float, float]:
-        """Return ln q of a model and its variances, and the sign of the determinant there."""
+    def log_density(self, model: Model) -> float:
+        """Return ln q of a model and its variances."""
         F, slope = self.forward(model)
         L, s, half = np.linalg.cholesky(self.precision(model.s)), model.s, self.dof / 2
-        xi, (sign, size) = np.linalg.solve(L, F), np.linalg.slogdet(slope)
+        xi, size = np.linalg.solve(L, F), np.linalg.slogdet(slope)[1]
         size -= np.log(L.diagonal()).sum() + xi @ xi / 2
         of_s = half * np.log(self.scale / 2) - gammaln(half) - (half + 1) * np.log(s)
-        return float(size + (of_s - self.scale / (2 * s)).sum()), float(sign)
+        return float(size + (of_s - self.scale / (2 * s)).sum())
 
     def reaches(self, target: Standardised, model: Model) -> bool:
-        """Return whether the normal variables behind a model lead to it, and to no other one."""
+        """Return whether the normal variables behind a model lead to it, and to no other one.
+
+        Newton's method is only asked where its first step does not end near the model.
+        """
+        here = Model(self.at, model.s)
+        _, step, bend = self.first(here, self.forward(model)[0] - self.forward(here)[0])
+        away = here.z + step + bend - model.z
+        if np.abs(step).max() <= 1 and away @ self.precision(model.s) @ away < APART**2:
+            return True
         found = self.model(target, self.behind(model))
         return found is not None and np.abs(found.z - model.z).max() < np.sqrt(SOLVED)
+
+    def first(self, here: Model, missing: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the inverse (p, p) of F's derivative at the peak, a step (p,), and its bend."""
+        inverse = np.linalg.inv(self.forward(here)[1])
+        step = inverse @ missing
+        curved = np.tensordot(1 / here.s, self.curved @ step @ step, axes=1)
+        return inverse, step, inverse @ curved / -2
 
     def model(self, target: Standardised, u: Floats) -> Model | None:
         """Return the model of normal variables (p + n,) by Newton's method; None without one.
@@ -129,10 +144,7 @@ class Peak:
         below = ndtr(np.clip(-u[p:], -FARTHEST, FARTHEST))
         here = Model(self.at, self.scale / chdtri(self.dof, below))
         L = np.linalg.cholesky(self.precision(here.s))
-        F, slope = self.forward(here)
-        inverse, missing = np.linalg.inv(slope), L @ u[:p] - F
-        step = inverse @ missing
-        bend = inverse @ np.tensordot(1 / here.s, self.curved @ step @ step, axes=1) / -2
+        inverse, step, bend = self.first(here, L @ u[:p] - self.forward(here)[0])
         share = 1 / max(1.0, np.abs(step).max())
         for _ in range(STEPS):
             z = np.clip(here.z + share * step + share**2 * bend, -FARTHEST, FARTHEST)
@@ -140,9 +152,9 @@ class Peak:
             if there.found.feasible:
                 F, slope = self.forward(there)
                 missing = L @ u[:p] - F
+                if np.linalg.norm(np.linalg.solve(L, missing)) < SOLVED:
+                    return there
                 if np.linalg.norm(inverse @ missing) <= (1 - share / 4) * np.linalg.norm(step):
-                    if np.linalg.norm(np.linalg.solve(L, missing)) < SOLVED:
-                        return there
                     here, inverse, bend = there, np.linalg.inv(slope), np.zeros(p)
                     step = inverse @ missing
                     share = 1 / max(1.0, np.abs(step).max())
@@ -431,7 +443,7 @@ class Sampler:
         ahead, aback = (np.array([x.log_density(y) for x in self.peaks]) for y in (new, here))
         gain = new.log_posterior(self.logs) - here.log_posterior(self.logs) - np.log(rng.random())
         # Whether peaks lead to a model is only asked where it may decide.
-        if gain + np.logaddexp.reduce(aback[:, 0]) <= ahead[k, 0]:
+        if gain + np.logaddexp.reduce(aback) <= ahead[k]:
             return here
         gain += self.log_density(here, aback)
         taken = np.isfinite(gain) and gain > self.log_density(new, ahead, k)
@@ -440,13 +452,12 @@ class Sampler:
     def log_density(self, model: Model, each: Floats, by: int = -1) -> float:
         """Return the logarithm of the sum of what peaks propose, ``by`` one of them or not.
 
-        ``each`` (peaks, 2) is what `Peak.log_density` says. It is minus infinity for a model to
-        which they do not lead. Where the determinant is negative, only Newton's method can tell.
+        ``each`` (peaks,) is what each of them says. It is minus infinity for a model to which they
+        do not lead.
         """
-        out, least = -np.inf, each[:, 0].max() + np.log(FAINT)
-        for k, (q, sign) in enumerate(each.tolist()):
-            peak = self.peaks[k]
-            if k == by or (q > least and (sign > 0 or peak.reaches(self.target, model))):
+        out, least = -np.inf, each.max() + np.log(FAINT)
+        for k, (q, peak) in enumerate(zip(each.tolist(), self.peaks, strict=True)):
+            if k == by or (q > least and peak.reaches(self.target, model)):
                 out = np.logaddexp(out, q)
         return float(out)
 
