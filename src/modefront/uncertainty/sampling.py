@@ -129,7 +129,7 @@ class Peak:
 
     def first(self, here: Model, missing: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the inverse (p, p) of F's derivative at the peak, a step (p,), and its bend."""
-        inverse = np.linalg.inv(self.forward(here)[1])
+        inverse = np.asarray(np.linalg.inv(self.forward(here)[1]), dtype=float)
         step = inverse @ missing
         curved = np.tensordot(1 / here.s, self.curved @ step @ step, axes=1)
         return inverse, step, inverse @ curved / -2
@@ -155,8 +155,8 @@ class Peak:
                 if np.linalg.norm(np.linalg.solve(L, missing)) < SOLVED:
                     return there
                 if np.linalg.norm(inverse @ missing) <= (1 - share / 4) * np.linalg.norm(step):
-                    here, inverse, bend = there, np.linalg.inv(slope), np.zeros(p)
-                    step = inverse @ missing
+                    inverse = np.asarray(np.linalg.inv(slope), dtype=float)
+                    here, step, bend = there, inverse @ missing, np.zeros(p)
                     share = 1 / max(1.0, np.abs(step).max())
                     continue
             share /= 4
