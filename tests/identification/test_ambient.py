@@ -12,7 +12,7 @@ from modefront._typing import Complexes, Floats
 from modefront.data.modal_test import Records
 from modefront.identification import spectral_density
 from modefront.identification.harmonics import without_sine
-from modefront.identification.methods.ambient import _harmonic, identify
+from modefront.identification.methods.ambient import Local, _harmonic, _overlapping, identify
 from modefront.identification.sets import merged_shape
 from modefront.identification.spectra import Transforms
 from modefront.identification.spectral_density import Band, Density
@@ -227,6 +227,11 @@ def test_close_modes_are_found_and_a_machine_is_none() -> None:
         assert (mode.shape.shape @ shape) ** 2 > 0.98
         assert abs(mode.frequency - f) < 4 * mode.frequency_std
         assert abs(mode.damping - zeta) < 4 * mode.damping_std
+    # with all lines, damping has this deviation (Au 2014), and 1.52 times it with those within
+    # four half bandwidths
+    last = result.modes[2]
+    best = np.sqrt(last.damping / (2 * np.pi * last.frequency * 15 * 60))
+    assert 0.9 * best < last.damping_std < 1.4 * best
     assert [pole.frequency for pole in result.rejected] == pytest.approx([3.4], abs=0.002)
     assert result.rejected[0].reason == "a harmonic: its lines are those of a sine"
 
@@ -246,6 +251,31 @@ def test_setups_make_one_set_of_shapes_at_all_sensors() -> None:
     for mode, shape in zip(result.modes, phi, strict=True):
         assert (mode.shape.shape @ shape) ** 2 > 0.97
         assert (mode.shape_std > 0).all()
+
+
+def test_blocks_are_fine_at_poles_and_coarse_far_from_them() -> None:
+    omega = np.arange(2000, 4000) * 0.005
+    F = _circular(np.random.default_rng(11), 2, len(omega))
+    lines = Transforms(omega, F, 2, np.ones(len(omega)))
+    band = lines.part(11.0, 19.0, np.array([[14.0, 14.5], [0.1, 0.02]]))
+    size = band.count * 0.005
+    distance = np.min([abs(band.omega - 14.0), abs(band.omega - 14.5)], axis=0)
+    near = abs(band.omega - 14.5) < 0.02
+    assert band.count[near] == pytest.approx(1.0)
+    assert (size <= 0.1 * np.maximum(distance, 0.1) + 0.011).all()
+    assert size[0] > 0.2
+    inside = (omega >= 11.0) & (omega <= 19.0)
+    assert band.count.sum() == np.count_nonzero(inside)
+    whole = np.tensordot(band.count, band.power, 1)
+    np.testing.assert_allclose(whole, F[:, inside] @ F[:, inside].conj().T)
+
+
+def test_what_overlaps_too_much_is_parted_between_the_modes_that_do_least() -> None:
+    frequency = np.array([1.0, 1.001, 1.03, 1.031, 1.07, 1.071])
+    modes = [Local(omega, 0.01, np.ones(1)) for omega in frequency[[3, 0, 5, 1, 4, 2]]]
+    groups = [frequency[[3, 0, 5, 1, 4, 2]][group].tolist() for group in _overlapping(modes, 8.0)]
+    assert groups == [[1.0, 1.001, 1.03, 1.031], [1.07, 1.071]]
+    assert sorted(len(group) for group in _overlapping(modes, 1.0)) == [2, 2, 2]
 
 
 def test_noise_alone_has_no_modes() -> None:

@@ -21,6 +21,7 @@ REFERENCES = 4  # principal components that half spectra are taken with
 LAGS = 0.1  # longest lag over the length of the record: longer ones are mostly errors of estimation
 MOST_LINES = 4096  # lines of half spectra, at most
 LEFT = 0.05  # exponential window at the longest lag
+BLOCK = 0.1  # width of a block of lines over the distance from the nearest pole
 ROUNDING = 1e-9  # least background over the greatest power of a band
 LEAST_SHARE = 1e-9  # share of a line that is left where a sine takes all of it, for rounding
 
@@ -39,18 +40,21 @@ class Transforms:
     share: Floats  # (lines,) how much of a line there is beside the sines that were taken off
     sines: tuple[float, ...] = ()  # rad/s, of these
 
-    def part(self, low: float, high: float, width: float) -> Band:
-        """Return a band, low and high in rad/s, of blocks that are at most so wide, in rad/s.
+    def part(self, low: float, high: float, poles: Floats) -> Band:
+        """Return a band, low and high in rad/s, in blocks over which the density hardly changes.
 
-        Over a block, the density is taken for constant: it has to be narrow beside modes.
+        ``poles`` are frequencies and half bandwidths of modes in rad/s, (2, modes): blocks are
+        narrow beside the half bandwidth of the nearest one, and beside the distance from it.
         """
         kept = (self.omega >= low) & (self.omega <= high)
         omega, F = self.omega[kept], self.F[:, kept]
-        size = max(int(width / (self.omega[1] - self.omega[0])), 1)
-        first = np.arange(0, len(omega), size)
-        lines = np.diff(np.append(first, len(omega)))
+        distance = np.maximum(np.abs(omega - poles[0][:, None]), poles[1][:, None]).min(axis=0)
+        size = np.maximum(BLOCK * distance / (self.omega[1] - self.omega[0]), 1.0)
+        first = np.flatnonzero(np.diff(np.floor(np.cumsum(1 / size) + ROUNDING), prepend=-1.0))
+        ends = np.append(first[1:], len(omega))
+        lines = ends - first
         count = np.maximum(np.add.reduceat(self.share[kept], first), LEAST_SHARE)
-        parts = [F[:, k : k + size] for k in first]
+        parts = [F[:, start:end] for start, end in zip(first, ends, strict=True)]
         products = np.array([part @ part.conj().T for part in parts], complex)
         products /= count[:, None, None]
         middle = np.add.reduceat(omega, first) / lines

@@ -51,6 +51,7 @@ MOST_STEPS = 60  # steps to a maximum, at most
 MOST_OF_BACKGROUND = 0.9  # share of the background that a step takes away, at most
 SHORTEST = 1e-3  # share of a step of the background below which it is left out
 TERMS = 2  # terms of what a force moves besides, over frequency: a constant and a slope
+COHERENT = 0.25  # standard deviation of either term at the ends of a band, over a mode's peak
 LONGEST = 1.0  # change of ln zeta, and of ln omega in half bandwidths, in one step, at most
 LEAST_DAMPING, GREATEST_DAMPING = 1e-7, 0.5  # limits of damping ratios in a search
 
@@ -153,13 +154,12 @@ class Density:
     def with_coherent(self, band: Band) -> "Density":
         """Return the same model with R = 0 as parameters, in the middle of a band.
 
-        A priori, either term is at the ends of the band as large as what the mode itself does.
+        A priori, either term is at the ends of the band `COHERENT` of the mode's own peak.
         """
-        n, ends = len(self.phi), band.omega[[0, -1]]
-        size = np.mean(np.abs(self.response(ends, band.order)[: self.free]) ** 2, axis=1)
-        precision = (n * band.reach ** (2 * np.arange(TERMS))[:, None] / size).ravel()
-        R = np.zeros((n, len(precision)))
-        return replace(self, coherent=R, middle=float(ends.mean()), precision=precision)
+        n, reach = len(self.phi), band.reach ** np.arange(TERMS) / COHERENT
+        precision = n * (reach**2).repeat(self.free)
+        R, middle = np.zeros((n, len(precision))), float(band.omega[[0, -1]].mean())
+        return replace(self, coherent=R, middle=middle, precision=precision)
 
     def without(self, mode: int, band: Band) -> "Density":
         """Return the model without one of its modes, whose power becomes background."""
