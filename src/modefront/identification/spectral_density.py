@@ -156,8 +156,8 @@ class Density:
 
         A priori, either term is at the ends of the band `COHERENT` of the mode's own peak.
         """
-        n, reach = len(self.phi), band.reach ** np.arange(TERMS) / COHERENT
-        precision = n * (reach**2).repeat(self.free)
+        n, size = len(self.phi), COHERENT / band.reach ** np.arange(TERMS)
+        precision: Floats = n / size.repeat(self.free) ** 2
         R, middle = np.zeros((n, len(precision))), float(band.omega[[0, -1]].mean())
         return replace(self, coherent=R, middle=middle, precision=precision)
 
