@@ -25,8 +25,7 @@ import scipy.linalg
 
 from modefront._typing import Bools, Floats
 from modefront.analysis.tangents import ARRIVED, Context, TangentPoint, context_of
-from modefront.front.state import DISTINCT
-from modefront.optim.problem import AT_BOUND, Evaluation, Problem, SpentError, Wrapped
+from modefront.optim.problem import AT_BOUND, DISTINCT, Evaluation, Problem, SpentError, Wrapped
 from modefront.optim.qp import HALVINGS
 from modefront.optim.scalarisation import Scalarisation
 from modefront.optim.sqp import GOOD

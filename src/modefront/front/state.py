@@ -10,12 +10,9 @@ from modefront._typing import Floats
 from modefront.front.archive import Archive, Outcome, recorded
 from modefront.front.dominance import SAME
 from modefront.front.subproblems import Order, Subproblem, together
-from modefront.optim.problem import Problem
+from modefront.optim.problem import DISTINCT, Problem
 from modefront.optim.sqp import Solution, Status
 from modefront.work.task import IMMEDIATE, Executor, Task
-
-DISTINCT = 1e-3
-"""Distance of two models, over the ranges of the parameters, above which they are two."""
 
 COPY = 10 * SAME
 """Distance of two points, over the ranges of the objectives, below which they are copies."""

@@ -1,6 +1,6 @@
 r"""A programme at a point: its linearisation, the step from there, and by what it is judged.
 
-What is minimised is near the point, with s a step of :math:`u = (\theta - lower) / (upper - lower)`
+What is minimised is near the point, with s a step in the unit box (`modefront.optim.unit`)
 
 .. math:: f + g^T s + \tfrac12 s^T B s + \max_i\,(y + \partial y\, s)_i .
 
@@ -20,15 +20,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.problem import Evaluation
 from modefront.optim.qp import QuadraticProgramme, solve_qp
 from modefront.optim.scalarisation import Scalarisation
+from modefront.optim.unit import UnitBox
 
 PENALTY = 10.0  # penalty at least; it hardly changes the evaluations that a solution takes
 
 
 NOISE = 1e-11
-"""Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
+"""Relative error that a step is not blamed for: that of a large eigenproblem."""
 
 
 def slopes(programme: Scalarisation, J: Floats, kappa: Floats) -> Floats:
@@ -83,18 +84,18 @@ def projected(x: Floats) -> Floats:
 
 @dataclass
 class Linearised:
-    """A programme at an evaluation with derivatives, in u; see the module for the symbols.
+    """A programme at an evaluation with derivatives; see the module for the symbols.
 
-    ``df`` (n,) is the slope of f with respect to J.
+    ``x`` is the evaluation in the unit box, ``df`` (n,) the slope of f with respect to J.
     """
 
-    problem: Problem
+    unit: UnitBox
     programme: Scalarisation
     evaluation: Evaluation
 
     def __post_init__(self) -> None:
-        self.span = self.problem.upper - self.problem.lower
-        J, dJ = self.evaluation.J, self.evaluation.dJ * self.span
+        self.x = self.unit.inside(self.evaluation)
+        J, dJ = self.x.J, self.x.dJ
         maximised = self.programme.maximised
         self.f, self.df = self.programme.value(J), self.programme.gradient(J)
         self.g = self.df @ dJ
@@ -105,20 +106,17 @@ class Linearised:
     ) -> tuple[QuadraticProgramme, Floats, list[int], Floats]:
         """Return the quadratic programme, its solution `solve_qp`, and the multipliers (m,) there.
 
-        ``H`` (n, p, p) are second derivatives of the objectives with respect to theta. B takes the
-        multipliers ``kappa`` of the step before; where there is none, those of another step.
+        ``H`` (n, p, p) are second derivatives of the objectives. B takes the multipliers ``kappa``
+        of the step before; where there is none, those of another step.
         """
-        dJ, span = self.evaluation.dJ * self.span, self.span[:, None] * self.span
-        theta = self.evaluation.theta
-        lo = np.maximum((self.problem.lower - theta) / self.span, -radius)
-        hi = np.minimum((self.problem.upper - theta) / self.span, radius)
-        curved = dJ.T @ self.programme.hessian(self.evaluation.J) @ dJ
+        x = self.x
+        lo, hi = np.maximum(-x.theta, -radius), np.minimum(1 - x.theta, radius)
+        curved = x.dJ.T @ self.programme.hessian(x.J) @ x.dJ
         m = self.y.size
         passes = 2 if kappa is None and m else 1
         kappa = np.full(m, 1 / max(m, 1)) if kappa is None else kappa
         for _ in range(passes):
-            w = slopes(self.programme, self.evaluation.J, kappa)
-            B = weighted(w, H) * span + curved
+            B = weighted(slopes(self.programme, x.J, kappa), H) + curved
             qp = QuadraticProgramme(B, self.g, lo, hi, self.dy, self.y)
             s, active = solve_qp(qp)
             if m:
@@ -155,21 +153,23 @@ class Linearised:
 
         Of sums of squares, the greater of the quadratic model and the squares of linear residuals.
         """
-        x, change = self.evaluation, s * self.span
-        J = x.J + x.dJ @ change + 0.5 * (x.H @ change @ change)
-        squares = [np.sum((each.r + each.dr @ change) ** 2) for each in x.residuals]
+        x = self.x
+        J = x.J + x.dJ @ s + 0.5 * (x.H @ s @ s)
+        squares = [np.sum((each.r + each.dr @ s) ** 2) for each in x.residuals]
         return np.asarray(np.maximum(J, squares or 0.0))
 
     def after(self, s: Floats) -> Evaluation:
         """Return the evaluation at the end of a step, with second derivatives."""
-        theta = self.evaluation.theta + s * self.span
-        within = np.minimum(np.maximum(theta, self.problem.lower), self.problem.upper)
-        return self.problem.evaluate(within, second=True)
+        return self.unit.problem.evaluate(self.unit.after(self.evaluation.theta, s), second=True)
 
     def noise(self, kappa: Floats) -> float:
-        """Return the change of the augmented Lagrangian that may be rounding."""
-        rows = kappa @ np.abs(self.programme.maximised.matrix @ self.evaluation.J)
-        return float(NOISE * (abs(self.f) + rows))
+        """Return the change of the augmented Lagrangian that may be rounding.
+
+        That of sums of squares is the one of r, times 2 r.
+        """
+        J = self.x.J + 2 * np.sqrt(self.x.J) if self.x.residuals else np.abs(self.x.J)
+        rows = kappa @ np.abs(self.programme.maximised.matrix)
+        return float(NOISE * ((np.abs(self.df) + rows) @ J))
 
 
 def weighted(w: Floats, H: Floats) -> Floats:

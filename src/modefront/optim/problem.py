@@ -26,6 +26,9 @@ AT_BOUND = 1e-9
 """Distance over the range of a parameter below which it is at its bound: a hundredth of the
 tolerance of a step (`modefront.optim.sqp.Options`)."""
 
+DISTINCT = 1e-3
+"""Distance of two models, over the ranges of the parameters, above which they are two."""
+
 
 def at_bounds(theta: Floats, lower: Floats, upper: Floats) -> Ints:
     """Return -1 and 1 where parameters (..., p) are at their lower and upper bounds, else 0."""

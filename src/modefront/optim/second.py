@@ -46,11 +46,8 @@ def with_second_order(problem: Problem, evaluation: Evaluation) -> Evaluation | 
     return replace(evaluation, H=(H + H.transpose(0, 2, 1)) / 2, exact=True)
 
 
-def learned_from(S: Floats, before: Evaluation, after: Evaluation, span: Floats) -> Floats:
-    """Return S (n, p, p) with what the difference of two evaluations tells of it.
-
-    ``span`` (p,) are the ranges of the parameters; S is with respect to the parameters themselves.
-    """
+def learned_from(S: Floats, before: Evaluation, after: Evaluation) -> Floats:
+    """Return S (n, p, p) with what the difference of two evaluations tells of it."""
     s = after.theta - before.theta
     if not s.any():
         return S
@@ -59,7 +56,6 @@ def learned_from(S: Floats, before: Evaluation, after: Evaluation, span: Floats)
     size = np.minimum(np.abs(y @ s), claimed) / np.where(claimed > 0, claimed, 1.0)
     size[~after.H.any(axis=(1, 2))] = 1.0
     S = size[:, None, None] * S
-    v, along = y - S @ s, s / span**2
-    u = along / (s @ along)
+    v, u = y - S @ s, s / (s @ s)
     vu = v[:, :, None] * u
     return np.asarray(S + vu + vu.transpose(0, 2, 1) - (v @ s)[:, None, None] * np.outer(u, u))

@@ -26,10 +26,11 @@ import scipy.linalg
 
 from modefront._typing import Floats
 from modefront.optim.linearised import PENALTY, Linearised, Merit, slopes
-from modefront.optim.problem import Evaluation, Problem, room
+from modefront.optim.problem import DISTINCT, Evaluation, Problem, room
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
 from modefront.optim.second import learned_from
+from modefront.optim.unit import UnitBox
 from modefront.work.codec import record
 from modefront.work.progress import note_iteration
 
@@ -90,6 +91,8 @@ class Solution:
     # (n,) the point of the simplex that it was projected from, by normal-boundary intersection;
     # None of another programme
     beta: Floats | None = None
+    # of a lexicographic minimum, what was minimised where the path to it began; else None
+    path: float | None = None
 
     @property
     def theta(self) -> Floats:
@@ -125,20 +128,28 @@ def begin(evaluation: Evaluation) -> Solution:
 
 # More than 60 lines: one step, with all that it changes.
 def solve(
-    problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
+    problem: Problem,
+    programme: Scalarisation,
+    start: Solution,
+    options: Options | None = None,
+    known: Solution | None = None,
 ) -> Solution:
     """Solve a programme from the point at which ``start`` ended.
 
     The start itself is not evaluated again where its second derivatives are known. Steps to points
-    at which the objectives are not defined are shortened.
+    at which the objectives are not defined are shortened. A step to a ``known`` solution is not
+    made: that is what the start leads to.
     """
     options = options or Options()
+    known = known if known and known.converged else None
     if not start.feasible:
         return replace(start, status=Status.INFEASIBLE, evaluations=0)
     evaluation, count = start.evaluation, -1
     if not evaluation.derivatives:
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
-    S = evaluation.H - evaluation.gauss_newton
+    unit = UnitBox(problem)
+    local = Linearised(unit, programme, evaluation)
+    S = local.x.H - local.x.gauss_newton
     trusted, escaped = evaluation.exact, False
     radius, penalty = options.radius, PENALTY / programme.maximised.slope**2
     kappa: Floats | None = None
@@ -148,16 +159,17 @@ def solve(
     while True:
         count += 1
         note_iteration(count + 1)
-        local = Linearised(problem, programme, evaluation)
         if not local.y.size and local.f <= options.negligible:
             ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
             return Solution(evaluation, local.df, ended, count)
-        H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
+        H = local.x.gauss_newton + S if trusted else local.x.gauss_newton
         qp, s, active, kappa = local.step(H, radius, kappa)
         w = slopes(programme, evaluation.J, kappa)
         far = float(np.abs(s).max())
         held = far >= radius
         proposal = proposal if held else far
+        if known and not held and unit.apart(evaluation.theta, s, known.theta) <= DISTINCT:
+            return replace(known, evaluations=count)
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
         if still and not escaped:
@@ -185,43 +197,30 @@ def solve(
             continue
         merit = Merit(programme, kappa, penalty)
         actual = merit.at(evaluation) - merit.at(new)
-        miss, change = actual - predicted, s * local.span
-        rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)
+        miss, ahead = actual - predicted, Linearised(unit, programme, new)
+        rest = 0.5 * w @ (S @ s @ s) * (1 if trusted else -1)
         trusted ^= bool(abs(miss - rest) < abs(miss))
         if not evaluation.exact:
-            S = learned_from(S, evaluation, new, local.span)
-        if actual < POOR * predicted:
-            H = new.H if trusted else new.gauss_newton
-            new, more = _second_step(problem, merit, evaluation, new, H, radius)
-            actual, count = merit.at(evaluation) - merit.at(new), count + more
+            S = learned_from(S, local.x, ahead.x)
+        if actual < POOR * predicted and new.exact:
+            # The end of a poor step, or if the derivatives there promise a better model than
+            # both, the better one of it and of the end of a step from there.
+            _, s, *_ = ahead.step(ahead.x.H if trusted else ahead.x.gauss_newton, radius, None)
+            promised = merit.at(replace(new, J=ahead.promised(s)))
+            if promised < min(merit.at(evaluation), merit.at(new)):
+                new, count = min(new, ahead.after(s), key=merit.at), count + 1
+                actual = merit.at(evaluation) - merit.at(new)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
             evaluation, rejected = new, False
-            S = evaluation.H - evaluation.gauss_newton if evaluation.exact else S
+            local = ahead if ahead.evaluation is new else Linearised(unit, programme, new)
+            S = local.x.H - local.x.gauss_newton if evaluation.exact else S
             if ratio < POOR:
                 radius = far / 2
             elif ratio > GOOD and far >= radius:
                 radius = min(2 * radius, 1.0)
         else:
             radius, rejected = far / 4, True
-
-
-def _second_step(
-    problem: Problem, merit: Merit, here: Evaluation, new: Evaluation, H: Floats, radius: float
-) -> tuple[Evaluation, int]:
-    """Return the better of the end of a poor step and of a step from there, and evaluations.
-
-    The latter, with second derivatives ``H`` (n, p, p), is made if the derivatives at the end
-    promise a better model than both.
-    """
-    if not new.exact:
-        return new, 0
-    local = Linearised(problem, merit.programme, new)
-    _, s, *_ = local.step(H, radius, None)
-    promised = merit.at(replace(new, J=local.promised(s)))
-    if not promised < min(merit.at(here), merit.at(new)):
-        return new, 0
-    return min(new, local.after(s), key=merit.at), 1
 
 
 def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:

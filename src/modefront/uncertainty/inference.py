@@ -18,9 +18,8 @@ from scipy.special import chdtri, fdtrc
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
-from modefront.front.state import DISTINCT
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
-from modefront.optim.problem import Evaluation, at_bounds
+from modefront.optim.problem import DISTINCT, Evaluation, at_bounds
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.planning import candidates
