@@ -61,9 +61,20 @@ def test_a_minimum_above_the_least_known_one_is_not_followed_to_its_end() -> Non
     problem = box(raised, [0.1, 0.1], [3.0, 3.0])
     start = begin(problem.evaluate(np.array([0.3, 2.9])))
     whole = Lexicographic(1, ONES).solve(problem, start, TIGHT)
-    short = Lexicographic(1, ONES).solve(problem, start, TIGHT, least=0.5)
+    better = begin(Evaluation(whole.theta, np.array([2.0, 0.5])))
+    short = Lexicographic(1, ONES).solve(problem, start, TIGHT, better)
     assert short.evaluations < whole.evaluations / 2
     assert short.J[0] > whole.J[0]
+
+
+def test_a_path_is_followed_once() -> None:
+    problem, order = box(valley, [0.1, 0.1], [3.0, 3.0]), Lexicographic(1, ONES)
+    starts = [begin(problem.evaluate(np.array(x))) for x in ([2.5, 2.5], [0.3, 2.9])]
+    first, anew = (order.solve(problem, start, TIGHT) for start in starts)
+    again = order.solve(problem, starts[1], TIGHT, first)
+    assert again.evaluation is first.evaluation
+    assert again.evaluations < 0.7 * anew.evaluations
+    assert anew.J == pytest.approx(first.J, abs=1e-6)
 
 
 @given(st.integers(0, 2**31), st.floats(1e-3, 1e3))

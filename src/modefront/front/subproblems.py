@@ -111,10 +111,9 @@ class Least:
         """J_i."""
         return self.search.programme(0.0)
 
-    def solve(self, problem: Problem, start: Solution, known: Floats | None = None) -> Solution:
+    def solve(self, problem: Problem, start: Solution, known: Solution | None = None) -> Solution:
         """Return the lexicographic minimum below a start, if J_i may be as small as known."""
-        least = np.inf if known is None else float(known[self.search.objective])
-        return self.search.solve(problem, start, _TIGHT, least)
+        return self.search.solve(problem, start, _TIGHT, known)
 
 
 @dataclass(frozen=True)
@@ -140,10 +139,10 @@ class Weights:
         """w^T J."""
         return weighted(self.w)
 
-    def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:
-        """Return the minimum below a start."""
+    def solve(self, problem: Problem, start: Solution, known: Solution | None = None) -> Solution:
+        """Return the minimum below a start, or a known one to which it leads."""
         options = Options(negligible=_TIGHT.negligible / EXACT * self.negligible)
-        return solve(problem, self.programme, start, options)
+        return solve(problem, self.programme, start, options, known)
 
 
 @dataclass(frozen=True)
@@ -190,7 +189,7 @@ class Point:
         order, c = self.order, self.order.excess(known.J)
         return np.asarray((order.greatest * (c == c.max()) + order.share) / self.target.unit)
 
-    def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:
+    def solve(self, problem: Problem, start: Solution, _: Solution | None = None) -> Solution:
         """Return the point that a start leads to."""
         found = replace(solve(problem, self.programme, start), beta=self.beta)
         missed = self.equations and found.converged and not self.met(found)
@@ -206,7 +205,7 @@ class Point:
 
 Subproblem = Least | Weights | Point
 """An order on J: ``gain`` tells how much better objectives (n,) are than a known model. ``solve``
-minimises its programme from a start, in full if that may beat known objectives."""
+minimises its programme from a start, in full if that may beat a known model."""
 
 
 def sample(problem: Problem, *, rng: np.random.Generator) -> Floats:

@@ -67,30 +67,41 @@ class Lexicographic:
         return rank < evaluation.theta.size
 
     def solve(
-        self, problem: Problem, start: Solution, options: Options, least: float = np.inf
+        self, problem: Problem, start: Solution, options: Options, known: Solution | None = None
     ) -> Solution:
         """Return the lexicographic minimum below a start.
 
-        A minimum of the first objective that exceeds the ``least`` one is left where it is, and so
-        is a model on the way to one, at the limit of iterations.
+        A minimum of the first objective that exceeds that of a ``known`` model is left where it is,
+        and so is a model on the way to one, at the limit of iterations. Where a path begins as the
+        one that led to the known model, it is not followed again.
         """
         i = self.objective
-        best = solve(problem, self.programme(0.0), start, options)
-        above = best.feasible and self.level(best.J[i]) > (1 + TIE) * self.level(least)
+        best = solve(problem, self.programme(0.0), start, options, known)
+        if known and best.evaluation is known.evaluation:
+            return best
+        least = np.inf if known is None else self.level(known.J[i])
+        above = best.feasible and self.level(best.J[i]) > (1 + TIE) * least
         alone = self.sizes.size == 1 or not best.feasible
         unfinished = best.status is Status.EXHAUSTED
         if above or alone or unfinished or not self.is_open(problem, best.evaluation):
             return best
         spent = best.evaluations
         for epsilon, begins in ((1 / RATIO, start), (1 / RATIO**4, best)):
-            end = self._end(problem, epsilon, begins, options)
+            end = self._end(problem, epsilon, begins, options, known)
             spent += end.evaluations
             if end.feasible and (end.J[i] <= best.J[i] or self.ties(end.J, best.J)):
                 isolated = self._equal(end.J, best.J)
-                return replace(best if isolated else end, evaluations=spent)
+                return replace(best if isolated else end, evaluations=spent, path=end.path)
         return replace(best, evaluations=spent)  # the path leads to another basin
 
-    def _end(self, problem: Problem, epsilon: float, start: Solution, options: Options) -> Solution:
+    def _end(
+        self,
+        problem: Problem,
+        epsilon: float,
+        start: Solution,
+        options: Options,
+        known: Solution | None,
+    ) -> Solution:
         """Return the limit of the path of minimisers from an epsilon on.
 
         Each but the first ones is solved for from the limit that those before it tell, as exactly
@@ -102,7 +113,9 @@ class Lexicographic:
             return solve(problem, self.programme(epsilon), start, enough)
 
         coarse = ahead = minimiser(start)
-        spent = coarse.evaluations
+        spent, path = coarse.evaluations, self.programme(epsilon).value(coarse.J)
+        if known and known.path is not None and abs(path - known.path) <= TIE * path:
+            return replace(known, evaluations=spent)
         while True:
             epsilon /= RATIO
             fine = minimiser(ahead)
@@ -112,7 +125,7 @@ class Lexicographic:
             if not limit.feasible or epsilon <= EXACT or self._equal(limit.J, ahead.J):
                 closer = limit.feasible and limit.J[self.objective] <= fine.J[self.objective]
                 best = limit if closer else fine.evaluation
-                return replace(fine, evaluation=best, evaluations=spent)
+                return replace(fine, evaluation=best, evaluations=spent, path=path)
             coarse, ahead = fine, replace(fine, evaluation=limit)
 
     def _equal(self, J: Floats, other: Floats) -> bool:

@@ -172,7 +172,7 @@ def _search(study: Study) -> tuple[float, float] | None:
         began = time.process_time()
         start = begin(problem.evaluate(theta, second=True))
         if start.feasible:
-            known = min((x.J for x in ends), key=lambda J: float(J[k % n]), default=None)
+            known = min(ends, key=lambda x: float(x.J[k % n]), default=None)
             ends.append(edge.solve(problem, start, known))
             found.append((time.process_time() - began, 1 + ends[-1].evaluations))
     if found:
@@ -200,8 +200,8 @@ def _parts(study: Study, evaluations: float) -> dict[str, tuple[Span, str]]:
 
     n, pareto, points = len(study.problem.groups), study.pareto, _points(study)
     edges, budget = n + len(study.weighted) + 1, EDGES * study.search.evaluations / evaluations
-    # The starts N after which w(w + 1) / N(N - 1) is the doubt, of one minimum and of usual ones.
-    few, many = ((1 + np.sqrt(1 + 4 * w * (w + 1) / study.search.doubt)) / 2 for w in (1, USUAL))
+    # The starts after which the rate of gains is the doubt, where none has gained, and where two.
+    few, many = ((gains + 1) / study.search.doubt - 2 for gains in (0, 2))
     text = f"fewer evaluations of the search ([search] evaluations, now {study.search.evaluations})"
     out = {"edges": ((float(min(few * edges, budget)), float(min(many * edges, budget))), text)}
     if pareto.method in ("nbi", "weights"):

@@ -42,7 +42,7 @@ def solve_from(
     k: int, place: Place, start: Solution, chance: float, expected: float | None = None
 ) -> Offer:
     """Return the offer to solve the subproblem of a place, the k-th one, from a start."""
-    arguments = (place.subproblem, start, place.incumbent.J)
+    arguments = (place.subproblem, start, place.incumbent if place.closed else None)
     return Offer(k, start, chance, _solved, arguments, expected)
 
 
@@ -56,7 +56,9 @@ def at(theta: Floats) -> Solution:
     return begin(Evaluation(theta, np.zeros(1)))
 
 
-def _solved(problem: Problem, subproblem: Subproblem, start: Solution, known: Floats) -> Solution:
+def _solved(
+    problem: Problem, subproblem: Subproblem, start: Solution, known: Solution | None
+) -> Solution:
     """Return the solution of a subproblem from a start."""
     start = evaluated(problem, start)
     return subproblem.solve(problem, start, known) if start.feasible else start
