@@ -168,8 +168,10 @@ def solve(
         far = float(np.abs(s).max())
         held = far >= radius
         proposal = proposal if held else far
-        if known and not held and unit.apart(evaluation.theta, s, known.theta) <= DISTINCT:
-            return replace(known, evaluations=count)
+        if known and not held:
+            end = unit.after(evaluation.theta, s)
+            if np.abs((end - known.theta) / unit.span).max() <= DISTINCT:
+                return replace(known, evaluations=count)
         still = far <= options.step or local.unchanging(s, options.reduction)
         still = still and not (held and rejected)  # a radius that has fallen shortens any step
         if still and not escaped:
@@ -213,7 +215,7 @@ def solve(
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
             evaluation, rejected = new, False
-            local = ahead if ahead.evaluation is new else Linearised(unit, programme, new)
+            local = ahead if new is ahead.evaluation else Linearised(unit, programme, new)
             S = local.x.H - local.x.gauss_newton if evaluation.exact else S
             if ratio < POOR:
                 radius = far / 2

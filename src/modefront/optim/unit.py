@@ -45,7 +45,3 @@ class UnitBox:
         """Return the parameters after a step s in u, within the bounds."""
         new = np.where(self.factor, theta * np.exp(self.L * s), theta + self.span * s)
         return np.minimum(np.maximum(new, self.problem.lower), self.problem.upper)
-
-    def apart(self, theta: Floats, s: Floats, other: Floats) -> float:
-        """Return the distance of the end of a step s from other parameters, over the ranges."""
-        return float(np.abs((self.after(theta, s) - other) / self.span).max())
