@@ -10,7 +10,7 @@ import numpy as np
 
 from modefront.diagnosis.comparison import Comparison, of_few_sets
 from modefront.diagnosis.evidence import ENOUGH, Fits
-from modefront.diagnosis.mistakes import sensors, values
+from modefront.diagnosis.mistakes import model, sensors, values
 from modefront.diagnosis.mistakes.record import Explanation, Mistake
 from modefront.diagnosis.state import State, stacked
 from modefront.findings.knowledge import enumeration
@@ -41,6 +41,7 @@ MISTAKES: Sequence[Callable[[Explanation], Iterator[Mistake]]] = (
     *(sensors.wrong_place, sensors.reversed_value, sensors.odd_sensor),
     *(values.wrong_nominal_value, values.odd_value, values.wrong_frequency),
     *(values.damping_in_percent, values.foreign_mode, values.later_mode),
+    *(model.wrong_unit, model.wrong_member),
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
 
@@ -49,7 +50,7 @@ PROBABILITY = defaultdict(
     lambda: USUAL,
     {"frequency-factor": OFTEN, "reversed-sensor": OFTEN, "wrong-direction": OFTEN}
     | {"odd-frequency": OFTEN, "odd-shape": OFTEN, "far-from-model": OFTEN, "damping": OFTEN}
-    | {"other-quantity": 0.005, "copied-sensor": 0.5},
+    | {"other-quantity": 0.005, "copied-sensor": 0.5, model.IMPRECISE: OFTEN},
 )
 """Probability with which a study has a mistake of a kind; with the same digits twice, a copy."""
 
@@ -150,7 +151,7 @@ class Search:
             gaining = [x for x in alone if x.point.cost < plain.point.cost - LEFT]
             firsts = sorted({x.claims: x for x in reversed(gaining)}.values(), key=COST)[:BEAM]
             same = [x for x in self.known.values() if x.claims == best.claims]
-            near = [x for x in sorted(same, key=COST) if x.cost < best.cost + CLEAR]
+            near = [x for x in sorted(same, key=COST) if x.cost < best.cost + CLEAR][:BEAM]
             level = [*(x.mistakes for x in (*firsts, *near)), *fewer]
             keys = [key_of(some) for some in level if len(some) < MOST]
             new = next((x for x in keys if x in self.known and x not in extended), None)
@@ -177,12 +178,12 @@ class Search:
         known = sorted(self.known.values(), key=COST)
         rivals = [x for x in known if len(x.mistakes) <= count or x.point.cost <= most]
         near = [x for x in rivals if x.cost - best.cost < CLEAR and len(x.mistakes) == count]
-        for one in best.mistakes:
+        for one in (x for x in best.mistakes if x.kind != model.IMPRECISE):
             rest = best.claims - {one.claim}
             # What may be instead, and of it, and of the mistake itself, what is better.
             firsts, swaps = dict[tuple[str, ...], Mistake](), dict[object, Mistake]()
             for x in (x for each in near if each.claims >= rest for x in each.mistakes):
-                if x.claim not in rest:
+                if x.claim not in rest and x.kind != model.IMPRECISE:
                     firsts.setdefault(x.claim, x)
                     swaps.setdefault(x.key, x)
             costs = [x.cost for x in rivals if not x.claims & firsts.keys()]
@@ -226,7 +227,7 @@ def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]
     fits, problem = search.fits, search.fits.comparison.problem
     rule, data = problem.pairing, problem.data
     state = undone(fits.plain, [one for one in named if one.kind not in FOREIGN])
-    modes = fits.modes(state.start.tobytes())
+    modes = fits.of(state, 0 * state.start)
     if rule.method == "order" or modes is None:
         return
     foreign = {one.subject[0] for one in named if one.kind in FOREIGN}

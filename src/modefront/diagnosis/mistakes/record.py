@@ -14,7 +14,9 @@ from modefront.modes.result import Modes
 
 MANY = 6  # names that a sentence has, at most
 
-BETTER = ("better", "factor", "looks", "place", "sensor", "what", "of", "quantity", "later")
+BETTER = (
+    *("better", "factor", "looks", "place", "sensor", "what", "of", "quantity", "later", "size"),
+)
 """Names and numbers of sentences that tell mistakes of the same claim from each other."""
 
 Change: TypeAlias = Callable[[State], State]
@@ -73,7 +75,7 @@ class Explanation:
     @property
     def modes(self) -> Modes:
         """The modes of the model at the fitted parameters."""
-        modes = self.fits.modes(self.state.theta(self.point.x).tobytes())
+        modes = self.fits.of(self.state, self.point.x)
         assert modes is not None
         return modes
 

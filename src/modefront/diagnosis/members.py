@@ -1,0 +1,93 @@
+"""Members of a model, and a model in which one of them is scaled by a further parameter."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy.sparse
+
+from modefront._typing import Floats, Ints
+from modefront.findings.knowledge import enumeration
+from modefront.linalg.affine import DenseAffine, Members, Monomials
+from modefront.models.matrices import MatrixModel
+from modefront.rounding import COMPUTED
+
+MEMBERS = 200
+"""Members that are looked at one by one, at most; of more, groups are looked at."""
+
+
+class Part(NamedTuple):
+    """A part of the terms of a matrix."""
+
+    of: str  # the matrix, "stiffness" or "mass"
+    place: str  # where it is, in words
+    whole: bool  # whether it is all of a group, or a single member
+    terms: Ints  # (k,) terms to which it adds
+    shares: Floats  # (k, n, n) what it adds to each
+
+
+def parts_of(matrices: MatrixModel, V: Floats) -> list[Part]:
+    """Return the members of a model, and their groups that no parameter scales, in a basis V."""
+    of_all = list((matrices.members or partial(pairs, matrices))())
+    single, out = sum(len(x.nodes) for x in of_all) <= MEMBERS, list[Part]()
+    for x in of_all:
+        R = (x.rows @ V).reshape(len(x.nodes), -1, V.shape[1])
+        terms, matrix = np.array([j for j, _ in x.shares]), getattr(matrices, x.of)
+        if x.group and not matrix.coefficients.exponents[terms[:, 0]].any():
+            whole = [np.tensordot(R, A @ R, ((0, 1), (0, 1))) for _, A in x.shares]
+            out.append(Part(x.of, f"of all {x.group}", True, terms[:, 0], np.array(whole)))
+        shares = np.array([R.swapaxes(1, 2) @ (A @ R) for _, A in x.shares if single])
+        for i, nodes in enumerate(x.nodes.tolist() if single else ()):
+            names = [str(k) for k in nodes if k >= 0]
+            s = "s" * (len(names) > 1)
+            where = f"of {x.group} at node{s}" if x.group else f"at degree{s} of freedom"
+            place = f"{where} {enumeration(names)}"
+            out.append(Part(x.of, place, False, terms[:, i], shares[:, i]))
+    return out
+
+
+def pairs(matrices: MatrixModel) -> Iterator[Members]:
+    r"""Yield what joins degrees of freedom in matrices of which nothing else is known.
+
+    .. math:: A = \sum_{a<b} |A_{ab}| s s^T + \operatorname{diag}(d), \quad
+        s = e_a + \operatorname{sign}(A_{ab}) e_b
+
+    Springs between masses that move along a line, and those to the ground, are so; d is left out
+    where it is negative.
+    """
+    sparse: Any = matrices.sparse()
+    for of in ("stiffness", "mass"):
+        A = getattr(sparse, of)
+        if A.indices.size > 4 * MEMBERS:
+            continue
+        row, each = np.repeat(np.arange(A.size), np.diff(A.indptr)), A.terms.tocoo()
+        a, b, terms, v = row[each.row], A.indices[each.row], each.col, each.data
+        d = np.zeros((A.terms.shape[1], A.size))
+        np.add.at(d, (terms, a), np.where(a == b, v, -np.abs(v)))
+        above = a < b
+        j, n = np.nonzero(d > COMPUTED * np.abs(v).max(initial=0.0))
+        nodes = np.concatenate([np.stack([a, b], 1)[above], np.stack([n, np.full(n.size, -1)], 1)])
+        values = np.concatenate([v[above], d[j, n]])
+        k, both = np.arange(len(nodes)), np.sign(values) * (nodes[:, 1] >= 0)
+        entries = np.concatenate([np.ones(k.size), both]), (np.tile(k, 2), nodes.T.ravel() % A.size)
+        rows = scipy.sparse.csr_array(entries, shape=(k.size, A.size))
+        share = np.concatenate([terms[above], j]), np.abs(values)[:, None, None]
+        yield Members(of, "", nodes, rows, [share])
+
+
+def with_factor(model: MatrixModel, part: Part | None) -> MatrixModel:
+    """Return a model in a basis with a parameter more, the factor on a part of it, if any."""
+    new = dict[str, Any]()
+    for of in ("stiffness", "mass"):
+        A = getattr(model, of)
+        e, origin = A.coefficients.exponents, A.coefficients.origin
+        own = part is not None and part.of == of
+        some = [*range(len(e)), *(part.terms.tolist() if own else ())]
+        exponents = np.column_stack([e[some], np.arange(len(some)) >= len(e)]).astype(float)
+        if own or origin is not None:
+            origin = np.append(np.zeros(e.shape[1]) if origin is None else origin, 1.0)
+        terms = np.concatenate([A.terms, part.shares]) if own else A.terms
+        new[of] = DenseAffine(terms, Monomials(exponents, origin))
+    return replace(model, parameters=(*model.parameters, "factor"), **new)
