@@ -28,7 +28,6 @@ from modefront.diagnosis.members import Part, parts_of, with_factor
 from modefront.diagnosis.state import State, loss, ratio, scaled, stacked
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, first_axis
-from modefront.models.base import Model
 from modefront.models.geometry import chain_geometry
 from modefront.models.matrices import MatrixModel
 from modefront.modes.result import Modes
@@ -139,7 +138,7 @@ class Fits:
         self.comparison, problem, data = comparison, comparison.problem, comparison.data
         matrices = comparison.matrices
         count = min(problem.model.size, comparison.frequency.size)
-        model: Model = problem.model
+        model: Any = problem.model
         geometry, rows, self.parts = None, np.eye(len(data.sensors)), list[Part]()
         moves = np.zeros((0, 3, len(rows)))
         if matrices is not None:
@@ -156,24 +155,20 @@ class Fits:
         positive, size = ends[0] > 0, np.where(start == 0, ends[1] - ends[0], np.abs(start))
         logs = np.log(np.where(positive, ends / size, 1.0)) + np.log([[1 / WIDER], [WIDER]])
         self.ends, unit = np.where(positive, logs, (ends - start) / size), size * ~positive
-        self.named = len(start)
         if self.parts:
             start, unit = np.append(start, 1.0), np.append(unit, 0.0)
             self.ends = np.column_stack([self.ends, np.log([1 / FACTOR, FACTOR])])
         measured = data.frequency, data.damping, data.shape, std
-        self.plain = State(*measured, np.zeros(()), candidates, rows, np.array(0), start, unit, moves, geometry)
+        self.plain = State(
+            *measured, np.zeros(()), candidates, rows, np.array(0), start, unit, moves, geometry
+        )
         self.together = max(1, NUMBERS // (data.shape.size * (1 + len(start))))
-
-        @lru_cache(16)
-        def scaled_model(part: int) -> Model:
-            """Return the model with a factor on a part of it, or on none."""
-            own = self.parts[part - 1] if part else None
-            return with_factor(model, own) if isinstance(model, MatrixModel) else model
 
         def solved(derivatives: bool, part: int, theta: bytes) -> Modes | None:
             """Return the modes at parameters; None where there are none."""
             with suppress(ModelError):
-                own = scaled_model(part) if self.parts else model
+                scaled = self.parts[part - 1] if part else None
+                own = with_factor(model, scaled) if self.parts else model
                 modes = own.modes(np.frombuffer(theta), count, derivatives=derivatives)
                 slopes = (modes.dlam, modes.dphi) if derivatives else ()
                 return modes if all(np.isfinite(x).all() for x in slopes) else None

@@ -210,7 +210,7 @@ class MatrixModel(Shown):
         return None
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state without the analysis of the pattern, which is made again, and members."""
+        """Return the state without members and the analysis of the pattern, which is made again."""
         made = ("pencil", "_dense")
         kept = {name: value for name, value in vars(self).items() if name not in made}
         return kept | {"members": None}

@@ -3,15 +3,19 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from itertools import product
 
 import numpy as np
 
 from modefront.diagnosis.mistakes.record import Explanation, Mistake
-from modefront.diagnosis.mistakes.values import POWERS
 from modefront.diagnosis.state import State
 
 SIZES = {"": 1.0, "smaller": 0.25, "greater": 4.0}
 """Factors with which fits of a member begin. Up to a factor of 2 it is as imprecise as others."""
+
+NEAREST = 4  # members that are tried: those of which the cost is less ahead of a step
+
+THOUSANDS = (3, -3, 6, -6, 9, -9)  # powers of ten by which units differ
 
 IMPRECISE = "imprecise-member"  # kind that is no mistake, and never named
 
@@ -24,18 +28,23 @@ def _scaled(state: State, part: int, factor: float) -> State:
 
 
 def wrong_member(old: Explanation) -> Iterator[Mistake]:
-    """Yield members that are several times as stiff or heavy as in the model."""
-    for k, part in enumerate(old.fits.parts if not old.state.part else ()):
-        for size, factor in SIZES.items() if not part.whole else ():
-            numbers = {"what": part.of, "place": part.place, "size": size}
-            change = partial(_scaled, part=k, factor=factor)
-            yield Mistake("wrong-member" if size else IMPRECISE, ("model",), change, numbers)
+    """Yield members that are several times as stiff or heavy as in the model, or somewhat."""
+    fits, x = old.fits, np.append(old.point.x[:-1], 0.0)
+    single = [k for k, part in enumerate(fits.parts if not old.state.part else ()) if not part.whole]
+    states = [_scaled(old.state, k, 1.0) for k in single]
+    costs = [point.ahead for _, point in fits.begun(states, (states[0], x))] if states else []
+    first = np.argsort(np.concatenate(costs), kind="stable")[:NEAREST].tolist() if costs else ()
+    for k, (size, factor) in product((single[i] for i in first), SIZES.items()):
+        numbers = {"what": fits.parts[k].of, "place": fits.parts[k].place, "size": size}
+        change, price = partial(_scaled, part=k, factor=factor), np.log(len(single) / len(first))
+        kind = "wrong-member" if size else IMPRECISE
+        yield Mistake(kind, ("model",), change, numbers, float(price))
 
 
 def wrong_unit(old: Explanation) -> Iterator[Mistake]:
     """Yield powers of ten on the stiffness or mass of groups that no parameter scales."""
     for k, part in enumerate(old.fits.parts if not old.state.part else ()):
-        for power in POWERS if part.whole else ():
+        for power in THOUSANDS if part.whole else ():
             numbers = {"what": part.of, "place": part.place, "factor": 10.0**-power}
             change = partial(_scaled, part=k, factor=10.0**power)
             yield Mistake("wrong-unit", (f"{part.of} {part.place}",), change, numbers)
