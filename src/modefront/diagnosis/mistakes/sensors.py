@@ -142,11 +142,11 @@ def reversed_value(old: Explanation) -> Iterator[Mistake]:
 
 
 def copied_sensor(old: Explanation) -> Iterator[Mistake]:
-    """Yield sensors that have the values of another one, digit by digit.
+    """Yield sensors that have the values of another one, digit by digit, whatever their signs.
 
     A copy says nothing on its own: its values cost as much as those that fit as well as is usual.
     """
-    shape, names = old.state.shape, old.data.sensors
+    shape, names = np.abs(old.state.shape), old.data.sensors
     for s, t in permutations(old.measured, 2):
         same = np.array_equal(shape[:, :, s], shape[:, :, t], equal_nan=True)
         if not same or not np.nan_to_num(shape[..., s]).any():
