@@ -83,11 +83,11 @@ def with_factor(model: MatrixModel, part: Part | None) -> MatrixModel:
     for of in ("stiffness", "mass"):
         A = getattr(model, of)
         e, origin = A.coefficients.exponents, A.coefficients.origin
-        own = part is not None and part.of == of
-        some = [*range(len(e)), *(part.terms.tolist() if own else ())]
+        own = part if part and part.of == of else None
+        some = [*range(len(e)), *(own.terms.tolist() if own else ())]
         exponents = np.column_stack([e[some], np.arange(len(some)) >= len(e)]).astype(float)
         if own or origin is not None:
             origin = np.append(np.zeros(e.shape[1]) if origin is None else origin, 1.0)
-        terms = np.concatenate([A.terms, part.shares]) if own else A.terms
+        terms = np.concatenate([A.terms, own.shares]) if own else A.terms
         new[of] = DenseAffine(terms, Monomials(exponents, origin))
     return replace(model, parameters=(*model.parameters, "factor"), **new)

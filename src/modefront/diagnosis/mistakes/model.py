@@ -29,12 +29,12 @@ def _scaled(state: State, part: int, factor: float) -> State:
 
 def wrong_member(old: Explanation) -> Iterator[Mistake]:
     """Yield members that are several times as stiff or heavy as in the model, or somewhat."""
-    fits, x = old.fits, np.append(old.point.x[:-1], 0.0)
-    single = [k for k, part in enumerate(fits.parts if not old.state.part else ()) if not part.whole]
-    states = [_scaled(old.state, k, 1.0) for k in single]
-    costs = [point.ahead for _, point in fits.begun(states, (states[0], x))] if states else []
-    first = np.argsort(np.concatenate(costs), kind="stable")[:NEAREST].tolist() if costs else ()
-    for k, (size, factor) in product((single[i] for i in first), SIZES.items()):
+    fits, every = old.fits, enumerate(old.fits.parts if not old.state.part else ())
+    single = [k for k, part in every if not part.whole]
+    begun = fits.begun([_scaled(old.state, k, 1.0) for k in single], (old.state, old.point.x))
+    costs = np.concatenate([np.zeros(0), *(each.ahead for _, each in begun)])
+    first = [single[k] for k in np.argsort(costs, kind="stable")[:NEAREST]]
+    for k, (size, factor) in product(first, SIZES.items()):
         numbers = {"what": fits.parts[k].of, "place": fits.parts[k].place, "size": size}
         change, price = partial(_scaled, part=k, factor=factor), np.log(len(single) / len(first))
         kind = "wrong-member" if size else IMPRECISE
