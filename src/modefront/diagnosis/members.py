@@ -17,6 +17,8 @@ from modefront.rounding import COMPUTED
 MEMBERS = 200
 """Members that are looked at one by one, at most; of more, groups are looked at."""
 
+MATRICES = ("stiffness", "mass")
+
 
 class Part(NamedTuple):
     """A part of the terms of a matrix."""
@@ -29,18 +31,23 @@ class Part(NamedTuple):
 
 
 def parts_of(matrices: MatrixModel, V: Floats) -> list[Part]:
-    """Return the members of a model, and their groups that no parameter scales, in a basis V."""
+    """Return members without parameters of their own, and groups without any, in a basis V."""
     of_all = list((matrices.members or partial(pairs, matrices))())
     single, out = sum(len(x.nodes) for x in of_all) <= MEMBERS, list[Part]()
+    varied = {of: getattr(matrices, of).coefficients.exponents.any(axis=1) for of in MATRICES}
+    count = {of: np.zeros(known.size) for of, known in varied.items()}
+    for x in of_all:
+        np.add.at(count[x.of], np.array([j for j, _ in x.shares]), 1)
     for x in of_all:
         R = (x.rows @ V).reshape(len(x.nodes), -1, V.shape[1])
-        terms, matrix = np.array([j for j, _ in x.shares]), getattr(matrices, x.of)
-        if x.group and not matrix.coefficients.exponents[terms[:, 0]].any():
+        terms = np.array([j for j, _ in x.shares])
+        own = (varied[x.of] & (count[x.of] == 1))[terms].all(axis=0)
+        if x.group and not varied[x.of][terms[:, 0]].any():
             whole = [np.tensordot(R, A @ R, ((0, 1), (0, 1))) for _, A in x.shares]
             out.append(Part(x.of, f"of all {x.group}", True, terms[:, 0], np.array(whole)))
         shares = np.array([R.swapaxes(1, 2) @ (A @ R) for _, A in x.shares if single])
-        for i, nodes in enumerate(x.nodes.tolist() if single else ()):
-            names = [str(k) for k in nodes if k >= 0]
+        for i in np.flatnonzero(~own).tolist() if single else ():
+            names = [str(k) for k in x.nodes[i].tolist() if k >= 0]
             s = "s" * (len(names) > 1)
             where = f"of {x.group} at node{s}" if x.group else f"at degree{s} of freedom"
             place = f"{where} {enumeration(names)}"
@@ -58,7 +65,7 @@ def pairs(matrices: MatrixModel) -> Iterator[Members]:
     where it is negative.
     """
     sparse: Any = matrices.sparse()
-    for of in ("stiffness", "mass"):
+    for of in MATRICES:
         A = getattr(sparse, of)
         if A.indices.size > 4 * MEMBERS:
             continue
@@ -80,7 +87,7 @@ def pairs(matrices: MatrixModel) -> Iterator[Members]:
 def with_factor(model: MatrixModel, part: Part | None) -> MatrixModel:
     """Return a model in a basis with a parameter more, the factor on a part of it, if any."""
     new = dict[str, Any]()
-    for of in ("stiffness", "mass"):
+    for of in MATRICES:
         A = getattr(model, of)
         e, origin = A.coefficients.exponents, A.coefficients.origin
         own = part if part and part.of == of else None

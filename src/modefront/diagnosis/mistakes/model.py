@@ -1,23 +1,18 @@
 """Members of which the model has another stiffness or mass than the structure."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import product
 
 import numpy as np
 
-from modefront.diagnosis.mistakes.record import Explanation, Mistake
+from modefront.diagnosis.mistakes.record import IMPRECISE, Explanation, Mistake
 from modefront.diagnosis.state import State
-
-SIZES = {"": 1.0, "smaller": 0.25, "greater": 4.0}
-"""Factors with which fits of a member begin. Up to a factor of 2 it is as imprecise as others."""
 
 NEAREST = 4  # members that are tried: those of which the cost is less ahead of a step
 
 THOUSANDS = (3, -3, 6, -6, 9, -9)  # powers of ten by which units differ
-
-IMPRECISE = "imprecise-member"  # kind that is no mistake, and never named
 
 
 def _scaled(state: State, part: int, factor: float) -> State:
@@ -28,13 +23,23 @@ def _scaled(state: State, part: int, factor: float) -> State:
 
 
 def wrong_member(old: Explanation) -> Iterator[Mistake]:
-    """Yield members that are several times as stiff or heavy as in the model, or somewhat."""
+    """Yield members that are several times as stiff or heavy as in the model."""
+    yield from _members(old, {"smaller": 0.25, "greater": 4.0})
+
+
+def imprecise_member(old: Explanation) -> Iterator[Mistake]:
+    """Yield members that differ by up to a factor of 2 from the model, as many do."""
+    yield from _members(old, {"": 1.0})
+
+
+def _members(old: Explanation, sizes: Mapping[str, float]) -> Iterator[Mistake]:
+    """Yield members with the factors with which fits begin."""
     fits, every = old.fits, enumerate(old.fits.parts if not old.state.part else ())
     single = [k for k, part in every if not part.whole]
     begun = fits.begun([_scaled(old.state, k, 1.0) for k in single], (old.state, old.point.x))
     costs = np.concatenate([np.zeros(0), *(each.ahead for _, each in begun)])
     first = [single[k] for k in np.argsort(costs, kind="stable")[:NEAREST]]
-    for k, (size, factor) in product(first, SIZES.items()):
+    for k, (size, factor) in product(first, sizes.items()):
         numbers = {"what": fits.parts[k].of, "place": fits.parts[k].place, "size": size}
         change, price = partial(_scaled, part=k, factor=factor), np.log(len(single) / len(first))
         kind = "wrong-member" if size else IMPRECISE

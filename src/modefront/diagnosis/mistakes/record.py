@@ -19,6 +19,8 @@ BETTER = (
 )
 """Names and numbers of sentences that tell mistakes of the same claim from each other."""
 
+IMPRECISE = "imprecise-member"  # kind that is no mistake, and never named
+
 Change: TypeAlias = Callable[[State], State]
 
 
@@ -66,6 +68,11 @@ class Explanation:
     def claims(self) -> frozenset[tuple[str, ...]]:
         """What is claimed."""
         return frozenset(each.claim for each in self.mistakes)
+
+    @property
+    def blamed(self) -> frozenset[tuple[str, ...]]:
+        """What is claimed to be a mistake."""
+        return frozenset(each.claim for each in self.mistakes if each.kind != IMPRECISE)
 
     @property
     def data(self) -> ModalData:
