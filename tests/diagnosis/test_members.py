@@ -147,6 +147,13 @@ def test_what_joins_masses_in_plain_matrices_adds_up_to_all_terms() -> None:
             np.testing.assert_allclose(total(of_all, of, j, 8), A, atol=1e-9)
 
 
+def test_a_member_with_a_parameter_of_its_own_is_no_part() -> None:
+    names = ["k1", "k2", "k2"]
+    model = chain(["k1", "k2"], [1.0] * 3, [1.0] * 3, stiffness_parameters=names)
+    places = [x.place for x in parts_of(model, np.eye(3)) if x.of == "stiffness"]
+    assert places == ["at degrees of freedom 0 and 1", "at degrees of freedom 1 and 2"]
+
+
 def test_a_factor_on_a_member_is_a_further_parameter() -> None:
     springs = np.ones(8)
     model, theta = tower(springs), np.array([1.3, 0.8])
