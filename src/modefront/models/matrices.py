@@ -55,6 +55,7 @@ def _eigenproblem() -> Iterator[None]:
         spend(Costs(full_time=time.perf_counter() - started))
 
 
+# 11 fields: the matrices, and what else is known of the structure, which is optional.
 @shared
 @dataclass(frozen=True, eq=False, repr=False)
 class MatrixModel(Shown):
