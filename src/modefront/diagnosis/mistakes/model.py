@@ -40,7 +40,7 @@ def _members(old: Explanation, sizes: Mapping[str, float]) -> Iterator[Mistake]:
     costs = np.concatenate([np.zeros(0), *(each.ahead for _, each in begun)])
     first = [single[k] for k in np.argsort(costs, kind="stable")[:NEAREST]]
     for k, (size, factor) in product(first, sizes.items()):
-        numbers = {"what": fits.parts[k].of, "place": fits.parts[k].place, "size": size}
+        numbers = {"what": fits.parts[k].of, "place": fits.parts[k].place, "better": size}
         change, price = partial(_scaled, part=k, factor=factor), np.log(len(single) / len(first))
         kind = "wrong-member" if size else IMPRECISE
         yield Mistake(kind, ("model",), change, numbers, float(price))

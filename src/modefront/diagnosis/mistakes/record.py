@@ -14,9 +14,7 @@ from modefront.modes.result import Modes
 
 MANY = 6  # names that a sentence has, at most
 
-BETTER = (
-    *("better", "factor", "looks", "place", "sensor", "what", "of", "quantity", "later", "size"),
-)
+BETTER = ("better", "factor", "looks", "place", "sensor", "what", "of", "quantity", "later")
 """Names and numbers of sentences that tell mistakes of the same claim from each other."""
 
 IMPRECISE = "imprecise-member"  # kind that is no mistake, and never named

@@ -111,6 +111,11 @@ def wrong_nominal_value(old: Explanation) -> Iterator[Mistake]:
 LOOKS = {RAD: ": rad/s for Hz", 1 / RAD: ": Hz for rad/s", 60.0: ": per minute for Hz"}
 """Causes of factors on the frequencies of a set."""
 
+DIFFERED = (
+    "the structure differed (mass, temperature, supports): update with one of the sets, or say by "
+    "frequency_std how far frequencies scatter"
+)
+
 
 def set_factor(old: Explanation) -> Iterator[Mistake]:
     """Yield the median ratio of the frequencies of each set to those of the others."""
@@ -120,9 +125,17 @@ def set_factor(old: Explanation) -> Iterator[Mistake]:
         if np.isfinite(ratios).sum() < 2:
             continue
         factor = float(np.exp(np.nanmedian(ratios)))
-        looks = next((x for y, x in LOOKS.items() if abs(np.log(factor / y)) < 0.1), "")
-        others = enumeration([*sets[:k], *sets[k + 1 :]], 2)
-        numbers = {"set": name, "other": others, "times": factor, "looks": looks}
+        numbers = {"set": name, "other": enumeration([*sets[:k], *sets[k + 1 :]], 2)}
+        if abs(factor - 1) > 0.4:
+            looks = next((x for y, x in LOOKS.items() if abs(np.log(factor / y)) < 0.1), "")
+            numbers |= {
+                "size": f"{factor:.3g} times",
+                "looks": looks,
+                "mend": "give all data sets in Hz",
+            }
+        else:
+            size = f"{100 * (factor - 1):+.1f} % off"
+            numbers |= {"size": size, "looks": "", "mend": DIFFERED}
         yield Mistake("set-factor", (name,), changed("frequency", k, factor), numbers)
 
 
