@@ -255,7 +255,7 @@ class _Along:
         ends = np.array([J, at]) / unit
         middle = ends.mean(axis=0)
         for starts in ([(one + other) / 2], [one, other]):
-            found = [self._toward(middle, begin(self.problem.evaluate(x))) for x in starts]
+            found = [self._toward(middle, begin(self.problem.evaluate(x, second=True))) for x in starts]
             best = min(found, key=lambda x: float((x.J / unit - middle).max()))
             if (best.J / unit - middle).max() < (ends - middle).max(axis=1).min() - TIE:
                 return [best]
@@ -270,7 +270,7 @@ class _Along:
     def _end_of(self, theta: Floats, target: Floats) -> Solution | None:
         """Return the last model toward a target on the branch of another that none dominates."""
         known, unit = np.array([J for _, J, _ in self.known]), self.front.ranges
-        here, found = begin(self.problem.evaluate(theta)), None
+        here, found = begin(self.problem.evaluate(theta, second=True)), None
         first, low, high = here.J / unit, 0.0, 1.0
         while high - low > SURE:
             share = (low + high) / 2
