@@ -22,7 +22,7 @@ from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Starts
 from modefront.front.search import EDGES, POINTS, Loop, Search
 from modefront.front.simplex import Payoff, default_points, is_flat, lattice, nearest, payoff
-from modefront.front.state import Place, State, distinct_points
+from modefront.front.state import DISTINCT, Place, State, distinct_points
 from modefront.front.subproblems import (
     LOOSE,
     RHO,
@@ -36,7 +36,7 @@ from modefront.front.subproblems import (
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.front.weights import accepted, iterate_weights, least_along, optimal_minimum
 from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
-from modefront.optim.problem import DISTINCT, Problem
+from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
 
@@ -82,12 +82,11 @@ class _Run:
         self.weighted = [*named, (Kind.EQUAL, "", np.ones(self.n))]
         self.state, self.cut = State(self.problem, self.search.tolerance, self.work), False
         rng = np.random.default_rng(seed_sequence(self.seed, "search"))
+        self.children = np.random.default_rng(seed_sequence(self.seed, "evolution"))
         names, edges = self.problem.objectives, self.known.edges if self.known else ()
         pairs = zip(names, edges, strict=False)
         again: dict[Key, Sequence[Solution]] = {("edge", x): edge.minima for x, edge in pairs}
         self.starts = Starts(rng, again if self.known else None)
-        children = np.random.default_rng(seed_sequence(self.seed, "evolution"))
-        self.evolution = Evolution(children, self.starts.unseen)
         self.loop = Loop(self.state, self.search)
 
     def front(self) -> Front:
@@ -149,11 +148,12 @@ class _Run:
     def _search(self, stage: str, share: float, *more: Proposer) -> None:
         """Search for all places up to a share of the budget, with what is proposed always and more.
 
+        What proposers have gained so far says nothing of places that are new, so they start anew.
         What is better at the end of it is solved in half of what is left.
         """
-        polish, self.evolution.alone = Polish(), not more
-        proposers = (polish, *more) if self.known else (polish, *more, self.evolution)
-        self.loop.run(stage, proposers, share)
+        evolution = () if self.known else (Evolution(self.children, self.starts.unseen, not more),)
+        polish = Polish()
+        self.loop.run(stage, (polish, *more, *evolution), share)
         self.loop.run(stage, (polish,), (1 + share) / 2)
 
     def _open(self) -> tuple[str, ...]:
@@ -320,7 +320,7 @@ class _Run:
                 out.append(replace(self.known.edges[k], best=place.incumbent, minima=minima))
                 continue
             rare = known.hits(place, self.state.tolerance) < SURE
-            doubtful = rare and known.better() >= self.loop.search.doubt
+            doubtful = rare and known.unseen() >= self.loop.search.doubt
             out.append(Edge(place.incumbent, minima, known.tries, len(known.ends), doubtful))
         return out
 

@@ -25,7 +25,7 @@ class Evolution:
 
     rng: np.random.Generator  # random numbers
     unseen: Callable[[State], float]  # returns the chance that there are minima to be found
-    alone: bool = True  # whether no starts, which say what is unseen, are proposed beside it
+    alone: bool = True  # whether there are places without starts, which say what is unseen
     idle: int = 0  # generations since the last gain
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:

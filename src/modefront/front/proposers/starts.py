@@ -1,15 +1,16 @@
-r"""Starts: subproblems are solved from random models, until better minima are unlikely.
+r"""Starts: subproblems are solved from random models, until unseen minima are unlikely.
 
-With w minima of different values, to which N random starts have led, the next one is expected to
-lead to an unseen minimum with the chance (Boender & Rinnooy Kan 1987, doi:10.1007/BF02591684)
+With w minima of different values, to which N random starts have led, the part of the box from
+which unseen ones would be reached is expected to be (Boender & Rinnooy Kan 1987,
+doi:10.1007/BF02591684)
 
-.. math:: \frac{w (w + 1)}{N (N - 1)} ,
+.. math:: \frac{w (w + 1)}{N (N - 1)} .
 
-which is the best of all w + 1 in one of w + 1 cases. The sum over the next start and all after it,
-if they lead to what is known, is w / (N - 1): what more starts may gain, if they are not lost, as
-those are that meet no minimum: their part of all starts is that which has been seen. Where enough
-starts have led to the best model, the rate at which they have gained is a bound as well. Points of
-the lattice have no starts: they begin at what others have found.
+That bounds the chance that the next start gains if it is not lost, as those are that meet no
+minimum: their part of all starts is that which has been seen. Where enough starts have led to the
+best model, the rate at which they have gained is a bound as well. Of several starts at a time, each
+has the chance that is left if those before it lead to what is known. Points of the lattice have no
+starts: they begin at what others have found.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -52,30 +53,25 @@ class Minima:
         self.counts.append(1)
         return True
 
-    @property
-    def met(self) -> int:
-        """Number of starts that have met a minimum."""
-        return sum(self.counts)
-
     def hits(self, place: Place, tolerance: float) -> int:
         """Return the number of starts that led to the best model."""
         pairs = zip(self.ends, self.counts, strict=True)
         return sum(count for x, count in pairs if _equal(place, x, place.incumbent, tolerance))
 
-    def better(self, ahead: int = 0) -> float:
-        """Return the chance of a better minimum, after more starts.
+    def unseen(self, ahead: int = 0) -> float:
+        """Return the part of the box from which unseen minima are reached, after more starts.
 
         These are so many ``ahead`` that lead to minima that are known.
         """
-        w, N = max(len(self.ends), 1), self.met + ahead
-        return min(w / (N - 1), 1.0) if N > 1 else 1.0
+        w, N = max(len(self.ends), 1), sum(self.counts) + ahead
+        return min(w * (w + 1) / (N * (N - 1)), 1.0) if N > 1 else 1.0
 
     def chance(self, place: Place, tolerance: float, ahead: int = 0) -> float:
-        """Return the chance that starts gain at most, after so many ``ahead``; see the module."""
-        tries, better = self.tries + ahead, self.better(ahead)
+        """Return the chance that a start gains at most, after so many ``ahead``; see the module."""
+        tries, unseen = self.tries + ahead, self.unseen(ahead)
         if self.hits(place, tolerance) >= SURE:
-            better = min(better, (self.gains + 1) / (tries + 2))  # of a uniform prior
-        return better * ((tries - self.lost + 1) / (tries + 1))
+            unseen = min(unseen, (self.gains + 1) / (tries + 2))  # of a uniform prior
+        return unseen * ((tries - self.lost + 1) / (tries + 1))
 
 
 def _equal(place: Place, x: Solution, y: Solution, tolerance: float) -> bool:
@@ -108,7 +104,7 @@ class Starts:
             for ahead in range(most):
                 chance = known.chance(place, state.tolerance, ahead)
                 start = at(known.thetas[known.tries + ahead])
-                yield solve_from(k, place, start, chance, chance / (known.met + ahead + 1))
+                yield solve_from(k, place, start, chance, chance / (len(known.ends) + 1))
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
         """Count the start, and keep its minimum if it is new."""
@@ -120,10 +116,9 @@ class Starts:
         known.lost += not met and gain <= state.tolerance
 
     def unseen(self, state: State) -> float:
-        """Return the greatest chance that the next start meets an unseen minimum, better or not."""
-        tried = [(self.of(x), x) for x in state.places if x.subproblem.key in self.minima]
-        parts = (x.chance(y, state.tolerance) * (len(x.ends) + 1) / (x.met + 1) for x, y in tried)
-        return max(parts, default=0.0)
+        """Return the chance that a start gains at most, of the places that have had some."""
+        tried = [x for x in state.places if x.subproblem.key in self.minima]
+        return max(self.of(x).chance(x, state.tolerance) for x in tried) if tried else 0.0
 
     def of(self, place: Place) -> Minima:
         """Return the minima of a subproblem."""
