@@ -255,7 +255,9 @@ class _Along:
         ends = np.array([J, at]) / unit
         middle = ends.mean(axis=0)
         for starts in ([(one + other) / 2], [one, other]):
-            found = [self._toward(middle, begin(self.problem.evaluate(x, second=True))) for x in starts]
+            found = [
+                self._toward(middle, begin(self.problem.evaluate(x, second=True))) for x in starts
+            ]
             best = min(found, key=lambda x: float((x.J / unit - middle).max()))
             if (best.J / unit - middle).max() < (ends - middle).max(axis=1).min() - TIE:
                 return [best]
