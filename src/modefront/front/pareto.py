@@ -22,7 +22,7 @@ from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Starts
 from modefront.front.search import EDGES, POINTS, Loop, Search
 from modefront.front.simplex import Payoff, default_points, is_flat, lattice, nearest, payoff
-from modefront.front.state import DISTINCT, Place, State, distinct_points
+from modefront.front.state import Place, State, distinct_points
 from modefront.front.subproblems import (
     LOOSE,
     RHO,
@@ -36,7 +36,7 @@ from modefront.front.subproblems import (
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.front.weights import accepted, iterate_weights, least_along, optimal_minimum
 from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
-from modefront.optim.problem import Problem
+from modefront.optim.problem import DISTINCT, Problem
 from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
 
