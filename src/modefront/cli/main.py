@@ -411,6 +411,7 @@ def _signals() -> Iterator[list[int]]:
         heard.append(number)
         for each in before:
             signal.signal(each, lambda *_: os._exit(INTERRUPTED))
+        sys.unraisablehook = lambda _: None  # what stays half open complains when it is deleted
         raise KeyboardInterrupt
 
     for number in before:
