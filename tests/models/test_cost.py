@@ -31,7 +31,7 @@ def chain(size: int, members: int) -> MatrixModel:
     return mf.matrices(list(terms), terms, mass, sensors)
 
 
-def problem(model: MatrixModel, reduction: mf.Reduction) -> mf.UpdatingProblem:
+def problem(model: MatrixModel, reduction: mf.Reduction | None) -> mf.UpdatingProblem:
     theta = np.ones(len(model.parameters))
     modes = model.modes(theta, 3, derivatives=False)
     data = mf.modal_data(modes.frequency, modes.phi.T, model.sensors)
@@ -54,8 +54,9 @@ def problem(model: MatrixModel, reduction: mf.Reduction) -> mf.UpdatingProblem:
     ],
 )
 def test_a_basis_is_taken_where_it_pays(size: int, members: int, reduced: bool) -> None:
-    model = problem(chain(size, members), mf.Reduction()).model
-    assert isinstance(model, ReducedModel) == reduced
+    for unless_given in (None, mf.Reduction()):
+        model = problem(chain(size, members), unless_given).model
+        assert isinstance(model, ReducedModel) == reduced
     assert isinstance(problem(chain(size, members), mf.Reduction("off")).model, MatrixModel)
 
 

@@ -16,6 +16,7 @@ from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel
+from modefront.models.reduced.options import Reduction
 from modefront.modes import derivatives
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
@@ -65,7 +66,8 @@ def measured(model: Model) -> ModalData:
 def problem_with(model: Model) -> UpdatingProblem:
     names = model.parameters
     bounds, nominal = dict.fromkeys(names, (0.4, 2.5)), dict.fromkeys(names, 1.0)
-    return updating_problem(model, measured(model), GROUPS, bounds, nominal)
+    data, off = measured(model), Reduction("off")
+    return updating_problem(model, data, GROUPS, bounds, nominal, reduction=off)
 
 
 def differences(problem: UpdatingProblem, theta: Floats, h: float = 4e-3) -> Floats:

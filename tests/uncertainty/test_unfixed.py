@@ -96,7 +96,7 @@ def test_trials_are_the_same_in_a_basis_and_in_full() -> None:
     groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     parameters = [mf.Parameter(x, nominal=1.0, bounds=(0.3, 3.0), fixed=x in FIXED) for x in NAMES]
     found = []
-    for reduction in (None, mf.Reduction(1e-8)):
+    for reduction in (mf.Reduction("off"), mf.Reduction(1e-8)):
         problem = mf.updating_problem(
             model, data, groups, parameters=parameters, reduction=reduction
         )
