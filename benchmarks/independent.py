@@ -38,6 +38,7 @@ from scipy.optimize import linear_sum_assignment, lsq_linear, minimize
 from updating_problems import Case
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.pairing.match import FEWEST
 from modefront.residuals.groups import ModeNumbers
 from modefront.work.task import seed_sequence
 
@@ -179,7 +180,7 @@ class Equation:
         m, pairing = data.frequency.shape[1], case.problem.pairing
         if pairing.method == "order":
             return lam, Phi, np.arange(m)
-        few = min(lam.size, m + pairing.spare)
+        few = min(lam.size, m + (FEWEST if pairing.spare is None else pairing.spare))
         f = np.sqrt(np.maximum(lam[:few], 1e-300)) / (2 * np.pi)
         ratio = f / np.nanmean(data.frequency, axis=0)[:, None]
         outside = np.abs(np.log(ratio)) > np.log(pairing.window or np.inf)

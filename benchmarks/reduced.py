@@ -47,6 +47,7 @@ from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel
 from modefront.modes import dense
 from modefront.modes.sparse import lowest
+from modefront.pairing.match import FEWEST
 from modefront.work.task import counted
 
 MODES, REGIONS, PARTS, SENSORS, POINTS = 6, 6, 12, 20, 20
@@ -206,7 +207,7 @@ def line(
     """Return the measurements of one size."""
     full = kind(size, REGIONS)
     out: dict[str, float] = {"size": full.size, "memory_model": memory()}
-    count = MODES + mf.Pairing().spare
+    count = MODES + FEWEST
     full.pencil.factor(full.pencil.K.at(np.ones(REGIONS)).data, np.zeros(0), 0.0)
     out["memory_factor"] = memory()
     out["modes"], out["modes_elapsed"] = timed(

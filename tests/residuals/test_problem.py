@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import permutations
+from typing import Literal
 
 import mpmath as mp
 import numpy as np
@@ -13,9 +14,11 @@ from modefront._typing import Floats
 from modefront.data.modal import ModalData, modal_data
 from modefront.models.chain import chain
 from modefront.models.function import function_model
+from modefront.models.matrices import matrices
 from modefront.models.parameters import Parameter
+from modefront.models.reduced.options import Reduction
 from modefront.optim.scalarisation import LogSum
-from modefront.pairing.match import Pairs
+from modefront.pairing.match import Pairing, Pairs
 from modefront.residuals.base import Scale
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
@@ -324,3 +327,30 @@ def test_likely_pairs_are_those_of_all_permutations(seed: int) -> None:
     assert (problem.evaluate(theta).J == plain.evaluate(theta).J).all() or (
         likelihood.value(problem.evaluate(theta).J) < likelihood.value(plain.evaluate(theta).J)
     )
+
+
+@pytest.mark.parametrize(
+    ("N", "reduction"), [(12, "off"), (12, "auto"), (240, "off"), (240, "auto")]
+)
+@pytest.mark.parametrize("floating", [False, True])
+def test_modes_are_candidates_up_to_beyond_the_highest_measured_frequency(
+    N: int, reduction: Literal["off", "auto"], floating: bool
+) -> None:
+    """Most of the modes of a chain, which may float, are not measured."""
+    k = np.array([0.0 if floating else 5e4, *[5e4] * (N - 1)])
+    K = np.diag(k) + np.diag([*k[1:], 0.0]) - np.diag(k[1:], 1) - np.diag(k[1:], -1)
+    sensors = {f"s{i}": i for i in range(0, N, max(N // 12, 1))}
+    model = matrices(["k"], {"k": K}, {"base": 20 * np.eye(N)}, sensors, floating=floating)
+    there = model.modes(np.ones(1), 10, derivatives=False)
+    f, shapes = there.frequency[[1, 3, 8]], there.phi.T[[1, 3, 8]]
+    given = {"k": (0.5, 2.0)}, {"k": 1.0}
+    problem = updating_problem(
+        model, modal_data(f, shapes, model.sensors), ALL, *given, reduction=Reduction(reduction)
+    )
+    below = model.modes(np.ones(1), min(N, 20), derivatives=False).frequency < 1.3 * f[-1]
+    assert problem.pairing.spare == below.sum() - 3
+    found = problem.evaluate(np.ones(1))
+    assert found.quantities["paired_mode"].tolist() == [2, 4, 9]
+    assert found.J == pytest.approx(0, abs=1e-12)
+    few = Pairing(spare=2)
+    assert updating_problem(model, problem.data, ALL, *given, few).pairing is few

@@ -3,7 +3,7 @@ r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j c_j(\theta) 
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import compress
@@ -15,7 +15,7 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
-from modefront.linalg.factorisation import Pencil, pencil
+from modefront.linalg.factorisation import Pencil, SingularMatrixError, pencil
 from modefront.linalg.products import gram
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
 from modefront.models.geometry import Geometry
@@ -118,6 +118,17 @@ class MatrixModel(Shown):
             if self._dense:
                 return dense.full_modes(*self._dense[:2], theta, count, columns)
             return sparse.full_modes(self.pencil, theta, count, columns)
+
+    def modes_below(self, theta: Floats, frequency: float) -> int:
+        """Return how many modes are below a frequency in Hz (Sylvester's law); 0 if unknown."""
+        level = (2 * np.pi * frequency) ** 2
+        if self._dense:
+            K, M, _ = self._dense
+            return int((np.linalg.eigvalsh(K.at(theta) - level * M.at(theta)) < 0).sum())
+        with suppress(SingularMatrixError):
+            K, M = (A.at(theta).data for A in (self.pencil.K, self.pencil.M))
+            return self.pencil.factor(K, M, level).negative or 0
+        return 0
 
     def at(self, _: Floats) -> "MatrixModel":
         """Return the model itself: its matrices are known at all parameters."""

@@ -23,6 +23,10 @@ OUTSIDE = 1e3  # cost of a candidate outside the window of frequencies
 UNSEEN = 1e-6
 """Greatest component of a mode at the sensors, over that of all modes, below which it is noise."""
 
+REACH, FEWEST, MOST = 1.3, 3, 40
+"""Frequency of the nominal model, over the highest measured one, up to which its modes are
+candidates unless a number is given; how many are so beyond the measured ones, at least and most."""
+
 WINDOW = number("a ratio of frequencies above 1", above=1)
 
 
@@ -38,12 +42,14 @@ class Pairing(Checked):
         is model mode r
     window : greatest ratio of frequencies of a pair, above 1, where others are left; None for no
         limit
-    spare : number of model modes, 0 or more, that are candidates beyond the number of measured ones
+    spare : number of model modes, 0 or more, that are candidates beyond the number of measured
+        ones; None for those of the nominal model up to 1.3 times the highest measured frequency, 3
+        at least and 40 at most
     """
 
     method: Literal["mac", "order"] = "mac"
     window: Annotated[float, WINDOW] | None = None
-    spare: Annotated[int, whole(0, 1000)] = 3
+    spare: Annotated[int, whole(0, 1000)] | None = None
 
 
 @dataclass(frozen=True)
@@ -58,7 +64,8 @@ def modes_needed(pairing: Pairing, data: ModalData, size: int) -> int:
     """Return how many model modes are looked at; ``size`` is the number that there are at most."""
     if pairing.method == "order":
         return max(data.modes)
-    return min(size, max(max(data.modes), len(data.modes) + pairing.spare))
+    spare = FEWEST if pairing.spare is None else pairing.spare
+    return min(size, max(max(data.modes), len(data.modes) + spare))
 
 
 # 6 arguments: the measured modes and the model's, and what is least with the pairs.

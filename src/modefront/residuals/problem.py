@@ -18,14 +18,23 @@ from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model
-from modefront.models.matrices import of_free
+from modefront.models.matrices import MatrixModel, of_free
 from modefront.models.parameters import Parameter, Prior, in_order, parameters_of
 from modefront.models.reduced.model import ReducedModel
 from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
 from modefront.optim.problem import Evaluation, Residual, infeasible
 from modefront.optim.scalarisation import LogSum
-from modefront.pairing.match import Pairing, Pairs, mac_slopes, match, modes_needed
+from modefront.pairing.match import (
+    FEWEST,
+    MOST,
+    REACH,
+    Pairing,
+    Pairs,
+    mac_slopes,
+    match,
+    modes_needed,
+)
 from modefront.residuals.base import Member, ModeErrors, Stack
 from modefront.residuals.groups import Group
 from modefront.text import Shown
@@ -256,7 +265,8 @@ def updating_problem(
     parameters
         The parameters with bounds and nominal values, in any order.
     reduction
-        Whether a reduced basis takes the place of the model; it is solved in full unless given.
+        When a reduced basis takes the place of the model: where it pays, unless given, as in a
+        study file; ``Reduction("off")`` solves in full.
 
     Raises
     ------
@@ -268,11 +278,22 @@ def updating_problem(
     given = in_order(parameters or parameters_of(bounds or {}, nominal or {}), model.parameters)
     whole = (model, tuple(given)) if any(each.fixed for each in given) else None
     model, chosen = of_free(model, given)
-    if reduction is not None:
-        model = reduction.of(model, data, pairing or Pairing(), chosen)
+    pairing = _with_spare(pairing or Pairing(), model, data, chosen)
+    model = (reduction or Reduction()).of(model, data, pairing, chosen)
     return UpdatingProblem(
-        model, data, tuple(groups), pairing=pairing or Pairing(), whole=whole, **_limits(chosen)
+        model, data, tuple(groups), pairing=pairing, whole=whole, **_limits(chosen)
     )
+
+
+def _with_spare(
+    pairing: Pairing, model: Model, data: ModalData, parameters: Sequence[Parameter]
+) -> Pairing:
+    """Return how modes are paired, with the number of candidates where that is not given."""
+    if pairing.spare is not None or pairing.method == "order" or not isinstance(model, MatrixModel):
+        return pairing
+    nominal = np.array([each.nominal for each in parameters])
+    below = model.modes_below(nominal, REACH * float(np.nanmax(data.mean_frequency)))
+    return replace(pairing, spare=int(np.clip(below - len(data.modes), FEWEST, MOST)))
 
 
 def _limits(parameters: Sequence[Parameter]) -> dict[str, Any]:
