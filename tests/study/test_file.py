@@ -95,7 +95,7 @@ def test_what_is_not_said_has_defaults(study: Callable[[str], Study]) -> None:
     assert read.pareto == Pareto("nbi", None, "bounds", 0.0)
     assert read.weighted == ()
     assert read.search == Search()
-    assert read.problem.pairing == Pairing()
+    assert read.problem.pairing == Pairing(spare=3)
     assert read.problem.model.sensors == ("floor1", "floor2")
 
 
