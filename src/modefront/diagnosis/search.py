@@ -3,15 +3,16 @@
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import chain, combinations, pairwise
+from itertools import chain, combinations, pairwise, product
 from operator import attrgetter
+from typing import TypeAlias
 
 import numpy as np
 
 from modefront.diagnosis.comparison import Comparison, of_few_sets
 from modefront.diagnosis.evidence import ENOUGH, Fits
-from modefront.diagnosis.mistakes import sensors, values
-from modefront.diagnosis.mistakes.record import Explanation, Mistake
+from modefront.diagnosis.mistakes import model, sensors, values
+from modefront.diagnosis.mistakes.record import IMPRECISE, Explanation, Mistake
 from modefront.diagnosis.state import State, stacked
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found
@@ -33,7 +34,9 @@ LEFT = 1.0  # difference of costs that fits leave
 NEAR = 2 * CLEAR  # difference of costs up to which explanations of several mistakes are fitted
 SEEN = 0.02  # increase of a MAC value that is worth its name
 
-MISTAKES: Sequence[Callable[[Explanation], Iterator[Mistake]]] = (
+Kinds: TypeAlias = tuple[Callable[[Explanation], Iterator[Mistake]], ...]
+
+MISTAKES: Kinds = (
     *(values.frequency_factor, values.other_quantity, values.set_factor, values.other_numbers),
     *(values.exchanged_shapes, sensors.wrong_factor, sensors.exchanged_sensors),
     *(sensors.opposite_order, sensors.unsigned_shapes, sensors.copied_sensor),
@@ -41,15 +44,19 @@ MISTAKES: Sequence[Callable[[Explanation], Iterator[Mistake]]] = (
     *(sensors.wrong_place, sensors.reversed_value, sensors.odd_sensor),
     *(values.wrong_nominal_value, values.odd_value, values.wrong_frequency),
     *(values.damping_in_percent, values.foreign_mode, values.later_mode),
+    *(model.wrong_unit, model.wrong_member),
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
+
+SOUGHT = MISTAKES, (model.imprecise_member,)
+"""Mistakes, and what is none and is looked for once these are found."""
 
 USUAL, OFTEN = 0.02, 0.05
 PROBABILITY = defaultdict(
     lambda: USUAL,
     {"frequency-factor": OFTEN, "reversed-sensor": OFTEN, "wrong-direction": OFTEN}
     | {"odd-frequency": OFTEN, "odd-shape": OFTEN, "far-from-model": OFTEN, "damping": OFTEN}
-    | {"other-quantity": 0.005, "copied-sensor": 0.5},
+    | {"other-quantity": 0.005, "copied-sensor": 0.5, IMPRECISE: OFTEN},
 )
 """Probability with which a study has a mistake of a kind; with the same digits twice, a copy."""
 
@@ -95,16 +102,18 @@ class Search:
                 key, new = key_of(mistakes), Explanation(self.fits, mistakes, state, at, cost)
                 self.known[key] = min(self.known.get(key, new), new, key=COST)
 
-    def extend(self, old: Explanation) -> None:
-        """Fit the most promising explanations with a mistake more."""
+    def extend(self, old: Explanation, sought: Kinds) -> None:
+        """Fit the most promising explanations with a mistake more of those sought."""
         kinds = defaultdict(list)
-        for one in chain.from_iterable(find(old) for find in MISTAKES):
+        for one in chain.from_iterable(find(old) for find in sought):
             kinds[one.kind].append(one)
         some = []
         for kind, every in kinds.items():
             price = float(np.log(len(every) / PROBABILITY[kind]))
             new = self._alike([x for x in every if x.claim not in old.claims], old)
             some += [replace(x, price=x.price + price) for x in new]
+        if not some:
+            return
         tried = [((*old.mistakes, one), one) for one in some]
         states = [one.change(old.state) for one in some]
         for one, state in list(zip(some, states, strict=True)) if old.mistakes else ():
@@ -150,13 +159,14 @@ class Search:
             gaining = [x for x in alone if x.point.cost < plain.point.cost - LEFT]
             firsts = sorted({x.claims: x for x in reversed(gaining)}.values(), key=COST)[:BEAM]
             same = [x for x in self.known.values() if x.claims == best.claims]
-            near = [x for x in sorted(same, key=COST) if x.cost < best.cost + CLEAR]
-            level = [*(x.mistakes for x in (*firsts, *near)), *fewer]
+            near = [x for x in sorted(same, key=COST) if x.cost < best.cost + CLEAR][:BEAM]
+            level = [(), *(x.mistakes for x in (*firsts, *near)), *fewer]
             keys = [key_of(some) for some in level if len(some) < MOST]
-            new = next((x for x in keys if x in self.known and x not in extended), None)
-            if new is not None:
+            todo = product(SOUGHT, filter(self.known.__contains__, keys))
+            if new := next((x for x in todo if x not in extended), None):
                 extended.add(new)
-                self.extend(self.known[new])
+                sought, key = new
+                self.extend(self.known[key], sought)
                 continue
             # A rival may only have been fitted from where its way is barred.
             rivals = list(self.known.values())
@@ -173,16 +183,16 @@ class Search:
         Another one is no rival that has more mistakes and fits no better: all sensors but one
         reversed are the same as that one, as a mode shape has no sign.
         """
-        out, count, most = dict[Mistake, Finding](), len(best.mistakes), best.point.cost - LEFT
+        out, count, most = dict[Mistake, Finding](), len(best.blamed), best.point.cost - LEFT
         known = sorted(self.known.values(), key=COST)
-        rivals = [x for x in known if len(x.mistakes) <= count or x.point.cost <= most]
-        near = [x for x in rivals if x.cost - best.cost < CLEAR and len(x.mistakes) == count]
-        for one in best.mistakes:
-            rest = best.claims - {one.claim}
+        rivals = [x for x in known if len(x.blamed) <= count or x.point.cost <= most]
+        near = [x for x in rivals if x.cost - best.cost < CLEAR and len(x.blamed) == count]
+        for one in (x for x in best.mistakes if x.claim in best.blamed):
+            rest = best.blamed - {one.claim}
             # What may be instead, and of it, and of the mistake itself, what is better.
             firsts, swaps = dict[tuple[str, ...], Mistake](), dict[object, Mistake]()
-            for x in (x for each in near if each.claims >= rest for x in each.mistakes):
-                if x.claim not in rest:
+            for each in (x for x in near if x.blamed >= rest):
+                for x in (x for x in each.mistakes if x.claim in each.blamed - rest):
                     firsts.setdefault(x.claim, x)
                     swaps.setdefault(x.key, x)
             costs = [x.cost for x in rivals if not x.claims & firsts.keys()]
@@ -191,7 +201,7 @@ class Search:
                 said = list(dict.fromkeys((*firsts.values(), *swaps.values())))[:EITHER]
                 others = tuple(x.finding for x in said if x is not one)
                 # The MAC value that changes most shows it, where one does.
-                without = next(x for x in known if x.claims in (rest, frozenset()))
+                without = next(x for x in known if x.blamed in (rest, frozenset()))
                 before, after = without.point.mac, best.point.mac
                 r = int(np.argmax(np.nan_to_num(after - before)))
                 text = f" (without, MAC {best.data.modes[r]} is {after[r]:.2f} after a fit,"
@@ -226,7 +236,7 @@ def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]
     fits, problem = search.fits, search.fits.comparison.problem
     rule, data = problem.pairing, problem.data
     state = undone(fits.plain, [one for one in named if one.kind not in FOREIGN])
-    modes = fits.modes(state.start.tobytes())
+    modes = fits.of(state, 0 * state.start)
     if rule.method == "order" or modes is None:
         return
     foreign = {one.subject[0] for one in named if one.kind in FOREIGN}
