@@ -10,9 +10,11 @@ import pytest
 from modefront import fem
 from modefront._typing import Floats
 from modefront.data.modal import modal_data
-from modefront.diagnosis.comparison import compare
-from modefront.diagnosis.members import pairs, parts_of, with_factor
+from modefront.diagnosis.comparison import Comparison, compare
+from modefront.diagnosis.members import pairs, parts_of, with_factors
+from modefront.diagnosis.evidence import Fits
 from modefront.diagnosis.search import diagnose
+from modefront.diagnosis.state import stacked
 from modefront.findings.record import Finding
 from modefront.linalg.affine import Members
 from modefront.models.chain import chain
@@ -24,14 +26,19 @@ from modefront.residuals.problem import UpdatingProblem
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
 
 
-def mistakes(model: MatrixModel, structure: MatrixModel, count: int) -> list[Finding]:
-    """Return what is found of a model and the modes of a structure with a little noise."""
+def compared(model: MatrixModel, structure: MatrixModel, count: int) -> Comparison:
+    """Return a model beside the modes of a structure with a little noise."""
     rng, unit = np.random.default_rng(3), np.ones(len(model.parameters))
     modes = structure.modes(unit, count, derivatives=False)
     shape = modes.phi.T * (1 + 0.02 * rng.standard_normal(modes.phi.T.shape))
     data = modal_data(modes.frequency, shape, model.sensors)
     groups = (Group("f", frequency="all"),)
-    return diagnose(compare(UpdatingProblem(model, data, groups, unit / 5, 5 * unit, unit)))
+    return compare(UpdatingProblem(model, data, groups, unit / 5, 5 * unit, unit))
+
+
+def mistakes(model: MatrixModel, structure: MatrixModel, count: int) -> list[Finding]:
+    """Return what is found of a model and the modes of a structure."""
+    return diagnose(compared(model, structure, count))
 
 
 def tower(springs: Floats) -> MatrixModel:
@@ -159,11 +166,11 @@ def test_a_factor_on_a_member_is_a_further_parameter() -> None:
     model, theta = tower(springs), np.array([1.3, 0.8])
     spring = next(x for x in parts_of(model, np.eye(8)) if "freedom 4 and 5" in x.place)
     springs[5] = 3.0
-    scaled = with_factor(model, spring)
+    scaled = with_factors(model, [spring])
     np.testing.assert_allclose(
         scaled.stiffness.at(np.append(theta, 3.0)), tower(springs).stiffness.at(theta), atol=1e-9
     )
-    with_none = with_factor(model, None).stiffness.at(np.append(theta, 3.0))
+    with_none = with_factors(model, []).stiffness.at(np.append(theta, 3.0))
     np.testing.assert_array_equal(with_none, model.stiffness.at(theta))
     modes = scaled.modes(np.append(theta, 3.0), 4)
     higher, lower = (
@@ -171,3 +178,15 @@ def test_a_factor_on_a_member_is_a_further_parameter() -> None:
         for h in (1e-5, -1e-5)
     )
     np.testing.assert_allclose(modes.dlam[:, 2], (higher - lower) / 2e-5, rtol=1e-6, atol=1e-6)
+
+
+def test_one_model_tells_what_a_step_of_each_factor_gains() -> None:
+    """Its costs ahead are those of the models with one factor each."""
+    springs = np.linspace(1.0, 1.3, 8)
+    fits = Fits(compared(tower(np.ones(8)), tower(springs), 5))
+    x = np.array([0.1, -0.1, 0.0])
+    ahead, dx = fits.by_parts(fits.plain, x)
+    some = [replace(fits.plain, part=np.array(k + 1)) for k in range(len(fits.parts))]
+    each = fits.at(stacked(some), np.tile(x, (len(some), 1)))
+    np.testing.assert_allclose(ahead, each.ahead, rtol=1e-9)
+    assert (np.sign(dx) * each.g[:, -1] < 0).sum() > len(some) / 2, "mostly downhill"

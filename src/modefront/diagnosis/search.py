@@ -162,11 +162,13 @@ class Search:
             near = [x for x in sorted(same, key=COST) if x.cost < best.cost + CLEAR][:BEAM]
             level = [(), *(x.mistakes for x in (*firsts, *near)), *fewer]
             keys = [key_of(some) for some in level if len(some) < MOST]
-            todo = product(SOUGHT, filter(self.known.__contains__, keys))
-            if new := next((x for x in todo if x not in extended), None):
-                extended.add(new)
-                sought, key = new
-                self.extend(self.known[key], sought)
+            fitted = [self.known[key] for key in keys if key in self.known]
+            todo = product(SOUGHT, (x for x in fitted if x.claims == x.blamed))
+            new = next((x for x in todo if (x[0], key_of(x[1].mistakes)) not in extended), None)
+            if new is not None:
+                sought, old = new
+                extended.add((sought, key_of(old.mistakes)))
+                self.extend(old, sought)
                 continue
             # A rival may only have been fitted from where its way is barred.
             rivals = list(self.known.values())
