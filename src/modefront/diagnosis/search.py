@@ -21,8 +21,9 @@ from modefront.pairing.match import POOR, match
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
-PROMISING, FITTED = 100, 30
-"""Mistakes of each kind of which costs are looked at, and those of all kinds that are fitted."""
+PROMISING, FITTED = defaultdict(lambda: 100, {"wrong-unit": 4}), 30
+"""Mistakes of each kind of which costs are looked at, and those of all kinds that are fitted. Each
+unit has modes of its own, which other mistakes share."""
 
 BEAM, MOST = 3, 6
 """Single claims to which others are added, before they are to the best explanation, and most
@@ -110,7 +111,7 @@ class Search:
         some = []
         for kind, every in kinds.items():
             price = float(np.log(len(every) / PROBABILITY[kind]))
-            new = self._alike([x for x in every if x.claim not in old.claims], old)
+            new = self._alike([x for x in every if x.claim not in old.claims], PROMISING[kind], old)
             some += [replace(x, price=x.price + price) for x in new]
         if not some:
             return
@@ -130,15 +131,15 @@ class Search:
         first = np.argsort(costs, kind="stable")[:FITTED].tolist()
         self.fit([tried[k][0] for k in first if costs[k] < near], old)
 
-    def _alike(self, some: list[Mistake], old: Explanation) -> list[Mistake]:
+    def _alike(self, some: list[Mistake], most: int, old: Explanation) -> list[Mistake]:
         """Return mistakes; of many, those without which modes are most like those of the model."""
-        if len(some) <= PROMISING:
+        if len(some) <= most:
             return some
         together, costs = self.fits.together, list[float]()
         for k in range(0, len(some), together):
             states = [one.change(old.state) for one in some[k : k + together]]
             costs += self.fits.unlike(states, old.point.x, old.state.start).tolist()
-        return [some[k] for k in np.flatnonzero(costs <= np.sort(costs)[PROMISING - 1])]
+        return [some[k] for k in np.flatnonzero(costs <= np.sort(costs)[most - 1])]
 
     def best(self) -> Explanation | None:
         """Return the best explanation; the best ones are extended, the first one first."""
@@ -159,8 +160,9 @@ class Search:
             gaining = [x for x in alone if x.point.cost < plain.point.cost - LEFT]
             firsts = sorted({x.claims: x for x in reversed(gaining)}.values(), key=COST)[:BEAM]
             same = [x for x in self.known.values() if x.claims == best.claims]
-            near = [x for x in sorted(same, key=COST) if x.cost < best.cost + CLEAR][:BEAM]
-            level = [(), *(x.mistakes for x in (*firsts, *near)), *fewer]
+            near = [x for x in sorted(same, key=COST, reverse=True) if x.cost < best.cost + CLEAR]
+            unlike = list({x.cost // ENOUGH: x for x in near}.values())[: -BEAM - 1 : -1]
+            level = [(), *(x.mistakes for x in (*firsts, *unlike)), *fewer]
             keys = [key_of(some) for some in level if len(some) < MOST]
             fitted = [self.known[key] for key in keys if key in self.known]
             todo = product(SOUGHT, (x for x in fitted if x.claims == x.blamed))
