@@ -11,8 +11,8 @@ from modefront import fem
 from modefront._typing import Floats
 from modefront.data.modal import modal_data
 from modefront.diagnosis.comparison import Comparison, compare
-from modefront.diagnosis.members import pairs, parts_of, with_factors
 from modefront.diagnosis.evidence import Fits
+from modefront.diagnosis.members import pairs, parts_of, with_factors
 from modefront.diagnosis.search import diagnose
 from modefront.diagnosis.state import stacked
 from modefront.findings.record import Finding

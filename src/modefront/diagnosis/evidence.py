@@ -189,7 +189,7 @@ class Fits:
         return self.modes(int(state.part), state.theta(x).tobytes())
 
     def by_parts(self, state: State, x: Floats) -> tuple[Floats, Floats]:
-        """Return the cost ahead with a factor on each part of the model, and a step of its logarithm.
+        """Return the cost ahead with a factor on each part of the model, and the step of its log.
 
         The sensitivities to all factors are those of one model, that of a state without factors.
         """

@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import chain, combinations, pairwise, product
 from operator import attrgetter
 from typing import TypeAlias
@@ -49,7 +50,7 @@ MISTAKES: Kinds = (
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
 
-SOUGHT = MISTAKES, (model.imprecise_member,)
+SOUGHT: tuple[Kinds, Kinds] = MISTAKES, (partial(model.wrong_member, usual=True),)
 """Mistakes, and what is none and is looked for once these are found."""
 
 USUAL, OFTEN = 0.02, 0.05

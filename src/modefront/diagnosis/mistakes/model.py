@@ -21,18 +21,11 @@ def _scaled(state: State, part: int, factor: float) -> State:
     return replace(state, start=start, part=np.array(part + 1))
 
 
-def wrong_member(old: Explanation) -> Iterator[Mistake]:
-    """Yield members that are several times as stiff or heavy as in the model, or as light."""
-    return _members(old, usual=False)
+def wrong_member(old: Explanation, *, usual: bool = False) -> Iterator[Mistake]:
+    """Yield the members that promise most, several times as stiff or heavy as in the model.
 
-
-def imprecise_member(old: Explanation) -> Iterator[Mistake]:
-    """Yield members that differ by up to a factor of 2 from the model, as many do."""
-    return _members(old, usual=True)
-
-
-def _members(old: Explanation, *, usual: bool) -> Iterator[Mistake]:
-    """Yield the members that promise most, with the factors with which fits begin."""
+    What is ``usual`` is a factor of up to 2, or its inverse: many members differ so.
+    """
     parts = old.fits.parts
     single = np.flatnonzero([not x.whole for x in parts])
     if old.state.part or not single.size:

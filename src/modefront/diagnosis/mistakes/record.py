@@ -100,10 +100,10 @@ def changed(part: str, place: Any, new: Any, cost: float = 0.0) -> Change:
     """
 
     def change(state: State) -> State:
-        values = getattr(state, part).copy()
-        count = np.isfinite(values).sum()
-        values[place] = new(values[place]) if callable(new) else values[place] / new
-        lost = NOTHING * (count - np.isfinite(values).sum())
+        old = getattr(state, part)
+        values, known = old.copy(), old[place]
+        values[place] = better = new(known) if callable(new) else known / new
+        lost = NOTHING * (np.isfinite(known).sum() - np.isfinite(better).sum())
         parts: Any = {part: values}
         return replace(state, left_out=state.left_out + cost + lost, **parts)
 
