@@ -22,7 +22,7 @@ from modefront.pairing.match import POOR, match
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
-PROMISING, FITTED = defaultdict(lambda: 100, {"wrong-unit": 4}), 30
+PROMISING, FITTED = defaultdict(lambda: 100, {"wrong-unit": 2}), 30
 """Mistakes of each kind of which costs are looked at, and those of all kinds that are fitted. Each
 unit has modes of its own, which other mistakes share."""
 
@@ -157,8 +157,10 @@ class Search:
                 some = tuple(one if x.claim == one.claim else x for x in best.mistakes)
                 tried[key_of(some)] = some
             self.fit([some for key, some in tried.items() if key not in self.known], best)
-            # What one explains may be hidden by another one, so that it is not worth its price.
-            gaining = [x for x in alone if x.point.cost < plain.point.cost - LEFT]
+            # What one explains may be hidden by another one, so that it is not worth its price. A
+            # fitted factor on a part gains by chance.
+            gains = (x for x in alone if x.point.cost < plain.point.cost - LEFT)
+            gaining = [x for x in gains if not x.state.part]
             firsts = sorted({x.claims: x for x in reversed(gaining)}.values(), key=COST)[:BEAM]
             same = [x for x in self.known.values() if x.claims == best.claims]
             near = [x for x in sorted(same, key=COST, reverse=True) if x.cost < best.cost + CLEAR]

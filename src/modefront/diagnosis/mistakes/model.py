@@ -9,7 +9,7 @@ import numpy as np
 from modefront.diagnosis.mistakes.record import IMPRECISE, Explanation, Mistake
 from modefront.diagnosis.state import State
 
-NEAREST = 4  # members that are tried: those of which the cost is less ahead of a step
+NEAREST = 2  # members that are tried: those of which the cost is less ahead of a step
 
 THOUSANDS = (3, -3, 6, -6, 9, -9)  # powers of ten by which units differ
 
