@@ -33,6 +33,7 @@ from modefront.data.modal import ModalData
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.search import diagnose
 from modefront.findings.record import Finding
+from modefront.linalg.affine import DenseAffine
 from modefront.linalg.small import mac
 from modefront.models.chain import chain
 from modefront.models.geometry import Geometry
@@ -445,10 +446,29 @@ def slip(case: Case) -> Case | None:
     return case.spoilt(claim, data={"shape": shape})
 
 
+def member(case: Case) -> Case | None:
+    """Return the study of a chain with one spring of the model 3 to 5 times too stiff or soft."""
+    stiffness = case.model.stiffness
+    if _geometry(case).cells[0].group != "chain" or not isinstance(stiffness, DenseAffine):
+        return None
+    term, mass, _ = case.rng.choice(np.argwhere(np.diagonal(stiffness.terms, 1, 1, 2)[..., None]))
+    factor = case.rng.uniform(3, 5) ** case.rng.choice([-1, 1])
+    terms, s = stiffness.terms.copy(), np.zeros(case.model.size)
+    s[[mass, mass + 1]] = 1, -1
+    terms[term] -= (factor - 1) * terms[term, mass, mass + 1] * np.outer(s, s)
+    model = replace(case.model, stiffness=DenseAffine(terms, stiffness.coefficients))
+    phi, psi = (
+        x.selection @ x.full_modes(case.theta, min(len(case.data.modes), x.size)).Phi
+        for x in (case.model, model)
+    )
+    claim = ("wrong-member", "model")
+    return case.spoilt(claim, model=model) if np.mean(1 - np.diag(mac(phi, psi))) > 0.1 else None
+
+
 MISTAKES: Sequence[Callable[[Case], Case | None]] = (
     *(factor, set_factor, reversal, exchange, direction, directions, place, counted, nominal),
     *(percent, odd_frequency, numbers, calibration, pasted, shifted, misread, shapes_exchanged),
-    *(turned_round, unsigned, channel, slip),
+    *(turned_round, unsigned, channel, slip, member),
 )
 
 

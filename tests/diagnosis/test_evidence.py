@@ -86,7 +86,9 @@ def test_a_fit_finds_the_structure_from_which_the_data_come() -> None:
     theta = np.array([1.2, 0.8, 1.1])
     fits = fits_of(theta)
     (result,) = fits.fitted([fits.plain])
-    np.testing.assert_allclose(fits.plain.theta(result.x), theta, rtol=0.03)
+    found = fits.plain.theta(result.x)
+    np.testing.assert_allclose(found[:3], theta, rtol=0.03)
+    assert found[3] == 1.0, "no member is scaled"
     rows = fits.plain.rows.copy()
     rows[2] *= -1
     both = stacked([fits.plain, replace(fits.plain, rows=rows)])
@@ -96,9 +98,9 @@ def test_a_fit_finds_the_structure_from_which_the_data_come() -> None:
 
 
 def test_parameters_are_the_same_beside_other_nominal_values() -> None:
-    plain = replace(fits_of(np.ones(3)).plain, unit=np.array([0.0, 2.0, 0.0]))
-    x = np.array([0.3, -0.5, 0.1])
-    off = replace(plain, start=np.array([10.0, 0.0, 0.1]))
+    plain = replace(fits_of(np.ones(3)).plain, unit=np.array([0.0, 2.0, 0.0, 0.0]))
+    x = np.array([0.3, -0.5, 0.1, 0.0])
+    off = replace(plain, start=np.array([10.0, 0.0, 0.1, 1.0]))
     np.testing.assert_allclose(plain.x(plain.theta(x)), x)
     np.testing.assert_allclose(off.theta(off.x(plain.theta(x))), plain.theta(x))
 
@@ -107,7 +109,7 @@ def test_the_cost_ahead_is_between_those_before_and_after_a_step() -> None:
     """The parabola lies above the cost, as its weights are those of Student's distribution."""
     fits = fits_of(np.array([1.2, 0.8, 1.1]), 0.05)
     (best,), plain = fits.fitted([fits.plain]), stacked([fits.plain])
-    near = fits.at(plain, best.x[None] + np.array([0.1, -0.1, 0.1])).of(0)
+    near = fits.at(plain, best.x[None] + np.array([0.1, -0.1, 0.1, 0.0])).of(0)
     after = fits.at(plain, near.x[None] + step(near.g, near.H, 0.0)).of(0)
     assert near.cost > after.cost + 0.5
     assert after.cost < near.ahead < (after.cost + near.cost) / 2
@@ -131,9 +133,9 @@ def test_explanations_cost_the_same_together_and_alone() -> None:
         fits.plain,
         replace(fits.plain, shape=turned),
         replace(fits.plain, shape=without),
-        replace(fits.plain, start=3 * one),
+        replace(fits.plain, start=np.array([3.0, 1.0])),
     ]
-    xs, every = np.arange(4.0)[:, None] / 10, stacked(states)
+    xs, every = np.arange(4.0)[:, None] * [0.1, 0.0], stacked(states)
     together, some = fits.at(every, xs), fits.at(every.of(np.array([1, 3])), xs[[1, 3]])
     alone = [fits.at(stacked([state]), x[None]).of(0) for state, x in zip(states, xs, strict=True)]
     for name in ("cost", "ahead", "H"):
@@ -146,8 +148,9 @@ def test_explanations_cost_the_same_together_and_alone() -> None:
 def test_explanations_start_from_the_better_of_two_starts() -> None:
     """Where the model has no modes, a cost is infinite."""
     fits = fits_of(np.array([1.2, 0.8, 1.1]))
-    plain = replace(fits.plain, unit=np.ones(3))
-    states, x = [plain, replace(plain, start=np.full(3, -5.0))], np.array([0.2, -0.2, 0.1])
+    plain = replace(fits.plain, unit=np.array([1.0, 1.0, 1.0, 0.0]))
+    start, x = np.array([-5.0, -5.0, -5.0, 1.0]), np.array([0.2, -0.2, 0.1, 0.0])
+    states = [plain, replace(plain, start=start)]
     ((_, begun),) = fits.begun(states, (plain, x))
     np.testing.assert_allclose(begun.x[0], x)
     assert np.isinf(begun.ahead).tolist() == [False, True]
@@ -164,6 +167,6 @@ def test_values_that_scatter_little_are_no_more_probable_as_eigenvalues() -> Non
     data = modal_data(f, np.tile(modes.phi.T, (40, 1, 1)), model.sensors)
     one, groups = np.ones(1), (Group("f", frequency="all"),)
     fits = Fits(compare(UpdatingProblem(model, data, groups, one / 5, 5 * one, one)))
-    point = fits.at(stacked([fits.plain]), np.zeros((1, 1))).of(0)
+    point = fits.at(stacked([fits.plain]), np.zeros((1, 2))).of(0)
     for mistake in other_quantity(Explanation(fits, (), fits.plain, point, 0.0)):
         assert mistake.change(fits.plain).noise > fits.plain.noise - 1e-6

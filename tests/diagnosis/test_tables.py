@@ -38,6 +38,10 @@ def pasted(shape: Floats) -> None:
     shape[:, 2] = shape[:, 6]
 
 
+def pasted_with_the_other_sign(shape: Floats) -> None:
+    shape[:, 2] = -shape[:, 6]
+
+
 def of_another_unit(shape: Floats) -> None:
     shape[:, 3] *= 1000.0
 
@@ -92,6 +96,7 @@ def with_a_slip(shape: Floats) -> None:
         (of_noise, "odd-sensor", "the values of sensor floor5 are noise"),
         (with_a_slip, "reversed-value", "in mode 3 has the other sign"),
         (pasted, "copied-sensor", "sensor floor3 has the same digits as floor7"),
+        (pasted_with_the_other_sign, "copied-sensor", "floor3 has the same digits as floor7"),
         (of_another_unit, "sensor-factor", "floor4 in all data are 1e+03 times what the others"),
         (
             with_a_lost_cell,
@@ -106,6 +111,12 @@ def test_the_table_is_said_to_be_wrong_and_where(
     (found,) = diagnose(compare(problem_of(spoil)))
     assert kind in {each.kind for each in (found, *found.others)}
     assert text in str(found)
+
+
+def test_magnitudes_of_which_one_has_a_sign_are_both_named() -> None:
+    found = diagnose(compare(problem_of(as_magnitudes, with_a_slip)))
+    assert sorted(each.kind for each in found) == ["reversed-value", "unsigned-shapes"]
+    assert "in mode 3 has the other sign" in "".join(map(str, found))
 
 
 def claims(found: Finding) -> set[tuple[str, str]]:

@@ -1,18 +1,24 @@
 """Findings of checks of studies with known mistakes and difficulties."""
 
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from modefront.data.modal import modal_data
+import modefront as mf
+from modefront._typing import Bools, Floats, Ints
+from modefront.data.modal import ModalData, modal_data
 from modefront.diagnosis.comparison import COMPARED, compare, of_few_sets
 from modefront.errors import InputError
 from modefront.models.chain import chain
 from modefront.models.matrices import matrices
-from modefront.residuals.groups import Group
+from modefront.modes.result import Modes
+from modefront.pairing.match import Pairs
+from modefront.residuals.base import ModeErrors, Scale, Sensitivity
+from modefront.residuals.groups import KINDS, Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.study.check import cause_of, check, compared
 from modefront.study.definition import Study
@@ -137,7 +143,11 @@ def with_sets(problem: UpdatingProblem, count: int) -> UpdatingProblem:
 def test_shapes_of_modes_that_coincide_are_compared_by_their_subspace(
     shapes: Group, known: list[str]
 ) -> None:
-    """Two masses that move along x and y alike: two pairs of modes."""
+    assert [x for x in check(two_planes(shapes)).warnings if "coincide" in x] == known
+
+
+def two_planes(shapes: Group) -> UpdatingProblem:
+    """Return two masses that move along x and y alike: two pairs of modes."""
     low, high = np.diag([1e4, 0.0]), np.array([[1e4, -1e4], [-1e4, 1e4]])
     stiffness = {"low": np.kron(np.eye(2), low), "high": np.kron(np.eye(2), high)}
     sensors = {"x1": 0, "x2": 1, "y1": 2, "y2": 3}
@@ -146,5 +156,67 @@ def test_shapes_of_modes_that_coincide_are_compared_by_their_subspace(
     data = modal_data(np.array([9.9, 10.1]), shape, model.sensors)
     groups = [Group("frequencies", frequency="all"), shapes]
     bounds = {"low": (0.3, 3.0), "high": (0.3, 3.0)}
-    problem = updating_problem(model, data, groups, bounds, {"low": 1.0, "high": 1.0})
-    assert [x for x in check(problem).warnings if "coincide" in x] == known
+    return updating_problem(model, data, groups, bounds, {"low": 1.0, "high": 1.0})
+
+
+@dataclass(frozen=True, eq=False)
+class Share:
+    """Share of the first component of a shape in its square; a member and a stack alike."""
+
+    mode: Ints
+    count: float = 1.0
+    remark: str = ""
+
+    @property
+    def sets(self) -> Ints:
+        return np.zeros(1, dtype=np.intp)
+
+    def margin(self, errors: ModeErrors) -> float:
+        return float(errors.shape[self.mode[0]] ** 2)
+
+    def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
+        yield from ()
+
+    def independent(self) -> tuple[float, float, float]:
+        return 1.0, 0.0, 0.0
+
+    def r(self, modes: Modes, pairs: Pairs) -> Floats:
+        square = modes.phi[:, pairs.index[self.mode]] ** 2
+        return np.asarray(square[0] / square.sum(axis=0))
+
+    def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
+        phi, dphi = (x[:, pairs.index[self.mode]] for x in (modes.phi, modes.dphi))
+        r, whole = self.r(modes, pairs), 2 * np.einsum("sm,smp->mp", phi, dphi)
+        own = 2 * phi[0][:, None] * dphi[0]
+        return r, (own - r[:, None] * whole) / (phi**2).sum(axis=0)[:, None]
+
+
+class ShareKind:
+    """Shares of first components."""
+
+    name = "share"
+    plural = "shares"
+    usable_std = "none"
+
+    def measured(self, data: ModalData) -> Bools:
+        return np.ones(len(data.modes), dtype=np.bool_)
+
+    def has_usable_std(self, data: ModalData, r: int) -> bool:
+        return False
+
+    def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Any]:
+        return [self.stack(data, [r], scale) for r in modes]
+
+    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> Any:
+        return Share(np.asarray(modes))
+
+
+def test_residuals_of_shapes_that_users_add_are_warned_of_as_well() -> None:
+    """A sum of two modes that coincide has another share."""
+    known = dict(KINDS.added)
+    try:
+        mf.register(ShareKind())
+        warnings = check(two_planes(Group("own", share="all"))).warnings
+    finally:
+        KINDS.added = known
+    assert any("modes 1, 2 of the nominal model coincide with others" in x for x in warnings)

@@ -16,7 +16,7 @@ logarithms where their bounds are positive. They are fitted by Gauss-Newton step
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import cache, lru_cache, partial
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -24,10 +24,10 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.diagnosis.comparison import Comparison
+from modefront.diagnosis.members import Part, parts_of, with_factors
 from modefront.diagnosis.state import State, loss, ratio, scaled, stacked
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, first_axis
-from modefront.models.base import Model
 from modefront.models.geometry import chain_geometry
 from modefront.models.matrices import MatrixModel
 from modefront.modes.result import Modes
@@ -49,6 +49,9 @@ OFF = 0.4  # scale of the parameters: of their logarithms, or over their unit
 
 WIDER = 4.0
 """Factor beyond positive bounds up to which fits go, so that no mistake stands for a bound."""
+
+FACTOR = 2.0  # factor on a member, or its inverse, up to which fits go from where they begin
+ALL = -1  # number that stands for all parts of the model, each with a factor
 
 STEPS, LONGEST, ENOUGH, DAMPING = 10, 0.7, 0.05, 1e-3
 """Steps of a fit, their longest component, the decrease of the cost that ends them, and the share
@@ -136,14 +139,15 @@ class Fits:
         self.comparison, problem, data = comparison, comparison.problem, comparison.data
         matrices = comparison.matrices
         count = min(problem.model.size, comparison.frequency.size)
-        model: Model = problem.model
-        geometry, rows = None, np.eye(len(data.sensors))
+        model: Any = problem.model
+        geometry, rows, self.parts = None, np.eye(len(data.sensors)), list[Part]()
         moves = np.zeros((0, 3, len(rows)))
         if matrices is not None:
             geometry = matrices.geometry
             if geometry is None or len(geometry.axes) == 1:
                 geometry = chain_geometry(matrices.size, matrices.selection)
             model, basis = in_space_of_modes(matrices, count, problem)
+            self.parts = parts_of(matrices, basis)
             rows = matrices.selection @ basis
             moves = (geometry.motion @ basis).reshape(-1, 3, basis.shape[1])
         std = ratio(data.frequency_std, data.frequency)
@@ -152,14 +156,25 @@ class Fits:
         positive, size = ends[0] > 0, np.where(start == 0, ends[1] - ends[0], np.abs(start))
         logs = np.log(np.where(positive, ends / size, 1.0)) + np.log([[1 / WIDER], [WIDER]])
         self.ends, unit = np.where(positive, logs, (ends - start) / size), size * ~positive
+        if self.parts:
+            start, unit = np.append(start, 1.0), np.append(unit, 0.0)
+            self.ends = np.column_stack([self.ends, np.log([1 / FACTOR, FACTOR])])
         measured = data.frequency, data.damping, data.shape, std
-        self.plain = State(*measured, np.zeros(()), candidates, rows, start, unit, moves, geometry)
+        self.plain = State(
+            *measured, np.zeros(()), candidates, rows, np.array(0), start, unit, moves, geometry
+        )
         self.together = max(1, NUMBERS // (data.shape.size * (1 + len(start))))
 
-        def solved(derivatives: bool, theta: bytes) -> Modes | None:
+        @cache
+        def scaled(part: int) -> Any:
+            """Return the model with the factor on a part, or on each with ALL."""
+            some = self.parts if part == ALL else self.parts[part - 1 : part] if part else ()
+            return with_factors(model, some) if self.parts else model
+
+        def solved(derivatives: bool, part: int, theta: bytes) -> Modes | None:
             """Return the modes at parameters; None where there are none."""
             with suppress(ModelError):
-                modes = model.modes(np.frombuffer(theta), count, derivatives=derivatives)
+                modes = scaled(part).modes(np.frombuffer(theta), count, derivatives=derivatives)
                 slopes = (modes.dlam, modes.dphi) if derivatives else ()
                 return modes if all(np.isfinite(x).all() for x in slopes) else None
             return None
@@ -167,7 +182,26 @@ class Fits:
         numbers = KEPT // (sum(rows.shape) * count)
         self.modes = lru_cache(max(64, numbers // (1 + len(start))))(partial(solved, True))
         self.alone = lru_cache(max(64, numbers))(partial(solved, False))
-        self.nominal = self.modes(start.tobytes())
+        self.nominal = self.of(self.plain, 0 * start)
+
+    def of(self, state: State, x: Floats) -> Modes | None:
+        """Return the modes of a state at parameters x, with their slopes; None where none."""
+        return self.modes(int(state.part), state.theta(x).tobytes())
+
+    def by_parts(self, state: State, x: Floats) -> tuple[Floats, Floats]:
+        """Return the cost ahead with a factor on each part of the model, and the step of its log.
+
+        The sensitivities to all factors are those of one model, that of a state without factors.
+        """
+        p, q = x.size - 1, len(self.parts)
+        start, unit = np.append(state.start[:p], np.ones(q)), np.append(state.unit[:p], np.zeros(q))
+        wide = replace(state, start=start, unit=unit, part=np.array(ALL))
+        end = self.at(stacked([wide]), np.append(x[:p], np.zeros(q))[None]).of(0)
+        own = np.column_stack([np.tile(np.arange(p), (q, 1)), p + np.arange(q)])
+        g, H = end.g[own], end.H[own[:, :, None], own[:, None]]
+        dx = step(g, H, DAMPING)
+        ahead = end.cost + (g * dx + (H @ dx[..., None])[..., 0] * dx / 2).sum(axis=1)
+        return ahead, dx[:, -1]
 
     def unlike(self, states: Sequence[State], x: Floats, start: Floats) -> Floats:
         """Return how unlike a model the modes of all data sets are in each of several states.
@@ -187,7 +221,8 @@ class Fits:
 
         Those of the nominal model stand where there are none.
         """
-        found = [solve(theta.tobytes()) for theta in state.theta(x)]
+        thetas = zip(state.part.tolist(), state.theta(x), strict=True)
+        found = [solve(part, theta.tobytes()) for part, theta in thetas]
         modes: Any = [each or self.nominal for each in found]
         phi = state.rows @ np.stack([each.phi[-state.rows.shape[2] :] for each in modes])
         frequency = np.stack([each.frequency for each in modes])

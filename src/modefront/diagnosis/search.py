@@ -3,15 +3,17 @@
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import chain, combinations, pairwise
+from functools import partial
+from itertools import chain, combinations, pairwise, product
 from operator import attrgetter
+from typing import TypeAlias
 
 import numpy as np
 
 from modefront.diagnosis.comparison import Comparison, of_few_sets
 from modefront.diagnosis.evidence import ENOUGH, Fits
-from modefront.diagnosis.mistakes import sensors, values
-from modefront.diagnosis.mistakes.record import Explanation, Mistake
+from modefront.diagnosis.mistakes import model, sensors, values
+from modefront.diagnosis.mistakes.record import IMPRECISE, Explanation, Mistake
 from modefront.diagnosis.state import State, stacked
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found
@@ -20,8 +22,9 @@ from modefront.pairing.match import POOR, match
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
-PROMISING, FITTED = 100, 30
-"""Mistakes of each kind of which costs are looked at, and those of all kinds that are fitted."""
+PROMISING, FITTED = defaultdict(lambda: 100, {"wrong-unit": 2}), 30
+"""Mistakes of each kind of which costs are looked at, and those of all kinds that are fitted. Each
+unit has modes of its own, which other mistakes share."""
 
 BEAM, MOST = 3, 6
 """Single claims to which others are added, before they are to the best explanation, and most
@@ -33,7 +36,9 @@ LEFT = 1.0  # difference of costs that fits leave
 NEAR = 2 * CLEAR  # difference of costs up to which explanations of several mistakes are fitted
 SEEN = 0.02  # increase of a MAC value that is worth its name
 
-MISTAKES: Sequence[Callable[[Explanation], Iterator[Mistake]]] = (
+Kinds: TypeAlias = tuple[Callable[[Explanation], Iterator[Mistake]], ...]
+
+MISTAKES: Kinds = (
     *(values.frequency_factor, values.other_quantity, values.set_factor, values.other_numbers),
     *(values.exchanged_shapes, sensors.wrong_factor, sensors.exchanged_sensors),
     *(sensors.opposite_order, sensors.unsigned_shapes, sensors.copied_sensor),
@@ -41,15 +46,19 @@ MISTAKES: Sequence[Callable[[Explanation], Iterator[Mistake]]] = (
     *(sensors.wrong_place, sensors.reversed_value, sensors.odd_sensor),
     *(values.wrong_nominal_value, values.odd_value, values.wrong_frequency),
     *(values.damping_in_percent, values.foreign_mode, values.later_mode),
+    *(model.wrong_unit, model.wrong_member),
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
+
+SOUGHT: tuple[Kinds, Kinds] = MISTAKES, (partial(model.wrong_member, usual=True),)
+"""Mistakes, and what is none and is looked for once these are found."""
 
 USUAL, OFTEN = 0.02, 0.05
 PROBABILITY = defaultdict(
     lambda: USUAL,
     {"frequency-factor": OFTEN, "reversed-sensor": OFTEN, "wrong-direction": OFTEN}
     | {"odd-frequency": OFTEN, "odd-shape": OFTEN, "far-from-model": OFTEN, "damping": OFTEN}
-    | {"other-quantity": 0.005, "copied-sensor": 0.5},
+    | {"other-quantity": 0.005, "copied-sensor": 0.5, IMPRECISE: OFTEN},
 )
 """Probability with which a study has a mistake of a kind; with the same digits twice, a copy."""
 
@@ -95,16 +104,18 @@ class Search:
                 key, new = key_of(mistakes), Explanation(self.fits, mistakes, state, at, cost)
                 self.known[key] = min(self.known.get(key, new), new, key=COST)
 
-    def extend(self, old: Explanation) -> None:
-        """Fit the most promising explanations with a mistake more."""
+    def extend(self, old: Explanation, sought: Kinds) -> None:
+        """Fit the most promising explanations with a mistake more of those sought."""
         kinds = defaultdict(list)
-        for one in chain.from_iterable(find(old) for find in MISTAKES):
+        for one in chain.from_iterable(find(old) for find in sought):
             kinds[one.kind].append(one)
         some = []
         for kind, every in kinds.items():
             price = float(np.log(len(every) / PROBABILITY[kind]))
-            new = self._alike([x for x in every if x.claim not in old.claims], old)
+            new = self._alike([x for x in every if x.claim not in old.claims], PROMISING[kind], old)
             some += [replace(x, price=x.price + price) for x in new]
+        if not some:
+            return
         tried = [((*old.mistakes, one), one) for one in some]
         states = [one.change(old.state) for one in some]
         for one, state in list(zip(some, states, strict=True)) if old.mistakes else ():
@@ -121,15 +132,15 @@ class Search:
         first = np.argsort(costs, kind="stable")[:FITTED].tolist()
         self.fit([tried[k][0] for k in first if costs[k] < near], old)
 
-    def _alike(self, some: list[Mistake], old: Explanation) -> list[Mistake]:
+    def _alike(self, some: list[Mistake], most: int, old: Explanation) -> list[Mistake]:
         """Return mistakes; of many, those without which modes are most like those of the model."""
-        if len(some) <= PROMISING:
+        if len(some) <= most:
             return some
         together, costs = self.fits.together, list[float]()
         for k in range(0, len(some), together):
             states = [one.change(old.state) for one in some[k : k + together]]
             costs += self.fits.unlike(states, old.point.x, old.state.start).tolist()
-        return [some[k] for k in np.flatnonzero(costs <= np.sort(costs)[PROMISING - 1])]
+        return [some[k] for k in np.flatnonzero(costs <= np.sort(costs)[most - 1])]
 
     def best(self) -> Explanation | None:
         """Return the best explanation; the best ones are extended, the first one first."""
@@ -146,17 +157,23 @@ class Search:
                 some = tuple(one if x.claim == one.claim else x for x in best.mistakes)
                 tried[key_of(some)] = some
             self.fit([some for key, some in tried.items() if key not in self.known], best)
-            # What one explains may be hidden by another one, so that it is not worth its price.
-            gaining = [x for x in alone if x.point.cost < plain.point.cost - LEFT]
+            # What one explains may be hidden by another one, so that it is not worth its price. A
+            # fitted factor on a part gains by chance.
+            gains = (x for x in alone if x.point.cost < plain.point.cost - LEFT)
+            gaining = [x for x in gains if not x.state.part]
             firsts = sorted({x.claims: x for x in reversed(gaining)}.values(), key=COST)[:BEAM]
             same = [x for x in self.known.values() if x.claims == best.claims]
-            near = [x for x in sorted(same, key=COST) if x.cost < best.cost + CLEAR]
-            level = [*(x.mistakes for x in (*firsts, *near)), *fewer]
+            near = [x for x in sorted(same, key=COST, reverse=True) if x.cost < best.cost + CLEAR]
+            unlike = list({x.cost // ENOUGH: x for x in near}.values())[: -BEAM - 1 : -1]
+            level = [(), *(x.mistakes for x in (*firsts, *unlike)), *fewer]
             keys = [key_of(some) for some in level if len(some) < MOST]
-            new = next((x for x in keys if x in self.known and x not in extended), None)
+            fitted = [self.known[key] for key in keys if key in self.known]
+            todo = product(SOUGHT, (x for x in fitted if x.claims == x.blamed))
+            new = next((x for x in todo if (x[0], key_of(x[1].mistakes)) not in extended), None)
             if new is not None:
-                extended.add(new)
-                self.extend(self.known[new])
+                sought, old = new
+                extended.add((sought, key_of(old.mistakes)))
+                self.extend(old, sought)
                 continue
             # A rival may only have been fitted from where its way is barred.
             rivals = list(self.known.values())
@@ -173,16 +190,16 @@ class Search:
         Another one is no rival that has more mistakes and fits no better: all sensors but one
         reversed are the same as that one, as a mode shape has no sign.
         """
-        out, count, most = dict[Mistake, Finding](), len(best.mistakes), best.point.cost - LEFT
+        out, count, most = dict[Mistake, Finding](), len(best.blamed), best.point.cost - LEFT
         known = sorted(self.known.values(), key=COST)
-        rivals = [x for x in known if len(x.mistakes) <= count or x.point.cost <= most]
-        near = [x for x in rivals if x.cost - best.cost < CLEAR and len(x.mistakes) == count]
-        for one in best.mistakes:
-            rest = best.claims - {one.claim}
+        rivals = [x for x in known if len(x.blamed) <= count or x.point.cost <= most]
+        near = [x for x in rivals if x.cost - best.cost < CLEAR and len(x.blamed) == count]
+        for one in (x for x in best.mistakes if x.claim in best.blamed):
+            rest = best.blamed - {one.claim}
             # What may be instead, and of it, and of the mistake itself, what is better.
             firsts, swaps = dict[tuple[str, ...], Mistake](), dict[object, Mistake]()
-            for x in (x for each in near if each.claims >= rest for x in each.mistakes):
-                if x.claim not in rest:
+            for each in (x for x in near if x.blamed >= rest):
+                for x in (x for x in each.mistakes if x.claim in each.blamed - rest):
                     firsts.setdefault(x.claim, x)
                     swaps.setdefault(x.key, x)
             costs = [x.cost for x in rivals if not x.claims & firsts.keys()]
@@ -191,7 +208,7 @@ class Search:
                 said = list(dict.fromkeys((*firsts.values(), *swaps.values())))[:EITHER]
                 others = tuple(x.finding for x in said if x is not one)
                 # The MAC value that changes most shows it, where one does.
-                without = next(x for x in known if x.claims in (rest, frozenset()))
+                without = next(x for x in known if x.blamed in (rest, frozenset()))
                 before, after = without.point.mac, best.point.mac
                 r = int(np.argmax(np.nan_to_num(after - before)))
                 text = f" (without, MAC {best.data.modes[r]} is {after[r]:.2f} after a fit,"
@@ -226,7 +243,7 @@ def distant_pairs(search: Search, named: Iterable[Mistake]) -> Iterator[Finding]
     fits, problem = search.fits, search.fits.comparison.problem
     rule, data = problem.pairing, problem.data
     state = undone(fits.plain, [one for one in named if one.kind not in FOREIGN])
-    modes = fits.modes(state.start.tobytes())
+    modes = fits.of(state, 0 * state.start)
     if rule.method == "order" or modes is None:
         return
     foreign = {one.subject[0] for one in named if one.kind in FOREIGN}

@@ -68,7 +68,7 @@ def scaled(
 SHARED = ("unit", "moves", "geometry")  # what no mistake changes in the arrays
 
 
-# 11 fields: all that a mistake may change, in the arrays that explanations are stacked in.
+# 12 fields: all that a mistake may change, in the arrays that explanations are stacked in.
 @dataclass(frozen=True, eq=False)
 class State:
     """Data and model under an explanation, or under each of several, as further axes in front.
@@ -84,7 +84,9 @@ class State:
     left_out: Floats  # (...) cost of the values that are left out
     candidates: Ints  # (...) number of the lowest model modes among which pairs are sought
     rows: Floats  # (..., sensors, n) weights of the coordinates of the model's modes at each sensor
-    start: Floats  # (..., parameters) nominal values
+    part: Ints  # (...) number of the part of the model that is scaled, from 1; 0 for none
+    # (..., parameters) nominal values; in a model that has parts, the last is the factor on one
+    start: Floats
     # (parameters,) units of what is added to parameters; 0 where they are changed by factors
     unit: Floats
     moves: Floats  # (nodes, 3, n) displacement of the nodes with these coordinates

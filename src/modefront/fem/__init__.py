@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from modefront.fem import grids as grids
     from modefront.fem.assembly import StructureMatrices as StructureMatrices
     from modefront.fem.assembly import assemble as assemble
+    from modefront.fem.assembly import members_of as members_of
     from modefront.fem.dofs import Dofs as Dofs
     from modefront.fem.mesh import Mesh as Mesh
     from modefront.fem.mesh import read_mesh as read_mesh

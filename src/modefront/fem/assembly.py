@@ -27,9 +27,12 @@ from modefront.fem.dofs import Dofs, Followers, following_rows, hold, number_dof
 from modefront.fem.elements.common import ByPower
 from modefront.fem.mechanism import check_mechanisms
 from modefront.fem.structure import DIRECTIONS, Load, Parameter, Sensor, Structure
-from modefront.linalg.affine import Monomials, SparseAffine, sparse_affine, sparse_rows
+from modefront.linalg.affine import Members, Monomials, SparseAffine, sparse_affine, sparse_rows
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError, factorise
 from modefront.rounding import WRITTEN
+
+OF_STIFFNESS, OF_MASS = ("E", "spring"), ("density", "mass")
+"""Quantities that are factors of stiffness, and of mass."""
 
 SensorPlaces = tuple[Ints, Floats]
 """Nodes (sensors,) of sensors, and their directions (sensors, 6), weights of the DOFs of a node."""
@@ -95,8 +98,8 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
         raise wrong("structure", "at least one degree of freedom that is free", "none")
     K, M = (_Terms(dofs.T, structure.parameters) for _ in range(2))
     for block in blocks:
-        K.add(block, block.name, block.stiffness, ("E", "spring"))
-        M.add(block, block.name, block.mass, ("density", "mass"))
+        K.add(block, block.name, block.stiffness, OF_STIFFNESS)
+        M.add(block, block.name, block.mass, OF_MASS)
         K.add(block, block.name, block.prestress, ("prestress",))
     factor = _stable(K.total()) if forces and not floating else None
     for load, f in zip(structure.loads, forces, strict=True):
@@ -132,6 +135,36 @@ def _existing(X: Floats, blocks: list[Block], following: list[Followers]) -> Boo
     return exists
 
 
+def _exponents(
+    parameters: Sequence[Parameter], name: str, power: int, linear: Sequence[str]
+) -> tuple[int, ...]:
+    """Return those of what a name has with a power of thickness; `linear` ones are factors."""
+    powers = {"thickness": power, **dict.fromkeys(linear, 1)}
+    return tuple(powers.get(p.quantity, 0) * (name in p.of) for p in parameters)
+
+
+def members_of(
+    structure: Structure, T: sparse.csr_array, stiffness: Floats, mass: Floats
+) -> list[Members]:
+    """Return what members add to the terms of K and M, of which the exponents are given, by blocks.
+
+    ``T`` is that of the degrees of freedom, `Dofs.T`.
+    """
+    out = []
+    for block in blocks_of(check_points(structure.nodes), structure, []):
+        rows, count = T[block.dofs().ravel()], len(block.cells)
+        for of, exponents, parts, linear in (
+            ("stiffness", stiffness, block.stiffness, OF_STIFFNESS),
+            ("mass", mass, block.mass, OF_MASS),
+        ):
+            order = {tuple(e): j for j, e in enumerate(exponents.astype(int).tolist())}
+            own = {x: order[_exponents(structure.parameters, block.name, x, linear)] for x in parts}
+            shares = [(np.full(count, own[x]), A) for x, A in parts.items()]
+            if shares:
+                out.append(Members(of, block.name, block.cells, rows, shares))
+    return out
+
+
 class _Terms:
     """Terms of one matrix at the free degrees of freedom, by the exponents of the parameters."""
 
@@ -146,8 +179,7 @@ class _Terms:
         """
         moved = self.T[block.dofs().ravel()]
         for power, matrices in parts.items():
-            powers = {"thickness": power, **dict.fromkeys(linear, 1)}
-            exponents = tuple(powers.get(p.quantity, 0) * (name in p.of) for p in self.parameters)
+            exponents = _exponents(self.parameters, name, power, linear)
             count, size = matrices.shape[:2]
             columns = np.repeat(np.arange(count * size).reshape(count, size), size, axis=0)
             starts = np.arange(count * size + 1) * size

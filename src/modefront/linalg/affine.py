@@ -122,6 +122,18 @@ class Monomials:
         return out
 
 
+@dataclass(frozen=True, eq=False)
+class Members:
+    """What each of several members adds to the terms of a matrix: R^T A R, R its rows."""
+
+    of: str  # the matrix, "stiffness" or "mass"
+    group: str  # what they are of; empty for none
+    nodes: Ints  # (members, ...) between which each is
+    rows: scipy.sparse.csr_array  # (members k, N) all R, one below the other
+    # terms to which they add, (members,), and matrices A (members, k, k)
+    shares: Sequence[tuple[Ints, Floats]]
+
+
 @dataclass(frozen=True)
 class DenseAffine:
     """A(theta) with dense terms, shape (terms, N, N)."""

@@ -14,7 +14,7 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, refuse, suggestion, wrong
-from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
+from modefront.linalg.affine import DenseAffine, Members, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Pencil, SingularMatrixError, pencil
 from modefront.linalg.products import gram
 from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
@@ -55,6 +55,7 @@ def _eigenproblem() -> Iterator[None]:
         spend(Costs(full_time=time.perf_counter() - started))
 
 
+# 11 fields: the matrices, and what else is known of the structure, which is optional.
 @shared
 @dataclass(frozen=True, eq=False, repr=False)
 class MatrixModel(Shown):
@@ -75,6 +76,8 @@ class MatrixModel(Shown):
     limits: tuple[str, ...] = ()  # warnings on the elements of which the matrices are made
     # where the degrees of freedom are in space; None where that is not known
     geometry: Geometry | None = None
+    # returns what members add to the terms of the matrices; None where that is not known
+    members: Callable[[], Sequence[Members]] | None = None
 
     __repr__ = brief_model
 
@@ -187,8 +190,11 @@ class MatrixModel(Shown):
         index = {name: j for j, name in enumerate(self.parameters)}
         values = {index[name]: value for name, value in fixed.items()}
         others = {index[name]: index[other] for name, other in tied.items()}
+        pair = {"stiffness": self.stiffness, "mass": self.mass}
+        scales = {of: A.coefficients.held(values, others)[1] for of, A in pair.items()}
         return replace(
             self,
+            members=self.members and partial(_scaled, self.members, scales),
             parameters=tuple(x for x in self.parameters if x not in fixed and x not in tied),
             stiffness=self.stiffness.held(values, others),
             mass=self.mass.held(values, others),
@@ -216,9 +222,10 @@ class MatrixModel(Shown):
         return None
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state without the analysis of the pattern, which is made again when needed."""
+        """Return the state without members and the analysis of the pattern, which is made again."""
         made = ("pencil", "_dense")
-        return {name: value for name, value in vars(self).items() if name not in made}
+        kept = {name: value for name, value in vars(self).items() if name not in made}
+        return kept | {"members": None}
 
     @cached_property
     def pencil(self) -> Pencil:
@@ -226,6 +233,14 @@ class MatrixModel(Shown):
         if isinstance(self.stiffness, DenseAffine) or isinstance(self.mass, DenseAffine):
             raise TypeError("stiffness and mass have to be both dense or both sparse")
         return pencil(self.stiffness, self.mass, partial(spend, Costs(factorisations=1)))
+
+
+def _scaled(of_all: Callable[[], Sequence[Members]], scales: Mapping[str, Floats]) -> list[Members]:
+    """Return members of a model of which the terms of each matrix are scaled."""
+    return [
+        replace(x, shares=[(j, A * scales[x.of][j][:, None, None]) for j, A in x.shares])
+        for x in of_all()
+    ]
 
 
 def of_free(model: Model, parameters: Sequence[Parameter]) -> tuple[Model, tuple[Parameter, ...]]:

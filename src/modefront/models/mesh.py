@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import scipy.sparse
@@ -61,6 +62,7 @@ def mesh_model(
         replace(A, coefficients=Monomials(A.coefficients.exponents @ of))
         for A in (built.stiffness, built.mass)
     )
+    exponents = [A.coefficients.exponents for A in (built.stiffness, built.mass)]
     direction, X = built.dofs.free[:, 1], check_points(structure.nodes)
     types = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
     types |= {15: "wedge15", 20: "hexahedron20"}
@@ -85,4 +87,5 @@ def mesh_model(
         },
         limits=tuple(limits_of(structure, X)),
         geometry=Geometry(X, known, motion, at[:count], along[:count, :3]),
+        members=partial(fem.members_of, structure, built.dofs.T, *exponents),
     ).compact()

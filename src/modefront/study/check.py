@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
 from modefront.diagnosis.search import diagnose
 from modefront.errors import Fault, ModelError, refuse
@@ -31,12 +31,12 @@ from modefront.identifiability.sensitivity import Sensitivities, sensitivities
 from modefront.inputs import available_memory
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel
+from modefront.modes.result import Modes
 from modefront.optim.problem import Evaluation, at_bounds
 from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
-from modefront.residuals.shape import ShapeResiduals
 from modefront.results.remarks import digest
-from modefront.rounding import TINY
+from modefront.rounding import COMPUTED, TINY
 from modefront.study.definition import Study
 from modefront.study.file import as_study
 from modefront.text import Shown
@@ -143,7 +143,7 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
             None if agrees else cause_of(problem, agreement),
             tuple(known),
             mistakes,
-            (*left_open, *_of_model(problem, nominal)),
+            (*left_open, *_of_model(beside, nominal)),
             beside,
             sensitivities(problem),
             spoilt,
@@ -168,13 +168,11 @@ def excluding_bounds(study: Study) -> tuple[Finding, ...]:
     return () if wrong is None else (wrong,)
 
 
-def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[Finding]:
+def _of_model(beside: Comparison, nominal: Evaluation) -> Iterator[Finding]:
     """Warn of modes that coincide, of bounds, of elements, and of so much that a run takes long."""
-    members = [x for row in problem.members for x in row if isinstance(x, ShapeResiduals)]
-    single = {x.modes[0] for x in members if not x.cluster}
-    same = single.intersection(np.flatnonzero(nominal.quantities["coincident"]).tolist())
-    if same:
-        modes = ", ".join(str(problem.data.modes[r]) for r in sorted(same))
+    problem = beside.problem
+    if same := turning(beside, np.flatnonzero(nominal.quantities["coincident"])):
+        modes = ", ".join(str(problem.data.modes[r]) for r in same)
         yield found("coincident", modes, many=len(same) > 1)
     names, full = problem.model.parameters, full_of(problem.model)
     for j in np.flatnonzero((problem.start == problem.lower) | (problem.start == problem.upper)):
@@ -191,6 +189,23 @@ def _of_model(problem: UpdatingProblem, nominal: Evaluation) -> Iterator[Finding
         yield found("many-sets", str(len(problem.data.sets)), searched=COMPARED)
     if len(names) > MANY:
         yield found("many-parameters", str(len(names)), size=memory_of(problem) / 1e9)
+
+
+def turning(beside: Comparison, coincident: Ints) -> list[int]:
+    """Return which of some measured modes have residuals that change with the shape of each alone.
+
+    ``coincident`` are positions of modes whose model modes have the frequency of others. A sum of
+    such modes is a mode as well, so that a residual that changes with it is not defined.
+    """
+    problem, pairs, out = beside.problem, beside.pairs, list[int]()
+    modes = Modes((2 * np.pi * beside.frequency) ** 2, beside.phi)
+    given = np.concatenate(problem.vectors(modes, pairs))
+    for r in coincident.tolist():
+        q, phi = pairs.index[r], modes.phi.copy()
+        phi[:, q] += phi[:, np.argsort(np.abs(modes.lam - modes.lam[q]), kind="stable")[:2]].sum(1)
+        turned = np.concatenate(problem.vectors(replace(modes, phi=phi), pairs))
+        out += [r] * (not np.allclose(turned, given, rtol=0, atol=np.sqrt(COMPUTED)))
+    return out
 
 
 def memory_of(problem: UpdatingProblem) -> float:

@@ -17,6 +17,8 @@ MANY = 6  # names that a sentence has, at most
 BETTER = ("better", "factor", "looks", "place", "sensor", "what", "of", "quantity", "later")
 """Names and numbers of sentences that tell mistakes of the same claim from each other."""
 
+IMPRECISE = "imprecise-member"  # kind that is no mistake, and never named
+
 Change: TypeAlias = Callable[[State], State]
 
 
@@ -66,6 +68,11 @@ class Explanation:
         return frozenset(each.claim for each in self.mistakes)
 
     @property
+    def blamed(self) -> frozenset[tuple[str, ...]]:
+        """What is claimed to be a mistake."""
+        return frozenset(each.claim for each in self.mistakes if each.kind != IMPRECISE)
+
+    @property
     def data(self) -> ModalData:
         """The measured modes as they are given, with the names of sets, modes and sensors."""
         return self.fits.comparison.data
@@ -73,7 +80,7 @@ class Explanation:
     @property
     def modes(self) -> Modes:
         """The modes of the model at the fitted parameters."""
-        modes = self.fits.modes(self.state.theta(self.point.x).tobytes())
+        modes = self.fits.of(self.state, self.point.x)
         assert modes is not None
         return modes
 
@@ -93,10 +100,10 @@ def changed(part: str, place: Any, new: Any, cost: float = 0.0) -> Change:
     """
 
     def change(state: State) -> State:
-        values = getattr(state, part).copy()
-        count = np.isfinite(values).sum()
-        values[place] = new(values[place]) if callable(new) else values[place] / new
-        lost = NOTHING * (count - np.isfinite(values).sum())
+        old = getattr(state, part)
+        values, known = old.copy(), old[place]
+        values[place] = better = new(known) if callable(new) else known / new
+        lost = NOTHING * (np.isfinite(known).sum() - np.isfinite(better).sum())
         parts: Any = {part: values}
         return replace(state, left_out=state.left_out + cost + lost, **parts)
 

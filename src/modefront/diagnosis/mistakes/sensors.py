@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Bools, Floats, Ints
 from modefront.diagnosis.evidence import OF_MODEL, SHAPE, log_frequencies, mac_values, pair_costs
 from modefront.diagnosis.mistakes.record import MANY, Explanation, Mistake, changed
 from modefront.diagnosis.state import SHAPE as NOISE
@@ -90,23 +90,28 @@ def opposite_order(old: Explanation) -> Iterator[Mistake]:
 
 
 def unsigned_shapes(old: Explanation) -> Iterator[Mistake]:
-    """Yield signs for shapes of which none has any, as if they were magnitudes.
+    """Yield signs for shapes of which none has any but for one value, as if they were magnitudes.
 
     The signs are those of the model that fits the frequencies alone.
     """
     state, fits = old.state, old.fits
-    values = np.nan_to_num(state.shape)
-    if (values.min(axis=2) * values.max(axis=2) < 0).any():
+    if _odd_signs(state).sum() > 1:
         return
     unknown = replace(state, shape=np.full(state.shape.shape, np.nan))
     (end,) = fits.fitted([unknown])
-    if modes := fits.modes(state.theta(end.x).tobytes()):
+    if modes := fits.of(state, end.x):
         phi = state.rows @ modes.phi[-state.rows.shape[1] :]
         mac = mac_values(np.abs(state.mean), state.known, np.abs(phi))
         cost = pair_costs(mac, state.logs, log_frequencies(modes.frequency))
         signs = np.sign(phi[:, assigned(cost[:, : state.candidates])].T)
         change = changed("shape", ..., partial(np.multiply, signs))
         yield Mistake("unsigned-shapes", ("shapes",), change)
+
+
+def _odd_signs(state: State) -> Bools:
+    """Return which components have another sign than most of their shape has."""
+    signs = np.sign(np.nan_to_num(state.shape))
+    return np.asarray(signs * signs.sum(axis=2, keepdims=True) < 0)
 
 
 def odd_sensor(old: Explanation) -> Iterator[Mistake]:
@@ -124,12 +129,12 @@ def odd_sensor(old: Explanation) -> Iterator[Mistake]:
 def reversed_value(old: Explanation) -> Iterator[Mistake]:
     """Yield single components, of shapes that one data set alone has, with the other sign.
 
-    Magnitudes have none.
+    Of magnitudes, only one that has a sign.
     """
     state, names = old.state, old.data
-    if any(each.kind == "unsigned-shapes" for each in old.mistakes):
-        return
     once = state.seen & (state.seen.any(axis=2).sum(axis=0) == 1)[:, None]
+    if any(each.kind == "unsigned-shapes" for each in old.mistakes):
+        once &= _odd_signs(old.fits.plain)
     for k, r, s in np.argwhere(once).tolist():
         numbers = {"mode": names.modes[r], "sensor": names.sensors[s]}
         change = changed("shape", np.s_[k, r, s], -1.0)
@@ -137,11 +142,11 @@ def reversed_value(old: Explanation) -> Iterator[Mistake]:
 
 
 def copied_sensor(old: Explanation) -> Iterator[Mistake]:
-    """Yield sensors that have the values of another one, digit by digit.
+    """Yield sensors that have the values of another one, digit by digit, whatever their signs.
 
     A copy says nothing on its own: its values cost as much as those that fit as well as is usual.
     """
-    shape, names = old.state.shape, old.data.sensors
+    shape, names = np.abs(old.state.shape), old.data.sensors
     for s, t in permutations(old.measured, 2):
         same = np.array_equal(shape[:, :, s], shape[:, :, t], equal_nan=True)
         if not same or not np.nan_to_num(shape[..., s]).any():

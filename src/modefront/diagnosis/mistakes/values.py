@@ -102,7 +102,7 @@ def wrong_frequency(old: Explanation) -> Iterator[Mistake]:
 def wrong_nominal_value(old: Explanation) -> Iterator[Mistake]:
     """Yield powers of ten on each parameter that is changed by factors, and on its bounds."""
     start, names = old.state.start, old.fits.comparison.problem.model.parameters
-    for j, power in product(np.flatnonzero(old.state.unit == 0).tolist(), POWERS):
+    for j, power in product(np.flatnonzero(old.state.unit[: len(names)] == 0).tolist(), POWERS):
         numbers = {"name": names[j], "given": float(start[j]), "better": start[j] * 10.0**power}
         change = changed("start", j, 10.0**-power)
         yield Mistake("nominal-value", (names[j],), change, numbers)
