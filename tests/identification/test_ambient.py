@@ -24,7 +24,6 @@ from modefront.identification.methods.ambient import (
 from modefront.identification.sets import merged_shape
 from modefront.identification.spectra import Transforms, transforms
 from modefront.identification.spectral_density import Band, Density
-from modefront.identification.stabilisation import StabilisationDiagram
 
 SENSORS, LINES = 4, 30
 
@@ -277,7 +276,7 @@ def test_a_strong_mode_above_the_band_leaves_damping_as_it_is(seed: int) -> None
     assert abs(phi[1] @ above[0].phi) > 0.999
     assert above[0].omega / (2 * np.pi) == pytest.approx(6.2, rel=0.02)
     assert _above(records, rate / 2) == ()
-    none = StabilisationDiagram(*(np.zeros(0) for _ in range(4)), (), np.zeros(0, int))
+    none: Any = None
     setup = _Setup(records, transforms(records, 3.0, high), none, (), above)
     errors = []
     for each in (setup, replace(setup, above=())):
