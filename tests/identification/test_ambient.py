@@ -12,9 +12,17 @@ from modefront._typing import Complexes, Floats
 from modefront.data.modal_test import Records
 from modefront.identification import spectral_density
 from modefront.identification.harmonics import without_sine
-from modefront.identification.methods.ambient import Local, _harmonic, _overlapping, identify
+from modefront.identification.methods.ambient import (
+    Local,
+    _above,
+    _fitted,
+    _harmonic,
+    _overlapping,
+    _Setup,
+    identify,
+)
 from modefront.identification.sets import merged_shape
-from modefront.identification.spectra import Transforms
+from modefront.identification.spectra import Transforms, transforms
 from modefront.identification.spectral_density import Band, Density
 
 SENSORS, LINES = 4, 30
@@ -251,6 +259,31 @@ def test_setups_make_one_set_of_shapes_at_all_sensors() -> None:
     for mode, shape in zip(result.modes, phi, strict=True):
         assert (mode.shape.shape @ shape) ** 2 > 0.97
         assert (mode.shape_std > 0).all()
+
+
+@pytest.mark.parametrize("seed", [1, 4, 5])
+def test_a_strong_mode_above_the_band_leaves_damping_as_it_is(seed: int) -> None:
+    rng, rate, high = np.random.default_rng(seed), 16.0, 5.9
+    f = np.fft.rfftfreq(int(1800 * rate), 1 / rate)
+    phi = np.linalg.qr(rng.standard_normal((3, 2)))[0].T
+    phi[1] = (phi[1] + phi[0] / 2) / np.sqrt(1.25)
+    x = f / np.array([[5.0], [6.2]])
+    h = x**2 / (1 - x**2 + 2j * np.array([[0.03], [0.01]]) * x)
+    y = np.fft.irfft(phi.T @ (h * np.array([[1], [4]]) * _circular(rng, *x.shape)), axis=1)
+    y += 0.01 * y.std() * rng.standard_normal(y.shape)
+    records = Records("all", tuple("abc"), rate, y)
+    above = _above(records, high)
+    assert abs(phi[1] @ above[0].phi) > 0.999
+    assert above[0].omega / (2 * np.pi) == pytest.approx(6.2, rel=0.02)
+    assert _above(records, rate / 2) == ()
+    none: Any = None
+    setup = _Setup(records, transforms(records, 3.0, high), none, (), above)
+    errors = []
+    for each in (setup, replace(setup, above=())):
+        (mode,) = _fitted(each, [Local(10 * np.pi, 0.03, phi[0])], 1e-4, last=True).modes
+        errors.append(np.log(mode.zeta / 0.03) / np.sqrt(mode.covariance[1, 1]))
+    assert abs(errors[0]) < 2.5
+    assert errors[1] < -3  # without them, the background bends
 
 
 def test_blocks_are_fine_at_poles_and_coarse_far_from_them() -> None:

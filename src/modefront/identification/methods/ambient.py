@@ -48,6 +48,9 @@ WIDEST = 0.15
 """Half the width of a band over the frequency of its mode, at most, beyond the first reach: over it
 flanks of modes outside are linear and forces have one colour."""
 
+BEYOND = 2 * WIDEST
+"""Share of the highest frequency up to which what moves above it is told from the background."""
+
 OVERLAP = 4.0, 8.0
 """Distance over the sum of half bandwidths within which modes are fitted at once: first, last."""
 
@@ -102,6 +105,7 @@ class _Setup:
     lines: Transforms
     diagram: StabilisationDiagram
     modes: tuple[Local, ...]
+    above: tuple[Local, ...] = ()  # what moves above the band, for its flank
 
     @property
     def spacing(self) -> float:
@@ -152,8 +156,23 @@ def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float])
             modes[apart.argmin()] = replace(modes[apart.argmin()], held=True)
         setup = _fitted(_Setup(records, lines, diagram, ()), modes, chance)
         if setup.lines.sines == lines.sines:
+            setup = replace(setup, above=_above(records, high))
             return _fitted(setup, setup.modes, chance, last=True)
         lines = setup.lines
+
+
+def _above(records: Records, high: float) -> tuple[Local, ...]:
+    """Return what moves above a frequency in Hz, the most first, as modes of principal shapes.
+
+    In bands below, the flanks of such modes need their shapes and, roughly, their frequencies. A
+    background alone does not bend as they do, and damping ratios are then too small.
+    """
+    lines = spectra.transforms(records, high, min((1 + BEYOND) * high, records.rate / 2))
+    if len(lines.omega) < LEAST_LINES:
+        return ()
+    shapes = np.linalg.eigh((lines.F @ lines.F.conj().T).real)[1].T[::-1][:BESIDE]
+    omega, zeta = lines.omega[np.abs(shapes @ lines.F).argmax(axis=1)], np.sqrt(np.prod(DAMPING))
+    return tuple(Local(float(w), float(zeta), phi) for w, phi in zip(omega, shapes, strict=True))
 
 
 def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDiagram, list[Local]]:
@@ -206,7 +225,10 @@ def _fitted(
         start, end = np.searchsorted([mode.omega for mode in rest], [low, high])
         told = max((len(setup.records.sensors) - len(group)) // 2, 1)
         nearest = min(told, BESIDE) if last else 1
-        beside = rest[max(start - nearest, 0) : end + nearest]
+        beside = [
+            *rest[max(start - nearest, 0) : end + nearest],
+            *setup.above[: max(end + nearest - len(rest), 0)],
+        ]
         inside = [*chosen, *rest[start:end]]
         limits = low, high, np.array([[mode.omega, mode.half] for mode in inside]).T
         lines, of_group = _of_group(setup, limits, chosen, beside, chance, last)
