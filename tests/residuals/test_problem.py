@@ -354,3 +354,5 @@ def test_modes_are_candidates_up_to_beyond_the_highest_measured_frequency(
     assert found.J == pytest.approx(0, abs=1e-12)
     few = Pairing(spare=2)
     assert updating_problem(model, problem.data, ALL, *given, few).pairing is few
+    shapes_alone = modal_data(np.full(3, np.nan), shapes, model.sensors)
+    assert updating_problem(model, shapes_alone, ALL[1:], *given).pairing == Pairing(spare=3)

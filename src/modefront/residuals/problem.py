@@ -292,7 +292,8 @@ def _with_spare(
     if pairing.spare is not None or pairing.method == "order" or not isinstance(model, MatrixModel):
         return pairing
     nominal = np.array([each.nominal for each in parameters])
-    below = model.modes_below(nominal, REACH * float(np.nanmax(data.mean_frequency)))
+    highest = float(np.nanmax(data.mean_frequency, initial=0.0))
+    below = model.modes_below(nominal, REACH * highest)
     return replace(pairing, spare=int(np.clip(below - len(data.modes), FEWEST, MOST)))
 
 
