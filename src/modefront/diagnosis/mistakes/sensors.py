@@ -95,7 +95,8 @@ def unsigned_shapes(old: Explanation) -> Iterator[Mistake]:
     The signs are those of the model that fits the frequencies alone.
     """
     state, fits = old.state, old.fits
-    if _odd_signs(state).sum() > 1:
+    signs = np.sign(np.nan_to_num(fits.plain.shape))
+    if np.minimum((signs > 0).sum(axis=2), (signs < 0).sum(axis=2)).sum() > 1:
         return
     unknown = replace(state, shape=np.full(state.shape.shape, np.nan))
     (end,) = fits.fitted([unknown])
@@ -109,9 +110,9 @@ def unsigned_shapes(old: Explanation) -> Iterator[Mistake]:
 
 
 def _odd_signs(state: State) -> Bools:
-    """Return which components have another sign than most of their shape has."""
+    """Return which components have a sign that no more of their shape have than another one."""
     signs = np.sign(np.nan_to_num(state.shape))
-    return np.asarray(signs * signs.sum(axis=2, keepdims=True) < 0)
+    return np.asarray((signs != 0) & (signs * signs.sum(axis=2, keepdims=True) <= 0))
 
 
 def odd_sensor(old: Explanation) -> Iterator[Mistake]:
