@@ -101,6 +101,7 @@ def test_derivatives_are_proved_for_many_residuals_near_a_minimum() -> None:
     assert compared(problem).error < 1e-6
 
 
+@pytest.mark.slow(8)
 def test_of_many_data_sets_some_are_searched_for_mistakes(study: Study) -> None:
     problem = study.problem
     data = problem.data
