@@ -1,15 +1,16 @@
 """Findings of checks of studies with known mistakes and difficulties."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from own_residuals import OneSet
 
 import modefront as mf
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Bools, Floats
 from modefront.data.modal import ModalData, modal_data
 from modefront.diagnosis.comparison import COMPARED, compare, of_few_sets
 from modefront.errors import InputError
@@ -17,7 +18,7 @@ from modefront.models.chain import chain
 from modefront.models.matrices import matrices
 from modefront.modes.result import Modes
 from modefront.pairing.match import Pairs
-from modefront.residuals.base import ModeErrors, Scale, Sensitivity
+from modefront.residuals.base import ModeErrors, Scale
 from modefront.residuals.groups import KINDS, Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.study.check import cause_of, check, compared
@@ -162,26 +163,11 @@ def two_planes(shapes: Group) -> UpdatingProblem:
     return updating_problem(model, data, groups, bounds, {"low": 1.0, "high": 1.0})
 
 
-@dataclass(frozen=True, eq=False)
-class Share:
-    """Share of the first component of a shape in its square; a member and a stack alike."""
-
-    mode: Ints
-    count: float = 1.0
-    remark: str = ""
-
-    @property
-    def sets(self) -> Ints:
-        return np.zeros(1, dtype=np.intp)
+class Share(OneSet):
+    """Share of the first component of a shape in its square."""
 
     def margin(self, errors: ModeErrors) -> float:
         return float(errors.shape[self.mode[0]] ** 2)
-
-    def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
-        yield from ()
-
-    def independent(self) -> tuple[float, float, float]:
-        return 1.0, 0.0, 0.0
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         square = modes.phi[:, pairs.index[self.mode]] ** 2

@@ -13,16 +13,17 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from own_residuals import OneSet
 from refusals import command
 from two_masses import STUDY, write_study
 
 import modefront as mf
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Bools, Floats
 from modefront.front.methods import METHODS
 from modefront.modes.result import Modes
 from modefront.options import Table
 from modefront.pairing.match import Pairs
-from modefront.residuals.base import Curvature, Member, ModeErrors, Scale, Sensitivity
+from modefront.residuals.base import Curvature, Member, ModeErrors, Scale
 from modefront.study.file import FAMILIES
 
 CHAIN = STUDY[STUDY.index("[model]") : STUDY.index("[[parameter]]")]
@@ -81,27 +82,14 @@ def test_a_kind_of_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
 # A kind of residual: of the squares of frequencies
 
 
-@dataclass(frozen=True, eq=False)
-class Eigenvalue:
-    """Relative errors of eigenvalues of one data set; a member and a stack at the same time."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Eigenvalue(OneSet):
+    """Relative errors of eigenvalues."""
 
     measured: Floats
-    mode: Ints
-    count: float = 1.0
-    remark: str = ""
-
-    @property
-    def sets(self) -> Ints:
-        return np.zeros(1, dtype=np.intp)
 
     def margin(self, errors: ModeErrors) -> float:
         return float(errors.eigenvalue[self.mode[0]] ** 2)
-
-    def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
-        yield from ()
-
-    def independent(self) -> tuple[float, float, float]:
-        return 1.0, 0.0, 0.0
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         return np.asarray(modes.lam[pairs.index[self.mode]] / self.measured - 1)
@@ -135,7 +123,7 @@ class EigenvalueKind:
 
     def stack(self, data: mf.ModalData, modes: Sequence[int], scale: Scale) -> Eigenvalue:
         lam = (2 * np.pi * data.frequency[0, list(modes)]) ** 2
-        return Eigenvalue(lam, np.asarray(modes))
+        return Eigenvalue(mode=np.asarray(modes), measured=lam)
 
 
 def test_a_kind_of_residual(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
