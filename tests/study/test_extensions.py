@@ -140,6 +140,21 @@ def test_a_kind_of_residual(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         mf.load(own)
 
 
+def test_residuals_without_standard_deviations_have_no_posterior(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mf.register(EigenvalueKind())
+    own = write_study(tmp_path, "")
+    text = own.read_text().replace('frequency = "all"', 'eigenvalue = "all"')
+    own.write_text(text.replace("weight = 0", "weight = 4"))
+    assert mf.load(own).noise.weight == 4
+    assert [x.kind for x in mf.check(own).mistakes] == ["not-expected"]
+    data, out = run(own, capsys)
+    assert "interval" not in data
+    assert "most-probable" not in data["kind"].values
+    assert "residuals without standard deviations" in " ".join(out.split())
+
+
 # A front method
 
 

@@ -23,8 +23,6 @@ from modefront.uncertainty.prior import NoiseModel, NoisePrior, Standardised
 from modefront.uncertainty.sampling import (
     CHAINS,
     DRAWS,
-    FINE,
-    NEAR,
     SOLVED,
     Model,
     Peak,
@@ -365,8 +363,7 @@ def test_draws_in_a_poor_basis_are_weighted(
         replace(noise_of(partial(line, mean=m, std=s), [0, 0], [1, 1], [1.0]), weight=1e8)
         for m, s in ((0.1, 0.2), (mean, std))
     )
-    spaces = {NEAR: poor, FINE: exact}
-    monkeypatch.setattr("modefront.uncertainty.sampling._nearer", lambda _, __, x, *___: spaces[x])
+    monkeypatch.setattr("modefront.uncertainty.sampling._nearer", lambda *_: poor)
     found = draw_models(exact, [np.array([0.1, 0.5])], count, 8, IMMEDIATE)
     assert found.settled == (std == 0.2)
     if found.settled:

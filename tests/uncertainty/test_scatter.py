@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from modefront._typing import Floats
+from modefront.front.front import Edge, Front
 from modefront.front.simplex import payoff
 from modefront.front.subproblems import Point, active_bounds
 from modefront.optim.problem import Evaluation
@@ -234,6 +235,8 @@ def test_points_between_edges_have_scatter_where_their_weights_are_known() -> No
     problem = case.problem()
     edges = [minimum(problem, weighted(w), np.zeros(3)) for w in np.eye(2) + 1e-4]
     ends = [SolvedPoint(f"edge-{i}", edges[i], Role("edge", objective=i)) for i in range(2)]
+    minima = [Edge(edge, [edge]) for edge in edges]
+    front = Front("nbi", [], minima, [], None, (False, False), None, [])
     for weights, labels in (([0.0, 0.0], {"edge-0", "edge-1"}), ([0.5, 0.5], None)):
         model = minimum(problem, weighted(np.array([0.5, 0.5])), np.zeros(3))
         between = replace(model, weights=np.array(weights), beta=np.array([0.5, 0.5]))
@@ -243,5 +246,7 @@ def test_points_between_edges_have_scatter_where_their_weights_are_known() -> No
             each.label: Local(point_of(problem, each.solution), case.noise(each.solution.theta), {})
             for each in points
         }
-        found = front_scatter(problem, points, known, np.ones(2), np.ones(2))
-        assert set(found) == (labels or set(known))
+        points.append(SolvedPoint("nbi-2", edges[0], Role("end", ("edge-0",))))
+        found = front_scatter(problem, front, points, known, np.ones(2), np.ones(2))
+        assert set(found) == {*(labels or known), "nbi-2"}
+        assert found["nbi-2"] is found["edge-0"], "the same point has the same scatter and doubts"

@@ -23,10 +23,10 @@ from modefront.uncertainty.scatter import (
     LinearisationWarning,
     Scatter,
     boundary,
+    doubts,
     given_weights,
     optimal_weights,
     scatter,
-    with_neighbours,
 )
 
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
@@ -134,7 +134,7 @@ def test_points_next_to_a_change_of_the_active_set_are_doubtful() -> None:
 
 
 @pytest.mark.parametrize(
-    ("std", "status", "doubts"),
+    ("std", "status", "expected"),
     [
         (19.0, Status.CONVERGED, ()),
         (21.0, Status.CONVERGED, (LinearisationWarning.RIVAL,)),
@@ -142,7 +142,7 @@ def test_points_next_to_a_change_of_the_active_set_are_doubtful() -> None:
     ],
 )
 def test_another_model_that_fits_as_well_is_a_rival(
-    std: float, status: Status, doubts: tuple[LinearisationWarning, ...]
+    std: float, status: Status, expected: tuple[LinearisationWarning, ...]
 ) -> None:
     """J1 vanishes at (1, -2) and (1, 2), J2 is 20 less at the first: errors of J2 decide."""
     problem = box(many_minima, [-4, -4], [4, 4])
@@ -151,12 +151,6 @@ def test_another_model_that_fits_as_well_is_a_rival(
     best = replace(best, status=status)
     edges = [Edge(best, [best, other]), Edge(other, [other])]
     front = Front("nbi", [Point(Kind.EDGE, best, "J1")], edges, [], None, (True, False), None, [])
-    points = [
-        SolvedPoint("edge-J1", best, Role("edge", objective=0)),
-        SolvedPoint("nbi-1", best, Role("end", ("edge-J1",))),
-    ]
-    none = np.zeros((1, 2))
+    point, none = SolvedPoint("edge-J1", best, Role("edge", objective=0)), np.zeros((1, 2))
     chosen = Scatter(none, np.array([[0.0, std]]), none.T, ())
-    scatters = {"edge-J1": chosen, "nbi-1": chosen}
-    result = with_neighbours(front, points, scatters, np.ones(2), np.ones(2))
-    assert [scatter.warnings for scatter in result.values()] == [doubts, doubts]
+    assert tuple(doubts(front, point, chosen, np.ones(2), np.ones(2))) == expected

@@ -23,14 +23,7 @@ from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.noise import Noise, Source, Uncertainty, noise
 from modefront.uncertainty.points import Role, SolvedPoint, edge_weights, solve_again
-from modefront.uncertainty.scatter import (
-    Local,
-    Posterior,
-    Scatter,
-    front_scatter,
-    laplace,
-    with_neighbours,
-)
+from modefront.uncertainty.scatter import Local, Posterior, Scatter, front_scatter, laplace
 from modefront.work.task import Executor, Task, seed_sequence
 
 
@@ -85,8 +78,7 @@ def analyse_front(
     scatter: Mapping[str, Scatter] = {}
     replicates: list[Mapping[str, Solution]] = []
     if source is not None and sizes is not None:
-        alone = front_scatter(problem, solved, known, a, sizes)
-        scatter = with_neighbours(front, solved, alone, a, sizes)
+        scatter = front_scatter(problem, front, solved, known, a, sizes)
         seeds = [(b, seed_sequence(seed, "bootstrap", b)) for b in range(1, samples + 1)]
         again = (problem, solved, sizes, source)
         tasks = [Task(("bootstrap", b), solve_again, again, each) for b, each in seeds]

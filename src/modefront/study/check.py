@@ -153,12 +153,13 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
 def excluding_bounds(study: Study) -> tuple[Finding, ...]:
     """Return the bounds that exclude what fits the data, if any, as the verdict of a run does.
 
-    The most probable model is the one to which the nominal one leads.
+    The most probable model is the one to which the nominal one leads. Where nothing is expected of
+    the errors of some residuals, that is said instead.
     """
     problem = study.problem
     noise = study.noise.of(problem, study.uncertainty.of(problem.data))
     if noise is None:
-        return ()
+        return (found("not-expected"),) if study.noise.weight else ()
     best = maximum(noise, problem.start)
     if not best.converged or (free := freed(noise, best.theta)) is None:
         return ()

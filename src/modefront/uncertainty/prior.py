@@ -19,7 +19,7 @@ from modefront.optim.problem import Evaluation, Problem, Residual, Wrapped
 from modefront.optim.scalarisation import LogSum
 from modefront.options import Checked, number
 from modefront.residuals.base import NEGLIGIBLE
-from modefront.residuals.groups import Group
+from modefront.residuals.groups import Group, faults
 from modefront.residuals.problem import UpdatingProblem
 from modefront.residuals.shape import without_negligible
 from modefront.uncertainty.noise import Source
@@ -54,8 +54,9 @@ class NoisePrior(Checked):
     weight: Annotated[float, number("a number of 0 or more", least=0)] = 4.0
 
     def of(self, problem: UpdatingProblem, source: Source | None) -> "NoiseModel | None":
-        """Return the model of the errors of a problem; None without weight.
+        """Return the model of the errors of a problem.
 
+        None without weight, and where a residual knows no standard deviation of its errors.
         ``source`` says where errors are taken from; assumed ones where it is None or silent.
         """
         if self.weight == 0:
@@ -66,6 +67,8 @@ class NoisePrior(Checked):
         groups = tuple(
             Group(each.name, scale="std", **dict(each.chosen)) for each in problem.groups
         )
+        if any(True for group in groups for _ in faults(group, data)):
+            return None
         scaled = replace(problem, data=data, groups=groups)
         parts = [[member.independent() for member in row] for row in scaled.members]
         a, S, d = np.array([np.sum(row, axis=0) for row in parts]).T

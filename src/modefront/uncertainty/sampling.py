@@ -10,7 +10,7 @@ they agree and the effective sample is large enough (Vehtari et al. 2021, doi:10
 They end at half of their length at most where none of their halves is worth more than one draw.
 
 Where modes are those of a reduced basis, chains are those of a smaller one, and draws are weighted
-by what a finer one says of them (Liu 2001, *Monte Carlo Strategies in Scientific Computing*,
+by what the whole one says of them (Liu 2001, *Monte Carlo Strategies in Scientific Computing*,
 section 2.5): a poor one leaves fewer of them, and these no less exact.
 """
 
@@ -47,10 +47,9 @@ FAINT = 1e-3  # probability of a peak over that of the greatest one, below which
 SMALL, SNAPSHOTS = 100, 40
 """Columns of a basis from which steps are taken in a smaller one; models whose modes span that."""
 
-NEAR, FINE = 3e-3, 1e-4
+NEAR = 3e-3
 """Length of a direction that the smaller space may lack, root mean square over these models: a
-tenth of a usual error of shapes; that of the finer one, which leaves 2 % in the weights of draws.
-"""
+tenth of a usual error of shapes."""
 
 SOLVED, STEPS = 1e-2, 12  # error of the normal variables behind a model, and models to it at most
 BENT = 0.5  # length of differences for second derivatives, in standard deviations
@@ -261,7 +260,7 @@ def draw_models(
     kept: list[Floats] = []
     rng = np.random.default_rng(seed_sequence(seed, stage, "near"))
     around = [peaks[k].top.newton(1.0) for k in rng.choice(len(peaks), SNAPSHOTS)]
-    near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), NEAR, 0, work)
+    near = _nearer(noise, np.array([_drawn(mean, A, rng) for mean, A in around]), 0, work)
     settled = False
     rounds = rounds or -(-LONGEST * count // (CHAINS * ROUND))
     work.expect({stage: (2 * CHAINS, (1 + rounds) * CHAINS)})
@@ -275,7 +274,7 @@ def draw_models(
         if turn == 0:  # the warm-up
             if near is not noise:
                 some = np.vstack([x.z[:: CHAINS * ROUND // SNAPSHOTS] for x in found])
-                near = _nearer(noise, some, NEAR, 1, work)
+                near = _nearer(noise, some, 1, work)
             continue
         kept.append(np.array([x.z for x in found]))
         ratio, size = agreement(np.concatenate(kept, axis=1))
@@ -291,8 +290,7 @@ def draw_models(
     rng = np.random.default_rng(seed_sequence(seed, stage, "order"))
     order = np.linspace(0, len(z) - 1, min(count, len(z))).round().astype(int)
     z = rng.permutation(z[order])
-    fine = noise if near is noise else _nearer(noise, z[:SNAPSHOTS], FINE, 2, work)
-    draws, share = _counted(fine, near, z, work)
+    draws, share = _counted(noise, near, z, work)
     return replace(draws, settled=settled and min(size, count) * share >= count / 2)
 
 
@@ -334,34 +332,29 @@ def _weighed(noise: NoiseModel, near: NoiseModel, z: Floats) -> tuple[Floats, ..
     return theta, frequency, mac, np.array(weight)
 
 
-def _nearer(
-    noise: NoiseModel, z: Floats, lacking: float, number: int, work: Executor
-) -> NoiseModel:
+def _nearer(noise: NoiseModel, z: Floats, number: int, work: Executor) -> NoiseModel:
     """Return the posterior in the space of the modes at standardised parameters z (models, p).
 
-    Directions shorter than ``lacking`` are left out; unless they are as short as `FINE`, also modes
-    above all those that are paired. The same where the model is not a reduced one, its basis is
-    small, or this space not much less.
+    Modes above all those that are paired are left out. The same where the model is not a reduced
+    one, its basis is small, or this space not much less.
     """
     problem = noise.problem
     if not isinstance(problem.model, ReducedModel):
         return noise
     theta = np.array([Standardised(problem).theta(x)[0] for x in z])
-    (V,) = work.run([Task(("space", number), _space, (problem, theta, lacking))])
+    (V,) = work.run([Task(("space", number), _space, (problem, theta))])
     if len(V) < SMALL or 2 * V.shape[1] > len(V):
         return noise
     return replace(noise, problem=replace(problem, model=problem.model.within(V)))
 
 
-def _space(problem: UpdatingProblem, theta: Floats, lacking: float) -> Floats:
+def _space(problem: UpdatingProblem, theta: Floats) -> Floats:
     """Return the coordinates of that space in the basis, see `ReducedModel.space`."""
     model = problem.model
     assert isinstance(model, ReducedModel)
-    used = model.count
-    if lacking > FINE:
-        found = [problem.evaluate(x, derivatives=False).quantities for x in theta]
-        used = max((int(np.max(x["paired_mode"])) for x in found if x), default=used)
-    return model.space(theta, used, lacking)
+    found = [problem.evaluate(x, derivatives=False).quantities for x in theta]
+    used = max((int(np.max(x["paired_mode"])) for x in found if x), default=model.count)
+    return model.space(theta, used, NEAR)
 
 
 def find_peak(noise: NoiseModel, theta: Floats) -> tuple[Evaluation, Floats]:

@@ -20,7 +20,7 @@ the errors (compare Christodoulou & Papadimitriou 2007, Mechanical Systems and S
 4-23); docs/uncertainty.md has its covariance by Laplace's approximation.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -32,7 +32,6 @@ from modefront.front.front import Front
 from modefront.front.subproblems import RHO, active_bounds
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem
 from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
-from modefront.optim.sqp import Solution
 from modefront.rounding import TINY
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.points import SolvedPoint, edge_weights, in_order
@@ -275,8 +274,10 @@ class Local:
     slopes: Mapping[str, Floats]  # derivatives (modes, p) of predicted quantities
 
 
+# 6 arguments: the front, its points, and what is known of them.
 def front_scatter(
     problem: Problem,
+    front: Front,
     points: Sequence[SolvedPoint],
     known: Mapping[str, Local],
     a: Floats,
@@ -316,56 +317,35 @@ def front_scatter(
                 w, conditions = boundary(point, w, E, dE, beta, noise, role.equations, top)
             case _:
                 continue
-        out[text] = scatter(problem, point, w, conditions, noise)
+        found = scatter(problem, point, w, conditions, noise)
+        warnings = (*found.warnings, *doubts(front, solved, found, a, sizes))
+        out[text] = replace(found, warnings=warnings)
         ends[text] = point.J, out[text].J
         if role.kind == "edge":
             level_of[role.objective] = out[text].J[:, role.objective]
     return out
 
 
-def with_neighbours(
-    front: Front,
-    points: Sequence[SolvedPoint],
-    scatter: Mapping[str, Scatter],
-    a: Floats,
-    sizes: Floats,
-) -> dict[str, Scatter]:
-    """Return the scatter of points with the warnings that their neighbours raise."""
-    ends = [end.J for gap in front.gaps for end in gap.ends]
-    out: dict[str, Scatter] = {}
-    for point in in_order(points):
-        kind, known = point.role.kind, scatter.get(point.label)
-        if kind == "end" and known:
-            out[point.label] = out[point.role.ends[0]]
-        elif known:
-            J, reach = point.solution.J, np.linalg.norm(known.J, axis=0)
-            near = kind == "boundary" and any((np.abs(J - end) <= reach).all() for end in ends)
-            reasons = {
-                LinearisationWarning.ENDS: near,
-                LinearisationWarning.RIVAL: _has_rival(front, point, known, a, sizes),
-                LinearisationWarning.UNSOLVED: not point.solution.converged,
-            }
-            warnings = (*known.warnings, *(warning for warning in reasons if reasons[warning]))
-            out[point.label] = replace(known, warnings=warnings)
-    return out
-
-
-def _has_rival(
+def doubts(
     front: Front, point: SolvedPoint, scatter: Scatter, a: Floats, sizes: Floats
-) -> bool:
-    """Return whether another minimum of what an edge or the optimal weights minimise is as good."""
-    programme: Scalarisation
-    others: Sequence[Solution]
-    if point.role.kind == "edge":
+) -> Iterator[LinearisationWarning]:
+    """Yield the warnings that other models of the front raise, and a search that has not ended."""
+    J, kind = point.solution.J, point.role.kind
+    reach = np.linalg.norm(scatter.J, axis=0)
+    ends = [end.J for gap in front.gaps for end in gap.ends]
+    if kind == "boundary" and any((np.abs(J - end) <= reach).all() for end in ends):
+        yield LinearisationWarning.ENDS
+    programme: Scalarisation = LogSum(a)
+    others = front.optimal[1:] if kind == "optimal" else []
+    if kind == "edge":
         i = point.role.objective
         programme, others = weighted(edge_weights(i, sizes)), front.edges[i].minima[1:]
-    elif point.role.kind == "optimal":
-        programme, others = LogSum(a), front.optimal[1:]
-    else:
-        return False
-    J = point.solution.J
-    reach = float(np.linalg.norm(scatter.J @ programme.gradient(J)))
-    return any(programme.value(x.J) - programme.value(J) <= reach for x in others)
+    if others:
+        rise = float(np.linalg.norm(scatter.J @ programme.gradient(J)))
+        if any(programme.value(x.J) - programme.value(J) <= rise for x in others):
+            yield LinearisationWarning.RIVAL
+    if not point.solution.converged:
+        yield LinearisationWarning.UNSOLVED
 
 
 @dataclass(frozen=True)
