@@ -61,16 +61,6 @@ def test_the_gradient_is_that_of_the_projected_cost(pairs: tuple[tuple[int, int]
         assert (there - back) / (4 * h) == pytest.approx(fit.gradient[k], rel=2e-5)
 
 
-def test_observed_information_is_the_hessian_of_noisy_data() -> None:
-    task, _, _ = _task(level=0.2)
-    fit = maximise(task, *_somewhere(2 * np.pi * 29.9))
-    rng = np.random.default_rng(0)
-    for _ in range(12):
-        step = 0.1 * rng.standard_normal(12) / np.sqrt(fit.observed.diagonal())
-        expected = sum(_costs(fit, step)) / 2 - fit.cost
-        assert step @ fit.observed @ step == pytest.approx(expected, rel=1e-3)
-
-
 def test_gram_matrices_are_those_of_the_stacked_columns() -> None:
     task, omega, _ = _task()
     E = primitives(task, _somewhere(omega)[0])
@@ -90,7 +80,7 @@ def test_means_of_residuals_have_nearly_the_maximum_of_all_lines() -> None:
     assert 3 * len(few.s) < len(task.s)
     again = maximise(few, 1.0005 * fit.model.lam, fit.model.L)
     moved = again.model.lam - fit.model.lam
-    deviation = np.sqrt(fit.inverted(fit.observed).diagonal()[:6] / 2)
+    deviation = np.sqrt(fit.inverted(fit.information).diagonal()[:6] / 2)
     assert (np.abs(moved.view(float)) < 0.3 * deviation).all()
 
 

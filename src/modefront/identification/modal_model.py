@@ -32,7 +32,6 @@ Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -40,7 +39,6 @@ import scipy.linalg as la
 from modefront._typing import Complexes, Floats, Ints
 from modefront.identification.problem import RESIDUALS, Problem, combined, gram, primitives
 from modefront.identification.scan import Scan, scan
-from modefront.rounding import TINY
 
 FINE, COARSE = 1e-4, 1e-2
 """Squared steps in standard deviations that end an iteration: for results, and for choices."""
@@ -86,7 +84,7 @@ class ModalModel:
         ]
 
 
-# 11 fields: a model, what was fitted, and the equations of linear and nonlinear parameters there.
+# 10 fields: a model, what was fitted, and the equations of linear and nonlinear parameters there.
 @dataclass(frozen=True)
 class Fit:
     """A model with the cost and the curvature there; linear parameters are eliminated."""
@@ -95,11 +93,10 @@ class Fit:
     model: ModalModel  # the parameters
     cost: float  # J, sum of squared weighted residuals
     gradient: Floats  # (alphas,) half the gradient of J
-    information: Floats  # (alphas, alphas) projected Gauss-Newton matrix, the first term of A
+    information: Floats  # (alphas, alphas) projected Gauss-Newton matrix A
     # (responses, linear, linear) inverse of G; one where the responses share their weights
     inverse: Floats
     Z: Floats  # (responses, linear, alphas), G^-1 Phi^T D
-    rho: Floats  # (references, responses, primitives), weighted products of the residuals with them
     size: Floats  # (alphas,) squares of the columns of D; parts that Phi can make up are in them
     evaluations: int = 1  # number of evaluations of the model
     converged: bool = False  # whether the iteration met its tolerance
@@ -113,53 +110,6 @@ class Fit:
     def residual(self) -> Complexes:
         """The data without them, 0 where not measured."""
         return np.where(self.task.weight > 0, self.task.H - self.functions, 0)
-
-    @cached_property
-    def U(self) -> Floats:
-        """Derivatives of the columns of Phi on the residual, (responses, linear, alphas).
-
-        With z = rho_e + i rho_o, the product of the residual with x e + y o is Re(conj(x + iy) z).
-        """
-        model, n = self.model, len(self.model)
-        z: Complexes = self.rho[..., ::2] + 1j * self.rho[..., 1::2]
-        out = np.zeros(self.Z.shape)
-        for k, r, v in model.alphas:
-            seen = model.L[r].conj() @ z[..., r - n] if v is None else v.conj() @ z[..., r]
-            out[:, 2 * r : 2 * r + 2, 2 * k : 2 * k + 2] = _turned(seen).transpose(2, 0, 1)
-        return out
-
-    @cached_property
-    def observed(self) -> Floats:
-        """A, half the second derivatives of J by alpha, (alphas, alphas).
-
-        Where these have no minimum, as with a pole on the imaginary axis: the information.
-        """
-        task, model = self.task, self.model
-        weighted = task.s**task.order * (task.weight * self.residual).conj()
-        upper, lower = (1 / (task.s - lam[:, None]) for lam in (model.lam, model.lam.conj()))
-        # products of the residuals with squares and cubes of the functions of poles
-        second, third = (
-            np.einsum(
-                "ri,jir->rj",
-                model.phi.conj(),
-                (weighted @ (upper**p).T).conj() + weighted @ (lower**p).T,
-            )
-            for p in (2, 3)
-        )
-        both = (0, 1), (0, 1)
-        out = np.tensordot(self.U, self.Z - self.inverse @ self.U / 2, both)
-        out = self.information + out + out.T
-        pole = [k for k, _, v in model.alphas if v is None]
-        for k, r, v in model.alphas:
-            own = slice(2 * k, 2 * k + 2), slice(2 * pole[r], 2 * pole[r] + 2)
-            if v is None:
-                out[own] -= 2 * _turned(model.L[r].conj() @ third[r])
-            else:
-                out[own] -= (block := _turned(v.conj() @ second[r]))
-                out[own[::-1]] -= block
-        size = np.sqrt(np.maximum(self.information.diagonal(), TINY))
-        least = np.linalg.eigvalsh(out / np.outer(size, size)).min(initial=1.0)
-        return out if least > 1e-12 else self.information
 
     def inverted(self, A: Floats, damping: float = 0.0) -> Floats:
         """Return A^-1 of a matrix by alpha, large where it is singular; of A (I + damping)."""
@@ -231,7 +181,7 @@ def evaluate(
     information = direct - np.tensordot(cross, Z, ((0, 1), (0, 1)))
     slope = (rho[..., row] * coefficient).sum(axis=(0, 1, 3))
     cost -= float(np.sum(lost * right))
-    return Fit(task, model, cost, -slope, information, inverse, Z, rho, direct.diagonal())
+    return Fit(task, model, cost, -slope, information, inverse, Z, direct.diagonal())
 
 
 def synthesise(task: Problem, model: ModalModel) -> Complexes:
@@ -367,11 +317,6 @@ def columns(fit: Fit) -> tuple[Complexes, Floats, Floats]:
     for k in range(2):
         X[:, :, row[:, k], np.arange(len(row))] += coefficient[..., k]
     return E, T, X
-
-
-def _turned(z: Any) -> Floats:
-    """Return the second derivatives of Re(conj(x + iy) (a + ib) z) by x, y and by a, b."""
-    return np.array([[z.real, z.imag], [z.imag, -z.real]])
 
 
 def _step(fit: Fit, damping: float) -> Floats:

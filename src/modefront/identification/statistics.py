@@ -115,7 +115,7 @@ def mode_estimates(fit: Fit, residuals: Residuals, omega: float) -> list[ModeEst
     shapes = [real_shape(phi) for phi in model.phi]
     for r, s in model.pairs:
         shapes[r], shapes[s] = real_shapes(model.phi[[r, s]])
-    inverse, follows = fit.inverted(fit.observed), (fit.Z - fit.inverse @ fit.U)[:, :n]
+    inverse, follows = fit.inverted(fit.information), fit.Z[:, :n]
     Q = _covariances(fit, residuals)
     own, C = Q[:, :n, :n], inverse @ Q[:, n:, n:].sum(axis=0) @ inverse
     whole = model.phi.shape[1] <= MOST_COVARIED
