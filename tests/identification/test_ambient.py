@@ -286,6 +286,26 @@ def test_a_strong_mode_above_the_band_leaves_damping_as_it_is(seed: int) -> None
     assert errors[1] < -3  # without them, the background bends
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_modes_are_flagged_where_their_band_holds_another_one(seed: int) -> None:
+    rng, rate, f0, zeta = np.random.default_rng(seed), 16.0, [5.0, 5.2], [0.012, 0.02]
+    f = np.fft.rfftfreq(int(1800 * rate), 1 / rate)
+    phi = np.linalg.qr(rng.standard_normal((4, 2)))[0].T
+    phi[1] = (phi[1] + phi[0] / 2) / np.sqrt(1.25)
+    x = f / np.array(f0)[:, None]
+    h = x**2 / (1 - x**2 + 2j * np.array(zeta)[:, None] * x)
+    y = np.fft.irfft(phi.T @ (h * _circular(rng, *x.shape)), axis=1)
+    y += 0.02 * y.std() * rng.standard_normal(y.shape)
+    none: Any = None
+    records = Records("all", tuple("abcd"), rate, y)
+    starts = [Local(2 * np.pi * f, z, shape) for f, z, shape in zip(f0, zeta, phi, strict=True)]
+    setup = _Setup(records, transforms(records, 3.0, 7.0), none, ())
+    (one,) = _fitted(setup, starts[:1], 1e-4, last=True).modes
+    both = _fitted(setup, starts, 1e-4, last=True).modes
+    assert not one.explained
+    assert [mode.explained for mode in both] == [True, True]
+
+
 def test_blocks_are_fine_at_poles_and_coarse_far_from_them() -> None:
     omega: Floats = np.arange(10.0, 20.0, 0.005)
     F = _circular(np.random.default_rng(11), 2, len(omega))

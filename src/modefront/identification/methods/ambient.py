@@ -90,6 +90,7 @@ class Local:
     share: float = np.nan  # its greatest share in the density of a sensor, at its frequency
     kurtosis: tuple[float, float] = (2.0, 1.0)  # kappa, and its standard deviation for a mode
     held: bool = False  # whether it stays whatever its gain
+    explained: bool = True  # whether its band holds no more than the modes that are fitted there
 
     @property
     def half(self) -> float:
@@ -303,6 +304,8 @@ def _of_group(
     else:
         return lines, []
     model, visible = fit.model, _shares(band, fit.model)
+    least = chi2.isf(chance, len(model.phi) + 2)
+    explained = not last or spectral_density.excess(band, model) < least
     return lines, [
         Local(
             float(model.omega[r]),
@@ -314,6 +317,7 @@ def _of_group(
             float(visible[r]),
             harmonics.kurtosis(lines, model, r, REACH[0]),
             bool(held[r]),
+            bool(explained),
         )
         for r in range(model.free)
     ]
@@ -498,6 +502,8 @@ def _evidence(
         flags.append("kept by hand: noise alone may explain as much")
     if len(having) < setups:
         flags.append(f"found in {len(having)} of {setups} setups: sensors of the others are empty")
+    if not all(local.explained for _, local in having):
+        flags.append("its band holds more than its modes: errors may be greater than they seem")
     if mode.damping_std > mode.damping / 2:
         flags.append("damping hardly determined: the record is short")
     return Evidence(gain, share, max(local.share for _, local in having), tuple(flags))
