@@ -58,8 +58,7 @@ def _density(band: Band, model: Density) -> Complexes:
     for term in range(model.coherent.shape[1] // 2):
         part = model.coherent[:, 2 * term : 2 * term + 2]
         a[:, :, :2] += y[:, None, None] ** term * part
-    g = ((band.omega / model.middle) ** model.colour)[:, None, None]
-    out: Complexes = a @ model.force @ a.conj().swapaxes(1, 2) + g**2 * model.background
+    out: Complexes = a @ model.force @ a.conj().swapaxes(1, 2) + model.background
     return out
 
 
@@ -86,14 +85,14 @@ def test_cost_and_derivatives_are_those_of_the_whole_density(coherent: int) -> N
     rng = np.random.default_rng(0)
     model, band = _model(rng), _band(rng)
     R, precision = 0.3 * rng.standard_normal((SENSORS, coherent)), np.arange(1.0, coherent + 1)
-    model = replace(model, coherent=R, middle=9.5, precision=precision, colour=0.7)
+    model = replace(model, coherent=R, middle=9.5, precision=precision)
     fit = spectral_density.evaluate(band, model)
 
     def cost(model: Density) -> float:
         E, B = _density(band, model), model.background
         single = np.linalg.slogdet(E)[1] + np.einsum("kii->k", np.linalg.solve(E, band.power)).real
         prior = np.linalg.slogdet(B)[1] + np.linalg.inv(B).diagonal() @ band.floor
-        prior = (spectral_density.PRIOR + SENSORS) * prior + 2 * (0.1 * model.colour) ** 2
+        prior = (spectral_density.PRIOR + SENSORS) * prior
         return float(band.count @ single + prior + precision @ (model.coherent**2).sum(axis=0) / 2)
 
     count, step = len(fit.gradient), 1e-6
@@ -112,20 +111,6 @@ def test_cost_and_derivatives_are_those_of_the_whole_density(coherent: int) -> N
     assert alone - 1e-6 < fit.freedom < alone + coherent * SENSORS + 1e-6
     known = replace(model, precision=1e9 * precision)
     assert spectral_density.evaluate(band, known).freedom == pytest.approx(alone, abs=0.1)
-
-
-def test_the_colour_of_the_background_is_that_of_the_records() -> None:
-    rng = np.random.default_rng(9)
-    model = replace(_model(rng), omega=np.array([9.6, 10.4, 12.0]), colour=3.0)
-    band = replace(_band(rng), count=np.full(LINES, 100.0))
-    root = np.linalg.cholesky(_density(band, model))
-    F = np.einsum("kij,kbj->kbi", root, _circular(rng, LINES, 100, SENSORS))
-    band = replace(band, power=np.einsum("kbi,kbj->kij", F, F.conj()) / 200)
-    fit = spectral_density.maximise(band, replace(model, colour=0.0))
-    assert fit.converged
-    assert fit.model.colour == pytest.approx(3.0, abs=0.5)
-    zeta = fit.model.zeta[:2]
-    assert zeta == pytest.approx(model.zeta[:2], abs=4 * max(fit.covariance(0)[1, 1] ** 0.5 * zeta))
 
 
 def test_every_fit_ends_at_a_minimum_of_shapes_poles_forces_and_background() -> None:
@@ -261,8 +246,15 @@ def test_setups_make_one_set_of_shapes_at_all_sensors() -> None:
         assert (mode.shape_std > 0).all()
 
 
-@pytest.mark.parametrize("seed", [1, 4, 5])
-def test_a_strong_mode_above_the_band_leaves_damping_as_it_is(seed: int) -> None:
+def test_a_strong_mode_above_the_band_leaves_damping_as_it_is() -> None:
+    errors = np.array([_errors_of_damping(seed) for seed in range(1, 6)])
+    assert (np.abs(errors[:, 0]) < 2.5).all()
+    assert abs(errors[:, 0].mean()) < 1
+    assert errors[:, 1].mean() < -2  # without them, the background bends
+
+
+def _errors_of_damping(seed: int) -> list[float]:
+    """Return errors over deviations, with what moves above the band told from it and without."""
     rng, rate, high = np.random.default_rng(seed), 16.0, 5.9
     f = np.fft.rfftfreq(int(1800 * rate), 1 / rate)
     phi = np.linalg.qr(rng.standard_normal((3, 2)))[0].T
@@ -278,12 +270,11 @@ def test_a_strong_mode_above_the_band_leaves_damping_as_it_is(seed: int) -> None
     assert _above(records, rate / 2) == ()
     none: Any = None
     setup = _Setup(records, transforms(records, 3.0, high), none, (), above)
-    errors = []
+    errors = list[float]()
     for each in (setup, replace(setup, above=())):
         (mode,) = _fitted(each, [Local(10 * np.pi, 0.03, phi[0])], 1e-4, last=True).modes
-        errors.append(np.log(mode.zeta / 0.03) / np.sqrt(mode.covariance[1, 1]))
-    assert abs(errors[0]) < 2.5
-    assert errors[1] < -3  # without them, the background bends
+        errors.append(float(np.log(mode.zeta / 0.03) / np.sqrt(mode.covariance[1, 1])))
+    return errors
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])

@@ -86,10 +86,9 @@ def _likelihood(
 ) -> tuple[float, Complexes, Complexes]:
     """Return the cost of lines, and R with E^-1 = R R^* and H L at each of them."""
     omega, F = lines.omega[near], lines.F[:, near].T
-    g = model.profile(omega)[:, None, None]
-    half = g * model.lifted(omega, lines.order) @ model.root
+    half = model.lifted(omega, lines.order) @ model.root
     moved = model.columns @ half
-    C = np.linalg.cholesky(moved @ moved.conj().mT + g**2 * model.background)
+    C = np.linalg.cholesky(moved @ moved.conj().mT + model.background)
     root: Complexes = np.asarray(np.linalg.inv(C), complex).conj().mT
     misfit = np.sum(np.abs(np.einsum("kji,kj->ki", root.conj(), F)) ** 2)
     determinant = 2 * np.log(np.einsum("kii->ki", C).real).sum(axis=1)

@@ -1,10 +1,10 @@
 r"""The likelihood of the Fourier transforms of ambient records, in a band with a few modes.
 
-Of docs/methods/ambient.md, with two more parts: a force :math:`f_r` of a mode in the band
+Of docs/methods/ambient.md, with one more part: a force :math:`f_r` of a mode in the band
 moves :math:`(\varphi_r h_r + \rho_r + y \sigma_r) f_r`, where :math:`y = \omega/\omega_m - 1` and
-the real vectors rho and sigma are the flanks of modes outside of it, as residual terms are; and all
-else has a colour, :math:`g = (\omega/\omega_m)^b`. So :math:`E_k = g_k^2 (\Psi N_k \Psi^T + B)`,
-:math:`N = H S H^*`, with :math:`H = [\operatorname{diag} h;\ I;\ y I] / g`. Data are taken over g.
+the real vectors rho and sigma are the flanks of modes outside of it, as residual terms are. So
+:math:`E_k = \Psi N_k \Psi^T + B`, :math:`N = H S H^*`, with
+:math:`H = [\operatorname{diag} h;\ I;\ y I]`.
 With :math:`P = \Psi^T B^{-1}\Psi`, all of it needs matrices of the size of the modes only,
 
 .. math:: D = H (I + S H^* P H)^{-1} S H^*,\quad Y = I - D P,\quad
@@ -25,7 +25,6 @@ Psi, H          (sensors, columns), (columns, modes); columns are modes in the b
                 beside it
 S = L L^*       (modes, modes) spectral density of the modal forces, L lower triangular
 B               (sensors, sensors) real; a priori diagonal, with the weight of `PRIOR` lines
-b               a priori normal: the ends of the band then differ from its middle by a factor e
 C, Q            :math:`\Psi^T E^{-1}\Psi = P Y`, :math:`N C N = N - D`
 ==============  ========================================================================
 
@@ -71,10 +70,11 @@ class Band:
     order: int  # differentiations of the displacement in the records
     floor: Floats  # (sensors,) variances of the background a priori
 
-    def total(self, profile: Floats | float = 1.0) -> Floats:
-        """Sum of the real part of F F^* / g^2 over the lines, and of the background a priori."""
+    @property
+    def total(self) -> Floats:
+        """Sum of the real part of F F^* over the lines, and of the background a priori."""
         prior = (PRIOR + len(self.floor)) * np.diag(self.floor)
-        out: Floats = np.tensordot(self.count / profile**2, self.power.real, 1) + prior
+        out: Floats = np.tensordot(self.count, self.power.real, 1) + prior
         return out
 
     @property
@@ -100,10 +100,9 @@ class Density:
     free: int  # number of the modes that are in the band, the first ones
     # (sensors, terms x free) R, all constants first; no terms for a model without it
     coherent: Floats
-    middle: float  # rad/s, where the slopes of R are 0, and g is 1
+    middle: float  # rad/s, where the slopes of R are 0
     # (terms x free,) of normal distributions of the columns of R a priori, about 0
     precision: Floats = field(default_factory=lambda: np.zeros(0))
-    colour: float = 0.0  # b
 
     @property
     def columns(self) -> Floats:
@@ -134,22 +133,15 @@ class Density:
         inner: Complexes = 1 - x**2 + 2j * zeta * x
         return 2 * zeta * x**order / inner
 
-    def profile(self, omega: Floats) -> Floats:
-        """Return g at circular frequencies."""
-        out: Floats = (omega / self.middle) ** self.colour
-        return out
-
     def lifted(self, omega: Floats, order: int) -> Complexes:
-        """Return H / g at circular frequencies, (lines, columns, modes)."""
+        """Return H at circular frequencies, (lines, columns, modes)."""
         eye = np.eye(len(self.omega))
         of_modes = self.response(omega, order).T[:, :, None] * eye
         terms = range(self.coherent.shape[1] // max(self.free, 1))
         y = (omega / self.middle - 1)[:, None, None]
         smooth = [y**term * eye[: self.free] for term in terms]
         parts = [of_modes[:, : self.free], *smooth, of_modes[:, self.free :]]
-        return np.asarray(
-            np.concatenate(parts, axis=1) / self.profile(omega)[:, None, None], complex
-        )
+        return np.asarray(np.concatenate(parts, axis=1), complex)
 
     def with_coherent(self, band: Band) -> "Density":
         """Return the same model with R = 0 as parameters, in the middle of a band.
@@ -239,7 +231,7 @@ class _Matrices:
     """The matrices of the module's text in all blocks, (blocks, columns, columns), and the cost.
 
     ``h`` is H, ``seen`` is F F^* hat of the data, (blocks, sensors, columns), ``own`` is
-    hat^T F F^* hat, and ``weighted`` is D times the number of lines. All are over g.
+    hat^T F F^* hat, and ``weighted`` is D times the number of lines.
     """
 
     h: Complexes
@@ -267,17 +259,16 @@ class _Matrices:
 
 
 def _matrices(band: Band, model: Density) -> _Matrices:
-    n, B, g = len(model.phi), model.background, model.profile(band.omega)
+    n, B = len(model.phi), model.background
     h, psi = model.lifted(band.omega, band.order), model.columns
     inverse = np.linalg.inv(B)
     hat = inverse @ psi
     P = psi.T @ hat
     N, D, determinant = _of_responses(h @ model.root, P)
     Y = np.eye(len(P)) - D @ P
-    seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape) / g[:, None, None] ** 2
+    seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape)
     own, weighted = hat.T @ seen, band.count[:, None, None] * D
-    cost = band.weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total(g))
-    cost += 2 * n * band.count @ np.log(g) + 2 * (band.reach * model.colour) ** 2
+    cost = band.weight * np.linalg.slogdet(B)[1] + np.vdot(inverse, band.total)
     cost += band.count @ determinant - np.vdot(weighted.conj(), own.swapaxes(1, 2)).real
     cost += np.sum(model.precision * model.coherent**2) / 2
     return _Matrices(h, hat, N, Y, D, P @ Y, seen, own, weighted, float(cost))
@@ -411,7 +402,7 @@ def _background(band: Band, model: Density, x: _Matrices) -> tuple[Floats, Float
     """
     c, weight, psi = band.count, band.weight, model.columns
     both = (psi @ x.both).real
-    after = band.total(model.profile(band.omega)) - both - both.T + psi @ x.second.real @ psi.T
+    after = band.total - both - both.T + psi @ x.second.real @ psi.T
     R = la.cholesky(model.background, lower=True)
     V = la.solve_triangular(R, psi, lower=True)
     inner = la.solve_triangular(R, after - weight * model.background, lower=True)
@@ -433,18 +424,6 @@ def _background(band: Band, model: Density, x: _Matrices) -> tuple[Floats, Float
     return R @ U @ vector, z
 
 
-def _colour(band: Band, model: Density, x: _Matrices) -> float:
-    """Return a step of scoring of b."""
-    y, DP, inverse = np.log(band.omega / model.middle), -x.Y, np.linalg.inv(model.background)
-    DP += np.eye(DP.shape[1])
-    seen = np.tensordot(band.power.real, inverse) / model.profile(band.omega) ** 2
-    seen -= np.einsum("kij,kji->k", x.D + x.Y @ x.D, x.own).real
-    single, double = (np.einsum("kii->k", each).real for each in (DP, DP @ DP))
-    expected, prior = len(inverse) - single, 4 * band.reach**2
-    slope = 2 * (band.count * y) @ (expected - seen) + prior * model.colour
-    return float(-slope / (4 * (band.count * y**2) @ (expected - single + double) + prior))
-
-
 def _with_background(
     band: Band, model: Density, x: _Matrices, share: float
 ) -> tuple[Density, _Matrices, float]:
@@ -452,11 +431,10 @@ def _with_background(
 
     The step is halved until the cost falls.
     """
-    (Q, z), b = _background(band, model, x), _colour(band, model, x)
+    Q, z = _background(band, model, x)
     z = np.maximum(z, -MOST_OF_BACKGROUND)
     while share > SHORTEST:
-        B = (Q * (1 + share * z)) @ Q.T
-        trial = replace(model, background=B, colour=model.colour + share * b)
+        trial = replace(model, background=(Q * (1 + share * z)) @ Q.T)
         after = _matrices(band, trial)
         if after.cost <= x.cost:
             return trial, after, min(2 * share, 1.0)
@@ -501,7 +479,7 @@ def excess(band: Band, model: Density) -> float:
     """
     moved = model.columns @ model.lifted(band.omega, band.order) @ model.root
     E = moved @ moved.conj().swapaxes(1, 2) + model.background
-    L = np.linalg.cholesky(E) * model.profile(band.omega)[:, None, None]
+    L = np.linalg.cholesky(E)
     half = np.linalg.solve(L, band.power).conj().swapaxes(1, 2)
     white = band.count[:, None, None] * np.linalg.solve(L, half)
     most, blocks = 0.0, len(L)

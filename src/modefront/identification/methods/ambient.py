@@ -46,7 +46,7 @@ then 1.20 and 1.52, and 1.03 and 1.08, of those with all lines (Au, Mech. Syst. 
 
 WIDEST = 0.15
 """Half the width of a band over the frequency of its mode, at most, beyond the first reach: over it
-flanks of modes outside are linear and forces have one colour."""
+flanks of modes outside are linear."""
 
 BEYOND = 2 * WIDEST
 """Share of the highest frequency up to which what moves above it is told from the background."""
@@ -347,7 +347,7 @@ def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
         np.array([mode.zeta for mode in modes]),
         phi,
         np.eye(len(modes), dtype=complex),
-        band.total() / band.weight,
+        band.total / band.weight,
         free,
         np.zeros((len(phi), 0)),
         float(band.omega[[0, -1]].mean()),
