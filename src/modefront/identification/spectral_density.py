@@ -483,7 +483,7 @@ def excess(band: Band, model: Density) -> float:
     half = np.linalg.solve(L, band.power).conj().swapaxes(1, 2)
     white = band.count[:, None, None] * np.linalg.solve(L, half)
     most, blocks = 0.0, len(L)
-    for size in 2 ** np.arange((blocks - 2).bit_length()):
+    for size in (2**k for k in range((blocks - 2).bit_length())):
         first = np.arange(1, blocks - size, max(size // 2, 1))
         window = first[:, None] + np.arange(size)
         c = band.count[window].sum(axis=1)
