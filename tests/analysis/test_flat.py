@@ -8,7 +8,6 @@ from modefront._typing import Floats
 from modefront.analysis.flat import flat_points, identifiable_part
 from modefront.front.simplex import lattice, payoff
 from modefront.front.subproblems import Least, Point
-from modefront.optim.lexicographic import Lexicographic
 from modefront.optim.sqp import Solution, begin
 
 
@@ -26,10 +25,7 @@ def whole_front(
     """The edges, and the points of the lattice between them, each from the one before."""
     solution = begin(problem.evaluate(problem.start))
     names = problem.objectives
-    edges = [
-        Least(Lexicographic(i, sizes), name).solve(problem, solution)
-        for i, name in enumerate(names)
-    ]
+    edges = [Least(i, sizes, name).solve(problem, solution) for i, name in enumerate(names)]
     target = payoff(edges, sizes)
     assert target is not None
     along = []

@@ -40,7 +40,6 @@ from modefront.front.simplex import lattice, payoff
 from modefront.front.state import Place, State
 from modefront.front.subproblems import SAMPLE, Least, Subproblem, Weights
 from modefront.front.subproblems import Point as LatticePoint
-from modefront.optim.lexicographic import Lexicographic
 from modefront.optim.problem import Evaluation, Problem, infeasible
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.optim.sqp import given as given_model
@@ -91,7 +90,7 @@ def assert_nothing_is_better(front: Front, problem: Seen, tolerance: float = TOL
     J = np.array(problem.all)
     J = J[np.isfinite(J).all(axis=1)]
     for i, edge in enumerate(front.edges):
-        order = Least(Lexicographic(i, front.sizes), "edge")
+        order = Least(i, front.sizes, "edge")
         assert max(order.gain(row, edge.best) for row in J) <= tolerance, f"edge {i}"
     for point in of_kind(front.points, Kind.EQUAL):
         w = np.ones(J.shape[1])
@@ -347,7 +346,7 @@ def run(state: State, *proposers: Proposer, search: Search | None = None) -> Loo
 
 def anchors(problem: Known) -> list[Subproblem]:
     n = len(problem.objectives)
-    edges = [Least(Lexicographic(i, np.ones(n)), name) for i, name in enumerate(problem.objectives)]
+    edges = [Least(i, np.ones(n), name) for i, name in enumerate(problem.objectives)]
     return [*edges, Weights(np.ones(n), ("weights", "equal", ""), 1e-10)]
 
 
@@ -395,9 +394,7 @@ def test_a_point_beside_its_normal_is_solved_from_the_nearest_that_lies_on_its_o
 def ended(J: float, tries: int, gains: int, counts: list[int]) -> tuple[Minima, Place]:
     """Return minima of one objective, of values J, J + 1 and so on, and the place of the first."""
     ends = [begin(Evaluation(np.zeros(1), np.array([J + k]))) for k in range(len(counts))]
-    return Minima(tries, gains, ends, counts), Place(
-        Least(Lexicographic(0, np.ones(1)), "J"), ends[0]
-    )
+    return Minima(tries, gains, ends, counts), Place(Least(0, np.ones(1), "J"), ends[0])
 
 
 @given(st.integers(2, 60), st.integers(0, 60), st.lists(st.integers(1, 5), min_size=1))
@@ -479,7 +476,7 @@ def test_starts_find_all_minima_and_then_stop() -> None:
         return J, np.array([[2 * r @ dr]]), np.array([[[2 * dr @ dr]]])
 
     problem = box(wells, [-3.0], [3.0], 1)
-    state = state_of(problem, [Least(Lexicographic(0, np.ones(1)), "J1")], [[0.0]])
+    state = state_of(problem, [Least(0, np.ones(1), "J1")], [[0.0]])
     starts = Starts(np.random.default_rng(0))
     run(state, Polish(), starts)
     known = starts.of(state.places[0])

@@ -11,9 +11,8 @@ from problems import Derivatives, Known, box, circles, many_minima, valley
 from modefront._typing import Floats
 from modefront.optim.lexicographic import Lexicographic
 from modefront.optim.problem import Evaluation, Residual
-from modefront.optim.sqp import Options, begin
+from modefront.optim.sqp import begin
 
-TIGHT = Options(step=1e-8, reduction=1e-24)
 ONES = np.ones(2)
 
 
@@ -22,7 +21,7 @@ def test_of_a_curve_of_minima_the_point_is_found_that_is_best_in_the_other(
     start: list[float],
 ) -> None:
     problem = box(valley, [0.1, 0.1], [3.0, 3.0])
-    best = Lexicographic(1, ONES).solve(problem, begin(problem.evaluate(np.array(start))), TIGHT)
+    best = Lexicographic(1, ONES).solve(problem, begin(problem.evaluate(np.array(start))))
     assert best.converged
     assert best.theta == pytest.approx([1, 1], abs=1e-6)
     assert best.J[1] < 1e-12
@@ -46,9 +45,7 @@ def test_the_path_goes_on_until_a_weak_objective_is_least(stiffness: float) -> N
     problem = box(curve, [0.1, 0.1], [5.0, 5.0])
     x = max(np.roots([1, -3, 0, 0, -1]).real)
     for start in ([0.5, 4.0], [4.0, 4.0]):
-        best = Lexicographic(1, ONES).solve(
-            problem, begin(problem.evaluate(np.array(start))), TIGHT
-        )
+        best = Lexicographic(1, ONES).solve(problem, begin(problem.evaluate(np.array(start))))
         assert best.J[1] < 1e-10
         assert best.theta == pytest.approx([x, 1 / x], abs=1e-4)
 
@@ -60,9 +57,9 @@ def test_a_minimum_above_the_least_known_one_is_not_followed_to_its_end() -> Non
 
     problem = box(raised, [0.1, 0.1], [3.0, 3.0])
     start = begin(problem.evaluate(np.array([0.3, 2.9])))
-    whole = Lexicographic(1, ONES).solve(problem, start, TIGHT)
+    whole = Lexicographic(1, ONES).solve(problem, start)
     better = begin(Evaluation(whole.theta, np.array([2.0, 0.5])))
-    short = Lexicographic(1, ONES).solve(problem, start, TIGHT, better)
+    short = Lexicographic(1, ONES).solve(problem, start, better)
     assert short.evaluations < whole.evaluations / 2
     assert short.J[0] > whole.J[0]
 
@@ -70,8 +67,8 @@ def test_a_minimum_above_the_least_known_one_is_not_followed_to_its_end() -> Non
 def test_a_path_is_followed_once() -> None:
     problem, order = box(valley, [0.1, 0.1], [3.0, 3.0]), Lexicographic(1, ONES)
     starts = [begin(problem.evaluate(np.array(x))) for x in ([2.5, 2.5], [0.3, 2.9])]
-    first, anew = (order.solve(problem, start, TIGHT) for start in starts)
-    again = order.solve(problem, starts[1], TIGHT, first)
+    first, anew = (order.solve(problem, start) for start in starts)
+    again = order.solve(problem, starts[1], first)
     assert again.evaluation is first.evaluation
     assert again.evaluations < 0.7 * anew.evaluations
     assert anew.J == pytest.approx(first.J, abs=1e-6)
@@ -91,7 +88,7 @@ def test_of_a_line_of_minima_the_sizes_decide(seed: int, size: float) -> None:
     problem = box(line, [-2.0, -2.0], [2.0, 2.0], 3)
     theta = np.random.default_rng(seed).uniform(-2, 2, 2)
     order = Lexicographic(0, np.array([1.0, size, 1.0]))
-    best = order.solve(problem, begin(problem.evaluate(theta)), TIGHT)
+    best = order.solve(problem, begin(problem.evaluate(theta)))
     assert best.converged
     assert best.theta == pytest.approx([0.0, size / (1 + size)], abs=1e-5)
 
@@ -100,7 +97,7 @@ def test_the_local_minimum_of_each_well_is_found_from_within_it() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
     for x, y in [(1, 2), (1, -2), (-1, 2), (-1, -2)]:
         start = begin(problem.evaluate(np.array([1.1 * x, 0.9 * y])))
-        best = Lexicographic(0, ONES).solve(problem, start, TIGHT)
+        best = Lexicographic(0, ONES).solve(problem, start)
         assert best.theta == pytest.approx([x, y], abs=1e-6)
 
 
@@ -134,5 +131,5 @@ def test_one_objective_alone_has_its_minimum() -> None:
 
     problem: Known = box(bowl, [-2.0, -2.0], [2.0, 2.0], 1)
     start = begin(problem.evaluate(np.array([1.0, -1.0])))
-    best = Lexicographic(0, np.ones(1)).solve(problem, start, TIGHT)
+    best = Lexicographic(0, np.ones(1)).solve(problem, start)
     assert best.theta == pytest.approx([0.0, 0.0], abs=1e-7)

@@ -16,9 +16,8 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
 from modefront.front.front import Front, best_minima
-from modefront.front.point import Point
 from modefront.front.search import Search
-from modefront.models.reduced.basis import Certificate, Certifier
+from modefront.models.reduced.basis import Certifier
 from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import Solution
@@ -67,16 +66,16 @@ def certified_front(
     if model is None:
         return search(work=work, known=None)
     model.snapshots = ()
-    first = _take(model, "first", 1, model.first, work)
-    if first is None or not first.added:
+    last = _take(model, "first", 1, model.first, work)
+    if last is None:
         raise UnfinishedError("the model cannot be solved at the nominal parameters")
-    columns = first.columns
-    if columns < model.capacity:
-        (lacking,) = work.run([Task(("probe-basis",), _lacking, (problem, model), in_process=True)])
+    if last.columns < model.capacity:
+        lowest = _lowest(problem)
+        probe = Task(("probe-basis",), model.lacking, (lowest,), in_process=True)
+        (lacking,) = work.run([probe])
         if lacking:
-            request = SnapshotRequest(np.array(lacking), _lowest(problem), derivatives=False)
-            probed = _take(model, "probes", 1, request, work)
-            columns = probed.columns if probed else columns
+            request = SnapshotRequest(np.array(lacking[:WORST]), lowest, derivatives=False)
+            last = _take(model, "probes", 1, request, work) or last
     known: Front | None = None
     for number in range(1, ROUNDS + 1):
         here = Within(work, turn=("round", number))
@@ -84,19 +83,19 @@ def certified_front(
         best = best_minima(front, problem.properties, CLOSE)
         candidates = _each_once([*_of_the_front(front), *(x for *_, some in best for x in some)])
         enough = model.tolerance if known else AIM * model.tolerance
-        is_last = number == ROUNDS or columns >= model.capacity
+        is_last = number == ROUNDS or last.columns >= model.capacity
         taken = [] if is_last else _improve(model, candidates, enough, here)
         if not taken:
             front = replace(front, known=np.zeros((0, len(problem.objectives))))  # of the basis
             minima = [x for edge in front.edges for x in edge.minima]
             reported = _each_once([*_of_the_front(front), *minima, *front.optimal])
-            _certify(problem, model, reported, "front", here)
+            certify(problem, reported, here, "front")
             needed = _each_once([*_of_the_front(front), *_rivals(problem, model, front)])
-            last = None if is_last else _mended(problem, model, needed, here)
-            if last is None:
+            mended = None if is_last else _mended(problem, model, needed, here)
+            if mended is None:
                 break
-            taken = [last]
-        columns = taken[-1].columns
+            taken = [mended]
+        last = taken[-1]
         known = front if max(each.error for each in taken) <= POOR else None
     return front
 
@@ -117,17 +116,27 @@ def certified_best(
         model = _reduced(problem)
         if model is None:
             break
-        _certify(problem, model, found[:1], "others", here)
+        certify(problem, found[:1], here)
         if number == ROUNDS or _mended(problem, model, found[:1], here) is None:
             break
         known = [solution.theta for solution in found]
     return found
 
 
-def certify(problem: UpdatingProblem, points: Sequence[Point], work: Executor) -> None:
-    """Estimate the errors of points in a reduced model, if it is one."""
-    if model := _reduced(problem):
-        _certify(problem, model, [point.solution for point in points], "others", work)
+def certify(
+    problem: UpdatingProblem, solutions: Sequence[Solution], work: Executor, name: str = "others"
+) -> None:
+    """Let a reduced model keep the estimated errors of solutions."""
+    model = _reduced(problem)
+    if model is None or not solutions:
+        return
+    certifier = model.certifier()
+    tasks = [
+        Task(("certificate", name, k + 1), _errors, (problem, certifier, solution))
+        for k, solution in enumerate(solutions)
+    ]
+    found = zip(solutions, work.run(tasks), strict=True)
+    model.errors.update({_key(solution): errors for solution, errors in found})
 
 
 def certificate_attributes(problem: UpdatingProblem) -> dict[str, str | int | float]:
@@ -143,7 +152,7 @@ def certificate_values(
     model = _reduced(problem)
     if model is None:
         return {}
-    errors = [_errors_of(model, x) for x in solutions]
+    errors = [model.errors[_key(x)] for x in solutions]
     eigenvalue, shape = (
         np.array([each[i] for each in errors]).reshape(len(solutions), -1) for i in (0, 1)
     )
@@ -169,7 +178,7 @@ def _improve(
     out: list[SnapshotTaken] = []
     for count in range(AHEAD):
         taken = _take(model, "ahead", count + 1, _snapshot(candidates, enough), work)
-        if taken is None or not taken.added:
+        if taken is None:
             break
         out.append(taken)
         if taken.error > POOR or taken.columns >= model.capacity:
@@ -184,7 +193,7 @@ def _mended(
 
     None is returned where there are none, or it adds nothing to the basis.
     """
-    error = [float(_errors_of(model, x)[0].max()) for x in needed]
+    error = [float(model.errors[_key(x)][0].max()) for x in needed]
     ranked = sorted(range(len(needed)), key=lambda k: -error[k])
     wrong = [needed[k] for k in ranked if error[k] > model.tolerance][:WORST]
     if not wrong:
@@ -192,20 +201,20 @@ def _mended(
     worst = _snapshot(wrong, 0.0)
     if not np.isfinite(max(error)):
         worst = replace(worst, modes=max(worst.modes, _lowest(problem)))
-    taken = _take(model, "worst", 1, worst, work)
-    return taken if taken and taken.added else None
+    return _take(model, "worst", 1, worst, work)
 
 
 def _take(
     model: ReducedModel, name: str, number: int, request: SnapshotRequest, work: Executor
 ) -> SnapshotTaken | None:
-    """Take a snapshot in a task of its own; None where none of its models can be solved."""
+    """Take a snapshot in a task of its own; None where it adds nothing to the basis."""
     before = model.snapshots
     task = Task(("snapshot", name, number), _taken, (model, request), in_process=True)
     (taken,) = work.run([task])
-    if taken is not None:
-        model.snapshots = (*before, replace(request, modes=taken.modes))
-    return taken
+    if taken is None:
+        return None
+    model.snapshots = (*before, replace(request, modes=taken.modes))
+    return taken if taken.added else None
 
 
 def _taken(model: ReducedModel, request: SnapshotRequest) -> SnapshotTaken | None:
@@ -228,31 +237,9 @@ def _snapshot(solutions: Sequence[Solution], enough: float) -> SnapshotRequest:
     return SnapshotRequest(np.array([solution.theta for solution in solutions]), modes, enough)
 
 
-def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Floats]:
-    """Return models where the basis lacks modes that measured ones might be paired with."""
-    return model.lacking(_lowest(problem))[:WORST]
-
-
 def _lowest(problem: UpdatingProblem) -> int:
     """Return the number of lowest modes that may be paired with measured ones."""
     return modes_needed(problem.pairing, problem.data, problem.model.size)
-
-
-def _certify(
-    problem: UpdatingProblem,
-    model: ReducedModel,
-    solutions: Sequence[Solution],
-    name: str,
-    work: Executor,
-) -> None:
-    """Let the model keep the errors of solutions."""
-    certifier = model.certifier() if solutions else None
-    tasks = [
-        Task(("certificate", name, k + 1), _errors, (problem, certifier, solution))
-        for k, solution in enumerate(solutions)
-    ]
-    found = zip(solutions, work.run(tasks), strict=True)
-    model.errors.update({_key(solution): errors for solution, errors in found})
 
 
 def _errors(
@@ -264,18 +251,14 @@ def _errors(
     at is missing, or where better known modes would be paired differently.
     """
     modes, place = np.unique(_paired(solution), return_inverse=True)
-    (certificate,) = certifier.certify([(solution.theta, modes)], _lowest(problem))
-    if certificate.known and not _pairs_alike(problem, solution, certificate):
-        return np.full(place.shape, np.inf), np.ones(place.shape)
-    return certificate.eigenvalue[place], certificate.shape[place]
-
-
-def _pairs_alike(problem: UpdatingProblem, solution: Solution, certificate: Certificate) -> bool:
-    """Return whether modes that are known better are paired as those of the basis are."""
     count = _lowest(problem)
-    frequency = np.sqrt(np.maximum(certificate.lam[:count], 0.0)) / (2 * np.pi)
-    pairs = match(problem.pairing, problem.data, frequency, certificate.phi[:, :count])
-    return np.array_equal(pairs.index, _paired(solution))
+    (certificate,) = certifier.certify([(solution.theta, modes)], count)
+    if certificate.known:
+        frequency = np.sqrt(np.maximum(certificate.lam[:count], 0.0)) / (2 * np.pi)
+        pairs = match(problem.pairing, problem.data, frequency, certificate.phi[:, :count])
+        if not np.array_equal(pairs.index, _paired(solution)):
+            return np.full(place.shape, np.inf), np.ones(place.shape)
+    return certificate.eigenvalue[place], certificate.shape[place]
 
 
 def _of_the_front(front: Front) -> Iterator[Solution]:
@@ -297,7 +280,7 @@ def _rivals(problem: UpdatingProblem, model: ReducedModel, front: Front) -> Iter
     """
 
     def roots(solution: Solution) -> tuple[Floats, Floats]:
-        margin = problem.margins(*_errors_of(model, solution))
+        margin = problem.margins(*model.errors[_key(solution)])
         return np.maximum(np.sqrt(solution.J) - margin, 0.0), np.sqrt(solution.J) + margin
 
     for i, edge in enumerate(front.edges):
@@ -322,7 +305,3 @@ def _paired(solution: Solution) -> Ints:
 
 def _key(solution: Solution) -> bytes:
     return solution.theta.tobytes()
-
-
-def _errors_of(model: ReducedModel, solution: Solution) -> tuple[Floats, Floats]:
-    return model.errors[_key(solution)]

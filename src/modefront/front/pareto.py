@@ -35,7 +35,7 @@ from modefront.front.subproblems import (
 )
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.front.weights import accepted, iterate_weights, least_along, optimal_minimum
-from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
+from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import DISTINCT, Problem
 from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
@@ -77,7 +77,7 @@ class _Run:
     known: Front | None
 
     def __post_init__(self) -> None:
-        self.n = len(self.problem.objectives)
+        self.n, self.sizes = len(self.problem.objectives), np.zeros(0)
         named = [(Kind.GIVEN, name, w) for name, w in self.given]
         self.weighted = [*named, (Kind.EQUAL, "", np.ones(self.n))]
         self.state, self.cut = State(self.problem, self.search.tolerance, self.work), False
@@ -91,15 +91,12 @@ class _Run:
 
     def front(self) -> Front:
         """Return all that is found."""
-        sizes = self._sizes()
+        sizes = self.sizes = self._sizes()
         models = [point.solution for point in self.known.points] if self.known else []
         self._evaluated(("known",), [at(x.theta) for x in self.state.distinct(models)])
-        anchors: list[Subproblem] = [
-            Least(Lexicographic(i, sizes), x) for i, x in enumerate(self.problem.objectives)
-        ]
-        for kind, name, w in self.weighted:
-            anchors.append(Weights(w, ("weights", kind.value, name), EXACT * float(w @ sizes)))
-        self.state.add(anchors)
+        self.state.add([Least(i, sizes, x) for i, x in enumerate(self.problem.objectives)])
+        keys = [(("weights", kind.value, name), w) for kind, name, w in self.weighted]
+        self.state.add([Weights(w, key, EXACT * float(w @ sizes)) for key, w in keys])
         self._search("edges", EDGES, self.starts)
         for place in self.state.places:
             if not place.incumbent.feasible:
@@ -107,14 +104,14 @@ class _Run:
                 raise UnfinishedError(
                     f"no model was found for {name}: is the model defined between the bounds?"
                 )
-        target = self._between(sizes)
+        target = self._between()
         options, evolved = self.options, None
         if METHODS[options.method].programme is None and target is not None:
             rng = np.random.default_rng(seed_sequence(self.seed, options.method))
             extent = (options.population, options.evaluations)
             evolved = evolve_front(self.problem, options.method, *extent, rng, self._needed)
-        bests = self._reported(sizes, "last")
-        optimal = self._optimal(bests, evolved or self._points(target, bests)[0], sizes)
+        bests = self._reported("last")
+        optimal = self._optimal(bests, evolved or self._points(target, bests)[0])
         arguments = (self.problem, self.a, sizes, self._weighted()[-1].solution)
         (iterated,) = self._run([Task(("iterated-weights",), iterate_weights, arguments)])
         # At the budget, no search has started from some incumbents.
@@ -123,7 +120,7 @@ class _Run:
         begun = dict(zip(begun, self._evaluated(("front",), begun.values()), strict=True))
         for place in rest:
             place.incumbent = begun[place.incumbent.theta.tobytes()]
-        bests = self._reported(sizes, "end")
+        bests = self._reported("end")
         points, places, beta = self._points(target, bests)
         edges, weighted = self._edges(), self._weighted()
         weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
@@ -192,16 +189,16 @@ class _Run:
             )
         return np.asarray(sizes)
 
-    def _between(self, sizes: Floats) -> Payoff | None:
+    def _between(self) -> Payoff | None:
         """Search the points between the edges, until these stay where they are."""
         if self.n == 1:
             return None
         divisions = (self.options.points or default_points(self.n)) - 1
-        counts = [tuple(map(int, row)) for row in lattice(self.n, divisions)]
+        counts = list(map(tuple, lattice(self.n, divisions).tolist()))
         target: Payoff | None = None
         for turn in count():
-            bests = self._reported(sizes, turn)
-            new = payoff(bests, sizes, self._worst(bests, sizes))
+            bests = self._reported(turn)
+            new = payoff(bests, self.sizes, self._worst(bests))
             if new is None:
                 self._drop_points()
                 return target
@@ -219,22 +216,19 @@ class _Run:
                 self._search("front", POINTS)
         return target
 
-    def _worst(self, bests: Sequence[Solution], sizes: Floats) -> list[Solution]:
+    def _worst(self, bests: Sequence[Solution]) -> list[Solution]:
         """Return the model worst in each objective, where the simplex between the edges is flat.
 
         It is one of the edges and of the best models without regard to one objective each.
         """
-        if not is_flat(bests, sizes):
+        if not is_flat(bests, self.sizes):
             return []
-        if not any(x.subproblem.key[0] == "others" for x in self.state.places):
-            new = []
-            for i, name in enumerate(self.problem.objectives):
-                w = np.where(np.arange(self.n) == i, TIE, 1.0) / sizes
-                new.append(Weights(w, ("others", name), EXACT * self.n))
-            self.state.add(new)
+        if not self._of("others"):
+            weights = np.where(np.eye(self.n, dtype=bool), TIE, 1.0) / self.sizes
+            named = zip(self.problem.objectives, weights, strict=True)
+            self.state.add([Weights(w, ("others", name), EXACT * self.n) for name, w in named])
             self._search("ranges", POINTS, self.starts)
-        others = (x.incumbent for x in self.state.places if x.subproblem.key[0] == "others")
-        models = [*bests, *others]
+        models = [*bests, *(x.incumbent for x in self._of("others"))]
         return [max(models, key=lambda x: float(x.J[i])) for i in range(self.n)]
 
     def _add_points(self, target: Payoff, counts: Sequence[tuple[int, ...]]) -> None:
@@ -251,13 +245,11 @@ class _Run:
 
     def _drop_points(self) -> None:
         """Take the points of a front away."""
-        left = [x for x in self.state.places if x.subproblem.key[0] not in ("point", "sweep")]
-        self.state.places = left
+        self.state.places = self._of("edge", "weights", "others")
 
-    def _lattice(self) -> list[tuple[Place, LatticePoint]]:
-        """Return the places of the points of the lattice, with their subproblems."""
-        pairs = ((x, x.subproblem) for x in self.state.places)
-        return [(x, point) for x, point in pairs if isinstance(point, LatticePoint)]
+    def _of(self, *kinds: str) -> list[Place]:
+        """Return the places of some kinds of subproblems."""
+        return [x for x in self.state.places if x.subproblem.key[0] in kinds]
 
     def _apart(self, target: Payoff, asked: int, step: float) -> Iterator[list[tuple[int, ...]]]:
         """Yield points at models that all points are far from, until as many as asked are distinct.
@@ -269,7 +261,7 @@ class _Run:
         """
         known = 0
         while self.n > 2:
-            solutions = [x.incumbent for x, _ in self._lattice()]
+            solutions = [x.incumbent for x in self._of("point")]
             points = np.array([x.J for x in distinct_points(solutions, target.scale)])
             if len(points) <= known:
                 break
@@ -287,11 +279,12 @@ class _Run:
         """Yield points half-way between neighbours of two objectives that are too far apart."""
         size = self.options.refined
         for _ in range(int(np.ceil(-np.log2(size))) if size else 0):
-            here = sorted(self._lattice(), key=lambda pair: -float(pair[1].beta[0]))
+            pairs = [(x.incumbent, x.subproblem) for x in self.state.places]
+            here = [(x, point) for x, point in pairs if isinstance(point, LatticePoint)]
             new = []
-            for (x, one), (y, other) in pairwise(here):
-                apart = np.linalg.norm((x.incumbent.J - y.incumbent.J) / target.scale)
-                if size and apart > size and one.met(x.incumbent) and other.met(y.incumbent):
+            for (x, one), (y, other) in pairwise(sorted(here, key=lambda pair: -pair[1].beta[0])):
+                apart = np.linalg.norm((x.J - y.J) / target.scale)
+                if size and apart > size and one.met(x) and other.met(y):
                     middle = np.array(one.place) * sum(other.place)
                     middle += np.array(other.place) * sum(one.place)
                     new.append(tuple((middle // np.gcd.reduce(middle)).tolist()))
@@ -320,7 +313,7 @@ class _Run:
                 out.append(replace(self.known.edges[k], best=place.incumbent, minima=minima))
                 continue
             rare = known.hits(place, self.state.tolerance) < SURE
-            doubtful = rare and known.unseen() >= self.loop.search.doubt
+            doubtful = rare and known.unseen() >= self.search.doubt
             out.append(Edge(place.incumbent, minima, known.tries, len(known.ends), doubtful))
         return out
 
@@ -333,36 +326,32 @@ class _Run:
         """
         if target is None:
             return [], np.zeros(0, dtype=np.intp), np.zeros((0, self.n))
-        lattice = sorted(self._lattice(), key=lambda pair: tuple(-pair[1].beta))
-        solutions = []
-        for x, point in lattice:
-            within = not target.worst and min(point.place) >= 0
-            corner = within and max(point.place) == sum(point.place)
-            best = bests[int(np.argmax(point.place))] if corner else x.incumbent
-            solutions.append(replace(best, beta=point.beta))
-        sweep = [x for x in self.state.places if x.subproblem.key[0] == "sweep"]
-        rows = [np.array(x.subproblem.key[1:], dtype=float) for x in sweep]
-        beta = [point.beta for _, point in lattice] + [row / row.sum() for row in rows]
-        solutions += [x.incumbent for x in sweep]
+        places = self._of("point", "sweep")
+        rows = np.array([x.subproblem.key[1:] for x in places], dtype=float).reshape(-1, self.n)
+        beta = rows / rows.sum(axis=1, keepdims=True)
+        order, solutions = np.lexsort(-beta.T[::-1]), []
+        for k in order.tolist():
+            corner = beta[k].min() >= 0 and beta[k].max() == 1 and not target.worst
+            is_edge = corner and places[k].subproblem.key[0] == "point"
+            best = bests[int(beta[k].argmax())] if is_edge else places[k].incumbent
+            solutions.append(replace(best, beta=beta[k]))
         kept = distinct_points(solutions, target.scale)
         J = np.array([x.J for x in kept])
         apart = [(np.abs(J - x.J) / target.scale).max(axis=1).argmin() for x in solutions]
-        return kept, np.array(apart, dtype=np.intp), np.array(beta)
+        return kept, np.array(apart, dtype=np.intp), beta[order]
 
-    def _reported(self, sizes: Floats, turn: int | str) -> list[Solution]:
+    def _reported(self, turn: int | str) -> list[Solution]:
         """Return the edges, those within the tolerance that are best in the others if wanted."""
-        names = self.problem.objectives
         bests = [place.incumbent for place in self.state.places[: self.n]]
         tolerance = self.options.tolerance
         if tolerance == 0:
             return bests
         starts = [place.incumbent for place in self.state.places]
         tasks = []
-        for i, name in enumerate(names):
-            arguments = (self.problem, bests[i], i, tolerance, sizes, starts)
+        for i, name in enumerate(self.problem.objectives):
+            arguments = (self.problem, bests[i], i, tolerance, self.sizes, starts)
             tasks.append(Task(("near", name), near_best, arguments, turn=("near", turn)))
-        found = self._run(tasks)
-        return [x or best for x, best in zip(found, bests, strict=True)]
+        return [x or best for x, best in zip(self._run(tasks), bests, strict=True)]
 
     def _gaps(self, points: Sequence[Solution], target: Payoff | None) -> Sequence[Gap]:
         """Return the gaps of a front of two objectives."""
@@ -376,18 +365,13 @@ class _Run:
                 slack[k] = (c.max() - c > RHO) & ~active_bounds(x.weights * target.unit)
         return gaps(self.problem, points, optimal, slack, target.scale, self._run)
 
-    def _optimal(
-        self,
-        bests: Sequence[Solution],
-        points: Sequence[Solution],
-        sizes: Floats,
-    ) -> list[Solution]:
+    def _optimal(self, bests: Sequence[Solution], points: Sequence[Solution]) -> list[Solution]:
         """Return the regular minima of the optimally weighted residuals, each once, best first."""
-        weighted = [x.solution for x in self._weighted()]
-        starts = [*weighted, *bests, *least_along(points, self.a, sizes)]
+        problem, a, sizes = self.problem, self.a, self.sizes
+        starts = [x.solution for x in self._weighted()] + [*bests, *least_along(points, a, sizes)]
         tasks = [
-            Task(("optimal-weights", k + 1), optimal_minimum, (self.problem, self.a, sizes, x))
-            for k, x in enumerate(starts)
+            Task(("optimal-weights", k), optimal_minimum, (problem, a, sizes, x))
+            for k, x in enumerate(starts, 1)
         ]
         minima = self.state.distinct(x for x in self._run(tasks) if x and x.converged)
-        return accepted(self.problem, minima, self.a, sizes)
+        return accepted(problem, minima, a, sizes)

@@ -12,7 +12,7 @@ import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.front.simplex import Payoff
-from modefront.optim.lexicographic import EXACT, TIE, Lexicographic
+from modefront.optim.lexicographic import EXACT, TIE, TIGHTEST, Lexicographic
 from modefront.optim.problem import Problem
 from modefront.optim.scalarisation import STEEP, Scalarisation, achievement, below, weighted
 from modefront.optim.sqp import Options, Solution, Status, solve
@@ -32,10 +32,6 @@ def active_bounds(shares: Floats) -> Bools:
     [True, False, True]
     """
     return np.asarray(shares > 2 * RHO)
-
-
-_TIGHT = Options(step=1e-8, reduction=1e-24, negligible=1e-16)
-"""Of an edge, over its typical size: residuals of the tolerance of steps end a search."""
 
 
 SAMPLE = 16  # random models of which typical sizes are medians
@@ -80,10 +76,9 @@ def _linear(w: Floats) -> Order:
 
 
 @dataclass(frozen=True)
-class Least:
+class Least(Lexicographic):
     """The lexicographic minimum of one objective, and the name of that."""
 
-    search: Lexicographic
     name: str
 
     @property
@@ -94,26 +89,16 @@ class Least:
     @cached_property
     def order(self) -> Order:
         """Nearly what orders models; among equals in J_i, the others decide."""
-        return _linear(self.search.programme(TIE).w)
+        return _linear(self.programme(TIE).w)
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the share by which J_i falls, or where that is tied, the others, if any do."""
-        i, before, search = self.search.objective, known.J, self.search
-        if not search.ties(J, before):
-            return 1 - search.level(J[i]) / search.level(before[i])
-        others = search.others
+        i, before, others = self.objective, known.J, self.others
+        if not self.ties(J, before):
+            return 1 - self.level(J[i]) / self.level(before[i])
         gain = float(others @ (before - J)) / max(float(others @ before), EXACT)
         # Beside an edge, a tie hides what the others cost: the order of models has to agree.
         return gain if gain * float(self.order.value(before) - self.order.value(J)) > 0 else 0.0
-
-    @property
-    def programme(self) -> Scalarisation:
-        """J_i."""
-        return self.search.programme(0.0)
-
-    def solve(self, problem: Problem, start: Solution, known: Solution | None = None) -> Solution:
-        """Return the lexicographic minimum below a start, if J_i may be as small as known."""
-        return self.search.solve(problem, start, _TIGHT, known)
 
 
 @dataclass(frozen=True)
@@ -134,15 +119,10 @@ class Weights:
         before = float(self.w @ known.J)
         return float(before - self.w @ J) / max(before, self.negligible)
 
-    @property
-    def programme(self) -> Scalarisation:
-        """w^T J."""
-        return weighted(self.w)
-
     def solve(self, problem: Problem, start: Solution, known: Solution | None = None) -> Solution:
         """Return the minimum below a start, or a known one to which it leads."""
-        options = Options(negligible=_TIGHT.negligible / EXACT * self.negligible)
-        return solve(problem, self.programme, start, options, known)
+        options = Options(negligible=TIGHTEST.negligible / EXACT * self.negligible)
+        return solve(problem, weighted(self.w), start, options, known)
 
 
 @dataclass(frozen=True)

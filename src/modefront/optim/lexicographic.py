@@ -30,6 +30,9 @@ RATIO = 10  # ratio of epsilon, which begins at 1 / RATIO and ends at `EXACT`, t
 SHARE = 0.01 * TIE
 """Change of the others, over themselves, below which a minimiser on the path is exact enough."""
 
+TIGHTEST = Options(step=1e-8, reduction=1e-24, negligible=1e-16)
+"""Over the typical size of an objective: residuals of the tolerance of steps end a search."""
+
 
 @dataclass(frozen=True)
 class Lexicographic:
@@ -66,9 +69,7 @@ class Lexicographic:
         rank = int((sigma > RANK * sigma.max(initial=np.finfo(float).tiny)).sum())
         return rank < evaluation.theta.size
 
-    def solve(
-        self, problem: Problem, start: Solution, options: Options, known: Solution | None = None
-    ) -> Solution:
+    def solve(self, problem: Problem, start: Solution, known: Solution | None = None) -> Solution:
         """Return the lexicographic minimum below a start.
 
         A minimum of the first objective that exceeds that of a ``known`` model is left where it is,
@@ -76,7 +77,7 @@ class Lexicographic:
         one that led to the known model, it is not followed again.
         """
         i = self.objective
-        best = solve(problem, self.programme(0.0), start, options, known)
+        best = solve(problem, self.programme(0.0), start, TIGHTEST, known)
         if known and best.evaluation is known.evaluation:
             return best
         least = np.inf if known is None else self.level(known.J[i])
@@ -87,7 +88,7 @@ class Lexicographic:
             return best
         spent = best.evaluations
         for epsilon, begins in ((1 / RATIO, start), (1 / RATIO**4, best)):
-            end = self._end(problem, epsilon, begins, options, known)
+            end = self._end(problem, epsilon, begins, known)
             spent += end.evaluations
             if end.feasible and (end.J[i] <= best.J[i] or self.ties(end.J, best.J)):
                 isolated = self._equal(end.J, best.J)
@@ -95,12 +96,7 @@ class Lexicographic:
         return replace(best, evaluations=spent)  # the path leads to another basin
 
     def _end(
-        self,
-        problem: Problem,
-        epsilon: float,
-        start: Solution,
-        options: Options,
-        known: Solution | None,
+        self, problem: Problem, epsilon: float, start: Solution, known: Solution | None
     ) -> Solution:
         """Return the limit of the path of minimisers from an epsilon on.
 
@@ -109,7 +105,7 @@ class Lexicographic:
         """
 
         def minimiser(start: Solution) -> Solution:
-            enough = replace(options, step=Options().step, reduction=SHARE * epsilon)
+            enough = replace(TIGHTEST, step=Options().step, reduction=SHARE * epsilon)
             return solve(problem, self.programme(epsilon), start, enough)
 
         coarse = ahead = minimiser(start)

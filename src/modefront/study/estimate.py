@@ -24,7 +24,6 @@ from modefront.identifiability.combinations import LEAST
 from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.options import stand_in
-from modefront.optim.lexicographic import Lexicographic
 from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution, begin
 from modefront.pairing.match import modes_needed
@@ -167,7 +166,7 @@ def _search(study: Study) -> tuple[float, float] | None:
     ends: list[Solution] = []
     # How many are timed does not depend on what they take: else the last one is often the longest.
     for k in range(int(WITHIN / max(seconds, WITHIN / TIMED))):
-        edge = Least(Lexicographic(k % n, sizes), "")
+        edge = Least(k % n, sizes, "")
         theta = rng.uniform(problem.lower, problem.upper)
         began = time.process_time()
         start = begin(problem.evaluate(theta, second=True))

@@ -227,7 +227,7 @@ def worked(study: Study, work: Run) -> Dataset:
     analysis = analyse_front(problem, front, *options, seed, work)
     (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
     analysis = replace(analysis, points=[*analysis.points, Point(Kind.NOMINAL, given(nominal))])
-    certify(problem, analysis.points, work)
+    certify(problem, [point.solution for point in analysis.points], work)
     data = dataset(problem, front, analysis)
     theta, paired = data["theta"].values, data["paired_mode"].values
     # A refined front has further points: what is kept is that of the points before.
