@@ -6,8 +6,11 @@ from problems import Derivatives, Known, box, circles
 
 from modefront._typing import Floats
 from modefront.analysis.flat import flat_points, identifiable_part
+from modefront.front.front import Edge, Front
+from modefront.front.point import Kind, Point, of_kind
 from modefront.front.simplex import lattice, payoff
-from modefront.front.subproblems import Least, Point
+from modefront.front.subproblems import Least
+from modefront.front.subproblems import Point as LatticePoint
 from modefront.optim.sqp import Solution, begin
 
 
@@ -19,10 +22,8 @@ def flat(theta: Floats) -> Derivatives:
     return J, dJ, np.array([np.diag([2.0, 0]), np.diag([16 * e, 2.0])])
 
 
-def whole_front(
-    problem: Known, sizes: Floats, divisions: int = 19
-) -> tuple[list[Solution], list[Solution]]:
-    """The edges, and the points of the lattice between them, each from the one before."""
+def whole_front(problem: Known, sizes: Floats, divisions: int = 19) -> Front:
+    """The points of the lattice between the edges, each from the one before, and the edges."""
     solution = begin(problem.evaluate(problem.start))
     names = problem.objectives
     edges = [Least(i, sizes, name).solve(problem, solution) for i, name in enumerate(names)]
@@ -30,17 +31,24 @@ def whole_front(
     assert target is not None
     along = []
     for row in lattice(len(edges), divisions):
-        solution = Point(row / divisions, tuple(row), target).solve(problem, solution)
+        solution = LatticePoint(row / divisions, tuple(row), target).solve(problem, solution)
         assert solution.converged
         along.append(solution)
-    return edges, along
+    points = [Point(Kind.FRONT, x, "nbi", i) for i, x in enumerate(along, 1)]
+    points += [Point(Kind.EDGE, x, name) for name, x in zip(names, edges, strict=True)]
+    best = [Edge(x, [x]) for x in edges]
+    return Front("nbi", points, best, [], None, (False,) * len(edges), target, [])
+
+
+def solutions(front: Front, kind: Kind) -> list[Solution]:
+    return [point.solution for point in of_kind(front.points, kind)]
 
 
 def test_a_flat_part_is_found_and_the_rest_covered_by_itself() -> None:
     problem = box(flat, [0, -1], [4, 1])
-    sizes = np.array([16.0, 1.0])
-    edges, along = whole_front(problem, sizes)
-    part = identifiable_part(problem, along, edges, along, 0.01, sizes, 19)
+    front = whole_front(problem, np.array([16.0, 1.0]))
+    edges, along = (solutions(front, kind) for kind in (Kind.EDGE, Kind.FRONT))
+    part = identifiable_part(problem, front, 0.01, 19)
     assert part is not None
     least = 1 + np.exp(-16.0)
     J = np.array([point.J for point in along])
@@ -63,27 +71,30 @@ def test_a_flat_part_is_found_and_the_rest_covered_by_itself() -> None:
 
 def test_a_flat_part_of_which_the_end_is_not_found_is_counted_and_not_cut() -> None:
     problem = box(flat, [0, -1], [4, 1])
-    sizes = np.array([16.0, 1.0])
-    edges, along = whole_front(problem, sizes)
-    beside = flat_points(
-        *(np.array([point.J for point in along]), np.array([0.0, 1 + np.exp(-16.0)])), 0.01, sizes
-    )
-    # Without a solution to start from, there is no way to the end.
-    part = identifiable_part(problem, along, edges, [], 0.01, sizes, 19)
+    front = whole_front(problem, np.array([16.0, 1.0]))
+
+    def holed(theta: Floats) -> Derivatives:
+        """Around the end, at x = 1.15, the model is not defined."""
+        J, dJ, H = flat(theta)
+        return (J if abs(theta[0] - 1.15) > 0.1 else J * np.inf), dJ, H
+
+    J = np.array([x.J for x in solutions(front, Kind.FRONT)])
+    assert front.scale is not None
+    beside = flat_points(J, np.array([0.0, 1 + np.exp(-16.0)]), 0.01, front.scale)
+    part = identifiable_part(box(holed, [0, -1], [4, 1]), front, 0.01, 19)
     assert part is not None
     assert beside[1] >= 8
     assert part.flat.tolist() == [0, 0]
     assert part.uncut.tolist() == beside.tolist()
     assert part.target is None
     assert len(part.points) == 0
-    assert part.ends[1] is edges[1]
+    assert part.reported(problem.objectives) == []
+    assert part.ends[1] is solutions(front, Kind.EDGE)[1]
 
 
 def test_a_front_that_bends_everywhere_is_left_alone() -> None:
     problem = box(circles, [-2, -2], [2, 2])
-    sizes = np.ones(2)
-    edges, along = whole_front(problem, sizes)
-    assert identifiable_part(problem, along, edges, along, 0.01, sizes, 19) is None
+    assert identifiable_part(problem, whole_front(problem, np.ones(2)), 0.01, 19) is None
 
 
 def test_an_objective_that_is_fitted_exactly_has_no_flat_part() -> None:
@@ -111,20 +122,22 @@ def flat_three(theta: Floats) -> Derivatives:
 
 def test_a_flat_patch_of_three_objectives_is_left_out() -> None:
     problem = box(flat_three, [0, -1], [4, 2], 3)
-    sizes = np.ones(3)
-    edges, along = whole_front(problem, sizes, 9)
-    part = identifiable_part(problem, along, edges, along, 0.01, sizes, 9)
+    front = whole_front(problem, np.ones(3), 9)
+    edges, along = (solutions(front, kind) for kind in (Kind.EDGE, Kind.FRONT))
+    part = identifiable_part(problem, front, 0.01, 9)
     assert part is not None
     level = 1.01 * edges[2].J[2]
     J = np.array([point.J for point in along])
     assert part.flat.tolist() == [0, 0, (J[:, 2] <= level).sum() - 1]
     assert part.flat[2] >= 5
     assert part.ends[:2] == edges[:2]
-    # The end is the best of J1 + J2 at that level: checked on the curve of the level.
+    # The end is the best of J1 and J2 over their ranges at that level: on the curve of the level.
     y = np.linspace(0.4, 0.6, 200_001)
     room = level - 1 - (y - 0.5) ** 2
     y, x = y[room > 0], -np.log(room[room > 0]) / 4
-    k = np.argmin(1.25 * x**2 + y**2 / 4 + (y - 1) ** 2)
+    assert front.scale is not None
+    J1, J2 = x**2 + y**2 / 4, x**2 / 4 + (y - 1) ** 2
+    k = np.argmin(J1 / front.scale[0] + J2 / front.scale[1])
     assert part.ends[2].theta == pytest.approx([x[k], y[k]], abs=1e-5)
     chosen = np.array([point.J for point in part.points])
     assert all(point.converged for point in part.points)

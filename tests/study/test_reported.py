@@ -16,6 +16,7 @@ from modefront.analysis import front as analysis
 from modefront.analysis.flat import Identifiable
 from modefront.cli.show import as_json, print_results
 from modefront.front import pareto
+from modefront.front.front import Front
 from modefront.front.gaps import Gap
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
@@ -112,8 +113,8 @@ def test_an_end_that_is_not_known_is_said_and_is_no_number(
 def test_a_flat_part_that_is_not_cut_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     part = Identifiable(np.array([0, 0]), np.array([0, 3]), [], None, [])
 
-    def uncut(_: object, __: object, edges: list[Solution], *___: object) -> object:
-        return replace(part, ends=edges)
+    def uncut(_: object, front: Front, *__: object) -> object:
+        return replace(part, ends=[edge.best for edge in front.edges])
 
     monkeypatch.setattr(analysis, "identifiable_part", uncut)
     data = solved()

@@ -10,11 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats, Ints
+from modefront.front.front import Front
+from modefront.front.point import Kind, Point, of_kind
 from modefront.front.proposers.polish import Polish
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import Payoff, lattice, payoff
 from modefront.front.state import State, distinct_points
-from modefront.front.subproblems import Point, near_best
+from modefront.front.subproblems import Point as LatticePoint
+from modefront.front.subproblems import near_best
 from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution
@@ -34,6 +37,12 @@ class Identifiable:
     ends: Sequence[Solution]  # where the part ends, one solution an objective
     target: Payoff | None = None  # the simplex between them; None where the part is one point
     points: Sequence[Solution] = ()  # along it; empty where it is one point
+
+    def reported(self, names: Sequence[str]) -> list[Point]:
+        """Return its points and those of its ends that are no edges, of objectives with names."""
+        along = [Point(Kind.IDENTIFIABLE, x, index=i) for i, x in enumerate(self.points, 1)]
+        ends = zip(names, self.ends, self.flat.tolist(), strict=True)
+        return along + [Point(Kind.IDENTIFIABLE_EDGE, x, name) for name, x, cut in ends if cut]
 
 
 def flat_points(J: Floats, least: Floats, tolerance: float, sizes: Floats) -> Ints:
@@ -60,25 +69,24 @@ def same(solution: Solution, other: Solution) -> bool:
     return bool(np.array_equal(solution.theta, other.theta))
 
 
-# 8 arguments: the front, and the options of the part.
 def identifiable_part(
-    problem: Problem,
-    points: Sequence[Solution],
-    edges: Sequence[Solution],
-    known: Sequence[Solution],
-    tolerance: float,
-    sizes: Floats,
-    divisions: int,
-    work: Executor = IMMEDIATE,
+    problem: Problem, front: Front, tolerance: float, divisions: int, work: Executor = IMMEDIATE
 ) -> Identifiable | None:
     """Return the part of a front that is not flat; None where nothing is flat.
 
-    A flat part of which the end is not found is not cut, and counted. ``points`` lie along the
-    whole front, ``edges`` are its edges, ``known`` are solutions to start from; ``divisions`` are
-    the steps along each edge of the simplex.
+    A flat part of which the end is not found is not cut, and counted. ``divisions`` are the steps
+    along each edge of the simplex.
     """
+    known = [point.solution for point in front.points]
+    points, edges = (
+        [point.solution for point in of_kind(front.points, kind)]
+        for kind in (Kind.FRONT, Kind.EDGE)
+    )
+    if not points or front.scale is None:
+        return None
     least = np.array([solution.J[i] for i, solution in enumerate(edges)])
-    flat = flat_points(np.array([solution.J for solution in points]), least, tolerance, sizes)
+    J, sizes = np.array([solution.J for solution in points]), front.scale
+    flat = flat_points(J, least, tolerance, sizes)
     if not flat.any():
         return None
     ends = list(edges)
@@ -95,10 +103,8 @@ def identifiable_part(
     for solution in [*ends, *known, *points]:
         state.archive.add(solution.J, solution)
     counts = lattice(len(edges), divisions)
-    subproblems = [Point(row / divisions, tuple(row.tolist()), target) for row in counts]
-    state.add(subproblems)
+    state.add([LatticePoint(row / divisions, tuple(row.tolist()), target) for row in counts])
     Loop(state, Search()).run("identifiable", [Polish()])
     along = distinct_points([place.incumbent for place in state.places], target.scale)
     floor = np.where(flat > 0, (1 - TIE) * target.utopia, 0.0)
-    above = [solution for solution in along if (floor <= solution.J).all()]
-    return Identifiable(flat, uncut, ends, target, above)
+    return Identifiable(flat, uncut, ends, target, [x for x in along if (floor <= x.J).all()])

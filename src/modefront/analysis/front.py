@@ -65,7 +65,11 @@ def analyse_front(
     samples = uncertainty.bootstrap
     solutions = 1 if sizes is None else len(front.points)
     work.expect({"second-derivatives": (solutions,) * 2, "bootstrap": (samples, samples)})
-    part, points = _identifiable_part(problem, front, pareto, identifiability.flat, work)
+    part = None
+    if identifiability.flat > 0 and METHODS[front.method].programme == "boundary":
+        divisions = (pareto.points or default_points(len(problem.objectives))) - 1
+        part = identifiable_part(problem, front, identifiability.flat, divisions, work)
+    points = part.reported(problem.objectives) if part else []
     manifolds = _manifolds(problem, front, identifiability, work)
     reference = front.reference
     solved = [SolvedPoint(reference.label, reference.solution, Role("optimal"))]
@@ -96,27 +100,6 @@ def analyse_front(
     )
 
 
-def _identifiable_part(
-    problem: UpdatingProblem, front: Front, pareto: Pareto, flat: float, work: Executor
-) -> tuple[Identifiable | None, list[Point]]:
-    """Return the part of the front that is not flat, if some is, and the points that it adds."""
-    along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
-    if flat == 0 or len(along) < 2 or METHODS[front.method].programme != "boundary":
-        return None, []
-    n = len(problem.objectives)
-    edges = [point.solution for point in of_kind(front.points, Kind.EDGE)]
-    known = [point.solution for point in front.points]
-    sizes = np.ones(n) if front.scale is None else front.scale
-    divisions = (pareto.points or default_points(n)) - 1
-    part = identifiable_part(problem, along, edges, known, flat, sizes, divisions, work)
-    if part is None:
-        return None, []
-    points = [Point(Kind.IDENTIFIABLE, x, index=i + 1) for i, x in enumerate(part.points)]
-    ends = zip(problem.objectives, part.ends, edges, strict=True)
-    moved = [(name, x) for name, x, edge in ends if not same(x, edge)]
-    return part, [*points, *(Point(Kind.IDENTIFIABLE_EDGE, x, name) for name, x in moved)]
-
-
 def _manifolds(
     problem: UpdatingProblem, front: Front, options: Identifiability, work: Executor
 ) -> list[tuple[str, Sequence[Manifold]]]:
@@ -144,11 +127,8 @@ def _equivalent(
     known: Sequence[Manifold],
 ) -> list[Manifold]:
     """Return the manifolds of models that are as good as some minima."""
-    p = problem.start.size
-    idle = np.ones(p, dtype=bool)
-    for minimum in minima:
-        scale = scale_at(problem, minimum.theta)
-        idle &= np.isin(np.arange(p), without_effect(problem, minimum, scale))
+    effects = [without_effect(problem, x, scale_at(problem, x.theta)) for x in minima]
+    idle = np.array([all(j in each for each in effects) for j in range(problem.start.size)])
     return equivalent_models(
         problem, programme, minima, h=options.step, limit=options.models, known=known, idle=idle
     )

@@ -24,7 +24,7 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Bools, Floats
-from modefront.analysis.tangents import ARRIVED, Context, TangentPoint, context_of
+from modefront.analysis.tangents import ARRIVED, Context, TangentPoint
 from modefront.optim.problem import AT_BOUND, DISTINCT, Evaluation, Problem, SpentError, Wrapped
 from modefront.optim.qp import HALVINGS
 from modefront.optim.scalarisation import Scalarisation
@@ -116,25 +116,23 @@ def equivalent_models(
     span = np.where(still, np.inf, problem.upper - problem.lower)
     out: list[Manifold] = []
     for minimum in minima:
-        before, twin = spent, None
-        on = next((k for k, x in enumerate(out) if _is_on(x, minimum, span, h)), None)
-        if on is None:
-            try:
-                context, first = context_of(metered, programme, minimum, still)
-                twin = _position(context, first, [*out, *known], h)
-                on = twin if twin is not None and twin < len(out) else None
-                manifold = _follow(context, first, h, limit) if twin is None else None
-            except SpentError:
-                manifold = Manifold(0, [minimum], Extent.SPENT)
+        before, every = spent, [*out, *known]
+        k = next((k for k, x in enumerate(out) if _is_on(x, minimum, span, h)), None)
+        try:
+            if k is None:
+                context = Context(metered, programme, minimum, still)
+                k = _position(context, every, h)
+            manifold = every[k] if k is not None else _follow(context, h, limit)
+        except SpentError:
+            manifold = Manifold(0, [minimum], Extent.SPENT)
         took = spent - before
-        if on is not None:
-            same = out[on]
-            out[on] = replace(same, minima=same.minima + 1, evaluations=same.evaluations + took)
-        elif manifold is not None:
+        if k is None:
             out.append(replace(manifold, evaluations=took))
-        elif twin is not None:
-            twin -= len(out)
-            out.append(replace(known[twin], evaluations=took, minima=1, twin=twin))
+        elif k < len(out):
+            took += manifold.evaluations
+            out[k] = replace(manifold, minima=manifold.minima + 1, evaluations=took)
+        else:
+            out.append(replace(manifold, evaluations=took, minima=1, twin=k - len(out)))
     return out
 
 
@@ -145,9 +143,7 @@ def _is_on(manifold: Manifold, minimum: Evaluation, span: Floats, h: float) -> b
     return near <= (h if manifold.dimension else DISTINCT)
 
 
-def _position(
-    context: Context, first: TangentPoint, manifolds: Sequence[Manifold], h: float
-) -> int | None:
+def _position(context: Context, manifolds: Sequence[Manifold], h: float) -> int | None:
     """Return the position of the manifold to which a walk from a minimum leads; None if to none.
 
     It has the same dimension, and all of its models are as good.
@@ -155,33 +151,33 @@ def _position(
     for k, manifold in enumerate(manifolds):
         alike = manifold.dimension == context.dimension > 0
         if alike and all(map(context.equivalent, manifold.models)):
-            distances = [np.linalg.norm(context.offset(first.u, x)) for x in manifold.models]
-            if _reaches(context, first, manifold.models[int(np.argmin(distances))], h):
+            distances = [context.distance(context.first, x) for x in manifold.models]
+            if _reaches(context, manifold.models[int(np.argmin(distances))], h):
                 return k
     return None
 
 
-def _reaches(context: Context, point: TangentPoint, evaluation: Evaluation, h: float) -> bool:
-    """Return whether a walk along the manifold from a point arrives next to a point on it."""
+def _reaches(context: Context, evaluation: Evaluation, h: float) -> bool:
+    """Return whether a walk along the manifold arrives next to a point on it."""
+    point = context.first
     while True:
-        offset = context.offset(point.u, evaluation)
-        distance = float(np.linalg.norm(offset))
+        distance = context.distance(point, evaluation)
         if distance <= h:
             return True
-        step = point.T @ (point.T.T @ offset)
+        step = point.T @ (point.T.T @ context.offset(point, evaluation))
         size = float(np.linalg.norm(step))
         if size < SHORT * distance:
             return False
         u = np.clip(point.u + step * min(1.0, FAR / size), 0, 1)
         landed = context.landed(point, u, context.held)
-        if landed is None or np.linalg.norm(context.offset(landed.u, evaluation)) >= distance:
+        if landed is None or context.distance(landed, evaluation) >= distance:
             return False
         point = landed
 
 
-def _follow(context: Context, first: TangentPoint, h: float, limit: int) -> Manifold:
+def _follow(context: Context, h: float, limit: int) -> Manifold:
     """Return the manifold of minima through one of them, as far as evaluations are left."""
-    d, points, extent = context.dimension, [first], Extent.ISOLATED
+    d, points, extent = context.dimension, [context.first], Extent.ISOLATED
     try:
         if d == 1:
             extent = _cover(context, points, h, limit)

@@ -11,7 +11,7 @@ where residuals vanish, with Gauss-Newton's G, which is B on the manifold and le
 model without exact second derivatives B is G.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
@@ -44,28 +44,39 @@ class TangentPoint:
     T: Floats
 
 
-@dataclass(frozen=True)
 class Context:
-    """Quantities that are the same everywhere on a manifold."""
+    """Quantities that are the same everywhere on a manifold.
 
-    problem: Problem  # problem, programme: of which its points are minima
-    programme: Scalarisation
-    most: float  # the greatest f that is as good as that of the start
-    top: float  # the greatest eigenvalue of B
-    held: Bools  # (p,) variables that stay at a bound, or that are idle
-    idle: Bools  # (p,) variables without effect
-    fits: bool = False  # whether residuals vanish on the manifold
-    dimension: int = 0  # of the manifold
+    Variables that the slope presses against a bound are held there, unless residuals vanish, and
+    those that are ``idle`` (p,), without effect, where they are.
+    """
 
-    @property
-    def span(self) -> Floats:
-        """Ranges of the parameters, shape (p,)."""
-        return self.problem.upper - self.problem.lower
+    def __init__(
+        self, problem: Problem, programme: Scalarisation, minimum: Evaluation, idle: Bools
+    ) -> None:
+        self.problem, self.programme, self.idle = problem, programme, idle
+        self.span = span = problem.upper - problem.lower
+        if not minimum.exact:
+            minimum = problem.evaluate(minimum.theta, second=True)
+        w, value = programme.gradient(minimum.J), programme.value(minimum.J)
+        u, g = (minimum.theta - problem.lower) / span, w @ minimum.dJ * span
+        size, B = float(np.abs(w) @ np.abs(minimum.J)), self.second(minimum)
+        self.top = top = float(np.abs(np.linalg.eigvalsh(B)).max())
+        self.most = value + TIE * size + top * TIE**2  # the greatest f that is as good
+        self.fits = size <= EXACT * top  # whether residuals vanish on the manifold
+        pressed = (np.abs(g) > TIE * np.sqrt(top * size) + ARRIVED * top) & (not self.fits)
+        self.held = idle | (pressed & np.where(g > 0, u <= 0, u >= 1))
+        self.first = TangentPoint(minimum, u, self.tangents(minimum))
+        self.dimension = self.first.T.shape[1]
 
-    def offset(self, u: Floats, evaluation: Evaluation) -> Floats:
-        """Return the difference of an evaluation from u, but for idle variables."""
+    def offset(self, point: TangentPoint, evaluation: Evaluation) -> Floats:
+        """Return the difference of an evaluation from a point, but for idle variables."""
         goal = (evaluation.theta - self.problem.lower) / self.span
-        return np.where(self.idle, 0.0, goal - u)
+        return np.where(self.idle, 0.0, goal - point.u)
+
+    def distance(self, point: TangentPoint, evaluation: Evaluation) -> float:
+        """Return the length of that."""
+        return float(np.linalg.norm(self.offset(point, evaluation)))
 
     def equivalent(self, evaluation: Evaluation) -> bool:
         """Return whether a model is as good as the start."""
@@ -137,28 +148,3 @@ class Context:
     def _weighted(self, evaluation: Evaluation, H: Floats) -> Floats:
         w = self.programme.gradient(evaluation.J)
         return np.asarray(np.tensordot(w, H, axes=1) * np.outer(self.span, self.span))
-
-
-def context_of(
-    problem: Problem, programme: Scalarisation, evaluation: Evaluation, idle: Bools
-) -> tuple[Context, TangentPoint]:
-    """Return the context of the manifold through a minimum, and the minimum with its tangents.
-
-    Variables that the slope presses against a bound are held there, unless residuals vanish, and
-    those that are ``idle`` where they are.
-    """
-    if not evaluation.exact:
-        evaluation = problem.evaluate(evaluation.theta, second=True)
-    w, span = programme.gradient(evaluation.J), problem.upper - problem.lower
-    size, value = float(np.abs(w) @ np.abs(evaluation.J)), programme.value(evaluation.J)
-    u, g = (evaluation.theta - problem.lower) / span, w @ evaluation.dJ * span
-    free = np.zeros(u.size, dtype=bool)
-    context = Context(problem, programme, value, 0.0, free, idle)
-    top = float(np.abs(np.linalg.eigvalsh(context.second(evaluation))).max())
-    fits = size <= EXACT * top
-    pressed = (np.abs(g) > TIE * np.sqrt(top * size) + ARRIVED * top) & (not fits)
-    held = idle | (pressed & np.where(g > 0, u <= 0, u >= 1))
-    most = value + TIE * size + top * TIE**2
-    context = replace(context, top=top, held=held, most=most, fits=fits)
-    T = context.tangents(evaluation)
-    return replace(context, dimension=T.shape[1]), TangentPoint(evaluation, u, T)
