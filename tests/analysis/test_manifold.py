@@ -343,7 +343,7 @@ def test_a_manifold_is_followed_once_from_wherever_its_minima_lie(costs: Costs) 
             minima.append(problem.evaluate(theta))
     before = costs.eigenproblems
     (result,) = equivalent_models(problem, ONE, minima)
-    assert (result.dimension, result.minima) == (4, 20)
+    assert result.dimension == 4
     assert result.evaluations == costs.eigenproblems - before
     assert result.evaluations <= 95
 
@@ -378,7 +378,7 @@ def test_minima_that_differ_in_idle_parameters_are_one() -> None:
     problem = squares(valley, [0, 0], [1, 1])
     minima = [problem.evaluate(np.array([0.5, y])) for y in (0.1, 0.5, 0.9)]
     (result,) = equivalent_models(problem, ONE, minima, idle=np.array([False, True]))
-    assert (result.extent, result.minima, len(result.models)) == (Extent.ISOLATED, 3, 1)
+    assert (result.extent, len(result.models)) == (Extent.ISOLATED, 1)
 
 
 def test_a_model_from_which_all_steps_leave_the_bounds_is_no_curve() -> None:

@@ -9,11 +9,10 @@ from interruptions import interrupt_after
 from problems import box, circles, disconnected
 
 from modefront._typing import Floats
-from modefront.front.archive import Archive, recorded
 from modefront.front.front import Front
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
-from modefront.front.state import State
+from modefront.front.state import Archive, State, recorded
 from modefront.optim.problem import Evaluation, Problem
 from modefront.work.store import Run, Store
 from modefront.work.task import IMMEDIATE, Costs, Executor, Task

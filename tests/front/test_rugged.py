@@ -12,9 +12,9 @@ from problems import Derivatives, box
 
 from modefront._typing import Floats
 from modefront.front.dominance import nondominated
-from modefront.front.evolutionary import evolve_front
 from modefront.front.front import Front
 from modefront.front.indicators import hypervolume, igd_plus
+from modefront.front.methods import evolve_front
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind

@@ -25,19 +25,17 @@ from problems import (
 import modefront as mf
 from modefront._typing import Bools, Floats
 from modefront.errors import InputError
-from modefront.front.archive import Outcome, recorded
 from modefront.front.dominance import undominated
 from modefront.front.front import Front
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind
-from modefront.front.proposers.base import USUAL, Offer, Proposer, at, evaluate_all
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Minima, Starts
-from modefront.front.search import Loop, Search
+from modefront.front.search import USUAL, Loop, Offer, Proposer, Search, at, evaluate_all
 from modefront.front.simplex import lattice, payoff
-from modefront.front.state import Place, State
+from modefront.front.state import Outcome, Place, State, recorded
 from modefront.front.subproblems import SAMPLE, Least, Subproblem, Weights
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.optim.problem import Evaluation, Problem, infeasible

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from problems import Derivatives, Known, bowls, box, circles, curved, sphere
 
 from modefront._typing import Floats
-from modefront.optim.linearised import Merit, projected, surplus
+from modefront.optim.linearised import augmented, projected, surplus
 from modefront.optim.problem import Evaluation, Residual
 from modefront.optim.scalarisation import Scalarisation, achievement, below, weighted
 from modefront.optim.second import learned_from
@@ -177,7 +177,7 @@ def test_equal_functions_have_no_surplus(seed: int, nu: float) -> None:
 
 def test_an_undefined_point_is_worse_than_any_other() -> None:
     nowhere = Evaluation(np.zeros(1), np.array([np.inf]))
-    assert Merit(weighted(np.ones(1)), np.zeros(0), 10.0).at(nowhere) == np.inf
+    assert augmented(weighted(np.ones(1)), np.zeros(0), 10.0, nowhere) == np.inf
 
 
 # ---- learned second derivatives --------------------------------------------------------------

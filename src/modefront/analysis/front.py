@@ -154,23 +154,27 @@ def _solved_points(
     Points of weights follow from their weights, points of normal-boundary intersection from their
     edges.
     """
-    names = problem.objectives
-    edges = {point.name: point for point in of_kind(front.points, Kind.EDGE)}
-    cuts = {point.name: point for point in of_kind(extra, Kind.IDENTIFIABLE_EDGE)}
-    whole = tuple(edges[name].label for name in names)
-    ends = tuple(cuts.get(name, edges[name]).label for name in names)
-    solutions = [edges[name].solution for name in names]
-    out: list[SolvedPoint] = []
-    for i, (name, edge) in enumerate(zip(names, front.edges, strict=True)):
-        solution, text = edges[name].solution, edges[name].label
-        if pareto.tolerance > 0 and not same(solution, edge.best):
-            out.append(SolvedPoint(f"{text}-best", edge.best, Role("edge", objective=i)))
+    edges, out = of_kind(front.points, Kind.EDGE), list[SolvedPoint]()
+    for i, (point, edge) in enumerate(zip(edges, front.edges, strict=True)):
+        moved = pareto.tolerance > 0 and not same(point.solution, edge.best)
+        text = f"{point.label}-best" if moved else point.label
+        out.append(SolvedPoint(text, edge.best, Role("edge", objective=i)))
+        if moved:
             level = Role("level", objective=i, tolerance=pareto.tolerance)
-            out.append(SolvedPoint(text, solution, level))
-        else:
-            out.append(SolvedPoint(text, edge.best, Role("edge", objective=i)))
+            out.append(SolvedPoint(point.label, point.solution, level))
+
+    def between(
+        x: Solution, labels: tuple[str, ...], ends: Sequence[Solution], target: Payoff | None
+    ) -> Role:
+        """Return the role of a point of NBI between labelled ends, or of one of these ends."""
+        at = [text for text, end in zip(labels, ends, strict=True) if same(x, end)]
+        worst, equations = target.worst if target else (), pareto.programme == "equations"
+        return Role("end", (at[0],)) if at else Role("boundary", labels, worst, equations)
+
+    cuts = {point.name: point.label for point in of_kind(extra, Kind.IDENTIFIABLE_EDGE)}
+    whole = tuple(edge.label for edge in edges)
+    ends = tuple(cuts.get(edge.name, edge.label) for edge in edges)
     along = METHODS[front.method].programme
-    equations = pareto.programme == "equations"
     for point in [*front.points, *extra]:
         role: Role | None = None
         match point.kind:
@@ -178,31 +182,18 @@ def _solved_points(
                 role = Role("optimal")
             case Kind.GIVEN | Kind.EQUAL | Kind.MOST_PROBABLE:
                 role = Role("weights")
-            case Kind.FRONT if along == "boundary":
-                role = _between(point.solution, whole, solutions, front.target, equations)
             case Kind.FRONT if along == "weights":
                 role = Role("weights")
+            case Kind.FRONT if along == "boundary":
+                role = between(point.solution, whole, [x.solution for x in edges], front.target)
             case Kind.IDENTIFIABLE if part:
-                role = _between(point.solution, ends, part.ends, part.target, equations)
+                role = between(point.solution, ends, part.ends, part.target)
             case Kind.IDENTIFIABLE_EDGE:
-                role = Role("level", objective=names.index(point.name), tolerance=flat)
+                objective = problem.objectives.index(point.name)
+                role = Role("level", objective=objective, tolerance=flat)
         if role:
             out.append(SolvedPoint(point.label, point.solution, role))
     return out
-
-
-def _between(
-    solution: Solution,
-    labels: tuple[str, ...],
-    ends: Sequence[Solution],
-    target: Payoff | None,
-    equations: bool,
-) -> Role:
-    """Return the role of a point of NBI between labelled ends, or of one of these ends."""
-    for text, end in zip(labels, ends, strict=True):
-        if same(solution, end):
-            return Role("end", (text,))
-    return Role("boundary", labels, target.worst if target else (), equations)
 
 
 def _locals(

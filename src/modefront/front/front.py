@@ -7,7 +7,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.front.gaps import Gap
-from modefront.front.point import Kind, Point, label, of_kind, reference
+from modefront.front.point import REFERENCES, Kind, Point, label, of_kind
 from modefront.front.simplex import Payoff
 from modefront.optim.lexicographic import EXACT
 from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
@@ -47,7 +47,7 @@ class Front:
     gaps: Sequence[Gap]  # gaps between the branches of a front of two objectives
     # (places, n) lattice points of normal-boundary intersection
     lattice: Floats = field(default_factory=lambda: np.zeros((0, 0)))
-    # (places,) the point of the front, from 0, to which each of them led; -1 for none
+    # (places,) the point of the front, from 0, to which each of them led
     places: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     # (models, n) objectives of evaluated models that no evaluated model dominates
     known: Floats = field(default_factory=lambda: np.zeros((0, 0)))
@@ -59,7 +59,7 @@ class Front:
     @property
     def reference(self) -> Point:
         """The model that the data prefer: most probable, else of optimal, else equal weights."""
-        return reference(self.points)
+        return next(x for kind in REFERENCES for x in self.points if x.kind is kind)
 
     @property
     def scale(self) -> Floats | None:

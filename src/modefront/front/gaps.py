@@ -126,12 +126,12 @@ def branches_of(
 
 
 def branch_numbers(J: Floats, optimal: Bools, gaps: Sequence[Gap]) -> Ints:
-    """Return the branch, from 1, that each row of J (points, 2) lies on; 0 for none.
+    """Return the branch, from 1, that each row of J (points, n) lies on; 0 for none.
 
     A point that no other point dominates lies on no branch if the start of a branch dominates it.
     """
     middles = np.array([gap.middle for gap in gaps])
-    starts = np.array([gap.start.J for gap in gaps if gap.start]).reshape(-1, 2)
+    starts = np.array([gap.start.J for gap in gaps if gap.start]).reshape(-1, J.shape[1])
     branch = 1 + (J[:, :1] > middles).sum(axis=1)
     below = np.all(starts <= J[:, None], axis=2) & np.any(starts < J[:, None], axis=2)
     return np.where(optimal & ~np.any(below, axis=1), branch, 0)

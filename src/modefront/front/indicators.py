@@ -93,8 +93,7 @@ def coverage(front: Front) -> dict[str, float]:
             *front.optimal,
         ]
     )
-    parts = branches_of(along, optimal, front.gaps) if front.gaps else []
-    branches = [units(part) for part in parts if part] or [Y[optimal]]
+    branches = [units(part) for part in branches_of(along, optimal, front.gaps) if part]
     gap = max(largest_gap(part[(part <= REFERENCE).all(axis=1)]) for part in branches)
     R = R[nondominated(R)]
     return dict(zip(names, (hypervolume(Y[optimal]), igd_plus(Y[optimal], R), gap), strict=True))

@@ -1,12 +1,25 @@
-"""Methods that find the points of a front, by their name in ``[pareto] method``."""
+"""Methods that find the points of a front, by their name in ``[pareto] method``.
 
-from collections.abc import Callable
+Evolutionary ones, to be compared with, are those of pymoo (the extra ``evolutionary``). A
+generation's evaluations are a task: a run that is continued is played again, with the same seed,
+with those that are kept.
+"""
+
+import zlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import Any, Literal
 
+import numpy as np
+
 from modefront.families import Family
+from modefront.front.dominance import nondominated
+from modefront.front.search import evaluated_all
+from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.sqp import Solution, Status
 from modefront.text import Shown
+from modefront.work.task import IMMEDIATE, Task
 
 
 @dataclass(frozen=True, repr=False)
@@ -69,3 +82,54 @@ METHODS: Family[Method] = Family(
     ),
 )
 """All methods by their names."""
+
+UNDEFINED = float(np.finfo(np.float32).max)
+"""Value of an objective where the model cannot be evaluated; pymoo takes no infinity."""
+
+
+def evolve_front(
+    problem: Problem,
+    method: str,
+    population: int,
+    evaluations: int,
+    rng: np.random.Generator,
+    run: Callable[[Sequence[Task[Any]]], list[Any]] = IMMEDIATE.run,
+) -> list[Solution]:
+    """Return the non-dominated models of the last population, ascending in the first objective.
+
+    ``evaluations`` is the budget; whole generations of size ``population`` are spent of it.
+    ``run`` carries out tasks.
+    """
+    from pymoo.core.evaluator import Evaluator
+    from pymoo.core.problem import Problem as Described
+    from pymoo.problems.static import StaticProblem
+
+    n, p = len(problem.objectives), problem.lower.size
+    described = Described(n_var=p, n_obj=n, xl=problem.lower, xu=problem.upper)
+    make = METHODS[method].algorithm
+    assert make is not None, method
+    algorithm = make(population)
+    algorithm.setup(
+        described,
+        termination=("n_gen", max(evaluations // population, 1)),
+        seed=int(rng.integers(2**31)),
+        verbose=False,
+    )
+    spent, known = 0, dict[bytes, Evaluation]()
+    while spent == 0 or spent + population <= evaluations:
+        proposals = algorithm.ask()
+        thetas = proposals.get("X")
+        # Another version of pymoo may ask for other models.
+        key = ("front", method, spent, f"{zlib.crc32(thetas.tobytes()):x}")
+        inside = np.clip(thetas, problem.lower, problem.upper)
+        (members,) = run([Task(key, evaluated_all, (problem, inside))])
+        known |= {theta.tobytes(): x for theta, x in zip(thetas, members, strict=True)}
+        spent += len(proposals)
+        F = np.nan_to_num(np.array([x.J for x in members]), posinf=UNDEFINED)
+        Evaluator().eval(StaticProblem(described, F=F), proposals)
+        algorithm.tell(infills=proposals)
+    F = algorithm.pop.get("F")
+    chosen = nondominated(F) & (UNDEFINED > F).all(axis=1)
+    last = algorithm.pop.get("X")[chosen][np.lexsort(F[chosen].T[::-1])]
+    found = (known[theta.tobytes()] for theta in last)
+    return [Solution(x, np.full(n, np.nan), Status.SAMPLED, 0) for x in found]

@@ -27,10 +27,6 @@ from modefront.text import Shown
 MOST = 10_000  # points of a front at most
 
 
-def _one_of_the_methods() -> Requirement:
-    return one_of(*METHODS)  # those that are registered by now
-
-
 @dataclass(frozen=True)
 class Pareto(Shown):
     """Method, resolution and refinement of the Pareto front.
@@ -52,7 +48,7 @@ class Pareto(Shown):
         above which points are added between them, from 0.001 to 1; None for no refinement
     """
 
-    method: Annotated[str, _one_of_the_methods] = "nbi"
+    method: Annotated[str, lambda: one_of(*METHODS)] = "nbi"
     points: Annotated[int, whole(2, MOST)] | None = None
     programme: Annotated[str, one_of("bounds", "equations")] = "bounds"
     tolerance: Annotated[float, number("a share from 0 to 1", least=0, most=1)] = 0.0

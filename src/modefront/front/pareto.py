@@ -10,17 +10,15 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.errors import UnfinishedError
 from modefront.front.dominance import nondominated
-from modefront.front.evolutionary import evolve_front
 from modefront.front.front import Edge, Front
 from modefront.front.gaps import Gap, gaps
-from modefront.front.methods import METHODS
+from modefront.front.methods import METHODS, evolve_front
 from modefront.front.options import MOST, Pareto
 from modefront.front.point import Kind, Point, label
-from modefront.front.proposers.base import Proposer, at, evaluated
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Starts
-from modefront.front.search import EDGES, POINTS, Loop, Search
+from modefront.front.search import EDGES, POINTS, Loop, Proposer, Search, at, evaluated
 from modefront.front.simplex import Payoff, default_points, is_flat, lattice, nearest, payoff
 from modefront.front.state import Place, State, distinct_points
 from modefront.front.subproblems import (
@@ -39,6 +37,8 @@ from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import DISTINCT, Problem
 from modefront.optim.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
+
+ANCHORS = ("edge", "weights", "others")  # kinds of subproblems that are no points between edges
 
 
 # 8 arguments: the problem, and each group of options of a search.
@@ -200,7 +200,7 @@ class _Run:
             bests = self._reported(turn)
             new = payoff(bests, self.sizes, self._worst(bests))
             if new is None:
-                self._drop_points()
+                self.state.places = self._of(*ANCHORS)
                 return target
             if target is not None:
                 utopia = np.abs((new.utopia - target.utopia) / new.scale).max()
@@ -209,10 +209,10 @@ class _Run:
             target = new
             if METHODS[self.options.method].programme is None:
                 break  # its points are the models of a population
-            self._drop_points()
+            self.state.places = self._of(*ANCHORS)
             more = (self._apart(target, len(counts), 1 / divisions), self._halfway(target))
             for new_points in chain([counts], *more):
-                self._add_points(target, new_points)
+                self.state.add([self._subproblem(target, row) for row in new_points])
                 self._search("front", POINTS)
         return target
 
@@ -231,21 +231,13 @@ class _Run:
         models = [*bests, *(x.incumbent for x in self._of("others"))]
         return [max(models, key=lambda x: float(x.J[i])) for i in range(self.n)]
 
-    def _add_points(self, target: Payoff, counts: Sequence[tuple[int, ...]]) -> None:
-        """Add points of the lattice."""
-        new: list[Subproblem] = []
-        equations = self.options.programme == "equations"
-        for row in counts:
-            beta = np.array(row) / sum(row)
+    def _subproblem(self, target: Payoff, row: tuple[int, ...]) -> Subproblem:
+        """Return the point of the front at a point of the lattice."""
+        beta = np.array(row) / sum(row)
+        if self.options.method == "weights":
             w = np.maximum(beta, TIE)
-            swept = Weights(w, ("sweep", *row), EXACT * float(w @ target.scale))
-            is_swept = self.options.method == "weights"
-            new.append(swept if is_swept else LatticePoint(beta, row, target, equations))
-        self.state.add(new)
-
-    def _drop_points(self) -> None:
-        """Take the points of a front away."""
-        self.state.places = self._of("edge", "weights", "others")
+            return Weights(w, ("sweep", *row), EXACT * float(w @ target.scale))
+        return LatticePoint(beta, row, target, self.options.programme == "equations")
 
     def _of(self, *kinds: str) -> list[Place]:
         """Return the places of some kinds of subproblems."""

@@ -1,6 +1,6 @@
 """A point of the results: a model, and why it is reported."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -73,11 +73,6 @@ def label(kind: Kind, name: str = "", index: int = 0) -> str:
 def of_kind(points: Iterable[Point], *kinds: Kind) -> list[Point]:
     """Return the points of some kinds, in their order."""
     return [point for point in points if point.kind in kinds]
-
-
-def reference(points: Sequence[Point]) -> Point:
-    """Return the model that the data prefer: most probable, else of optimal, else equal weights."""
-    return next(point for kind in REFERENCES for point in points if point.kind is kind)
 
 
 def preferred(attributes: Mapping[Any, Any]) -> str:

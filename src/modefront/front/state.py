@@ -1,21 +1,96 @@
-"""The state of a search: an incumbent for each subproblem, and all that is known of models."""
+"""The state of a search: an archive of models, and an incumbent for each subproblem.
 
-from collections.abc import Iterable, Sequence
+Every model that is evaluated competes for all places, and for one among those of the archive.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.front.archive import Archive, Outcome, recorded
 from modefront.front.dominance import SAME
-from modefront.front.subproblems import Order, Subproblem, together
-from modefront.optim.problem import DISTINCT, Problem
-from modefront.optim.sqp import Solution, Status
+from modefront.front.subproblems import Order, Subproblem
+from modefront.optim.problem import DISTINCT, Evaluation, Problem, SpentError, Wrapped
+from modefront.optim.sqp import Solution, Status, begin
+from modefront.work.codec import record
 from modefront.work.task import IMMEDIATE, Executor, Task
 
 COPY = 10 * SAME
 """Distance of two points, over the ranges of the objectives, below which they are copies."""
+
+
+@dataclass
+class Archive:
+    """The models that no other evaluated model dominates, with their objectives ``J`` (., n).
+
+    They are in the order in which they were evaluated; of equal ones the last is there.
+    """
+
+    objectives: int
+    models: list[Any] = field(default_factory=list)
+    J: Floats = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.J = np.zeros((0, self.objectives))
+
+    def add(self, J: Floats, model: Any) -> None:
+        """Keep a model unless another one dominates it, and drop those that it dominates."""
+        dominating = (self.J <= J).all(axis=1) & (self.J < J).any(axis=1)
+        if not np.isfinite(J).all() or dominating.any():
+            return
+        kept = (self.J < J).any(axis=1)
+        if not kept.all():
+            self.models = [self.models[k] for k in np.flatnonzero(kept)]
+        self.models.append(model)
+        self.J = np.vstack([self.J[kept], J])
+
+
+@record
+@dataclass(frozen=True)
+class Outcome:
+    """What a task found: its result, and the nondominated of the models that it evaluated."""
+
+    result: Any  # of the task; None where its evaluations were spent before
+    theta: Floats  # theta, J: (models, p) and (models, n)
+    J: Floats
+    evaluations: int  # number of evaluations
+    spent: bool = False  # whether there was none left for it to end
+
+    @property
+    def models(self) -> list[Solution]:
+        """The models, with the result if it is one of them."""
+        found = self.result if isinstance(self.result, Solution) and self.result.feasible else None
+        return [
+            found if found and np.array_equal(found.theta, x) else begin(Evaluation(x, J))
+            for x, J in zip(self.theta, self.J, strict=True)
+        ]
+
+
+def recorded(
+    function: Callable[..., Any],
+    most: int | None,
+    problem: Problem,
+    *arguments: Any,
+    **options: Any,
+) -> Outcome:
+    """Return the result of a function of a problem, with the models that it evaluates."""
+    archive = Archive(len(problem.objectives))
+
+    def evaluation(of: Problem, theta: Floats, derivatives: bool, second: bool) -> Evaluation:
+        found = of.evaluate(theta, derivatives=derivatives, second=second)
+        archive.add(found.J, found.theta)
+        return found
+
+    metered = Wrapped(problem, evaluation, most=most)
+    result, spent = None, False
+    try:
+        result = function(metered, *arguments, **options)
+    except SpentError:
+        spent = True
+    thetas = np.array(archive.models).reshape(-1, problem.lower.size)
+    return Outcome(result, thetas, archive.J, metered.count, spent)
 
 
 @dataclass
@@ -50,17 +125,16 @@ class State:
 
     def add(self, subproblems: Sequence[Subproblem]) -> None:
         """Add subproblems, with the best of the known models."""
-        self.places += [Place(x, self.best(x)) for x in subproblems]
+        for x in subproblems:
+            best = int(x.order.value(self.archive.J).argmin())
+            self.places.append(Place(x, self.archive.models[best]))
 
     @property
     def orders(self) -> Order:
-        """The orders of all places."""
-        return together([x.subproblem.order for x in self.places])
-
-    def best(self, subproblem: Subproblem) -> Solution:
-        """Return the best of the known models in a subproblem."""
-        best: Solution = self.archive.models[int(subproblem.order.value(self.archive.J).argmin())]
-        return best
+        """The orders of all places, as one of many."""
+        orders = [x.subproblem.order for x in self.places]
+        parts = zip(*((x.unit, x.offset, x.greatest, x.share) for x in orders), strict=True)
+        return Order(*map(np.array, parts))
 
     def run(self, tasks: Sequence[Task[Any]], most: int | None = None) -> list[Outcome]:
         """Return what tasks on the problem find in ``most`` evaluations, of which each has a share.

@@ -64,17 +64,6 @@ class Order:
         return np.asarray(self.greatest * np.ptp(self.excess(J), axis=-1))
 
 
-def together(orders: Sequence[Order]) -> Order:
-    """Return orders as one of many."""
-    parts = [(x.unit, x.offset, x.greatest, x.share) for x in orders]
-    return Order(*(np.array(part) for part in zip(*parts, strict=True)))
-
-
-def _linear(w: Floats) -> Order:
-    """Return the order by w^T J."""
-    return Order(1 / w, np.zeros(w.size), 0.0, 1.0)
-
-
 @dataclass(frozen=True)
 class Least(Lexicographic):
     """The lexicographic minimum of one objective, and the name of that."""
@@ -89,7 +78,8 @@ class Least(Lexicographic):
     @cached_property
     def order(self) -> Order:
         """Nearly what orders models; among equals in J_i, the others decide."""
-        return _linear(self.programme(TIE).w)
+        w = self.programme(TIE).w
+        return Order(1 / w, np.zeros(w.size), 0.0, 1.0)
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the share by which J_i falls, or where that is tied, the others, if any do."""
@@ -112,7 +102,7 @@ class Weights:
     @cached_property
     def order(self) -> Order:
         """By w^T J."""
-        return _linear(self.w)
+        return Order(1 / self.w, np.zeros(self.w.size), 0.0, 1.0)
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the share by which w^T J falls."""

@@ -1,6 +1,13 @@
 r"""A programme at a point: its linearisation, the step from there, and by what it is judged.
 
-What is minimised is near the point, with s a step in the unit box (`modefront.optim.unit`)
+Parameters are u in the unit box. One of which the first guess lies nearer to the geometric mean of
+its bounds than to their arithmetic one is a factor, and its logarithm is what is moved: eigenvalues
+and what follows from them are homogeneous functions of factors of stiffness and mass. With
+:math:`L = \ln(upper / lower)`
+
+.. math:: \theta = lower\, e^{L u} \quad\text{or}\quad lower + (upper - lower)\, u .
+
+What is minimised is near the point, with s a step in u,
 
 .. math:: f + g^T s + \tfrac12 s^T B s + \max_i\,(y + \partial y\, s)_i .
 
@@ -15,15 +22,14 @@ Rockafellar (1974, doi:10.1137/0312021) for :math:`\min \tau` subject to :math:`
 as the other terms where they are not, so that a step on which y bends is not rejected for that.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation
+from modefront.optim.problem import Evaluation, Problem, Residual
 from modefront.optim.qp import QuadraticProgramme, solve_qp
 from modefront.optim.scalarisation import Scalarisation
-from modefront.optim.unit import UnitBox
 
 PENALTY = 10.0  # penalty at least; it hardly changes the evaluations that a solution takes
 
@@ -32,26 +38,46 @@ NOISE = 1e-11
 """Relative error that a step is not blamed for: that of a large eigenproblem."""
 
 
-def slopes(programme: Scalarisation, J: Floats, kappa: Floats) -> Floats:
-    """Return the slope (n,) of the Lagrangian with respect to the objectives."""
-    return np.asarray(programme.gradient(J) + kappa @ programme.maximised.matrix)
+@dataclass
+class UnitBox:
+    """A problem in u; see the module."""
+
+    problem: Problem
+
+    def __post_init__(self) -> None:
+        lower, upper = self.problem.lower, self.problem.upper
+        self.span = upper - lower
+        means = np.sqrt(np.maximum(lower * upper, 0.0)) + (lower + upper) / 2
+        self.factor = (lower > 0) & (2 * self.problem.start < means)
+        self.L = np.log(np.divide(upper, lower, out=np.ones(lower.size), where=self.factor))
+
+    def inside(self, evaluation: Evaluation) -> Evaluation:
+        """Return an evaluation with derivatives with respect to u."""
+        theta, lower, factor = evaluation.theta, self.problem.lower, self.factor
+        u = (theta - lower) / self.span
+        u[factor] = np.log(theta[factor] / lower[factor]) / self.L[factor]
+        slope = np.where(factor, self.L * theta, self.span)
+        H = evaluation.H * (slope[:, None] * slope)
+        rows = np.arange(theta.size)
+        H[:, rows, rows] += evaluation.dJ * (self.L * slope)
+        residuals = [Residual(x.r, x.dr * slope) for x in evaluation.residuals]
+        return replace(evaluation, theta=u, dJ=evaluation.dJ * slope, H=H, residuals=residuals)
+
+    def after(self, theta: Floats, s: Floats) -> Floats:
+        """Return the parameters after a step s in u, within the bounds."""
+        new = np.where(self.factor, theta * np.exp(self.L * s), theta + self.span * s)
+        return np.minimum(np.maximum(new, self.problem.lower), self.problem.upper)
 
 
-@dataclass(frozen=True)
-class Merit:
-    """The augmented Lagrangian of a programme, with its multipliers kappa (m,) and penalty."""
+def augmented(programme: Scalarisation, kappa: Floats, penalty: float, point: Evaluation) -> float:
+    """Return the augmented Lagrangian at a point; infinite where objectives are not defined.
 
-    programme: Scalarisation
-    kappa: Floats
-    penalty: float
-
-    def at(self, point: Evaluation) -> float:
-        """Return the value at a point; infinite where the objectives are not defined."""
-        if not point.feasible:
-            return np.inf
-        y = self.programme.maximised.at(point.J)
-        of_maximum = self.kappa @ y + surplus(y, self.kappa, self.penalty)
-        return float(self.programme.value(point.J) + of_maximum)
+    ``kappa`` (m,) are the multipliers.
+    """
+    if not point.feasible:
+        return np.inf
+    y = programme.maximised.at(point.J)
+    return float(programme.value(point.J) + (kappa @ y + surplus(y, kappa, penalty)))
 
 
 def surplus(y: Floats, kappa: Floats, penalty: float) -> float:
@@ -86,7 +112,8 @@ def projected(x: Floats) -> Floats:
 class Linearised:
     """A programme at an evaluation with derivatives; see the module for the symbols.
 
-    ``x`` is the evaluation in the unit box, ``df`` (n,) the slope of f with respect to J.
+    ``x`` is the evaluation in the unit box, ``G`` (n, p, p) Gauss-Newton's second derivatives
+    there, ``df`` (n,) the slope of f with respect to J.
     """
 
     unit: UnitBox
@@ -95,6 +122,7 @@ class Linearised:
 
     def __post_init__(self) -> None:
         self.x = self.unit.inside(self.evaluation)
+        self.G = self.x.gauss_newton
         J, dJ = self.x.J, self.x.dJ
         maximised = self.programme.maximised
         self.f, self.df = self.programme.value(J), self.programme.gradient(J)
@@ -116,13 +144,18 @@ class Linearised:
         passes = 2 if kappa is None and m else 1
         kappa = np.full(m, 1 / max(m, 1)) if kappa is None else kappa
         for _ in range(passes):
-            B = weighted(slopes(self.programme, x.J, kappa), H) + curved
+            w = self.weights(kappa)[None]
+            B = (w @ H.reshape(len(H), -1)).reshape(curved.shape) + curved
             qp = QuadraticProgramme(B, self.g, lo, hi, self.dy, self.y)
             s, active = solve_qp(qp)
             if m:
                 kappa = np.maximum(qp.multipliers(s, active, (lo < s) & (s < hi)), 0.0)
                 kappa = kappa / kappa.sum()
         return qp, s, active, kappa
+
+    def weights(self, kappa: Floats) -> Floats:
+        """Return the slope of the Lagrangian with respect to the objectives, shape (n,)."""
+        return np.asarray(self.df + kappa @ self.programme.maximised.matrix)
 
     def slope(self, kappa: Floats) -> Floats:
         """Return the slope of the Lagrangian, shape (p,)."""
@@ -170,8 +203,3 @@ class Linearised:
         J = self.x.J + 2 * np.sqrt(self.x.J) if self.x.residuals else np.abs(self.x.J)
         rows = kappa @ np.abs(self.programme.maximised.matrix)
         return float(NOISE * ((np.abs(self.df) + rows) @ J))
-
-
-def weighted(w: Floats, H: Floats) -> Floats:
-    """Return sum_i w_i H_i for w (n,) and H (n, p, p)."""
-    return np.asarray((w[None] @ H.reshape(len(H), -1)).reshape(H.shape[1:]))

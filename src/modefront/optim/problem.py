@@ -135,6 +135,8 @@ class Wrapped:
     evaluation: Callable[[Problem, Floats, bool, bool], Evaluation]
     # names of the objectives, where they are not those of the problem
     names: tuple[str, ...] | None = None
+    most: int | None = None  # evaluations at most, after which SpentError is raised; None for any
+    count: int = 0  # evaluations so far
 
     def __post_init__(self) -> None:
         self.objectives = self.problem.objectives if self.names is None else self.names
@@ -145,4 +147,7 @@ class Wrapped:
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:
         """Return the objectives at ``theta``."""
+        if self.count == self.most:
+            raise SpentError
+        self.count += 1
         return self.evaluation(self.problem, theta, derivatives, second)

@@ -119,10 +119,15 @@ def _projected(qp: QuadraticProgramme, s: Floats, d: Floats) -> Floats | None:
 def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools) -> Floats:
     """Return the step of the free variables to their minimum that leaves E s as it is."""
     d, inside = np.zeros(free.size), free.nonzero()[0]
+    if not inside.size:
+        return d
     if inside.size < free.size:
         B, gradient, E = B.take(inside, 0).take(inside, 1), gradient[inside], E.take(inside, 1)
-    Z = _null_space(E) if len(E) else None
-    if inside.size if Z is None else Z.shape[1]:
+    Z = None
+    if len(E):
+        _, sigma, Vt = svd(E)
+        Z = Vt[int((sigma > FLAT * sigma[0]).sum()) :].T
+    if Z is None or Z.shape[1]:
         curvature, V = eigh(B if Z is None else Z.T @ B @ Z)
         curvature = np.abs(curvature)
         T = V if Z is None else Z @ V
@@ -148,11 +153,3 @@ def _met(qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int]) -> tup
     below = np.maximum(value[active[0]] - value, 0.0)
     np.divide(below, rate, out=share, where=rate > rounding)
     return int(np.argmin(share)), float(share.min())
-
-
-def _null_space(A: Floats) -> Floats:
-    """Return an orthonormal basis of the null space, shape (p, p - rank)."""
-    if 0 in A.shape:
-        return np.eye(A.shape[1])
-    _, sigma, Vt = svd(A)
-    return np.asarray(Vt[int((sigma > FLAT * sigma[0]).sum()) :].T)

@@ -20,17 +20,17 @@ clearly negative curvature.
 
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import partial
 
 import numpy as np
 import scipy.linalg
 
 from modefront._typing import Floats
-from modefront.optim.linearised import PENALTY, Linearised, Merit, slopes
+from modefront.optim.linearised import PENALTY, Linearised, UnitBox, augmented
 from modefront.optim.problem import DISTINCT, Evaluation, Problem, room
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
 from modefront.optim.second import learned_from
-from modefront.optim.unit import UnitBox
 from modefront.work.codec import record
 from modefront.work.progress import note_iteration
 
@@ -149,7 +149,7 @@ def solve(
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
     unit = UnitBox(problem)
     local = Linearised(unit, programme, evaluation)
-    S = local.x.H - local.x.gauss_newton
+    S = local.x.H - local.G
     trusted, escaped = evaluation.exact, False
     radius, penalty = options.radius, PENALTY / programme.maximised.slope**2
     kappa: Floats | None = None
@@ -162,9 +162,9 @@ def solve(
         if not local.y.size and local.f <= options.negligible:
             ended = Status.UNBOUNDED if local.f == -np.inf else Status.CONVERGED
             return Solution(evaluation, local.df, ended, count)
-        H = local.x.gauss_newton + S if trusted else local.x.gauss_newton
+        H = local.G + S if trusted else local.G
         qp, s, active, kappa = local.step(H, radius, kappa)
-        w = slopes(programme, evaluation.J, kappa)
+        w = local.weights(kappa)
         far = float(np.abs(s).max())
         held = far >= radius
         proposal = proposal if held else far
@@ -197,8 +197,8 @@ def solve(
         if not new.feasible:
             radius, rejected = far / 4, True
             continue
-        merit = Merit(programme, kappa, penalty)
-        actual = merit.at(evaluation) - merit.at(new)
+        merit = partial(augmented, programme, kappa, penalty)
+        actual = merit(evaluation) - merit(new)
         miss, ahead = actual - predicted, Linearised(unit, programme, new)
         rest = 0.5 * w @ (S @ s @ s) * (1 if trusted else -1)
         trusted ^= bool(abs(miss - rest) < abs(miss))
@@ -207,16 +207,16 @@ def solve(
         if actual < POOR * predicted and new.exact:
             # The end of a poor step, or if the derivatives there promise a better model than
             # both, the better one of it and of the end of a step from there.
-            _, s, *_ = ahead.step(ahead.x.H if trusted else ahead.x.gauss_newton, radius, None)
-            promised = merit.at(replace(new, J=ahead.promised(s)))
-            if promised < min(merit.at(evaluation), merit.at(new)):
-                new, count = min(new, ahead.after(s), key=merit.at), count + 1
-                actual = merit.at(evaluation) - merit.at(new)
+            _, s, *_ = ahead.step(ahead.x.H if trusted else ahead.G, radius, None)
+            promised = merit(replace(new, J=ahead.promised(s)))
+            if promised < min(merit(evaluation), merit(new)):
+                new, count = min(new, ahead.after(s), key=merit), count + 1
+                actual = merit(evaluation) - merit(new)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > 0:
             evaluation, rejected = new, False
             local = ahead if new is ahead.evaluation else Linearised(unit, programme, new)
-            S = local.x.H - local.x.gauss_newton if evaluation.exact else S
+            S = local.x.H - local.G if evaluation.exact else S
             if ratio < POOR:
                 radius = far / 2
             elif ratio > GOOD and far >= radius:

@@ -149,7 +149,7 @@ def lattice_values(front: Front) -> Values:
     """Return the lattice of normal-boundary intersection and the point that each place led to."""
     if not len(front.places):
         return {}
-    labels = ["" if k < 0 else front.points[k].label for k in front.places]
+    labels = [front.points[k].label for k in front.places]
     return {"lattice": front.lattice, "lattice_label": labels}
 
 

@@ -16,8 +16,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from modefront.errors import InputError, ModelError
-from modefront.front.proposers.base import USUAL
-from modefront.front.search import EDGES
+from modefront.front.search import EDGES, USUAL
 from modefront.front.simplex import default_points, size
 from modefront.front.subproblems import Least
 from modefront.identifiability.combinations import LEAST

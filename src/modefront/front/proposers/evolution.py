@@ -12,9 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.front.archive import Outcome
-from modefront.front.proposers.base import USUAL, Offer, evaluate_all
-from modefront.front.state import State
+from modefront.front.search import USUAL, Offer, evaluate_all
+from modefront.front.state import Outcome, State
 
 INDEX = 20.0  # distribution index of mutations: the usual value
 

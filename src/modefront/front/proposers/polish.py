@@ -6,9 +6,8 @@ from itertools import islice
 
 import numpy as np
 
-from modefront.front.archive import Outcome
-from modefront.front.proposers.base import Offer, solve_from
-from modefront.front.state import State
+from modefront.front.search import Offer, solve_from
+from modefront.front.state import Outcome, State
 from modefront.front.subproblems import Point
 from modefront.work.task import Key
 

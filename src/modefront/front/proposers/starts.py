@@ -19,9 +19,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.front.archive import Outcome
-from modefront.front.proposers.base import USUAL, Offer, at, solve_from
-from modefront.front.state import Place, State
+from modefront.front.search import USUAL, Offer, at, solve_from
+from modefront.front.state import Outcome, Place, State
 from modefront.optim.sqp import Solution, Status
 from modefront.work.task import Key
 
@@ -100,7 +99,11 @@ class Starts:
                 continue
             known.thetas = known.thetas or [state.problem.start]
             while len(known.thetas) < known.tries + most:
-                known.thetas += self._block(state)
+                # spread evenly over each range
+                cells = np.tile(np.arange(USUAL), (state.span.size, 1))
+                cells = self.rng.permuted(cells, axis=1).T
+                u = (cells + self.rng.uniform(size=cells.shape)) / USUAL
+                known.thetas += list(state.problem.lower + state.span * u)
             for ahead in range(most):
                 chance = known.chance(place, state.tolerance, ahead)
                 start = at(known.thetas[known.tries + ahead])
@@ -123,9 +126,3 @@ class Starts:
     def of(self, place: Place) -> Minima:
         """Return the minima of a subproblem."""
         return self.minima.setdefault(place.subproblem.key, Minima())
-
-    def _block(self, state: State) -> list[Floats]:
-        """Return random parameters that are spread evenly over each range."""
-        cells = self.rng.permuted(np.tile(np.arange(USUAL), (state.span.size, 1)), axis=1).T
-        u = (cells + self.rng.uniform(size=cells.shape)) / USUAL
-        return list(state.problem.lower + state.span * u)
