@@ -40,11 +40,13 @@ import scipy.stats
 import modefront as mf
 from modefront._typing import Floats
 from modefront.data.modal_test import Records
-from modefront.front.weights import accepted, optimal_minimum
+from modefront.front.weights import accepted
 from modefront.identification.methods import ambient
 from modefront.identification.sets import combine
+from modefront.optim.lexicographic import EXACT
+from modefront.optim.scalarisation import LogSum
 from modefront.optim.second import with_second_order
-from modefront.optim.sqp import begin
+from modefront.optim.sqp import TIGHT, begin, solve
 from modefront.results.assemble import DETERMINED
 from modefront.uncertainty.inference import CHANCE, lack_of_fit, most_probable, refused
 from modefront.uncertainty.prior import NoisePrior
@@ -281,8 +283,9 @@ def judged(seed: int, draws: int, test: Test) -> list[Verdict]:
 def jeffreys(problem: mf.UpdatingProblem, starts: Sequence[Floats]) -> tuple[Floats, Floats] | None:
     """Return the model of optimal weights and standard deviations about it; None without one."""
     a, sizes = problem.properties, problem.evaluate(problem.start).J
+    programme = LogSum(a, vanishing=EXACT * sizes)
     minima = [
-        optimal_minimum(problem, a, sizes, begin(problem.evaluate(theta, second=True)))
+        solve(problem, programme, begin(problem.evaluate(theta, second=True)), TIGHT)
         for theta in starts
     ]
     for minimum in accepted(problem, [x for x in minima if x.converged], a, sizes):

@@ -5,12 +5,11 @@ import pytest
 from problems import Derivatives, Known, box, circles
 
 from modefront._typing import Floats
-from modefront.analysis.flat import flat_points, identifiable_part
+from modefront.analysis.front import flat_points, identifiable_part
 from modefront.front.front import Edge, Front
 from modefront.front.point import Kind, Point, of_kind
 from modefront.front.simplex import lattice, payoff
-from modefront.front.subproblems import Least
-from modefront.front.subproblems import Point as LatticePoint
+from modefront.front.subproblems import LatticePoint, Least
 from modefront.optim.sqp import Solution, begin
 
 

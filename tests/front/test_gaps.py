@@ -13,7 +13,7 @@ from modefront._typing import Bools, Floats
 from modefront.front.dominance import nondominated
 from modefront.front.gaps import Gap, branch_numbers, gaps
 from modefront.front.simplex import Payoff
-from modefront.front.subproblems import Point
+from modefront.front.subproblems import LatticePoint
 from modefront.optim.sqp import Solution, begin
 
 
@@ -43,7 +43,7 @@ def front(problem: Known, equations: bool) -> tuple[list[Solution], Bools, Float
     points: list[Solution] = []
     slack = []
     for s in np.linspace(0.08, 0.92, 13):
-        point = Point(np.array([1 - s, s]), (), target, equations)
+        point = LatticePoint(np.array([1 - s, s]), (), target, equations)
         starts = [begin(problem.evaluate(np.array([x, 0.1]))) for x in np.linspace(0.05, 0.6, 8)]
         found = [x for x in (point.solve(problem, start) for start in starts) if x.converged]
         best = min(found, key=lambda x: float(point.order.value(x.J)))

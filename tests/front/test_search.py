@@ -36,8 +36,7 @@ from modefront.front.proposers.starts import SURE, Minima, Starts
 from modefront.front.search import USUAL, Loop, Offer, Proposer, Search, at, evaluate_all
 from modefront.front.simplex import lattice, payoff
 from modefront.front.state import Outcome, Place, State, recorded
-from modefront.front.subproblems import SAMPLE, Least, Subproblem, Weights
-from modefront.front.subproblems import Point as LatticePoint
+from modefront.front.subproblems import SAMPLE, LatticePoint, Least, Subproblem, Weights
 from modefront.optim.problem import Evaluation, Problem, infeasible
 from modefront.optim.sqp import Solution, Status, begin
 from modefront.optim.sqp import given as given_model

@@ -16,12 +16,12 @@ from modefront.front.weights import (
     is_minimum,
     iterate_weights,
     least_along,
-    optimal_minimum,
     regular,
 )
+from modefront.optim.lexicographic import EXACT
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum, weighted
-from modefront.optim.sqp import Solution, begin, solve
+from modefront.optim.sqp import TIGHT, Solution, begin, solve
 
 ONES = np.ones(2)
 SIZES = np.full(2, 4.0)
@@ -81,7 +81,7 @@ def minima_of(problem: Known, a: Floats) -> list[Solution]:
     """Return the minima of sum a ln J below random starts, best first."""
     starts = np.random.default_rng(0).uniform(problem.lower, problem.upper, (6, problem.lower.size))
     found = [
-        optimal_minimum(problem, a, np.ones(a.size), begin(problem.evaluate(theta)))
+        solve(problem, LogSum(a, vanishing=EXACT), begin(problem.evaluate(theta)), TIGHT)
         for theta in starts
     ]
     return sorted(found, key=lambda x: LogSum(a).value(x.J))

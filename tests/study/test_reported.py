@@ -13,7 +13,7 @@ import xarray as xr
 import modefront as mf
 from modefront._typing import Floats
 from modefront.analysis import front as analysis
-from modefront.analysis.flat import Identifiable
+from modefront.analysis.front import Identifiable
 from modefront.cli.show import as_json, print_results
 from modefront.front import pareto
 from modefront.front.front import Front

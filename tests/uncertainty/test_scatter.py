@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from modefront._typing import Floats
 from modefront.front.front import Edge, Front
 from modefront.front.simplex import payoff
-from modefront.front.subproblems import Point, active_bounds
+from modefront.front.subproblems import LatticePoint, active_bounds
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum, Scalarisation, below, weighted
 from modefront.optim.second import with_second_order
@@ -172,7 +172,7 @@ def test_points_of_the_front_follow_their_edges(
         edges = edges_of(problem)
         target = payoff(edges, np.ones(n), worst)
         assert target is not None
-        point = Point(place, (), target)
+        point = LatticePoint(place, (), target)
         result = point.solve(problem, edges[0])
         assert result.converged
         assert (active_bounds(result.weights * target.unit) == on).all()

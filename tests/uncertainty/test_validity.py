@@ -12,7 +12,7 @@ from modefront._typing import Floats
 from modefront.front.front import Edge, Front
 from modefront.front.point import Kind, Point
 from modefront.front.simplex import payoff
-from modefront.front.subproblems import Point as LatticePoint
+from modefront.front.subproblems import LatticePoint
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import weighted
 from modefront.optim.second import with_second_order

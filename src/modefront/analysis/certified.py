@@ -171,10 +171,7 @@ def _reduced(problem: UpdatingProblem) -> ReducedModel | None:
 def _improve(
     model: ReducedModel, candidates: Sequence[Solution], enough: float, work: Executor
 ) -> list[SnapshotTaken]:
-    """Take snapshots of the candidates that the basis knows least, until it knows all of them.
-
-    Those that added something to the basis are returned.
-    """
+    """Take snapshots of what the basis knows least, as long as they add something; return these."""
     out: list[SnapshotTaken] = []
     for count in range(AHEAD):
         taken = _take(model, "ahead", count + 1, _snapshot(candidates, enough), work)
@@ -189,10 +186,7 @@ def _improve(
 def _mended(
     problem: UpdatingProblem, model: ReducedModel, needed: Sequence[Solution], work: Executor
 ) -> SnapshotTaken | None:
-    """Take a snapshot of the solutions with the greatest errors above the tolerance.
-
-    None is returned where there are none, or it adds nothing to the basis.
-    """
+    """Take a snapshot of the solutions with the greatest errors above the tolerance, if any."""
     error = [float(model.errors[_key(x)][0].max()) for x in needed]
     ranked = sorted(range(len(needed)), key=lambda k: -error[k])
     wrong = [needed[k] for k in ranked if error[k] > model.tolerance][:WORST]

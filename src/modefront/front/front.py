@@ -29,10 +29,7 @@ class Edge:
 # 13 fields: everything that a search leaves, which tasks keep as one record.
 @dataclass(frozen=True)
 class Front:
-    """A Pareto front with its edges, its weighted models and its gaps.
-
-    The record has more than ten fields because results report each of them.
-    """
+    """A Pareto front with its edges, its weighted models and its gaps."""
 
     method: str  # by which the front was found
     points: Sequence[Point]  # points along the front, then edges and weighted models

@@ -24,6 +24,7 @@ from modefront.front.state import Place, State, distinct_points
 from modefront.front.subproblems import (
     LOOSE,
     RHO,
+    LatticePoint,
     Least,
     Subproblem,
     Weights,
@@ -31,11 +32,11 @@ from modefront.front.subproblems import (
     near_best,
     sample,
 )
-from modefront.front.subproblems import Point as LatticePoint
-from modefront.front.weights import accepted, iterate_weights, least_along, optimal_minimum
+from modefront.front.weights import accepted, iterate_weights, least_along
 from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import DISTINCT, Problem
-from modefront.optim.sqp import Solution
+from modefront.optim.scalarisation import LogSum
+from modefront.optim.sqp import TIGHT, Solution, solve
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
 
 ANCHORS = ("edge", "weights", "others")  # kinds of subproblems that are no points between edges
@@ -361,8 +362,9 @@ class _Run:
         """Return the regular minima of the optimally weighted residuals, each once, best first."""
         problem, a, sizes = self.problem, self.a, self.sizes
         starts = [x.solution for x in self._weighted()] + [*bests, *least_along(points, a, sizes)]
+        programme = LogSum(a, vanishing=EXACT * sizes)
         tasks = [
-            Task(("optimal-weights", k), optimal_minimum, (problem, a, sizes, x))
+            Task(("optimal-weights", k), solve, (problem, programme, x, TIGHT))
             for k, x in enumerate(starts, 1)
         ]
         minima = self.state.distinct(x for x in self._run(tasks) if x and x.converged)

@@ -121,10 +121,7 @@ class Loop:
     open: set[Key] = field(default_factory=set)
 
     def run(self, stage: str, proposers: Sequence[Proposer], share: float = POINTS) -> None:
-        """Search until nothing is worth it, or until a share of the budget is spent.
-
-        Proposers are asked in their order.
-        """
+        """Search until nothing is worth it, or until a share of the budget is spent."""
         most = int(share * self.search.evaluations)
         while offers := self._offers(proposers):
             left = most - self.state.evaluations

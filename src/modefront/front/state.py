@@ -137,10 +137,7 @@ class State:
         return Order(*map(np.array, parts))
 
     def run(self, tasks: Sequence[Task[Any]], most: int | None = None) -> list[Outcome]:
-        """Return what tasks on the problem find in ``most`` evaluations, of which each has a share.
-
-        All models are archived.
-        """
+        """Return what tasks on the problem find, each in its share of ``most`` evaluations."""
         share = None if most is None else max(most, 0) // max(len(tasks), 1)
         recording = [
             replace(task, function=recorded, arguments=(task.function, share, *task.arguments))

@@ -116,7 +116,7 @@ class Weights:
 
 
 @dataclass(frozen=True)
-class Point:
+class LatticePoint:
     r"""The point of the lattice at ``beta`` (n,).
 
     With ``equations``, those of Das & Dennis are solved, which may lead to dominated models: all
@@ -173,7 +173,7 @@ class Point:
         return achievement(share, rows, order.offset, float(order.greatest))
 
 
-Subproblem = Least | Weights | Point
+Subproblem = Least | Weights | LatticePoint
 """An order on J: ``gain`` tells how much better objectives (n,) are than a known model. ``solve``
 minimises its programme from a start, in full if that may beat a known model."""
 

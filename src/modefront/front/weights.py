@@ -14,7 +14,7 @@ from modefront._typing import Floats
 from modefront.optim.lexicographic import EXACT
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem
 from modefront.optim.scalarisation import LogSum, weighted
-from modefront.optim.sqp import TIGHT, Options, Solution, Status, solve
+from modefront.optim.sqp import Options, Solution, Status, solve
 
 UNCHANGED = 1e-12  # eigenvalue over the greatest one below which a direction changes no residual
 
@@ -22,15 +22,6 @@ UNCHANGED = 1e-12  # eigenvalue over the greatest one below which a direction ch
 def regular(J: Floats, sizes: Floats) -> bool:
     """Return whether no objective is fitted exactly, compared with its typical size."""
     return bool((EXACT * sizes < J).all())
-
-
-def optimal_minimum(problem: Problem, a: Floats, sizes: Floats, start: Solution) -> Solution:
-    """Return the minimum of I below a start, or where an objective vanishes on the way.
-
-    ``a`` (n,) counts the measured properties of each group, ``sizes`` (n,) are typical sizes of
-    the objectives.
-    """
-    return solve(problem, LogSum(a, vanishing=EXACT * sizes), start, TIGHT)
 
 
 def accepted(

@@ -14,7 +14,7 @@ from modefront._typing import Bools, Floats
 from modefront.data.modal import ModalData
 from modefront.errors import UnfinishedError
 from modefront.front.simplex import payoff
-from modefront.front.subproblems import Point, near_best
+from modefront.front.subproblems import LatticePoint, near_best
 from modefront.optim.problem import Problem
 from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
 from modefront.optim.sqp import Solution, begin, solve
@@ -123,7 +123,7 @@ def _again(
         beta = point.solution.beta
         if target is None or beta is None:
             return start
-        return Point(beta, (), target, role.equations).solve(problem, start)
+        return LatticePoint(beta, (), target, role.equations).solve(problem, start)
     return solve(problem, programme, start)
 
 

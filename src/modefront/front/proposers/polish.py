@@ -8,7 +8,7 @@ import numpy as np
 
 from modefront.front.search import Offer, solve_from
 from modefront.front.state import Outcome, State
-from modefront.front.subproblems import Point
+from modefront.front.subproblems import LatticePoint
 from modefront.work.task import Key
 
 
@@ -35,10 +35,10 @@ class Polish:
             place = state.places[k]
             yield solve_from(k, place, place.incumbent, 1.0)
         pairs = [(k, x.incumbent, x.subproblem) for k, x in enumerate(state.places)]
-        met = [x for _, x, of in pairs if isinstance(of, Point) and of.met(x)]
+        met = [x for _, x, of in pairs if isinstance(of, LatticePoint) and of.met(x)]
         J = np.array([x.J for x in met]).reshape(-1, len(state.problem.objectives))
         for k, x, of in pairs:
-            if isinstance(of, Point) and state.places[k].closed and not of.met(x):
+            if isinstance(of, LatticePoint) and state.places[k].closed and not of.met(x):
                 nearest = [met[m] for m in of.order.spread(J).argsort(kind="stable").tolist()]
                 chance, count = 1 / (self.idle + 2), 1
                 if of.equations:

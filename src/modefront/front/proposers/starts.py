@@ -58,10 +58,7 @@ class Minima:
         return sum(count for x, count in pairs if _equal(place, x, place.incumbent, tolerance))
 
     def unseen(self, ahead: int = 0) -> float:
-        """Return the part of the box from which unseen minima are reached, after more starts.
-
-        These are so many ``ahead`` that lead to minima that are known.
-        """
+        """Return the part of the box to unseen minima, after starts ``ahead`` to known ones."""
         w, N = max(len(self.ends), 1), sum(self.counts) + ahead
         return min(w * (w + 1) / (N * (N - 1)), 1.0) if N > 1 else 1.0
 
