@@ -8,6 +8,7 @@ import scipy.optimize
 from exact import Residuals, squares
 
 from modefront._typing import Floats
+from modefront.analysis import manifold
 from modefront.analysis.manifold import Extent, Manifold, equivalent_models
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
@@ -80,8 +81,8 @@ def test_disjoint_curves_are_all_followed_and_none_twice() -> None:
     problem = squares(two_circles, [-2, -2], [2, 2])
     minima = [problem.evaluate(np.array(x)) for x in ([-0.5, 0.0], [1.0, 0.5], [-1.0, -0.5])]
     result = equivalent_models(problem, ONE, minima, h=0.03, limit=200)
-    assert [manifold.extent for manifold in result] == [Extent.CLOSED] * 2
-    sides = [np.sign(thetas(manifold.models)[:, 0]) for manifold in result]
+    assert [each.extent for each in result] == [Extent.CLOSED] * 2
+    sides = [np.sign(thetas(each.models)[:, 0]) for each in result]
     assert sorted(float(side.mean()) for side in sides) == [-1.0, 1.0]
 
 
@@ -122,8 +123,8 @@ def test_isolated_minima_are_counted() -> None:
     programme = weighted(np.array([1.0, 0.0]))
     minima = [problem.evaluate(np.array([x, y])) for x in (-1.0, 1.0) for y in (-2.0, 2.0)]
     result = equivalent_models(problem, programme, [*minima, minima[2]])
-    assert [manifold.extent for manifold in result] == [Extent.ISOLATED] * 4
-    assert [manifold.dimension for manifold in result] == [0] * 4
+    assert [each.extent for each in result] == [Extent.ISOLATED] * 4
+    assert [each.dimension for each in result] == [0] * 4
 
 
 @pytest.mark.parametrize("programme", [ONE, LogSum(np.array([4.0]))])
@@ -362,7 +363,7 @@ def test_another_programme_shares_a_manifold_that_is_as_good_for_it() -> None:
     known: list[Manifold] = []
     for weights in np.eye(3)[:2]:
         known += equivalent_models(problem, weighted(weights), [evaluation], known=known, idle=idle)
-    assert [manifold.twin for manifold in known] == [None, 0]
+    assert [each.twin for each in known] == [None, 0]
     assert known[1].models == known[0].models
     assert known[1].evaluations < 10 < known[0].evaluations
     assert thetas(known[0].models)[:, 2].tolist() == [0.5] * len(known[0].models)
@@ -390,15 +391,15 @@ def test_a_model_from_which_all_steps_leave_the_bounds_is_no_curve() -> None:
     assert (result.dimension, result.extent, len(result.models)) == (0, Extent.ISOLATED, 1)
 
 
-def test_no_more_evaluations_than_allowed(costs: Costs) -> None:
+def test_no_more_evaluations_than_allowed(costs: Costs, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(manifold, "SPEND", 2)
     problem = squares(hyperplane, [0] * 6, [1] * 6)
     A = np.array([[1.0, 1, 1, 1, 1, 1], [1.0, -1, 0, 0, 0.5, 0]])
     theta = np.linalg.pinv(A) @ np.array([3.0, 0.25])
     start = problem.evaluate(theta)
     before = costs.eigenproblems
-    first, second = equivalent_models(
-        problem, ONE, [start, problem.evaluate(0.1 * theta)], evaluations=12
-    )
+    minima = [start, problem.evaluate(0.1 * theta)]
+    first, second = equivalent_models(problem, ONE, minima, limit=6)
     assert costs.eigenproblems - before == 12 + 1
     assert (first.extent, first.dimension) == (Extent.SPENT, 4)
     assert len(first.models) > 2

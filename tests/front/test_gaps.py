@@ -31,8 +31,8 @@ def mirrored(theta: Floats) -> tuple[Floats, Floats, Floats]:
     return J[::-1], dJ[::-1], H[::-1]
 
 
-def front(problem: Known, equations: bool) -> tuple[list[Solution], Bools, Floats]:
-    """Points of a lattice between the ends at x = 0 and 0.651, their slack, and the ranges."""
+def front(problem: Known, equations: bool) -> tuple[list[Solution], Payoff]:
+    """Points of a lattice between the ends at x = 0 and 0.651, and the simplex between these."""
     edges = [problem.evaluate(np.array([x, 0.0])).J for x in (0.0, 0.651)]
     if edges[0][0] > edges[1][0]:
         edges = edges[::-1]
@@ -41,24 +41,20 @@ def front(problem: Known, equations: bool) -> tuple[list[Solution], Bools, Float
     scale = (E - utopia[:, None]).max(axis=1)
     target = Payoff(utopia, scale, (E - utopia[:, None]) / scale[:, None])
     points: list[Solution] = []
-    slack = []
     for s in np.linspace(0.08, 0.92, 13):
         point = LatticePoint(np.array([1 - s, s]), (), target, equations)
         starts = [begin(problem.evaluate(np.array([x, 0.1]))) for x in np.linspace(0.05, 0.6, 8)]
         found = [x for x in (point.solve(problem, start) for start in starts) if x.converged]
         best = min(found, key=lambda x: float(point.order.value(x.J)))
-        c = target.r * target.excess(point.beta, best.J)
         if not any(np.abs(best.J - x.J).max() < 1e-5 for x in points):
             points.append(best)
-            slack.append(c.max() - c > 1e-3)
-    return points, np.array(slack), scale
+    return points, target
 
 
 def one_gap(problem: Known, equations: bool) -> tuple[Gap, list[Solution], Bools]:
-    points, slack, scale = front(problem, equations)
-    optimal = nondominated(np.array([x.J for x in points]))
-    (gap,) = gaps(problem, points, optimal, slack & (not equations), scale)
-    return gap, points, optimal
+    points, target = front(problem, equations)
+    (gap,) = gaps(problem, points, target, not equations)
+    return gap, points, nondominated(np.array([x.J for x in points]))
 
 
 @pytest.mark.parametrize("equations", [False, True])
@@ -82,8 +78,6 @@ def test_branches_end_where_the_front_jumps(
 
 
 def test_a_front_without_slack_has_no_gap() -> None:
-    points, slack, scale = front(box(disconnected, [0, -1], [0.651, 1]), equations=False)
-    left = [k for k, x in enumerate(points) if x.theta[0] < LEFT - 1e-3]
-    some = [points[k] for k in left]
     problem = box(disconnected, [0, -1], [0.651, 1])
-    assert gaps(problem, some, np.ones(len(some), dtype=bool), slack[left], scale) == []
+    points, target = front(problem, equations=False)
+    assert gaps(problem, [x for x in points if x.theta[0] < LEFT - 1e-3], target, True) == []

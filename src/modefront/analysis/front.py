@@ -15,7 +15,7 @@ from modefront.analysis.manifold import Manifold, equivalent_models
 from modefront.front.front import Front, best_minima
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
-from modefront.front.point import Kind, Point, of_kind
+from modefront.front.point import WEIGHTED, Kind, Point, of_kind
 from modefront.front.proposers.polish import Polish
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import Payoff, default_points, lattice, payoff
@@ -267,21 +267,18 @@ def _solved_points(
     ends = tuple(cuts.get(edge.name, edge.label) for edge in edges)
     along = METHODS[front.method].programme
     for point in [*front.points, *extra]:
-        role: Role | None = None
-        match point.kind:
-            case Kind.OPTIMAL:
-                role = Role("optimal")
-            case Kind.GIVEN | Kind.EQUAL | Kind.MOST_PROBABLE:
-                role = Role("weights")
-            case Kind.FRONT if along == "weights":
-                role = Role("weights")
-            case Kind.FRONT if along == "boundary":
-                role = between(point.solution, whole, [x.solution for x in edges], front.target)
-            case Kind.IDENTIFIABLE if part:
-                role = between(point.solution, ends, part.ends, part.target)
-            case Kind.IDENTIFIABLE_EDGE:
-                objective = problem.objectives.index(point.name)
-                role = Role("level", objective=objective, tolerance=flat)
+        role, kind = None, point.kind
+        if kind is Kind.OPTIMAL:
+            role = Role("optimal")
+        elif kind in WEIGHTED or (kind is Kind.FRONT and along == "weights"):
+            role = Role("weights")
+        elif kind is Kind.FRONT and along == "boundary":
+            role = between(point.solution, whole, [x.solution for x in edges], front.target)
+        elif kind is Kind.IDENTIFIABLE and part:
+            role = between(point.solution, ends, part.ends, part.target)
+        elif kind is Kind.IDENTIFIABLE_EDGE:
+            objective = problem.objectives.index(point.name)
+            role = Role("level", objective=objective, tolerance=flat)
         if role:
             out.append(SolvedPoint(point.label, point.solution, role))
     return out

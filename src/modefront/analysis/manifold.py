@@ -215,7 +215,7 @@ class Context:
         return np.asarray(np.tensordot(w, H, axes=1) * np.outer(self.span, self.span))
 
 
-# 8 arguments: the minima, and limits by keyword.
+# 7 arguments: the minima, and limits by keyword.
 def equivalent_models(
     problem: Problem,
     programme: Scalarisation,
@@ -223,7 +223,6 @@ def equivalent_models(
     *,
     h: float = 0.05,
     limit: int = 100,
-    evaluations: int | None = None,
     known: Sequence[Manifold] = (),
     idle: Bools | None = None,
 ) -> list[Manifold]:
@@ -231,13 +230,12 @@ def equivalent_models(
 
     ``minima`` are evaluations with derivatives; one that lies on a manifold found before adds
     none. ``h`` is the distance of neighbouring models over the ranges of the parameters,
-    ``limit`` the number of models of one manifold at most, and ``evaluations`` how many are made
-    in all, ten times as many where nothing is said. One that is among the ``known`` manifolds, of
-    other programmes, is not followed again. Parameters that are ``idle`` (p,), without effect on
-    any objective, are left where they are. Minima for which no evaluation is left are manifolds of
-    one model.
+    ``limit`` the number of models of one manifold at most. One that is among the ``known``
+    manifolds, of other programmes, is not followed again. Parameters that are ``idle`` (p,),
+    without effect on any objective, are left where they are. Minima for which no evaluation is left
+    are manifolds of one model.
     """
-    most = SPEND * limit if evaluations is None else evaluations
+    most = SPEND * limit
 
     def evaluation(of: Problem, theta: Floats, derivatives: bool, second: bool) -> Evaluation:
         note(f"model {metered.count} of at most {most}")

@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.front.subproblems import RHO
+from modefront.front.dominance import nondominated
+from modefront.front.simplex import Payoff
+from modefront.front.subproblems import RHO, active_bounds
 from modefront.optim.problem import Problem
 from modefront.optim.scalarisation import Scalarisation, below, weighted
 from modefront.optim.sqp import TIGHT, Solution, solve
@@ -44,16 +46,20 @@ class Gap:
 def gaps(
     problem: Problem,
     points: Sequence[Solution],
-    optimal: Bools,
-    slack: Bools,
-    scale: Floats,
+    target: Payoff,
+    bounded: bool,
     run: Callable[[Sequence[Task[Any]]], list[Any]] = IMMEDIATE.run,
 ) -> list[Gap]:
     """Return the gaps between points in their order along the front, of two objectives.
 
-    ``optimal`` (points,) says which points are Pareto optimal among them, and ``slack`` (points, 2)
-    in which objective a point of the lattice has slack. ``run`` carries out tasks.
+    Of ``bounded`` programmes, a point of the lattice may have slack. ``run`` carries out tasks.
     """
+    optimal, scale = nondominated(np.array([x.J for x in points])), target.scale
+    slack = np.zeros((len(points), 2), dtype=np.bool_)
+    for k, x in enumerate(points):
+        if bounded and x.converged and x.beta is not None:
+            c = target.r * target.excess(x.beta, x.J)
+            slack[k] = (c.max() - c > RHO) & ~active_bounds(x.weights * target.unit)
     tasks, sides = [], []
     kept = np.flatnonzero(optimal).tolist()
     for k, (a, b) in enumerate(pairwise(kept)):

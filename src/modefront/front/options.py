@@ -60,16 +60,15 @@ class Pareto(Shown):
 
     def __post_init__(self) -> None:
         check_fields(self)
-        refuse(self._contradictions())
-
-    def _contradictions(self) -> Iterator[Fault]:
+        faults = []
         if missing := METHODS[self.method].missing:
             package, _, how = missing.partition(": ")
             expected = f"the package {package} for '{self.method}': {how}"
-            yield Fault("", "method", expected, "none installed")
+            faults.append(Fault("", "method", expected, "none installed"))
         if self.evaluations < self.population:
             least = f"at least the population, {self.population}"
-            yield Fault("", "evaluations", least, str(self.evaluations))
+            faults.append(Fault("", "evaluations", least, str(self.evaluations)))
+        refuse(faults)
 
     def faults(self, groups: int) -> Iterator[Fault]:
         """Yield what is wrong with these options for a number of groups."""

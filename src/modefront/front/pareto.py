@@ -9,7 +9,6 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import UnfinishedError
-from modefront.front.dominance import nondominated
 from modefront.front.front import Edge, Front
 from modefront.front.gaps import Gap, gaps
 from modefront.front.methods import METHODS, evolve_front
@@ -21,17 +20,7 @@ from modefront.front.proposers.starts import SURE, Starts
 from modefront.front.search import EDGES, POINTS, Loop, Proposer, Search, at, evaluated
 from modefront.front.simplex import Payoff, default_points, is_flat, lattice, nearest, payoff
 from modefront.front.state import Place, State, distinct_points
-from modefront.front.subproblems import (
-    LOOSE,
-    RHO,
-    LatticePoint,
-    Least,
-    Subproblem,
-    Weights,
-    active_bounds,
-    near_best,
-    sample,
-)
+from modefront.front.subproblems import LOOSE, LatticePoint, Least, Weights, near_best, sample
 from modefront.front.weights import accepted, iterate_weights, least_along
 from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import DISTINCT, Problem
@@ -232,7 +221,7 @@ class _Run:
         models = [*bests, *(x.incumbent for x in self._of("others"))]
         return [max(models, key=lambda x: float(x.J[i])) for i in range(self.n)]
 
-    def _subproblem(self, target: Payoff, row: tuple[int, ...]) -> Subproblem:
+    def _subproblem(self, target: Payoff, row: tuple[int, ...]) -> Weights | LatticePoint:
         """Return the point of the front at a point of the lattice."""
         beta = np.array(row) / sum(row)
         if self.options.method == "weights":
@@ -350,13 +339,8 @@ class _Run:
         """Return the gaps of a front of two objectives."""
         if self.n != 2 or target is None or len(points) < 2 or self.options.method != "nbi":
             return []
-        optimal = nondominated(np.array([x.J for x in points]))
-        slack = np.zeros((len(points), 2), dtype=np.bool_)
-        for k, x in enumerate(points):
-            if x.converged and x.beta is not None and self.options.programme == "bounds":
-                c = target.r * target.excess(x.beta, x.J)
-                slack[k] = (c.max() - c > RHO) & ~active_bounds(x.weights * target.unit)
-        return gaps(self.problem, points, optimal, slack, target.scale, self._run)
+        bounded = self.options.programme == "bounds"
+        return gaps(self.problem, points, target, bounded, self._run)
 
     def _optimal(self, bests: Sequence[Solution], points: Sequence[Solution]) -> list[Solution]:
         """Return the regular minima of the optimally weighted residuals, each once, best first."""

@@ -81,10 +81,9 @@ class Lexicographic:
         if known and best.evaluation is known.evaluation:
             return best
         least = np.inf if known is None else self.level(known.J[i])
-        above = best.feasible and self.level(best.J[i]) > (1 + TIE) * least
-        alone = self.sizes.size == 1 or not best.feasible
-        unfinished = best.status is Status.EXHAUSTED
-        if above or alone or unfinished or not self.is_open(problem, best.evaluation):
+        if not best.feasible or best.status is Status.EXHAUSTED or self.sizes.size == 1:
+            return best
+        if self.level(best.J[i]) > (1 + TIE) * least or not self.is_open(problem, best.evaluation):
             return best
         spent = best.evaluations
         for epsilon, begins in ((1 / RATIO, start), (1 / RATIO**4, best)):
