@@ -295,7 +295,7 @@ def test_equations_lead_to_the_points_of_das_and_dennis(
         assert x.converged
         assert x.beta == pytest.approx([1 - k / 24, k / 24])
         assert x.beta is not None
-        excess = front.target.excess(x.beta, x.J)
+        excess = LatticePoint(x.beta, (), front.target).order.excess(x.J)
         assert excess == pytest.approx(excess.mean(), abs=1e-6)
         assert x.theta[1] == pytest.approx(0.0, abs=1e-6)
     assert 0 < (~optimal).sum() < 10, "equations lead into the gap"

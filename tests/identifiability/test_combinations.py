@@ -82,7 +82,7 @@ def test_directions_not_determined_span_the_null_space(seed: int, p: int, d: int
         [combination.direction for combination in result if combination.share <= NONE]
     ).T
     assert free.shape == (p, d)
-    basis = sparse_basis(free)
+    basis = sparse_basis(free, [np.ones(len(free))], lambda _: True)
     assert basis.shape == (p, d)
     assert np.linalg.matrix_rank(basis) == d
     assert np.abs(basis - N @ (N.T @ basis)).max() < 2e-3 * np.abs(basis).max()
@@ -92,7 +92,7 @@ def test_a_basis_is_made_of_what_can_be_said() -> None:
     e = np.eye(5)
     known = np.column_stack([e[4], e[0] + e[1] + e[2] + e[3], e[0] + 2 * e[1]])
     mixed = np.linalg.qr(known)[0] @ np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
-    basis = sparse_basis(mixed)
+    basis = sparse_basis(mixed, [np.ones(len(mixed))], lambda _: True)
     names = ("a", "b", "c", "d", "m")
     messages = [direction_in_words(v, names) for v in basis.T]
     assert messages[:2] == ["m can have any value", "a, b, c and d can be scaled together"]

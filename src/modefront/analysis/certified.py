@@ -152,10 +152,8 @@ def certificate_values(
     model = _reduced(problem)
     if model is None:
         return {}
-    errors = [model.errors[_key(x)] for x in solutions]
-    eigenvalue, shape = (
-        np.array([each[i] for each in errors]).reshape(len(solutions), -1) for i in (0, 1)
-    )
+    errors = np.array([model.errors[_key(x)] for x in solutions])  # (solutions, 2, modes)
+    eigenvalue, shape = errors[:, 0], errors[:, 1]
     return {
         f"{prefix}eigenvalue_error": eigenvalue,
         f"{prefix}shape_error": shape,

@@ -89,10 +89,8 @@ def identifiable_part(
     along each edge of the simplex.
     """
     known = [point.solution for point in front.points]
-    points, edges = (
-        [point.solution for point in of_kind(front.points, kind)]
-        for kind in (Kind.FRONT, Kind.EDGE)
-    )
+    points = [point.solution for point in of_kind(front.points, Kind.FRONT)]
+    edges = [point.solution for point in of_kind(front.points, Kind.EDGE)]
     if not points or front.scale is None:
         return None
     least = np.array([solution.J[i] for i, solution in enumerate(edges)])
@@ -168,7 +166,7 @@ def analyse_front(
     reference = front.reference
     solved = [SolvedPoint(reference.label, reference.solution, Role("optimal"))]
     if sizes is not None:
-        solved = _solved_points(problem, front, points, part, pareto, identifiability.flat)
+        solved = _solved_points(problem, front, part, pareto, identifiability.flat)
     known = _locals(problem, solved, sizes, source, work)
     posterior = None
     if reference.kind is Kind.OPTIMAL and reference.label in known:
@@ -233,12 +231,7 @@ def followed(
 
 
 def _solved_points(
-    problem: UpdatingProblem,
-    front: Front,
-    extra: Sequence[Point],
-    part: Identifiable | None,
-    pareto: Pareto,
-    flat: float,
+    problem: UpdatingProblem, front: Front, part: Identifiable | None, pareto: Pareto, flat: float
 ) -> list[SolvedPoint]:
     """Return the points with what each of them solves, as far as that is a programme.
 
@@ -254,17 +247,16 @@ def _solved_points(
             level = Role("level", objective=i, tolerance=pareto.tolerance)
             out.append(SolvedPoint(point.label, point.solution, level))
 
-    def between(
-        x: Solution, labels: tuple[str, ...], ends: Sequence[Solution], target: Payoff | None
-    ) -> Role:
+    def between(x: Solution, ends: Mapping[str, Solution], target: Payoff | None) -> Role:
         """Return the role of a point of NBI between labelled ends, or of one of these ends."""
-        at = [text for text, end in zip(labels, ends, strict=True) if same(x, end)]
+        at = [text for text, end in ends.items() if same(x, end)]
         worst, equations = target.worst if target else (), pareto.programme == "equations"
-        return Role("end", (at[0],)) if at else Role("boundary", labels, worst, equations)
+        return Role("end", (at[0],)) if at else Role("boundary", tuple(ends), worst, equations)
 
-    cuts = {point.name: point.label for point in of_kind(extra, Kind.IDENTIFIABLE_EDGE)}
-    whole = tuple(edge.label for edge in edges)
-    ends = tuple(cuts.get(edge.name, edge.label) for edge in edges)
+    extra = part.reported(problem.objectives) if part else []
+    cuts = {point.name: point for point in of_kind(extra, Kind.IDENTIFIABLE_EDGE)}
+    whole = {edge.label: edge.solution for edge in edges}
+    ends = {x.label: x.solution for x in (cuts.get(edge.name, edge) for edge in edges)}
     along = METHODS[front.method].programme
     for point in [*front.points, *extra]:
         role, kind = None, point.kind
@@ -273,9 +265,9 @@ def _solved_points(
         elif kind in WEIGHTED or (kind is Kind.FRONT and along == "weights"):
             role = Role("weights")
         elif kind is Kind.FRONT and along == "boundary":
-            role = between(point.solution, whole, [x.solution for x in edges], front.target)
+            role = between(point.solution, whole, front.target)
         elif kind is Kind.IDENTIFIABLE and part:
-            role = between(point.solution, ends, part.ends, part.target)
+            role = between(point.solution, ends, part.target)
         elif kind is Kind.IDENTIFIABLE_EDGE:
             objective = problem.objectives.index(point.name)
             role = Role("level", objective=objective, tolerance=flat)

@@ -16,7 +16,7 @@ import numpy as np
 from modefront._typing import Bools, Floats, Ints
 from modefront.front.dominance import nondominated
 from modefront.front.simplex import Payoff
-from modefront.front.subproblems import RHO, active_bounds
+from modefront.front.subproblems import RHO, LatticePoint, active_bounds
 from modefront.optim.problem import Problem
 from modefront.optim.scalarisation import Scalarisation, below, weighted
 from modefront.optim.sqp import TIGHT, Solution, solve
@@ -58,7 +58,7 @@ def gaps(
     slack = np.zeros((len(points), 2), dtype=np.bool_)
     for k, x in enumerate(points):
         if bounded and x.converged and x.beta is not None:
-            c = target.r * target.excess(x.beta, x.J)
+            c = target.r * LatticePoint(x.beta, (), target).order.excess(x.J)
             slack[k] = (c.max() - c > RHO) & ~active_bounds(x.weights * target.unit)
     tasks, sides = [], []
     kept = np.flatnonzero(optimal).tolist()

@@ -86,13 +86,8 @@ def coverage(front: Front) -> dict[str, float]:
 
     Y = units(along)
     optimal = nondominated(Y)
-    R = units(
-        [
-            *(point.solution for point in front.points),
-            *(solution for edge in front.edges for solution in edge.minima),
-            *front.optimal,
-        ]
-    )
+    minima = [solution for edge in front.edges for solution in edge.minima]
+    R = units([*(point.solution for point in front.points), *minima, *front.optimal])
     branches = [units(part) for part in branches_of(along, optimal, front.gaps) if part]
     gap = max(largest_gap(part[(part <= REFERENCE).all(axis=1)]) for part in branches)
     R = R[nondominated(R)]

@@ -80,22 +80,9 @@ class Payoff:
 
     def place(self, J: Floats) -> Floats:
         """Return the coordinates (..., n) of the points of the plane that are projected onto J."""
-        n = self.utopia.size
-        return np.asarray((J - self.utopia) / self.scale @ self._onto.T + 1 / n)
-
-    @cached_property
-    def _onto(self) -> Floats:
-        """The projection of scaled objectives onto the plane, less its middle, (n, n)."""
         inverse = np.linalg.inv(self.Phi)
-        return np.asarray(inverse - inverse.mean(axis=0))
-
-    def offset(self, beta: Floats) -> Floats:
-        """Return the point of the plane at beta over the normal, (n,)."""
-        return np.asarray((self.utopia / self.scale + self.Phi @ beta) / self.r)
-
-    def excess(self, beta: Floats, J: Floats) -> Floats:
-        """Return how far objectives (..., n) lie above a point of the plane, over the normal."""
-        return np.asarray(J / self.unit - self.offset(beta))
+        onto = inverse - inverse.mean(axis=0)
+        return np.asarray((J - self.utopia) / self.scale @ onto.T + 1 / self.utopia.size)
 
 
 def is_flat(edges: Sequence[Solution], sizes: Floats) -> bool:

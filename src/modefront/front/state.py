@@ -21,19 +21,15 @@ COPY = 10 * SAME
 """Distance of two points, over the ranges of the objectives, below which they are copies."""
 
 
-@dataclass
 class Archive:
     """The models that no other evaluated model dominates, with their objectives ``J`` (., n).
 
     They are in the order in which they were evaluated; of equal ones the last is there.
     """
 
-    objectives: int
-    models: list[Any] = field(default_factory=list)
-    J: Floats = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.J = np.zeros((0, self.objectives))
+    def __init__(self, objectives: int) -> None:
+        self.models: list[Any] = []
+        self.J: Floats = np.zeros((0, objectives))
 
     def add(self, J: Floats, model: Any) -> None:
         """Keep a model unless another one dominates it, and drop those that it dominates."""

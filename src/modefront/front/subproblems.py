@@ -139,7 +139,9 @@ class LatticePoint:
     def order(self) -> Order:
         """By the greatest excess with its share of all."""
         greatest, share = (STEEP, (1 - STEEP) / self.beta.size) if self.equations else (1.0, RHO)
-        return Order(self.target.unit, self.target.offset(self.beta), greatest, share)
+        at = self.target
+        offset = (at.utopia / at.scale + at.Phi @ self.beta) / at.r
+        return Order(at.unit, offset, greatest, share)
 
     def met(self, solution: Solution) -> bool:
         """Return whether a solution lies on the normal, as it does if it meets equations."""
@@ -148,16 +150,12 @@ class LatticePoint:
 
     def gain(self, J: Floats, known: Solution) -> float:
         """Return the fall of the excess, over the objectives along the normal or their ranges."""
-        w = self.weights(known)
-        fall = float(self.order.value(known.J) - self.order.value(J))
+        order, w = self.order, known.weights
+        if not w.any():  # of a model that is no solution, those of its greatest excess
+            c = order.excess(known.J)
+            w = (order.greatest * (c == c.max()) + order.share) / order.unit
+        fall = float(order.value(known.J) - order.value(J))
         return fall / min(max(float(w @ known.J), EXACT), 1.0)
-
-    def weights(self, known: Solution) -> Floats:
-        """Return the multipliers of the excess at a solution, or of the greatest one at others."""
-        if known.weights.any():
-            return known.weights
-        order, c = self.order, self.order.excess(known.J)
-        return np.asarray((order.greatest * (c == c.max()) + order.share) / self.target.unit)
 
     def solve(self, problem: Problem, start: Solution, _: Solution | None = None) -> Solution:
         """Return the point that a start leads to."""

@@ -11,24 +11,19 @@ SAME = 1e-3
 """Difference of two parts of a direction, over its greatest part, below which they are equal."""
 
 
-def sparse_basis(
-    N: Floats,
-    whole: Sequence[Floats] | None = None,
-    holds: Callable[[Floats], bool] = lambda _: True,
-) -> Floats:
+def sparse_basis(N: Floats, whole: Sequence[Floats], holds: Callable[[Floats], bool]) -> Floats:
     """Return a basis of the span of the columns of N (p, d) of directions that are short in words.
 
-    First single parameters; then those of the directions ``whole`` (p,) that are in the span, by
-    default the scaling of all other parameters together; then pairs of parameters; the rest has
-    as many zeros as elimination makes. ``holds`` tells whether a simple direction is not
-    determined indeed.
+    First single parameters; then those of the directions ``whole`` (p,) that are in the span; then
+    pairs of parameters; the rest has as many zeros as elimination makes. ``holds`` tells whether a
+    simple direction is not determined indeed.
     """
     p, d = N.shape
     Q = np.linalg.qr(N)[0]
     outside = np.eye(p) - Q @ Q.T
     alone = [j for j in range(p) if outside[j, j] <= SAME**2 and holds(np.eye(p)[j])]
     basis = [np.eye(p)[j] for j in alone]
-    for direction in [np.ones(p)] if whole is None else whole:
+    for direction in whole:
         others = direction.copy()
         others[alone] = 0.0
         size = float(np.linalg.norm(others))

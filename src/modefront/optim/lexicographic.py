@@ -130,6 +130,5 @@ class Lexicographic:
 
     def programme(self, epsilon: float) -> Linear:
         """Return the objective with a share of the others, over their sizes."""
-        return weighted(
-            np.eye(self.sizes.size)[self.objective] / self.sizes + epsilon * self.others
-        )
+        own = np.eye(self.sizes.size)[self.objective]
+        return weighted(own / self.sizes + epsilon * self.others)
