@@ -179,16 +179,9 @@ def analyse_front(
         again = (problem, solved, sizes, source)
         tasks = [Task(("bootstrap", b), solve_again, again, each) for b, each in seeds]
         replicates = work.run(tasks)
+    flat, slopes = identifiability.flat, {name: local.slopes for name, local in known.items()}
     return FrontAnalysis(
-        points,
-        part,
-        identifiability.flat,
-        manifolds,
-        source,
-        scatter,
-        {name: local.slopes for name, local in known.items()},
-        posterior,
-        replicates,
+        points, part, flat, manifolds, source, scatter, slopes, posterior, replicates
     )
 
 
@@ -197,9 +190,8 @@ def _manifolds(
 ) -> list[tuple[str, Sequence[Manifold]]]:
     """Return the manifolds of each group, and of the optimal weights, one after another."""
     out: list[tuple[str, Sequence[Manifold]]] = []
-    if options.models == 0:
-        return out
-    for i, (name, programme, best) in enumerate(best_minima(front, problem.properties, TIE)):
+    found = best_minima(front, problem.properties, TIE) if options.models else []
+    for i, (name, programme, best) in enumerate(found):
         minima = [x.evaluation for x in best]
         before = [manifold for _, manifold in followed(out)]
         arguments = (problem, programme, minima, options, before)

@@ -437,7 +437,6 @@ def _best_step(point: TangentPoint, j: int, sign: int, length: float) -> Floats:
 
     T, u = point.T, point.u
     limits = np.maximum(np.concatenate([np.minimum(length, 1 - u), np.minimum(length, u)]), 0.0)
-    best = scipy.optimize.linprog(
-        -sign * T[j], np.vstack([T, -T]), limits, bounds=(None, None), method="highs"
-    )
+    A = np.vstack([T, -T])
+    best = scipy.optimize.linprog(-sign * T[j], A, limits, bounds=(None, None), method="highs")
     return T @ best.x if best.status == 0 else np.zeros(u.size)

@@ -7,7 +7,6 @@ from modefront._typing import Bools, Floats
 TRADE = 1e-9
 """Loss in one objective, over the gain in another one, that counts as none: no proper trade-off."""
 
-
 SAME = 1e-6  # gain in an objective, over its range, that counts as none: solvers leave as much
 BLOCK = 1_000_000  # differences of objectives that are held at once
 

@@ -26,6 +26,8 @@ from modefront.text import Shown
 
 MOST = 10_000  # points of a front at most
 
+DISTANCE = number("a distance from 0.001 to 1", least=1e-3, most=1)
+
 
 @dataclass(frozen=True)
 class Pareto(Shown):
@@ -54,9 +56,7 @@ class Pareto(Shown):
     tolerance: Annotated[float, number("a share from 0 to 1", least=0, most=1)] = 0.0
     population: Annotated[int, whole(4, 10**6)] = 100
     evaluations: Annotated[int, whole(4, 10**9)] = 10_000
-    refined: Annotated[float, number("a distance from 0.001 to 1", least=1e-3, most=1)] | None = (
-        None
-    )
+    refined: Annotated[float, DISTANCE] | None = None
 
     def __post_init__(self) -> None:
         check_fields(self)

@@ -30,7 +30,6 @@ _LARGEST = 1e8  # greatest collinearity index; columns beyond it are parallel bu
 NONE = 1e-7
 """Singular value over the greatest one, below which a combination is not determined at all."""
 
-
 SHARE = number("a share from 0 to 1", least=0, most=1)
 STEP = number("a share of the ranges from 0.001 to 0.5", least=1e-3, most=0.5)
 

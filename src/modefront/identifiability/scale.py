@@ -11,6 +11,7 @@ A combination of parameters that scales all of K or all of M is looked for in th
 \partial \theta_j = 0`, and so on. Mode shapes do not change along it.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -125,11 +126,9 @@ def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: f
     factor = sparse.regular_factor(model.pencil, theta) if model.floating else None
     if factor is None:
         K, M = model.pencil.K.at(theta).data, model.pencil.M.at(theta).data
-        try:
+        with suppress(SingularMatrixError):
             factor = model.pencil.factor(K, M, -shift if model.floating else 0.0)
-        except SingularMatrixError:
-            return np.zeros(theta.size)
-        if factor.negative:
+        if factor is None or factor.negative:
             return np.zeros(theta.size)
     start = np.random.default_rng(0).standard_normal((stiffness.size, 1))
     F = stiffness.derivatives_times(theta, start)[:, 0]

@@ -33,7 +33,6 @@ from modefront.optim.scalarisation import Scalarisation
 
 PENALTY = 10.0  # penalty at least; it hardly changes the evaluations that a solution takes
 
-
 NOISE = 1e-11
 """Relative error that a step is not blamed for: that of a large eigenproblem."""
 

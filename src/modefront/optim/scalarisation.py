@@ -15,7 +15,6 @@ LEAST = float(np.finfo(float).tiny ** (1 / 3))
 """An objective below which its logarithm and the derivatives change no more: the second ones do not
 overflow."""
 
-
 STEEP = 1e3
 """Slope of a penalty over that of what is minimised: a constraint is met where its multiplier is
 less."""
