@@ -5,8 +5,9 @@ import pytest
 from problems import Derivatives, Known, box, circles
 
 from modefront._typing import Floats
-from modefront.analysis.front import flat_points, identifiable_part
+from modefront.analysis.front import _solved_points, flat_points, identifiable_part
 from modefront.front.front import Edge, Front
+from modefront.front.options import Pareto
 from modefront.front.point import Kind, Point, of_kind
 from modefront.front.simplex import lattice, payoff
 from modefront.front.subproblems import LatticePoint, Least
@@ -66,6 +67,17 @@ def test_a_flat_part_is_found_and_the_rest_covered_by_itself() -> None:
     scaled = chosen / np.ptp(chosen, axis=0)
     steps = np.linalg.norm(np.diff(scaled, axis=0), axis=1)
     assert steps.max() < 3 * steps.min()
+
+
+def test_points_of_the_part_solve_bounds_whatever_those_of_the_front_solve() -> None:
+    problem = box(flat, [0, -1], [4, 1])
+    front = whole_front(problem, np.array([16.0, 1.0]))
+    part = identifiable_part(problem, front, 0.01, 19)
+    solved = _solved_points(problem, front, part, Pareto(programme="equations"), 0.01)
+    roles = {point.label: point.role for point in solved}
+    assert roles["nbi-5"].equations
+    assert roles["identifiable-5"].kind == "boundary"
+    assert not roles["identifiable-5"].equations
 
 
 def test_a_flat_part_of_which_the_end_is_not_found_is_counted_and_not_cut() -> None:

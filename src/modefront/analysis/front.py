@@ -6,7 +6,7 @@ out.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -223,12 +223,12 @@ def followed(
 
 
 def _solved_points(
-    problem: UpdatingProblem, front: Front, part: Identifiable | None, pareto: Pareto, flat: float
+    problem: Problem, front: Front, part: Identifiable | None, pareto: Pareto, flat: float
 ) -> list[SolvedPoint]:
     """Return the points with what each of them solves, as far as that is a programme.
 
     Points of weights follow from their weights, points of normal-boundary intersection from their
-    edges.
+    edges; those of the identifiable part solve bounds.
     """
     edges, out = of_kind(front.points, Kind.EDGE), list[SolvedPoint]()
     for i, (point, edge) in enumerate(zip(edges, front.edges, strict=True)):
@@ -242,8 +242,8 @@ def _solved_points(
     def between(x: Solution, ends: Mapping[str, Solution], target: Payoff | None) -> Role:
         """Return the role of a point of NBI between labelled ends, or of one of these ends."""
         at = [text for text, end in ends.items() if same(x, end)]
-        worst, equations = target.worst if target else (), pareto.programme == "equations"
-        return Role("end", (at[0],)) if at else Role("boundary", tuple(ends), worst, equations)
+        worst = target.worst if target else ()
+        return Role("end", (at[0],)) if at else Role("boundary", tuple(ends), worst)
 
     extra = part.reported(problem.objectives) if part else []
     cuts = {point.name: point for point in of_kind(extra, Kind.IDENTIFIABLE_EDGE)}
@@ -258,6 +258,7 @@ def _solved_points(
             role = Role("weights")
         elif kind is Kind.FRONT and along == "boundary":
             role = between(point.solution, whole, front.target)
+            role = replace(role, equations=pareto.programme == "equations")
         elif kind is Kind.IDENTIFIABLE and part:
             role = between(point.solution, ends, part.target)
         elif kind is Kind.IDENTIFIABLE_EDGE:
