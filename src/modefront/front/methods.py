@@ -83,9 +83,6 @@ METHODS: Family[Method] = Family(
 )
 """All methods by their names."""
 
-UNDEFINED = float(np.finfo(np.float32).max)
-"""Value of an objective where the model cannot be evaluated; pymoo takes no infinity."""
-
 
 def evolve_front(
     problem: Problem,
@@ -104,6 +101,7 @@ def evolve_front(
     from pymoo.core.problem import Problem as Described
     from pymoo.problems.static import StaticProblem
 
+    undefined = float(np.finfo(np.float32).max)  # of models without modes: pymoo takes no infinity
     n, p = len(problem.objectives), problem.lower.size
     described = Described(n_var=p, n_obj=n, xl=problem.lower, xu=problem.upper)
     make = METHODS[method].algorithm
@@ -125,11 +123,11 @@ def evolve_front(
         (members,) = run([Task(key, evaluated_all, (problem, inside))])
         known |= {theta.tobytes(): x for theta, x in zip(thetas, members, strict=True)}
         spent += len(proposals)
-        F = np.nan_to_num(np.array([x.J for x in members]), posinf=UNDEFINED)
+        F = np.nan_to_num(np.array([x.J for x in members]), posinf=undefined)
         Evaluator().eval(StaticProblem(described, F=F), proposals)
         algorithm.tell(infills=proposals)
     F = algorithm.pop.get("F")
-    chosen = nondominated(F) & (UNDEFINED > F).all(axis=1)
+    chosen = nondominated(F) & (undefined > F).all(axis=1)
     last = algorithm.pop.get("X")[chosen][np.lexsort(F[chosen].T[::-1])]
     found = (known[theta.tobytes()] for theta in last)
     return [Solution(x, np.full(n, np.nan), Status.SAMPLED, 0) for x in found]
