@@ -291,10 +291,8 @@ def options(record: Callable[..., Any]) -> tuple[Option, ...]:
     """Return the fields of a class of records, or arguments of a function, with requirements."""
     out = []
     for each, hint, meaning in _declared(record):
-        requirement = _requirement(hint)
-        if requirement is not None:
-            required = each.default is each.empty
-            optional = types.NoneType in get_args(hint)
+        if requirement := _requirement(hint):
+            required, optional = each.default is each.empty, types.NoneType in get_args(hint)
             default = None if required else plain(each.default)
             if default in ("", []) or not fits(default, requirement.schema):
                 default = None
@@ -319,15 +317,15 @@ def of_options(known: Iterable[Option]) -> Schema:
 
 def _requirement(hint: Any) -> Requirement | None:
     """Return the requirement in an annotation, None where it has none."""
-    if get_origin(hint) is Literal:
-        return one_of(*get_args(hint))
-    if get_origin(hint) is Annotated:
-        given = (each() if callable(each) else each for each in get_args(hint)[1:])
-        return next((each for each in given if isinstance(each, Requirement)), None)
-    if get_origin(hint) in (types.UnionType, typing.Union):
-        known = (_requirement(part) for part in get_args(hint))
-        return next((each for each in known if each is not None), None)
-    return None
+    origin, parts = get_origin(hint), get_args(hint)
+    if origin is Literal:
+        return one_of(*parts)
+    known: Iterable[Any] = ()
+    if origin is Annotated:
+        known = (each() if callable(each) else each for each in parts[1:])
+    elif origin in (types.UnionType, typing.Union):
+        known = map(_requirement, parts)
+    return next((each for each in known if isinstance(each, Requirement)), None)
 
 
 def check_fields(record: Any) -> None:
@@ -528,7 +526,7 @@ class Table:
 
     def tables(self, key: str, required: bool) -> "list[Table]":
         """Return the tables of a list, such as ``[[parameter]]``."""
-        path = f"{self.place.strip('[]')}.{key}" if self.place else key
+        path = f"{self.place.strip('[]')}.{key}".lstrip(".")
         expected = f"at least one table [[{path}]]" if required else f"tables [[{path}]]"
         value = self.value(key, Requirement(expected, array(TABLE, 1)), ... if required else [])
         out = []

@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,12 +22,11 @@ def run_import(program: str, base: Path, output: Path, **given: Any) -> None:
     as RUN:NAME=VALUE,….
     """
     refuse_study(output)
-    options = JobOptions(*(given[x] for x in ("stiffness_name", "mass_name", "dofs", "deck")))
     terms = [_pair("--function", x, "NAME=TERM,TERM, such as t=t,t^3") for x in given["functions"]]
     common: dict[str, Any] = {
         "functions": {name: [term.strip() for term in x.split(",")] for name, x in terms},
         "modes": given["modes"],
-        "progress": lambda text: say(text, err=True),
+        "progress": partial(say, err=True),
     }
     if given["run"] is not None:
         if program != "calculix":
@@ -45,9 +45,16 @@ def run_import(program: str, base: Path, output: Path, **given: Any) -> None:
     for text in given["factors"]:
         name, factor = _pair("--factor", text, "NAME=FACTOR")
         factors[name].append(_number("--factor", factor))
-    checks = [_check(text) for text in given["checks"]]
-    more: dict[str, Any] = {"factors": factors, "checks": checks, "options": options}
-    imported = import_model(program, base, runs, **more, **common)
+    checks, form = [], "RUN:NAME=VALUE,NAME=VALUE"
+    for text in given["checks"]:
+        run, _, values = text.rpartition(":")
+        if not run.strip():
+            raise wrong("--check", form, repr(text))
+        pairs = [_pair("--check", part, form) for part in values.split(",")]
+        checks.append((Path(run), {name: _number("--check", value) for name, value in pairs}))
+    options = JobOptions(*(given[x] for x in ("stiffness_name", "mass_name", "dofs", "deck")))
+    common |= {"factors": factors, "checks": checks, "options": options}
+    imported = import_model(program, base, runs, **common)
     _print(imported, imported.write(output), len(checks))
 
 
@@ -79,15 +86,6 @@ def _pair(option: str, text: str, form: str) -> tuple[str, str]:
     if not sign or not name.strip() or not value.strip():
         raise wrong(option, form, repr(text))
     return name.strip(), value.strip()
-
-
-def _check(text: str) -> tuple[Path, dict[str, float]]:
-    form = "RUN:NAME=VALUE,NAME=VALUE"
-    run, _, values = text.rpartition(":")
-    if not run.strip():
-        raise wrong("--check", form, repr(text))
-    pairs = [_pair("--check", part, form) for part in values.split(",")]
-    return Path(run), {name: _number("--check", value) for name, value in pairs}
 
 
 def _number(option: str, text: str) -> float:

@@ -349,13 +349,11 @@ def cause_of(problem: UpdatingProblem, agreement: Agreement) -> Finding:
         except ModelError as error:
             return found("no-model-near", of, why=str(error))
     points = [problem.evaluate(theta + k * step, derivatives=False) for k in (-1, -0.5, 0, 0.5, 1)]
-    bend = np.zeros(len(problem.data.modes))
-    for name in ("frequency", "mac"):
-        values = np.array([x.quantities[name] for x in points])
-        # Fourth differences: what is left of a smooth curve is close to nothing.
-        fourth = np.array([1, -4, 6, -4, 1]) @ values
-        bend = np.maximum(bend, np.abs(np.nan_to_num(fourth / np.abs(values[2]).clip(TINY))))
-    r = int(np.argmax(bend))
+    values = np.array([[x.quantities[name] for x in points] for name in ("frequency", "mac")])
+    # Fourth differences: what is left of a smooth curve is close to nothing.
+    fourth = np.array([1, -4, 6, -4, 1]) @ values
+    bend = np.abs(np.nan_to_num(fourth / np.abs(values[:, 2]).clip(TINY)))
+    r = int(np.argmax(bend.max(axis=0)))
     where: dict[str, Any] = {
         "group": problem.objectives[agreement.objective],
         "mode": problem.data.modes[r],

@@ -159,19 +159,19 @@ def import_model(
         raise InputError(Fault("", "program", f"one of {', '.join(PROGRAMS)}", found))
 
     nominal_path, options, names = Path(base), options or JobOptions(), tuple(parameters)
-    terms = {x: _term_names(names, _of_quantity(functions or {}, x)) for x in QUANTITIES}
+    declared = {x: _terms_of(names, functions or {}, x).values() for x in QUANTITIES}
+    terms = {x: list(dict.fromkeys(chain(*each))) for x, each in declared.items()}
     runs = _runs(parameters, factors or {}, checks)
 
     def read(path: Path, doing: str = "reading") -> Job:
         progress(f"{doing} {path}")
         return read_job(program, path, options)
 
-    nominal = read(nominal_path)
+    nominal, errors = read(nominal_path), []
     differences = Differences(nominal, names, terms)
     for _, path, theta in runs:
         differences.add(str(path), read(path), theta)
     identified = differences.terms()
-    errors = []
     for other, given in checks:
         theta = np.array([given.get(name, 1.0) for name in names])
         job = read(Path(other), "checking with")
@@ -212,33 +212,28 @@ def import_model(
     )
 
 
-def _of_quantity(functions: Functions, quantity: Quantity) -> dict[str, Sequence[str]]:
-    """Return the terms of parameters in the matrix of a quantity."""
-    refuse(
-        Fault("", f"functions '{name}'", " or ".join(QUANTITIES), suggestion(key, QUANTITIES))
-        for name, each in functions.items()
-        for key in (each if isinstance(each, Mapping) else ())
-        if key not in QUANTITIES
-    )
-    return {
-        name: each.get(quantity, (name,)) if isinstance(each, Mapping) else each
-        for name, each in functions.items()
-    }
-
-
-def _term_names(names: Sequence[str], functions: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return the terms: those declared for a parameter, or the parameter itself."""
-    faults = []
-    for name, term in ((name, term) for name, terms in functions.items() for term in terms):
-        exponents, place = exponents_of(term, names), f"--function {name}"
+def _terms_of(
+    names: Sequence[str], functions: Functions, quantity: Quantity
+) -> dict[str, Sequence[str]]:
+    """Return the terms of each parameter in a matrix: those declared, or the parameter itself."""
+    faults: list[Fault] = []
+    out: dict[str, Sequence[str]] = {name: (name,) for name in names}
+    for name, each in functions.items():
         if name not in names:
             faults.append(Fault("", "--function", "a parameter", suggestion(name, names)))
-        if exponents is None or not exponents.any():
-            faults.append(Fault("", place, form_of(term + "^"), repr(term)))
-        elif name in names and not exponents[names.index(name)]:
-            faults.append(Fault("", place, f"terms with '{name}'", repr(term)))
-    refuse(dict.fromkeys(faults))
-    return list(dict.fromkeys(term for name in names for term in functions.get(name, (name,))))
+        of = each if isinstance(each, Mapping) else dict.fromkeys(QUANTITIES, each)
+        for key in (key for key in of if key not in QUANTITIES):
+            found = suggestion(key, QUANTITIES)
+            faults.append(Fault("", f"functions '{name}'", " or ".join(QUANTITIES), found))
+        out[name] = of.get(quantity, (name,))
+        for term in out[name]:
+            exponents, place = exponents_of(term, names), f"--function {name}"
+            if exponents is None or not exponents.any():
+                faults.append(Fault("", place, form_of(term + "^"), repr(term)))
+            elif name in names and not exponents[names.index(name)]:
+                faults.append(Fault("", place, f"terms with '{name}'", repr(term)))
+    refuse(faults)
+    return out
 
 
 def _runs(
@@ -247,33 +242,28 @@ def _runs(
     checks: Sequence[tuple[Path | str, Mapping[str, float]]],
 ) -> list[tuple[str, Path, Floats]]:
     """Return parameter, job and values of all parameters of every run."""
-    names = list(parameters)
-    given = {name: [x] if isinstance(x, int | float) else list(x) for name, x in factors.items()}
-    named = {"--factor": given, "--check": [name for _, values in checks for name in values]}
+    out, named = [], [*(("--factor", name) for name in factors)]
+    named += [("--check", name) for _, values in checks for name in values]
     faults = [
-        Fault("", option, "a parameter", suggestion(name, names))
-        for option, known in named.items()
-        for name in known
-        if name not in names
+        Fault("", option, "a parameter", suggestion(name, parameters))
+        for option, name in named
+        if name not in parameters
     ]
-    refuse(
-        faults
-        + [
-            Fault("", f"--factor {name}", "a factor above 0, and not 1", f"{factor:g}")
-            for name, each in given.items()
-            for factor in each
-            if name in names and (not 0 < factor < np.inf or factor == 1)
-        ]
-    )
-    out = []
     for k, (name, jobs) in enumerate(parameters.items()):
-        paths = [jobs] if isinstance(jobs, str | Path) else list(jobs)
-        values = given.get(name) or [2.0] * (len(paths) == 1)
+        paths, place = [jobs] if isinstance(jobs, str | Path) else list(jobs), f"--factor {name}"
+        given = np.ravel(factors.get(name, []))
+        values = given if given.size else np.full(int(len(paths) == 1), 2.0)
+        faults += [
+            Fault("", place, "a factor above 0, and not 1", f"{factor:g}")
+            for factor in given.tolist()
+            if not 0 < factor < np.inf or factor == 1
+        ]
         if len(values) != len(paths):
             expected = f"{len(paths)} factors, one for each of its runs"
-            raise InputError(Fault("", f"--factor {name}", expected, str(len(given.get(name, [])))))
-        thetas = np.where(np.arange(len(names)) == k, np.reshape(values, (-1, 1)), 1.0)
-        out += [(name, Path(path), theta) for path, theta in zip(paths, thetas, strict=True)]
+            faults.append(Fault("", place, expected, str(given.size)))
+        thetas = np.where(np.arange(len(parameters)) == k, values[:, None], 1.0)
+        out += [(name, Path(path), theta) for path, theta in zip(paths, thetas, strict=False)]
+    refuse(faults)
     return out
 
 
@@ -454,9 +444,8 @@ def import_deck(
     lines = list(lines_of(path))
     targets = _targets(path, lines, parameters)
     terms: Functions = {**_of_thickness(lines, targets), **(functions or {})}
-    in_terms = [_of_quantity(terms, quantity) for quantity in QUANTITIES]
-    count = {name: max(len(x.get(name, "1")) for x in in_terms) for name in targets}
-    factors = {name: FACTORS[: count[name]] for name in targets}
+    in_terms = [_terms_of(tuple(targets), terms, quantity) for quantity in QUANTITIES]
+    factors = {name: FACTORS[: max(len(x[name]) for x in in_terms)] for name in targets}
     jobs = {f"{name}-{factor:g}": {name: factor} for name in targets for factor in factors[name]}
     check = dict(zip(targets, cycle(CHECK), strict=False))
     with writing(folder):
