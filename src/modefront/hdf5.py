@@ -95,8 +95,9 @@ def contents(path: Path) -> tuple[dict[str, Any], list[Any]]:
     """
     arrays: dict[str, Any] = {}
     named: list[Any] = []
-    with h5py.File(path, "r") as whole, h5netcdf.File(whole, "r") as file:
+    with h5py.File(path, "r") as whole:
         check_tree(whole)
+        file = h5netcdf.File(whole, "r")
         for name, item in file.variables.items():
             kind = bool if item.attrs.get("dtype") == "bool" else None
             is_text = h5py.check_string_dtype(whole[name].dtype) is not None

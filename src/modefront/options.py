@@ -4,10 +4,8 @@ An option is a field of a frozen dataclass. Its annotation has its requirement: 
 ``Annotated`` with a `Requirement`, or with a function that returns one when it is needed; ``None``
 besides, where the annotation has it. `check_fields`, called from ``__post_init__``, as that of
 `Checked` does, compares all fields with their requirements and brings their values into plain
-Python: the same record is made from TOML, from literals and from numpy scalars.
-
-A `Table` of a TOML file reads its keys by the same requirements, and collects the faults. A
-requirement has a JSON Schema (draft 7).
+Python: the same record is made from TOML, from literals and from numpy scalars. A `Table` of a TOML
+file reads its keys by the same requirements, which are JSON Schemas (draft 7) as far as these go.
 """
 
 import inspect
@@ -429,10 +427,7 @@ class Table:
 
     @contextmanager
     def noting(self, key: str = "") -> Iterator[None]:
-        """Note the faults of options, whose places are keys of the table, and of files.
-
-        Both have a ``key`` before their places.
-        """
+        """Note the faults of options, in keys of the table, and of files, both behind a ``key``."""
         try:
             yield
         except InputError as error:
@@ -444,10 +439,7 @@ class Table:
                     self.fault(f"{key} {fault.place}".strip(), fault.expected, fault.found)
 
     def path(self, name: str) -> Path:
-        """Return the path of a file that a table names, relative to the TOML file, and note it.
-
-        What a file is read for depends on all files noted in ``files``.
-        """
+        """Return the path of a file that a table names, relative to the TOML file, and note it."""
         path = Path(self.file).parent / name
         if path not in self.files:
             self.files.append(path)
@@ -485,11 +477,7 @@ class Table:
         return values if len(self.faults) == before else None
 
     def record(self, record: Callable[..., T]) -> T | None:
-        """Return the record of options that the table describes, None where something is wrong.
-
-        Keys are its fields. Everything that is wrong is noted: single values first, and where these
-        are right, what contradicts another.
-        """
+        """Return the record of options whose fields are the keys; None where something is wrong."""
         values = self.read(options(record))
         with self.noting():
             return None if values is None else record(**values)

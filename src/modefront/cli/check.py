@@ -30,7 +30,13 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         counts += f"; {plural(int(silent.sum()), 'sensor')} without data"
     screen.say(f"{problem.model.size} degrees of freedom, {counts}", start="  ")
     _print_modes(screen, findings.beside)
-    _print_sensors(screen, findings.beside, most)
+    if (np.isfinite(problem.data.shape).sum(axis=2) > 1).any():
+        comac, sensors = findings.beside.comac, problem.data.sensors
+        order = np.argsort(np.where(np.isnan(comac), 2.0, comac), kind="stable").tolist()
+        worst = [f"{sensors[s]} {number(comac[s], '.4f', 'unknown')}" for s in order[:most]]
+        rest = [f"{len(order[most:])} more with --all"] * (most is not None and len(order) > most)
+        screen.say("")
+        screen.say(f"COMAC by sensor, the least first: {', '.join([*worst, *rest])}")
     _print_sensitivities(screen, findings.sensitivities, most)
     values = zip(problem.properties, problem.evaluate(problem.start).J, strict=True)
     rows = [
@@ -54,29 +60,15 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
 
 
 def _print_modes(screen: Screen, beside: Comparison) -> None:
-    rows, pairs, data = [], beside.pairs, beside.data
-    for mode, measured, q, mac in zip(
-        data.modes, data.mean_frequency, pairs.index.tolist(), pairs.mac, strict=True
-    ):
+    rows, pairs, measured = [], beside.pairs, beside.data.mean_frequency
+    for r, (mode, q, mac) in enumerate(zip(beside.data.modes, pairs.index, pairs.mac, strict=True)):
         f = float(beside.frequency[q])
-        error = 100 * (f / measured - 1)
-        cells = [number(measured, ".4g", ""), f"{f:.4g}"]
+        error = 100 * (f / measured[r] - 1)
+        cells = [number(measured[r], ".4g", ""), f"{f:.4g}"]
         cells.append(number(error, "+.1f" if abs(error) < 1e4 else "+.1e", ""))
         rows.append([str(mode), *cells, number(mac, ".4f", ""), str(q + 1)])
     columns = ["mode", "measured Hz", "model Hz", "error %", "MAC", "model mode"]
     screen.table("nominal model beside the measured modes", columns, rows)
-
-
-def _print_sensors(screen: Screen, beside: Comparison, most: int | None) -> None:
-    """Print the COMAC of the sensors, of many those of the worst ones."""
-    if not (np.isfinite(beside.data.shape).sum(axis=2) > 1).any():
-        return
-    values = beside.comac
-    order = np.argsort(np.where(np.isnan(values), 2.0, values), kind="stable").tolist()
-    parts = [f"{beside.data.sensors[s]} {number(values[s], '.4f', 'unknown')}" for s in order]
-    rest = [f"{len(parts[most:])} more with --all"] * (most is not None and len(parts) > most)
-    screen.say("")
-    screen.say(f"COMAC by sensor, the least first: {', '.join([*parts[:most], *rest])}")
 
 
 def _print_sensitivities(screen: Screen, sensitivities: Sensitivities, most: int | None) -> None:

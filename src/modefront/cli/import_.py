@@ -15,12 +15,7 @@ from modefront.study.importing import Imported, import_deck, import_model, refus
 
 
 def run_import(program: str, base: Path, output: Path, **given: Any) -> None:
-    """Read the jobs of a program, or make and run those of a deck; write a study, and print it.
-
-    The options that may be repeated are given as they are written: ``parameters`` as NAME=RUN, or
-    NAME=WHAT:NAME of a deck, ``factors`` as NAME=2.0, ``functions`` as NAME=TERM,TERM, ``checks``
-    as RUN:NAME=VALUE,….
-    """
+    """Read the jobs of a program, or make and run those of a deck; write a study, and print it."""
     refuse_study(output)
     terms = [_pair("--function", x, "NAME=TERM,TERM, such as t=t,t^3") for x in given["functions"]]
     common: dict[str, Any] = {

@@ -1,5 +1,6 @@
 """The command ``modefront``; what takes long to import is imported where a command needs it."""
 
+import io
 import os
 import signal
 import sys
@@ -15,7 +16,7 @@ from typing import Any
 import click
 
 from modefront._version import __version__
-from modefront.cli.terminal import complain, prepare, say, say_next, usage
+from modefront.cli.terminal import complain, prepare, say, say_next
 from modefront.errors import InputError, UnfinishedError, reason
 from modefront.text import json_of, one_line
 
@@ -452,7 +453,9 @@ def _status(heard: list[int]) -> int:
     except click.exceptions.Exit as exit_:
         return exit_.exit_code
     except (click.ClickException, InputError) as error:
-        complain(str(error) if isinstance(error, InputError) else usage(error))
+        if isinstance(error, click.ClickException):
+            error.show(out := io.StringIO())  # with a reference to --help
+        complain(str(error) if isinstance(error, InputError) else out.getvalue().rstrip())
         return WRONG_INPUT
     except (KeyboardInterrupt, click.Abort):
         complain("modefront: interrupted; what was done is kept, run again to continue")

@@ -305,10 +305,7 @@ def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
 
 
 def print_summary(data: Dataset, study: Path, folder: Path, costs: Costs) -> None:
-    """Print what a run has found and what this run of it has cost, in a few lines.
-
-    Where no model is to be used, the check of the study may say why.
-    """
+    """Print what a run has found and what this run of it has cost, in a few lines."""
     screen = Screen.of_output()
     screen.say(f"{data.attrs.get('study', '')}: results in {folder}", style="bold")
     failures = [str(x) for x in findings_of(data) if x.severity is Severity.FAILURE]
@@ -376,10 +373,7 @@ SHOWN = 6  # parameters, and predictions, that are printed unless all are asked 
 
 
 def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
-    """Print a comparison as tables, one column a study, and say which models are meant.
-
-    The first parameters and predictions are printed, or ``every`` one.
-    """
+    """Print a comparison, one column a study, with the first parameters, or ``every`` one."""
     screen = Screen.of_output()
     fronts, folders = comparison.fronts, [summary.name for summary in comparison.fronts]
     short, most = short_names(folders), None if every else SHOWN

@@ -229,10 +229,7 @@ def refuse_too_many(problem: UpdatingProblem, file: str) -> None:
 
 
 def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequence[int]) -> None:
-    """Raise InputError where no parameter changes a group: its minimum would be made of rounding.
-
-    ``unchanged`` are the positions of these groups.
-    """
+    """Raise InputError where no parameter changes a group, whose minimum were one of rounding."""
     faults = []
     for i in unchanged:
         remarks = dict.fromkeys(member.remark for member in problem.members[i])

@@ -24,7 +24,7 @@ from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion, writing
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import fortran, wrong
-from modefront.models.dofs import number_of, write_dofs
+from modefront.models.dofs import write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.parameters import exponents_of, form_of
 from modefront.outputs import output, write_text
@@ -93,14 +93,13 @@ class Imported(Shown):
             directory.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryDirectory(dir=directory, prefix=".import-") as name:
                 inner = Path(name)
-                text = _study(self, inner)
+                write_text(inner / "study.toml", _study(self, inner))
                 write_dofs(inner / "dofs.csv", self.terms.dofs)
                 if self.nominal.mesh is not None:
                     write_mesh(inner / "mesh.npz", self.nominal.mesh)
                 if self.changes:
                     write_changes(inner / CHANGES, self.changes)
                     write_text(inner / f"{KEPT}{self.changes[0].file}", self.deck)
-                write_text(inner / "study.toml", text)
                 add_schema([inner / "study.toml"])
                 files = sorted(inner.iterdir(), key=lambda file: file.name == "study.toml")
                 return [Path(shutil.move(file, directory / file.name)) for file in files]
@@ -179,14 +178,12 @@ def import_model(
     notes = list(nominal.notes)
     if program == "abaqus":  # nodes that others make move with the model, or are not told
         identified, gone, stayed = condensed(identified)
-        if gone:
-            notes.append(
-                f"{gone} massless degrees of freedom of the program are eliminated exactly"
-            )
+        what = "degrees of freedom of the program"
+        notes += [f"{gone} massless {what} are eliminated exactly"] * (gone > 0)
         if stayed:
             notes.append(
-                f"{stayed} degrees of freedom of the program are kept, without nodes: they have "
-                "mass, or several terms act on them, so that to eliminate them were not exact"
+                f"{stayed} {what} are kept, without nodes: they have mass, or several terms act on "
+                "them, so that to eliminate them were not exact"
             )
     frequencies, floating = _frequencies(identified, modes, notes, progress)
     changed: dict[str, list[Change]] = {}  # by the first run of each parameter
@@ -325,8 +322,7 @@ def _study(imported: Imported, folder: Path) -> str:
         *(["floating = true"] if imported.floating else []),
         *quantities,
     ]
-    used = [d for d in DIRECTIONS[:3] if ((dofs.direction == number_of(d)) & (dofs.node > 0)).any()]
-    if used:
+    if used := [d for d in DIRECTIONS[:3] if dofs.of_direction(d)]:
         base = ", ".join(f'{d} = {{ direction = "{d}" }}' for d in used)
         lines.append(f"base = {{ {base} }}")
     for name in imported.terms.parameters:
@@ -483,10 +479,8 @@ def import_deck(
     error = np.abs(computed[elastic] / printed[elastic] - 1).max(initial=0.0)
     note = f"the first {len(printed)} frequencies are those that the program prints, to {error:.0e}"
     if error >= 1e-4:  # as the digits of the program do not explain
-        shown = " ".join(f"{x:.5g}" for x in printed)
-        note = (
-            f"the program prints {shown} Hz, up to {100 * error:.2g} % from those of its matrices"
-        )
+        said = f"the program prints {' '.join(f'{x:.5g}' for x in printed)} Hz"
+        note = f"{said}, up to {100 * error:.2g} % from those of its matrices"
     return replace(imported, notes=(*imported.notes, note))
 
 
