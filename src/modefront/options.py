@@ -91,18 +91,17 @@ def chosen(key: str, schemas: Mapping[str, Schema]) -> Schema:
 
     The keys of all of them are listed, for editors, and what is wrong is said of single keys.
     """
-    known: dict[str, Schema] = {}
-    for schema in schemas.values():
-        said = {
-            name: each.get("description") for name, each in schema.get("properties", {}).items()
-        }
-        known |= {name: {"description": text, **OPEN} for name, text in said.items() if text}
-    cases = []
+    known, cases = dict[str, Schema](), []
     for name, schema in schemas.items():
+        of = schema.get("properties", {})
+        said = {x: each.get("description") for x, each in of.items()}
+        known |= {x: {"description": text, **OPEN} for x, text in said.items() if text}
         own: Schema = {"properties": {key: {"enum": [name]}}, "required": [key]}
-        properties = own["properties"] | schema.get("properties", {})
-        then = {**schema, "properties": properties, "required": [key, *schema.get("required", [])]}
-        cases.append({"if": {**own, **OPEN}, "then": then})
+        needed = {
+            "properties": own["properties"] | of,
+            "required": [key, *schema.get("required", [])],
+        }
+        cases.append({"if": {**own, **OPEN}, "then": {**schema, **needed}})
     listed = {key: {"enum": [*schemas]}, **known}
     return {"type": "object", "properties": listed, "required": [key], "allOf": cases}
 

@@ -4,6 +4,7 @@ import codecs
 import html
 import json
 import re
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
 from operator import methodcaller
@@ -29,7 +30,7 @@ SPELL = "modefront-spell"
 """Name of the error handler of encodings that spells what they lack, see `SPELLED`."""
 
 
-def clean(text: object, most: int | None = None) -> str:
+def clean(text: object, most: int = sys.maxsize) -> str:
     r"""Return a text in which all that is not printable is escaped, with ``most`` characters.
 
     A longer text loses its middle.
@@ -39,14 +40,10 @@ def clean(text: object, most: int | None = None) -> str:
     >>> clean("x" * 50 + "end", 13)
     'xxxxxxxx … nd'
     """
-    given = str(text)
-    if most is not None and len(given) > most:
-        # All that is left out could be escaped; only what is shown is looked at.
-        given = shortened(given, most)
+    given = shortened(str(text), most)  # only what is shown is looked at, not all that is given
     if given.isprintable():
         return given
-    escaped = "".join(c if c.isprintable() else _escape(c) for c in given)
-    return escaped if most is None else shortened(escaped, most)
+    return shortened("".join(c if c.isprintable() else _escape(c) for c in given), most)
 
 
 def shortened(text: str, most: int) -> str:

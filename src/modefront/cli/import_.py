@@ -31,7 +31,7 @@ def run_import(program: str, base: Path, output: Path, **given: Any) -> None:
             raise wrong(f"--{option[:-1]}", expected, given[option][0])
         whats = [_pair("--parameter", text, "NAME=WHAT:NAME") for text in given["parameters"]]
         imported = import_deck(base, dict(whats), run=given["run"], **common)
-        _print(imported, imported.write(output), 1)
+        _print(imported, imported.write(output))
         return
     runs, factors = defaultdict[str, list[Path]](list), defaultdict[str, list[float]](list)
     for text in given["parameters"]:
@@ -50,10 +50,10 @@ def run_import(program: str, base: Path, output: Path, **given: Any) -> None:
     options = JobOptions(*(given[x] for x in ("stiffness_name", "mass_name", "dofs", "deck")))
     common |= {"factors": factors, "checks": checks, "options": options}
     imported = import_model(program, base, runs, **common)
-    _print(imported, imported.write(output), len(checks))
+    _print(imported, imported.write(output))
 
 
-def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
+def _print(imported: Imported, files: Sequence[Path]) -> None:
     terms = imported.terms
     say(f"{terms.dofs.size} degrees of freedom")
     for note in imported.notes:
@@ -64,7 +64,7 @@ def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
         say(f"{term.name}: {' and '.join(term.matrices)}, at {size}{rank}")
     for error in imported.errors:
         say(f"the run for checking is what the terms say, to {error:.1e} of the greatest entry")
-    if not checks:
+    if not imported.errors:
         say("not checked: --check RUN:NAME=VALUE,… compares with one more run")
     if imported.frequencies is not None:
         shown = " ".join(f"{f:.5g}" for f in imported.frequencies)

@@ -20,16 +20,13 @@ from modefront.inputs import file_size, wrong
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry, axis_name
 from modefront.models.matrices import MatrixModel
-from modefront.options import NAME, Table, any_of, closed, keys, text, whole
+from modefront.options import NAME, Table, any_of, keys, of_options, text, whole
 from modefront.text import Shown
 
 FILE = text("the name of a file of modal data")
 COVARIANCE = text("the name of a file of covariances of shapes, in CSV")
-NODE = whole(0, 10**9)
-OF_PLACE = keys(["node", "direction"], node=NODE, direction=DIRECTION)
-PLACE = any_of(
-    NAME, closed({"node": NODE.schema, "direction": DIRECTION.schema}, ["node", "direction"])
-)
+OF_PLACE = keys(["node", "direction"], node=whole(0, 10**9), direction=DIRECTION)
+PLACE = any_of(NAME, of_options(OF_PLACE))
 
 
 @dataclass(frozen=True, repr=False)

@@ -47,12 +47,8 @@ ELEMENTS: Mapping[Kind, Callable[..., Group]] = {
 """Classes of groups by their kinds of elements."""
 
 MEMBERS: Mapping[str, Callable[..., Any]] = {
-    "support": fem.Support,
-    "spring": fem.Spring,
-    "mass": fem.Mass,
-    "link": fem.Link,
-    "coupling": fem.Coupling,
-    "load": fem.Load,
+    each.__name__.lower(): each
+    for each in (fem.Support, fem.Spring, fem.Mass, fem.Link, fem.Coupling, fem.Load)
 }
 """Classes of members at nodes by their tables."""
 
