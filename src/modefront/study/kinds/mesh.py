@@ -200,9 +200,9 @@ def _groups(model: opt.Table, mesh: Mesh) -> list[Group]:
     """Return the blocks of all groups; one group may have cells of several types."""
     out: list[Group] = []
     materials: dict[str, Any] = {}
-    for name, entry in model.entries("material", "a table E, nu, rho", "material"):
+    for key, entry in model.entries("material", "a table E, nu, rho", "material"):
         is_isotropic = not isinstance(entry.values.get("E"), list)
-        materials[name] = entry.record(fem.Material if is_isotropic else fem.Orthotropic)
+        materials[key] = entry.record(fem.Material if is_isotropic else fem.Orthotropic)
     declared = model.values.get("material")  # those with faults too, which are said there
     known = opt.one_of(*declared) if isinstance(declared, dict) and declared else MATERIAL
     for group in model.tables("group", required=True):
