@@ -146,17 +146,13 @@ class Requirement:
 
     expected: str  # the same in words
     schema: Schema  # of such a value; empty where `entries` are read by a reader of their own
-    # brings such a value into the form that is kept
-    convert: Callable[[Any], Any] = lambda value: value
-    # whether a value of this schema meets what no schema says
-    further: Callable[[Any], bool] = lambda _: True
-    # the class of a nested record, read from a table within the table; None for a value
-    record: type | None = None
+    convert: Callable[[Any], Any] = lambda value: value  # into the form that is kept
+    further: Callable[[Any], bool] = lambda _: True  # whether it meets what no schema says
+    record: type | None = None  # class of a record in a table within the table; None for a value
     # schema of a table with its entries, where these are read one by one and what is wrong is said
     # of each; empty where ``schema`` says all
     entries: Schema = field(default_factory=dict)
-    # reads such a table, given the `Table` with it and its key
-    read: "Callable[[Table, str], Any] | None" = None
+    read: "Callable[[Table, str], Any] | None" = None  # reads this table in another, by its key
 
     def holds(self, value: Any) -> bool:
         """Return whether a value in plain Python is so."""
@@ -408,10 +404,8 @@ class Table:
     values: dict[str, Any]  # what the table holds
     faults: list[Fault]  # all that is wrong with the file, shared by its tables
     requested: list[str] = field(default_factory=list)  # keys that were read or are known
-    # paths of the files that the tables name, shared by them; see `path`
-    files: list[Path] = field(default_factory=list)
-    # records of what was found beside faults, shared by the tables
-    notes: list[object] = field(default_factory=list)
+    files: list[Path] = field(default_factory=list)  # that the tables name, shared; see `path`
+    notes: list[object] = field(default_factory=list)  # of what was found beside faults, shared
 
     def fault(self, key: str, expected: str, found: str) -> None:
         """Note that something is wrong; an empty key means the table itself."""

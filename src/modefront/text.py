@@ -7,6 +7,7 @@ import re
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
+from itertools import chain, count
 from operator import methodcaller
 from pathlib import Path
 from typing import Any
@@ -80,11 +81,8 @@ def file_name(name: str, taken: Iterable[str] = ()) -> str:
     if kept.casefold() in RESERVED:
         kept = f"{kept}-"
     used = {each.casefold() for each in taken}
-    out, number = kept, 1
-    while out.casefold() in used:
-        number += 1
-        out = f"{kept}-{number}"
-    return out
+    names = chain([kept], (f"{kept}-{number}" for number in count(2)))
+    return next(name for name in names if name.casefold() not in used)
 
 
 def _escape(character: str) -> str:

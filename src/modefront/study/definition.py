@@ -31,8 +31,7 @@ class Origin:
     file: Path  # the study file
     digest: str  # hash of this file and of all files that it names
     work: str  # hash of the inputs of the problem
-    # the problem that was read; a study of another problem has another origin
-    problem: UpdatingProblem
+    problem: UpdatingProblem  # that was read; a study of another one has another origin
     remark: str = ""  # reason why a requested option is not in use
     notes: tuple[Finding, ...] = ()  # mistakes that were found when it was read
 

@@ -56,10 +56,8 @@ class Estimate:
     search: float  # seconds of a search
     searches: Mapping[str, Span]  # searches of each stage that is made of them
     plan: Mapping[str, Span]  # seconds of each stage
-    # seconds of the program itself, which starts, reads the study and writes results
-    start: Span = (0.0, 0.0)
-    # what would make the run shorter, that of the longest part first; none for short runs
-    advice: tuple[str, ...] = ()
+    start: Span = (0.0, 0.0)  # seconds of the program itself, which starts, reads and writes
+    advice: tuple[str, ...] = ()  # on shorter runs, on the longest part first; none for short ones
 
     @property
     def range(self) -> Span:
