@@ -35,10 +35,10 @@ def inner(group: h5py.Group, name: str) -> Any:
 
 def check_tree(group: h5py.Group) -> None:
     """Raise ValueError where any part of a group, at any depth, is kept elsewhere."""
-    waiting = [group]
-    while waiting:
-        node = waiting.pop()
-        waiting += [item for name in node if isinstance(item := inner(node, name), h5py.Group)]
+    names: list[str] = []
+    group.visit_links(names.append)  # once each, whatever groups hold each other
+    for name in names:
+        inner(group, name)
 
 
 def variables(path: Path) -> dict[str, tuple[int, ...]]:
