@@ -6,7 +6,6 @@ from modefront.cli.layout import Screen, number, plural
 from modefront.diagnosis.comparison import Comparison
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import found
-from modefront.identifiability.sensitivity import Sensitivities
 from modefront.results.remarks import MOST, digest
 from modefront.study.check import Findings
 from modefront.study.definition import Study
@@ -37,7 +36,15 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         rest = [f"{len(order[most:])} more with --all"] * (most is not None and len(order) > most)
         screen.say("")
         screen.say(f"COMAC by sensor, the least first: {', '.join([*worst, *rest])}")
-    _print_sensitivities(screen, findings.sensitivities, most)
+    of = findings.sensitivities
+    columns = ["parameter", *(f"f{mode}" for mode in of.modes), "shapes"]
+    shares = np.column_stack([of.frequency, of.shape]).round(3)
+    rows = [
+        [name, *(number(x + 0.0, ".3f" if abs(x) < 10 else ".2g", "") for x in row)]
+        for name, row in zip(of.parameters, shares, strict=True)
+    ]
+    more = f"; {len(rows) - ROWS} more with --all" * (most is not None and len(rows) > ROWS)
+    screen.table(f"sensitivity, % for 1 % of a parameter{more}", columns, rows[:most])
     values = zip(problem.properties, problem.evaluate(problem.start).J, strict=True)
     rows = [
         [name, f"{a:g}", f"{J:.5g}", f"{np.sqrt(J / a):.4g}"]
@@ -50,7 +57,7 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
     if findings.spoilt:
         sentences.append(str(found("first-this")))
     else:
-        names, known = findings.sensitivities.superfluous, findings.determined
+        names, known = of.superfluous, findings.determined
         fixed = [found("superfluous", enumeration(names), many=len(names) > 1)] if names else []
         sentences += map(str, (*fixed, *known[-1:], *known[:-1]))
     for line in digest(sentences, f"modefront check --all {study.file}", None if every else MOST):
@@ -69,16 +76,3 @@ def _print_modes(screen: Screen, beside: Comparison) -> None:
         rows.append([str(mode), *cells, number(mac, ".4f", ""), str(q + 1)])
     columns = ["mode", "measured Hz", "model Hz", "error %", "MAC", "model mode"]
     screen.table("nominal model beside the measured modes", columns, rows)
-
-
-def _print_sensitivities(screen: Screen, sensitivities: Sensitivities, most: int | None) -> None:
-    """Print the sensitivities, parameters × modes; of many parameters, the first ones."""
-    columns = ["parameter", *(f"f{mode}" for mode in sensitivities.modes), "shapes"]
-    values = np.column_stack([sensitivities.frequency, sensitivities.shape]).round(3)
-    rows = [
-        [name, *(number(x + 0.0, ".3f" if abs(x) < 10 else ".2g", "") for x in row)]
-        for name, row in zip(sensitivities.parameters, values, strict=True)
-    ]
-    rest = f"; {len(rows) - ROWS} more with --all" * (most is not None and len(rows) > ROWS)
-    title = f"sensitivity, % for 1 % of a parameter{rest}"
-    screen.table(title, columns, rows[:most])
