@@ -1,7 +1,4 @@
-"""Structural model updating with all Pareto-optimal models.
-
-The public names are imported when they are first used, so that ``import modefront`` is quick.
-"""
+"""Structural model updating with all Pareto-optimal models."""
 
 from typing import TYPE_CHECKING
 

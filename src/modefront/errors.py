@@ -2,7 +2,7 @@
 
 import difflib
 import errno
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -62,24 +62,19 @@ class InputError(ValueError):
 
     def __init__(self, faults: Fault | Iterable[Fault]) -> None:
         self.faults = (faults,) if isinstance(faults, Fault) else tuple(faults)
-        super().__init__(_message(self.faults))
+        lines: list[str] = []  # as many as a message holds
+        for line in map(str, self.faults[:MOST_LINES]):
+            if lines and sum(map(len, lines)) + len(lines) + len(line) > MOST_CHARACTERS - 41:
+                break
+            lines.append(line)
+        if len(lines) < len(self.faults):
+            lines = lines[: MOST_LINES - 1]
+            lines.append(f"and {len(self.faults) - len(lines)} more that are wrong")
+        super().__init__("\n".join(lines))
 
     def __reduce__(self) -> "tuple[type[InputError], tuple[tuple[Fault, ...]]]":
         """Return how the error is made again, in another process."""
         return type(self), (self.faults,)
-
-
-def _message(faults: Sequence[Fault]) -> str:
-    """Return the faults, a line each, as many as a message holds, and how many more there are."""
-    lines: list[str] = []
-    for line in map(str, faults[:MOST_LINES]):
-        if lines and sum(map(len, lines)) + len(lines) + len(line) > MOST_CHARACTERS - 41:
-            break
-        lines.append(line)
-    if len(lines) < len(faults):
-        lines = lines[: MOST_LINES - 1]
-        lines.append(f"and {len(faults) - len(lines)} more that are wrong")
-    return "\n".join(lines)
 
 
 def wrong(option: str, expected: str, found: object) -> InputError:

@@ -1,8 +1,4 @@
-"""Families that users extend: kinds of models, residuals and predictions, methods, readers.
-
-A member is of the package, is added by a call of `modefront.register`, or is brought by an
-installed package as an entry point.
-"""
+"""Families that users extend: kinds of models, residuals and predictions, methods, readers."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,9 +15,9 @@ T = TypeVar("T")
 class Family(Mapping[str, T], Generic[T]):
     """The members of a family by their names, in the order in which they came.
 
-    Entry points of a ``group`` bring members; ``what`` describes one in messages. ``takes`` says
-    whether an object can be a member, ``faults`` what keeps it from being one. No other one takes
-    the place of the package's ``own``.
+    They are the package's ``own``, those added by `modefront.register`, and those brought by entry
+    points of a ``group``; ``what`` describes one in messages. ``takes`` says whether an object can
+    be a member, ``faults`` what keeps it from being one.
     """
 
     group: str
@@ -62,9 +58,9 @@ class Family(Mapping[str, T], Generic[T]):
             for each in _entry_points().select(group=self.group):
                 try:
                     self.add(each.load())
+                except InputError:
+                    raise
                 except Exception as error:  # the package of another may raise anything
-                    if isinstance(error, InputError):
-                        raise
                     place = f"entry point '{each.name}' = {each.value} of {self.group}"
                     raise wrong(place, self.what, reason(error)) from None
             self._is_loaded = True

@@ -3,6 +3,7 @@
 import os
 import re
 import stat
+from collections import Counter
 from collections.abc import Hashable, Iterable
 from pathlib import Path
 
@@ -117,11 +118,9 @@ def counted(file: object, place: str, what: str, declared: int, found: float) ->
 
 def once(file: object, place: str, what: str, keys: Iterable[Hashable]) -> None:
     """Raise InputError where a key comes again."""
-    seen: set[Hashable] = set()
-    for key in keys:
-        if key in seen:
+    for key, count in Counter(keys).items():
+        if count > 1:
             raise InputError(Fault(str(file), place, f"{what} once", f"{key} again"))
-        seen.add(key)
 
 
 def first_repeated(row: Ints, column: Ints, columns: int) -> int | None:

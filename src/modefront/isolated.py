@@ -185,29 +185,23 @@ def serve() -> None:
     for number in (1, 2):
         os.dup2(nowhere, number)
     for line in sys.stdin:
-        found = json.dumps(_read(*json.loads(line)))
-        os.write(answers, f"{found}\n".encode())
-
-
-def _read(
-    function: str, called: Sequence[str], answer: str, memory: int, work: str
-) -> tuple[str, object]:
-    """Read one file, and write its arrays into another; return the rest, or what is wrong."""
-    path, *arguments = called
-    try:
-        importlib.import_module(function.split(":")[0])
-        os.chdir(work)
-        limit(memory)
-        arrays, texts = _called(function, Path(path), arguments)
-        with output(Path(answer)) as stream:
-            np.savez(stream, allow_pickle=False, **arrays)
-        return "", texts
-    except InputError as error:
-        return FAULTS, [astuple(fault) for fault in error.faults]
-    except MemoryError:
-        return TOO_MUCH.format(memory / 1e9), None
-    except Exception as error:
-        return reason(error), None
+        function, (path, *arguments), answer, memory, work = json.loads(line)
+        found: tuple[str, object]  # what is wrong with the file, and what belongs to that
+        try:
+            importlib.import_module(function.split(":")[0])
+            os.chdir(work)
+            limit(memory)
+            arrays, texts = _called(function, Path(path), arguments)
+            with output(Path(answer)) as stream:
+                np.savez(stream, allow_pickle=False, **arrays)
+            found = "", texts
+        except InputError as error:
+            found = FAULTS, [astuple(fault) for fault in error.faults]
+        except MemoryError:
+            found = TOO_MUCH.format(memory / 1e9), None
+        except Exception as error:
+            found = reason(error), None
+        os.write(answers, f"{json.dumps(found)}\n".encode())
 
 
 def limit(memory: int) -> None:

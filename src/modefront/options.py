@@ -4,10 +4,8 @@ An option is a field of a frozen dataclass. Its annotation has its requirement: 
 ``Annotated`` with a `Requirement`, or with a function that returns one when it is needed; ``None``
 besides, where the annotation has it. `check_fields`, called from ``__post_init__``, as that of
 `Checked` does, compares all fields with their requirements and brings their values into plain
-Python: the same record is made from TOML, from literals and from numpy scalars.
-
-A `Table` of a TOML file reads its keys by the same requirements, and collects the faults. A
-requirement has a JSON Schema (draft 7).
+Python: the same record is made from TOML, from literals and from numpy scalars. A `Table` of a TOML
+file reads its keys by the same requirements, which are JSON Schemas (draft 7) as far as these go.
 """
 
 import inspect
@@ -93,18 +91,17 @@ def chosen(key: str, schemas: Mapping[str, Schema]) -> Schema:
 
     The keys of all of them are listed, for editors, and what is wrong is said of single keys.
     """
-    known: dict[str, Schema] = {}
-    for schema in schemas.values():
-        said = {
-            name: each.get("description") for name, each in schema.get("properties", {}).items()
-        }
-        known |= {name: {"description": text, **OPEN} for name, text in said.items() if text}
-    cases = []
+    known, cases = dict[str, Schema](), []
     for name, schema in schemas.items():
+        of = schema.get("properties", {})
+        said = {x: each.get("description") for x, each in of.items()}
+        known |= {x: {"description": text, **OPEN} for x, text in said.items() if text}
         own: Schema = {"properties": {key: {"enum": [name]}}, "required": [key]}
-        properties = own["properties"] | schema.get("properties", {})
-        then = {**schema, "properties": properties, "required": [key, *schema.get("required", [])]}
-        cases.append({"if": {**own, **OPEN}, "then": then})
+        needed = {
+            "properties": own["properties"] | of,
+            "required": [key, *schema.get("required", [])],
+        }
+        cases.append({"if": {**own, **OPEN}, "then": {**schema, **needed}})
     listed = {key: {"enum": [*schemas]}, **known}
     return {"type": "object", "properties": listed, "required": [key], "allOf": cases}
 
@@ -149,17 +146,13 @@ class Requirement:
 
     expected: str  # the same in words
     schema: Schema  # of such a value; empty where `entries` are read by a reader of their own
-    # brings such a value into the form that is kept
-    convert: Callable[[Any], Any] = lambda value: value
-    # whether a value of this schema meets what no schema says
-    further: Callable[[Any], bool] = lambda _: True
-    # the class of a nested record, read from a table within the table; None for a value
-    record: type | None = None
+    convert: Callable[[Any], Any] = lambda value: value  # into the form that is kept
+    further: Callable[[Any], bool] = lambda _: True  # whether it meets what no schema says
+    record: type | None = None  # class of a record in a table within the table; None for a value
     # schema of a table with its entries, where these are read one by one and what is wrong is said
     # of each; empty where ``schema`` says all
     entries: Schema = field(default_factory=dict)
-    # reads such a table, given the `Table` with it and its key
-    read: "Callable[[Table, str], Any] | None" = None
+    read: "Callable[[Table, str], Any] | None" = None  # reads this table in another, by its key
 
     def holds(self, value: Any) -> bool:
         """Return whether a value in plain Python is so."""
@@ -291,10 +284,8 @@ def options(record: Callable[..., Any]) -> tuple[Option, ...]:
     """Return the fields of a class of records, or arguments of a function, with requirements."""
     out = []
     for each, hint, meaning in _declared(record):
-        requirement = _requirement(hint)
-        if requirement is not None:
-            required = each.default is each.empty
-            optional = types.NoneType in get_args(hint)
+        if requirement := _requirement(hint):
+            required, optional = each.default is each.empty, types.NoneType in get_args(hint)
             default = None if required else plain(each.default)
             if default in ("", []) or not fits(default, requirement.schema):
                 default = None
@@ -319,15 +310,15 @@ def of_options(known: Iterable[Option]) -> Schema:
 
 def _requirement(hint: Any) -> Requirement | None:
     """Return the requirement in an annotation, None where it has none."""
-    if get_origin(hint) is Literal:
-        return one_of(*get_args(hint))
-    if get_origin(hint) is Annotated:
-        given = (each() if callable(each) else each for each in get_args(hint)[1:])
-        return next((each for each in given if isinstance(each, Requirement)), None)
-    if get_origin(hint) in (types.UnionType, typing.Union):
-        known = (_requirement(part) for part in get_args(hint))
-        return next((each for each in known if each is not None), None)
-    return None
+    origin, parts = get_origin(hint), get_args(hint)
+    if origin is Literal:
+        return one_of(*parts)
+    known: Iterable[Any] = ()
+    if origin is Annotated:
+        known = (each() if callable(each) else each for each in parts[1:])
+    elif origin in (types.UnionType, typing.Union):
+        known = map(_requirement, parts)
+    return next((each for each in known if isinstance(each, Requirement)), None)
 
 
 def check_fields(record: Any) -> None:
@@ -413,10 +404,8 @@ class Table:
     values: dict[str, Any]  # what the table holds
     faults: list[Fault]  # all that is wrong with the file, shared by its tables
     requested: list[str] = field(default_factory=list)  # keys that were read or are known
-    # paths of the files that the tables name, shared by them; see `path`
-    files: list[Path] = field(default_factory=list)
-    # records of what was found beside faults, shared by the tables
-    notes: list[object] = field(default_factory=list)
+    files: list[Path] = field(default_factory=list)  # that the tables name, shared; see `path`
+    notes: list[object] = field(default_factory=list)  # of what was found beside faults, shared
 
     def fault(self, key: str, expected: str, found: str) -> None:
         """Note that something is wrong; an empty key means the table itself."""
@@ -431,10 +420,7 @@ class Table:
 
     @contextmanager
     def noting(self, key: str = "") -> Iterator[None]:
-        """Note the faults of options, whose places are keys of the table, and of files.
-
-        Both have a ``key`` before their places.
-        """
+        """Note the faults of options, in keys of the table, and of files, both behind a ``key``."""
         try:
             yield
         except InputError as error:
@@ -446,10 +432,7 @@ class Table:
                     self.fault(f"{key} {fault.place}".strip(), fault.expected, fault.found)
 
     def path(self, name: str) -> Path:
-        """Return the path of a file that a table names, relative to the TOML file, and note it.
-
-        What a file is read for depends on all files noted in ``files``.
-        """
+        """Return the path of a file that a table names, relative to the TOML file, and note it."""
         path = Path(self.file).parent / name
         if path not in self.files:
             self.files.append(path)
@@ -487,11 +470,7 @@ class Table:
         return values if len(self.faults) == before else None
 
     def record(self, record: Callable[..., T]) -> T | None:
-        """Return the record of options that the table describes, None where something is wrong.
-
-        Keys are its fields. Everything that is wrong is noted: single values first, and where these
-        are right, what contradicts another.
-        """
+        """Return the record of options whose fields are the keys; None where something is wrong."""
         values = self.read(options(record))
         with self.noting():
             return None if values is None else record(**values)
@@ -528,7 +507,7 @@ class Table:
 
     def tables(self, key: str, required: bool) -> "list[Table]":
         """Return the tables of a list, such as ``[[parameter]]``."""
-        path = f"{self.place.strip('[]')}.{key}" if self.place else key
+        path = f"{self.place.strip('[]')}.{key}".lstrip(".")
         expected = f"at least one table [[{path}]]" if required else f"tables [[{path}]]"
         value = self.value(key, Requirement(expected, array(TABLE, 1)), ... if required else [])
         out = []

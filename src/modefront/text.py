@@ -4,8 +4,10 @@ import codecs
 import html
 import json
 import re
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
+from itertools import chain, count
 from operator import methodcaller
 from pathlib import Path
 from typing import Any
@@ -29,7 +31,7 @@ SPELL = "modefront-spell"
 """Name of the error handler of encodings that spells what they lack, see `SPELLED`."""
 
 
-def clean(text: object, most: int | None = None) -> str:
+def clean(text: object, most: int = sys.maxsize) -> str:
     r"""Return a text in which all that is not printable is escaped, with ``most`` characters.
 
     A longer text loses its middle.
@@ -39,14 +41,10 @@ def clean(text: object, most: int | None = None) -> str:
     >>> clean("x" * 50 + "end", 13)
     'xxxxxxxx … nd'
     """
-    given = str(text)
-    if most is not None and len(given) > most:
-        # All that is left out could be escaped; only what is shown is looked at.
-        given = shortened(given, most)
+    given = shortened(str(text), most)  # only what is shown is looked at, not all that is given
     if given.isprintable():
         return given
-    escaped = "".join(c if c.isprintable() else _escape(c) for c in given)
-    return escaped if most is None else shortened(escaped, most)
+    return shortened("".join(c if c.isprintable() else _escape(c) for c in given), most)
 
 
 def shortened(text: str, most: int) -> str:
@@ -83,11 +81,8 @@ def file_name(name: str, taken: Iterable[str] = ()) -> str:
     if kept.casefold() in RESERVED:
         kept = f"{kept}-"
     used = {each.casefold() for each in taken}
-    out, number = kept, 1
-    while out.casefold() in used:
-        number += 1
-        out = f"{kept}-{number}"
-    return out
+    names = chain([kept], (f"{kept}-{number}" for number in count(2)))
+    return next(name for name in names if name.casefold() not in used)
 
 
 def _escape(character: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
@@ -54,3 +55,11 @@ def test_a_file_with_faults_is_not_read(
         mf.read_results(tmp_path)
     assert str(tmp_path / FILE) in str(error.value)
     assert says in str(error.value)
+
+
+def test_groups_that_hold_each_other_end(whole: xr.Dataset, tmp_path: Path) -> None:
+    write(whole, tmp_path / FILE)
+    with h5py.File(tmp_path / FILE, "a") as file:
+        group = file.create_group("a")
+        group["b"] = group
+    xr.testing.assert_identical(mf.read_results(tmp_path).dataset, whole)

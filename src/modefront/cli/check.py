@@ -6,7 +6,6 @@ from modefront.cli.layout import Screen, number, plural
 from modefront.diagnosis.comparison import Comparison
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import found
-from modefront.identifiability.sensitivity import Sensitivities
 from modefront.results.remarks import MOST, digest
 from modefront.study.check import Findings
 from modefront.study.definition import Study
@@ -30,8 +29,22 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         counts += f"; {plural(int(silent.sum()), 'sensor')} without data"
     screen.say(f"{problem.model.size} degrees of freedom, {counts}", start="  ")
     _print_modes(screen, findings.beside)
-    _print_sensors(screen, findings.beside, most)
-    _print_sensitivities(screen, findings.sensitivities, most)
+    if (np.isfinite(problem.data.shape).sum(axis=2) > 1).any():
+        comac, sensors = findings.beside.comac, problem.data.sensors
+        order = np.argsort(np.where(np.isnan(comac), 2.0, comac), kind="stable").tolist()
+        worst = [f"{sensors[s]} {number(comac[s], '.4f', 'unknown')}" for s in order[:most]]
+        rest = [f"{len(order[most:])} more with --all"] * (most is not None and len(order) > most)
+        screen.say("")
+        screen.say(f"COMAC by sensor, the least first: {', '.join([*worst, *rest])}")
+    of = findings.sensitivities
+    columns = ["parameter", *(f"f{mode}" for mode in of.modes), "shapes"]
+    shares = np.column_stack([of.frequency, of.shape]).round(3)
+    rows = [
+        [name, *(number(x + 0.0, ".3f" if abs(x) < 10 else ".2g", "") for x in row)]
+        for name, row in zip(of.parameters, shares, strict=True)
+    ]
+    more = f"; {len(rows) - ROWS} more with --all" * (most is not None and len(rows) > ROWS)
+    screen.table(f"sensitivity, % for 1 % of a parameter{more}", columns, rows[:most])
     values = zip(problem.properties, problem.evaluate(problem.start).J, strict=True)
     rows = [
         [name, f"{a:g}", f"{J:.5g}", f"{np.sqrt(J / a):.4g}"]
@@ -44,7 +57,7 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
     if findings.spoilt:
         sentences.append(str(found("first-this")))
     else:
-        names, known = findings.sensitivities.superfluous, findings.determined
+        names, known = of.superfluous, findings.determined
         fixed = [found("superfluous", enumeration(names), many=len(names) > 1)] if names else []
         sentences += map(str, (*fixed, *known[-1:], *known[:-1]))
     for line in digest(sentences, f"modefront check --all {study.file}", None if every else MOST):
@@ -54,39 +67,12 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
 
 
 def _print_modes(screen: Screen, beside: Comparison) -> None:
-    rows, pairs, data = [], beside.pairs, beside.data
-    for mode, measured, q, mac in zip(
-        data.modes, data.mean_frequency, pairs.index.tolist(), pairs.mac, strict=True
-    ):
+    rows, pairs, measured = [], beside.pairs, beside.data.mean_frequency
+    for r, (mode, q, mac) in enumerate(zip(beside.data.modes, pairs.index, pairs.mac, strict=True)):
         f = float(beside.frequency[q])
-        error = 100 * (f / measured - 1)
-        cells = [number(measured, ".4g", ""), f"{f:.4g}"]
+        error = 100 * (f / measured[r] - 1)
+        cells = [number(measured[r], ".4g", ""), f"{f:.4g}"]
         cells.append(number(error, "+.1f" if abs(error) < 1e4 else "+.1e", ""))
         rows.append([str(mode), *cells, number(mac, ".4f", ""), str(q + 1)])
     columns = ["mode", "measured Hz", "model Hz", "error %", "MAC", "model mode"]
     screen.table("nominal model beside the measured modes", columns, rows)
-
-
-def _print_sensors(screen: Screen, beside: Comparison, most: int | None) -> None:
-    """Print the COMAC of the sensors, of many those of the worst ones."""
-    if not (np.isfinite(beside.data.shape).sum(axis=2) > 1).any():
-        return
-    values = beside.comac
-    order = np.argsort(np.where(np.isnan(values), 2.0, values), kind="stable").tolist()
-    parts = [f"{beside.data.sensors[s]} {number(values[s], '.4f', 'unknown')}" for s in order]
-    rest = [f"{len(parts[most:])} more with --all"] * (most is not None and len(parts) > most)
-    screen.say("")
-    screen.say(f"COMAC by sensor, the least first: {', '.join([*parts[:most], *rest])}")
-
-
-def _print_sensitivities(screen: Screen, sensitivities: Sensitivities, most: int | None) -> None:
-    """Print the sensitivities, parameters × modes; of many parameters, the first ones."""
-    columns = ["parameter", *(f"f{mode}" for mode in sensitivities.modes), "shapes"]
-    values = np.column_stack([sensitivities.frequency, sensitivities.shape]).round(3)
-    rows = [
-        [name, *(number(x + 0.0, ".3f" if abs(x) < 10 else ".2g", "") for x in row)]
-        for name, row in zip(sensitivities.parameters, values, strict=True)
-    ]
-    rest = f"; {len(rows) - ROWS} more with --all" * (most is not None and len(rows) > ROWS)
-    title = f"sensitivity, % for 1 % of a parameter{rest}"
-    screen.table(title, columns, rows[:most])

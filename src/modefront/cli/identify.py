@@ -22,11 +22,9 @@ def run_identify(
     report: Path | None,
     **by_hand: Any,
 ) -> None:
-    """Identify the modes of a test and write them; print what was found.
+    """Identify the modes of a test, write them and print what was found.
 
-    ``by_hand`` are the numbers to keep and to drop, and seeds.
-
-    Raises InputError where the input is wrong, and UnfinishedError where no mode was found.
+    ``by_hand`` are the numbers to keep and to drop, and seeds. Raises UnfinishedError for no modes.
     """
     if band and band[0] >= band[1]:
         raise click.UsageError(f"--band: expected LOW below HIGH, found {band[0]:g} {band[1]:g}")

@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,19 +15,13 @@ from modefront.study.importing import Imported, import_deck, import_model, refus
 
 
 def run_import(program: str, base: Path, output: Path, **given: Any) -> None:
-    """Read the jobs of a program, or make and run those of a deck; write a study, and print it.
-
-    The options that may be repeated are given as they are written: ``parameters`` as NAME=RUN, or
-    NAME=WHAT:NAME of a deck, ``factors`` as NAME=2.0, ``functions`` as NAME=TERM,TERM, ``checks``
-    as RUN:NAME=VALUE,….
-    """
+    """Read the jobs of a program, or make and run those of a deck; write a study, and print it."""
     refuse_study(output)
-    options = JobOptions(*(given[x] for x in ("stiffness_name", "mass_name", "dofs", "deck")))
     terms = [_pair("--function", x, "NAME=TERM,TERM, such as t=t,t^3") for x in given["functions"]]
     common: dict[str, Any] = {
         "functions": {name: [term.strip() for term in x.split(",")] for name, x in terms},
         "modes": given["modes"],
-        "progress": lambda text: say(text, err=True),
+        "progress": partial(say, err=True),
     }
     if given["run"] is not None:
         if program != "calculix":
@@ -36,7 +31,7 @@ def run_import(program: str, base: Path, output: Path, **given: Any) -> None:
             raise wrong(f"--{option[:-1]}", expected, given[option][0])
         whats = [_pair("--parameter", text, "NAME=WHAT:NAME") for text in given["parameters"]]
         imported = import_deck(base, dict(whats), run=given["run"], **common)
-        _print(imported, imported.write(output), 1)
+        _print(imported, imported.write(output))
         return
     runs, factors = defaultdict[str, list[Path]](list), defaultdict[str, list[float]](list)
     for text in given["parameters"]:
@@ -45,13 +40,20 @@ def run_import(program: str, base: Path, output: Path, **given: Any) -> None:
     for text in given["factors"]:
         name, factor = _pair("--factor", text, "NAME=FACTOR")
         factors[name].append(_number("--factor", factor))
-    checks = [_check(text) for text in given["checks"]]
-    more: dict[str, Any] = {"factors": factors, "checks": checks, "options": options}
-    imported = import_model(program, base, runs, **more, **common)
-    _print(imported, imported.write(output), len(checks))
+    checks, form = [], "RUN:NAME=VALUE,NAME=VALUE"
+    for text in given["checks"]:
+        run, _, values = text.rpartition(":")
+        if not run.strip():
+            raise wrong("--check", form, repr(text))
+        pairs = [_pair("--check", part, form) for part in values.split(",")]
+        checks.append((Path(run), {name: _number("--check", value) for name, value in pairs}))
+    options = JobOptions(*(given[x] for x in ("stiffness_name", "mass_name", "dofs", "deck")))
+    common |= {"factors": factors, "checks": checks, "options": options}
+    imported = import_model(program, base, runs, **common)
+    _print(imported, imported.write(output))
 
 
-def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
+def _print(imported: Imported, files: Sequence[Path]) -> None:
     terms = imported.terms
     say(f"{terms.dofs.size} degrees of freedom")
     for note in imported.notes:
@@ -62,7 +64,7 @@ def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
         say(f"{term.name}: {' and '.join(term.matrices)}, at {size}{rank}")
     for error in imported.errors:
         say(f"the run for checking is what the terms say, to {error:.1e} of the greatest entry")
-    if not checks:
+    if not imported.errors:
         say("not checked: --check RUN:NAME=VALUE,… compares with one more run")
     if imported.frequencies is not None:
         shown = " ".join(f"{f:.5g}" for f in imported.frequencies)
@@ -79,15 +81,6 @@ def _pair(option: str, text: str, form: str) -> tuple[str, str]:
     if not sign or not name.strip() or not value.strip():
         raise wrong(option, form, repr(text))
     return name.strip(), value.strip()
-
-
-def _check(text: str) -> tuple[Path, dict[str, float]]:
-    form = "RUN:NAME=VALUE,NAME=VALUE"
-    run, _, values = text.rpartition(":")
-    if not run.strip():
-        raise wrong("--check", form, repr(text))
-    pairs = [_pair("--check", part, form) for part in values.split(",")]
-    return Path(run), {name: _number("--check", value) for name, value in pairs}
 
 
 def _number(option: str, text: str) -> float:

@@ -133,10 +133,8 @@ class Screen:
 
 def _joined(cells: Sequence[str], widths: Sequence[int], keys: int) -> str:
     """Return a line; names of rows are at the left of their columns, numbers at the right."""
-    spaces = [" " * (width - cell_len(x)) for x, width in zip(cells, widths, strict=True)]
-    parts = [
-        x + y if j < keys else y + x for j, (x, y) in enumerate(zip(cells, spaces, strict=True))
-    ]
+    pairs = [(x, " " * (width - cell_len(x))) for x, width in zip(cells, widths, strict=True)]
+    parts = [x + space for x, space in pairs[:keys]] + [space + x for x, space in pairs[keys:]]
     return (" " * GAP).join(parts)
 
 

@@ -1,5 +1,6 @@
 """The command ``modefront``; what takes long to import is imported where a command needs it."""
 
+import io
 import os
 import signal
 import sys
@@ -15,8 +16,8 @@ from typing import Any
 import click
 
 from modefront._version import __version__
-from modefront.cli.terminal import complain, prepare, say, say_next, usage
-from modefront.errors import InputError, UnfinishedError, reason
+from modefront.cli.terminal import complain, prepare, say, say_next
+from modefront.errors import InputError, UnfinishedError, reason, refuse
 from modefront.text import json_of, one_line
 
 PATH = click.Path(path_type=Path)
@@ -178,11 +179,10 @@ def run(
         for path in of_another_program(loaded, directory):
             say(f"not taken over, and may be deleted: {path}, by another version", err=True)
         if refine is not None:
-            try:
-                loaded = replace(loaded, pareto=replace(loaded.pareto, refined=refine))
-            except InputError as error:
-                named = {"file": str(study), "place": "--refine"}
-                raise InputError(replace(fault, **named) for fault in error.faults) from None
+            pareto = replace(loaded.pareto, refined=refine)
+            faults = pareto.faults(len(loaded.problem.groups))
+            refuse(replace(fault, file=str(study), place="--refine") for fault in faults)
+            loaded = replace(loaded, pareto=pareto)
         expected = estimate(loaded, time.process_time())
         if expected is not None and expected.range[1] > SHORT:
             say_estimate(expected, err=True)
@@ -452,7 +452,9 @@ def _status(heard: list[int]) -> int:
     except click.exceptions.Exit as exit_:
         return exit_.exit_code
     except (click.ClickException, InputError) as error:
-        complain(str(error) if isinstance(error, InputError) else usage(error))
+        if isinstance(error, click.ClickException):
+            error.show(out := io.StringIO())  # with a reference to --help
+        complain(str(error) if isinstance(error, InputError) else out.getvalue().rstrip())
         return WRONG_INPUT
     except (KeyboardInterrupt, click.Abort):
         complain("modefront: interrupted; what was done is kept, run again to continue")

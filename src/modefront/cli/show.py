@@ -1,6 +1,6 @@
 """Results and comparisons in the terminal, an overview or full lists, and as JSON."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import chain, groupby
 from operator import attrgetter
 from pathlib import Path
@@ -45,10 +45,8 @@ def models_in(screen: Screen, data: Dataset, most: int, full: str) -> list[Line]
         for x in each.quantities
         if x.variable in each.kind.ranged[:1]  # the main ones
     ]
-    order = {
-        name: np.argsort(-np.nan_to_num(x), kind="stable")
-        for name, x in (("parameter", change), ("mode", error))
-    }
+    greatest = {"parameter": change, "mode": error}
+    order = {name: np.argsort(-np.nan_to_num(x), kind="stable") for name, x in greatest.items()}
     order |= {"group": np.arange(data.sizes["group"]), "prediction": np.arange(len(predicted))}
     size = {name: len(x) for name, x in order.items()}
     while True:
@@ -83,36 +81,31 @@ def _first_models(data: Dataset) -> list[int]:
 
 def _table(screen: Screen, data: Dataset, predictions: Sequence[list[str]] = ()) -> list[Line]:
     """Return the table of models, with rows of predictions, and what explains it."""
+    theta, best, measured = data["theta"].values, position(data), data["measured_frequency"].values
     std, explained = _deviations(data)
-    bound = data["at_bound"].values if "at_bound" in data else np.zeros(data["theta"].values.shape)
-    rows = [*_rows(data, std, bound), *([["predictions"], *predictions] if predictions else [])]
+    bound = data["at_bound"].values if "at_bound" in data else np.zeros(theta.shape)
+    rows = []
+    for j, name in enumerate(data["parameter"].values):
+        rows.append([f"  {name}"])
+        for i, value in enumerate(theta[:, j]):
+            at = {-1: " min", 1: " max"}.get(int(bound[i, j]), "")
+            scatter = f" ± {std[j]:.2g}" * (i == best and np.isfinite(std[j]) and not at)
+            rows[-1].append(f"{number(value, '#.4g').removesuffix('.')}{scatter}{at}")
+    rows.append(["modes: error of the frequency in %, and MAC"])
+    for r, mode in enumerate(data["mode"].values):
+        rows.append([f"  {mode}" + f": {measured[r]:.4g} Hz" * bool(np.isfinite(measured[r]))])
+        for f, mac in zip(data["frequency"].values[:, r], data["mac"].values[:, r], strict=True):
+            error = 100 * (f / measured[r] - 1)
+            first = f"{f:.4g} Hz" if np.isnan(error) else f"{round(error, 2) + 0.0:+.2f}"
+            rows[-1].append("none" if np.isnan(f) else f"{first}  {number(mac, '.3f')}")
+    rows.append(["errors of the groups, root mean square"])
+    for group, errors in zip(data["group"].values, data["error"].values.T, strict=True):
+        rows.append([f"  {group}", *(number(x, ".3g") for x in errors)])
+    rows += [["predictions"], *predictions] if predictions else []
     out = screen.grid("", ["parameters", *map(str, data["label"].values)], rows)
     notes = [f"±: {explained}"] * bool(np.isfinite(std).any())
     notes += ["min, max: at its lower or upper bound"] * bool(bound.any())
     return [*out, *screen.sentence("; ".join(notes))] if notes else out
-
-
-def _rows(data: Dataset, std: Floats, bound: Floats) -> Iterator[list[str]]:
-    """Yield the cells, with headings."""
-    best, measured = position(data), data["measured_frequency"].values
-    for j, name in enumerate(data["parameter"].values):
-        row = [f"  {name}"]
-        for i, value in enumerate(data["theta"].values[:, j]):
-            at = {-1: " min", 1: " max"}.get(int(bound[i, j]), "")
-            scatter = f" ± {std[j]:.2g}" * (i == best and np.isfinite(std[j]) and not at)
-            row.append(f"{number(value, '#.4g').removesuffix('.')}{scatter}{at}")
-        yield row
-    yield ["modes: error of the frequency in %, and MAC"]
-    for r, mode in enumerate(data["mode"].values):
-        row = [f"  {mode}" + f": {measured[r]:.4g} Hz" * bool(np.isfinite(measured[r]))]
-        for f, mac in zip(data["frequency"].values[:, r], data["mac"].values[:, r], strict=True):
-            error = 100 * (f / measured[r] - 1)
-            first = f"{f:.4g} Hz" if np.isnan(error) else f"{round(error, 2) + 0.0:+.2f}"
-            row.append("none" if np.isnan(f) else f"{first}  {number(mac, '.3f')}")
-        yield row
-    yield ["errors of the groups, root mean square"]
-    for group, errors in zip(data["group"].values, data["error"].values.T, strict=True):
-        yield [f"  {group}", *(number(x, ".3g") for x in errors)]
 
 
 def _deviations(data: Dataset) -> tuple[Floats, str]:
@@ -227,14 +220,11 @@ def print_uncertainty(screen: Screen, data: Dataset) -> None:
         rows = [[str(x), str(y)] for x, y in doubts if y]
         screen.table("where linearised standard deviations are approximate", ["model", "why"], rows)
     if "posterior_std" in data:
-        of = (("{}", "", "parameter"), ("f{} Hz", "frequency_", "mode"), ("MAC {}", "mac_", "mode"))
-        rows = [
-            [text.format(title), number(std, ".3g", "")]
-            for text, name, names in of
-            for title, std in zip(
-                data[names].values, data[f"posterior_{name}std"].values, strict=True
-            )
-        ]
+        rows = []
+        for text, name in (("{}", ""), ("f{} Hz", "frequency_"), ("MAC {}", "mac_")):
+            std = data[f"posterior_{name}std"]
+            pairs = zip(data[std.dims[0]].values, std.values, strict=True)
+            rows += [[text.format(title), number(x, ".3g", "")] for title, x in pairs]
         title = f"posterior around {preferred(data.attrs)}: standard deviations{_rough(data)}"
         screen.table(title, ["of", "std"], rows)
     elif "theta_std" not in data:
@@ -315,10 +305,7 @@ def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
 
 
 def print_summary(data: Dataset, study: Path, folder: Path, costs: Costs) -> None:
-    """Print what a run has found and what this run of it has cost, in a few lines.
-
-    Where no model is to be used, the check of the study may say why.
-    """
+    """Print what a run has found and what this run of it has cost, in a few lines."""
     screen = Screen.of_output()
     screen.say(f"{data.attrs.get('study', '')}: results in {folder}", style="bold")
     failures = [str(x) for x in findings_of(data) if x.severity is Severity.FAILURE]
@@ -386,15 +373,11 @@ SHOWN = 6  # parameters, and predictions, that are printed unless all are asked 
 
 
 def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
-    """Print a comparison as tables, one column a study, and say which models are meant.
-
-    The first parameters and predictions are printed, or ``every`` one.
-    """
+    """Print a comparison, one column a study, with the first parameters, or ``every`` one."""
     screen = Screen.of_output()
     fronts, folders = comparison.fronts, [summary.name for summary in comparison.fronts]
-    short = short_names(folders)
+    short, most = short_names(folders), None if every else SHOWN
     names, columns = dict(zip(folders, short, strict=True)), ["", *short]
-    most = None if every else SHOWN
     screen.say("Studies side by side", style="bold")
     screen.say(
         "Errors are root mean squares, which mean the same in all studies. Ranges are those of all "
@@ -402,11 +385,8 @@ def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
     )
     rows = [[name, *map(_cell, row)] for name, row in comparison.rows.items()]
     screen.table("", columns, rows)
-    for title, ranges in (
-        ("parameters", [x.parameters for x in fronts]),
-        ("predictions", [x.predictions for x in fronts]),
-    ):
-        known = [{x.name: _cell(x) for x in row} for row in ranges]
+    for title in ("parameters", "predictions"):
+        known = [{x.name: _cell(x) for x in getattr(front, title)} for front in fronts]
         # Predictions of modes come after those of the studies.
         names_of = dict.fromkeys(name for row in known for name in row)
         order = sorted(names_of, key=lambda name: name.startswith(("frequency ", "mac ")))

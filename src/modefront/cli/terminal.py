@@ -3,8 +3,6 @@
 import io
 import sys
 
-import click
-
 from modefront.errors import MOST_CHARACTERS
 from modefront.text import SPELL, clean, shortened
 
@@ -40,10 +38,3 @@ def complain(text: str) -> None:
     """Print a message on standard error: lines of clean text, of limited length."""
     lines = shortened(text, MOST_CHARACTERS).split("\n")
     print("\n".join(clean(line) for line in lines), file=sys.stderr)
-
-
-def usage(error: click.ClickException) -> str:
-    """Return the error in the command line, with a reference to ``--help``."""
-    out = io.StringIO()
-    error.show(out)
-    return out.getvalue().rstrip()

@@ -229,10 +229,7 @@ def refuse_too_many(problem: UpdatingProblem, file: str) -> None:
 
 
 def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequence[int]) -> None:
-    """Raise InputError where no parameter changes a group: its minimum would be made of rounding.
-
-    ``unchanged`` are the positions of these groups.
-    """
+    """Raise InputError where no parameter changes a group, whose minimum were one of rounding."""
     faults = []
     for i in unchanged:
         remarks = dict.fromkeys(member.remark for member in problem.members[i])
@@ -349,13 +346,11 @@ def cause_of(problem: UpdatingProblem, agreement: Agreement) -> Finding:
         except ModelError as error:
             return found("no-model-near", of, why=str(error))
     points = [problem.evaluate(theta + k * step, derivatives=False) for k in (-1, -0.5, 0, 0.5, 1)]
-    bend = np.zeros(len(problem.data.modes))
-    for name in ("frequency", "mac"):
-        values = np.array([x.quantities[name] for x in points])
-        # Fourth differences: what is left of a smooth curve is close to nothing.
-        fourth = np.array([1, -4, 6, -4, 1]) @ values
-        bend = np.maximum(bend, np.abs(np.nan_to_num(fourth / np.abs(values[2]).clip(TINY))))
-    r = int(np.argmax(bend))
+    values = np.array([[x.quantities[name] for x in points] for name in ("frequency", "mac")])
+    # Fourth differences: what is left of a smooth curve is close to nothing.
+    fourth = np.array([1, -4, 6, -4, 1]) @ values
+    bend = np.abs(np.nan_to_num(fourth / np.abs(values[:, 2]).clip(TINY)))
+    r = int(np.argmax(bend.max(axis=0)))
     where: dict[str, Any] = {
         "group": problem.objectives[agreement.objective],
         "mode": problem.data.modes[r],

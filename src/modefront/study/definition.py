@@ -31,8 +31,7 @@ class Origin:
     file: Path  # the study file
     digest: str  # hash of this file and of all files that it names
     work: str  # hash of the inputs of the problem
-    # the problem that was read; a study of another problem has another origin
-    problem: UpdatingProblem
+    problem: UpdatingProblem  # that was read; a study of another one has another origin
     remark: str = ""  # reason why a requested option is not in use
     notes: tuple[Finding, ...] = ()  # mistakes that were found when it was read
 
@@ -77,30 +76,25 @@ class Study(Shown):
         check_fields(self)
         object.__setattr__(self, "weighted", tuple(self.weighted))
         object.__setattr__(self, "predictions", tuple(self.predictions))
-        refuse(self._contradictions())
-
-    def __repr__(self) -> str:
-        """Return a line with the sizes of the problem."""
-        return f"Study({self.name!r}, {self.problem}, method={self.pareto.method!r})"
-
-    def _contradictions(self) -> Iterator[Fault]:
-        kinds = dict.fromkeys(prediction.kind for prediction in self.predictions)
         faults = list[Fault]()
         with noted(faults):
             _ = self.parameters
         with noted(faults):
-            variables_of(kinds)
-        yield from faults
+            variables_of(dict.fromkeys(prediction.kind for prediction in self.predictions))
         groups = self.problem.objectives
-        yield from each_once("groups", groups)
-        yield from self.pareto.faults(len(groups))
+        faults += [*each_once("groups", groups), *self.pareto.faults(len(groups))]
         for weighted in self.weighted:
-            for fault in (*weighted.faults(groups), *label_faults(weighted.name, groups)):
-                yield replace(fault, place=f"weighted '{weighted.name}' {fault.place}")
-        yield from each_once("weighted", [weighted.name for weighted in self.weighted])
-        yield from self.uncertainty.faults(self.problem.data)
-        yield from undrawn(self.uncertainty, len(self.predictions))
-        yield from each_once("predictions", [prediction.name for prediction in self.predictions])
+            with noted(faults, f"weighted '{weighted.name}'"):
+                refuse((*weighted.faults(groups), *label_faults(weighted.name, groups)))
+        faults += each_once("weighted", [weighted.name for weighted in self.weighted])
+        faults += self.uncertainty.faults(self.problem.data)
+        faults += undrawn(self.uncertainty, len(self.predictions))
+        faults += each_once("predictions", [prediction.name for prediction in self.predictions])
+        refuse(faults)
+
+    def __repr__(self) -> str:
+        """Return a line with the sizes of the problem."""
+        return f"Study({self.name!r}, {self.problem}, method={self.pareto.method!r})"
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:

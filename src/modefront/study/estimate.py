@@ -52,18 +52,10 @@ class Estimate:
     """The time that a study will probably take."""
 
     search: float  # seconds of a search
-    searches: Mapping[str, Span]  # searches of each stage
-    other: Mapping[str, Span]  # seconds of other stages
-    # seconds of the program itself, which starts, reads the study and writes results
-    start: Span = (0.0, 0.0)
-    # what would make the run shorter, that of the longest part first; none for short runs
-    advice: tuple[str, ...] = ()
-
-    @property
-    def plan(self) -> dict[str, Span]:
-        """Seconds of each stage."""
-        searches = {x: (a * self.search, b * self.search) for x, (a, b) in self.searches.items()}
-        return {**searches, **self.other}
+    searches: Mapping[str, Span]  # searches of each stage that is made of them
+    plan: Mapping[str, Span]  # seconds of each stage
+    start: Span = (0.0, 0.0)  # seconds of the program itself, which starts, reads and writes
+    advice: tuple[str, ...] = ()  # on shorter runs, on the longest part first; none for short ones
 
     @property
     def range(self) -> Span:
@@ -75,7 +67,7 @@ class Estimate:
         """The estimate in a sentence."""
         counts = (sum(ends) for ends in zip(*self.searches.values(), strict=True))
         few, many = (max(int(float(f"{count:.0e}")), 1) for count in counts)
-        longest = self.other.get("predict", (0.0, 0.0))
+        longest = self.plan.get("predict", (0.0, 0.0))
         times = [" to ".join(map(duration, span)) for span in (self.range, longest)]
         share = f", {times[1]} for predictions" if longest[1] > self.range[1] / 10 else ""
         return (
@@ -98,15 +90,16 @@ def estimate(study: Study, started: float = 0.0) -> Estimate | None:
         search, evaluations = timed
         each, parts = search / evaluations, _parts(study, evaluations)
         advice = [(span[1] * search, text) for span, text in parts.values()]
-        other: dict[str, Span] = {}
+        searches = {stage: span for stage, (span, _) in parts.items()}
+        plan: dict[str, Span] = {x: (a * search, b * search) for x, (a, b) in searches.items()}
         if study.noise.of(problem, study.uncertainty.of(problem.data)) is not None:
             few, many = extent(max(DRAWS, study.uncertainty.draws))
-            other["sample-posterior"] = STEP[0] * few * each, STEP[1] * many * each
+            plan["sample-posterior"] = STEP[0] * few * each, STEP[1] * many * each
         if is_reduced(problem.model):  # snapshots of the basis, and their certificates
             began = time.process_time()
             full_of(problem.model).modes(problem.start, len(problem.data.modes))
             alone, p = time.process_time() - began, len(problem.start)
-            other["snapshot"] = alone * p, 2 * alone * (3 * p + 5)
+            plan["snapshot"] = alone * p, 2 * alone * (3 * p + 5)
         along = _points(study) + len(problem.groups) + len(study.weighted)
         models = along + 3 + (study.uncertainty.draws or 1 + 2 * len(problem.start))
         for prediction in study.predictions:
@@ -117,13 +110,12 @@ def estimate(study: Study, started: float = 0.0) -> Estimate | None:
             ends = 2 * len(prediction.kind.ranged) * len(prediction.places) * along
             steps = ENDS * ends if study.slack else 0
             spent *= models + steps * (1 + 2 * len(problem.start))
-            least, most = other.get("predict", (0.0, 0.0))
-            other["predict"] = least + spent / 2, most + 2 * spent
+            least, most = plan.get("predict", (0.0, 0.0))
+            plan["predict"] = least + spent / 2, most + 2 * spent
             text = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
             advice.append((2 * spent, text + ", or no slack" * (study.slack > 0)))
-    searches = {stage: span for stage, (span, _) in parts.items()}
-    out = Estimate(search, searches, other, (started, 2 * started))
-    most = together(out.plan.values())[1]
+    out = Estimate(search, searches, plan, (started, 2 * started))
+    most = together(plan.values())[1]
     if most <= SHORT:
         return out
     advice.sort(key=lambda part: -part[0])

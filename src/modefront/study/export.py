@@ -197,10 +197,9 @@ def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[
         missing.append("modes.vtu: meshio is not installed: pip install modefront[mesh]")
     else:
         named = enumerate(zip(shapes.frequency, motion, strict=True), start=1)
-        vectors = {f"mode {k}, {f:.6g} Hz": values[:, :3] for k, (f, values) in named}
+        data = {f"mode {k}, {f:.6g} Hz": values[:, :3] for k, (f, values) in named}
         cells = [Cells(x, x, np.searchsorted(number, at)) for x, at in mesh.cells.items()]
-        data = {**vectors, "node": number}
-        write_grid(folder / "modes.vtu", mesh.coordinates, cells, data)
+        write_grid(folder / "modes.vtu", mesh.coordinates, cells, {**data, "node": number})
     known = study.parent / CHANGES
     changes = read_changes(known) if known.is_file() else []
     lines = [f"updated values, model '{model.label}'"]

@@ -1,9 +1,7 @@
 """The study file: TOML in, a study out, or all of its faults; and what it may hold.
 
 The JSON Schema is made from the requirements by which study files are read. What a schema cannot
-say is left to ``modefront check``: names that refer to other tables, files, columns and nodes,
-numbers that depend on each other, names that repeat, and whether a whole number was written with a
-decimal point.
+say, such as names that refer to other tables, is left to ``modefront check``.
 """
 
 import hashlib

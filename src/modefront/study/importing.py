@@ -24,7 +24,7 @@ from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion, writing
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import fortran, wrong
-from modefront.models.dofs import number_of, write_dofs
+from modefront.models.dofs import write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.parameters import exponents_of, form_of
 from modefront.outputs import output, write_text
@@ -93,14 +93,13 @@ class Imported(Shown):
             directory.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryDirectory(dir=directory, prefix=".import-") as name:
                 inner = Path(name)
-                text = _study(self, inner)
+                write_text(inner / "study.toml", _study(self, inner))
                 write_dofs(inner / "dofs.csv", self.terms.dofs)
                 if self.nominal.mesh is not None:
                     write_mesh(inner / "mesh.npz", self.nominal.mesh)
                 if self.changes:
                     write_changes(inner / CHANGES, self.changes)
                     write_text(inner / f"{KEPT}{self.changes[0].file}", self.deck)
-                write_text(inner / "study.toml", text)
                 add_schema([inner / "study.toml"])
                 files = sorted(inner.iterdir(), key=lambda file: file.name == "study.toml")
                 return [Path(shutil.move(file, directory / file.name)) for file in files]
@@ -159,19 +158,19 @@ def import_model(
         raise InputError(Fault("", "program", f"one of {', '.join(PROGRAMS)}", found))
 
     nominal_path, options, names = Path(base), options or JobOptions(), tuple(parameters)
-    terms = {x: _term_names(names, _of_quantity(functions or {}, x)) for x in QUANTITIES}
+    declared = {x: _terms_of(names, functions or {}, x).values() for x in QUANTITIES}
+    terms = {x: list(dict.fromkeys(chain(*each))) for x, each in declared.items()}
     runs = _runs(parameters, factors or {}, checks)
 
     def read(path: Path, doing: str = "reading") -> Job:
         progress(f"{doing} {path}")
         return read_job(program, path, options)
 
-    nominal = read(nominal_path)
+    nominal, errors = read(nominal_path), []
     differences = Differences(nominal, names, terms)
     for _, path, theta in runs:
         differences.add(str(path), read(path), theta)
     identified = differences.terms()
-    errors = []
     for other, given in checks:
         theta = np.array([given.get(name, 1.0) for name in names])
         job = read(Path(other), "checking with")
@@ -179,14 +178,12 @@ def import_model(
     notes = list(nominal.notes)
     if program == "abaqus":  # nodes that others make move with the model, or are not told
         identified, gone, stayed = condensed(identified)
-        if gone:
-            notes.append(
-                f"{gone} massless degrees of freedom of the program are eliminated exactly"
-            )
+        what = "degrees of freedom of the program"
+        notes += [f"{gone} massless {what} are eliminated exactly"] * (gone > 0)
         if stayed:
             notes.append(
-                f"{stayed} degrees of freedom of the program are kept, without nodes: they have "
-                "mass, or several terms act on them, so that to eliminate them were not exact"
+                f"{stayed} {what} are kept, without nodes: they have mass, or several terms act on "
+                "them, so that to eliminate them were not exact"
             )
     frequencies, floating = _frequencies(identified, modes, notes, progress)
     changed: dict[str, list[Change]] = {}  # by the first run of each parameter
@@ -212,33 +209,28 @@ def import_model(
     )
 
 
-def _of_quantity(functions: Functions, quantity: Quantity) -> dict[str, Sequence[str]]:
-    """Return the terms of parameters in the matrix of a quantity."""
-    refuse(
-        Fault("", f"functions '{name}'", " or ".join(QUANTITIES), suggestion(key, QUANTITIES))
-        for name, each in functions.items()
-        for key in (each if isinstance(each, Mapping) else ())
-        if key not in QUANTITIES
-    )
-    return {
-        name: each.get(quantity, (name,)) if isinstance(each, Mapping) else each
-        for name, each in functions.items()
-    }
-
-
-def _term_names(names: Sequence[str], functions: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return the terms: those declared for a parameter, or the parameter itself."""
-    faults = []
-    for name, term in ((name, term) for name, terms in functions.items() for term in terms):
-        exponents, place = exponents_of(term, names), f"--function {name}"
+def _terms_of(
+    names: Sequence[str], functions: Functions, quantity: Quantity
+) -> dict[str, Sequence[str]]:
+    """Return the terms of each parameter in a matrix: those declared, or the parameter itself."""
+    faults: list[Fault] = []
+    out: dict[str, Sequence[str]] = {name: (name,) for name in names}
+    for name, each in functions.items():
         if name not in names:
             faults.append(Fault("", "--function", "a parameter", suggestion(name, names)))
-        if exponents is None or not exponents.any():
-            faults.append(Fault("", place, form_of(term + "^"), repr(term)))
-        elif name in names and not exponents[names.index(name)]:
-            faults.append(Fault("", place, f"terms with '{name}'", repr(term)))
-    refuse(dict.fromkeys(faults))
-    return list(dict.fromkeys(term for name in names for term in functions.get(name, (name,))))
+        of = each if isinstance(each, Mapping) else dict.fromkeys(QUANTITIES, each)
+        for key in (key for key in of if key not in QUANTITIES):
+            found = suggestion(key, QUANTITIES)
+            faults.append(Fault("", f"functions '{name}'", " or ".join(QUANTITIES), found))
+        out[name] = of.get(quantity, (name,))
+        for term in out[name]:
+            exponents, place = exponents_of(term, names), f"--function {name}"
+            if exponents is None or not exponents.any():
+                faults.append(Fault("", place, form_of(term + "^"), repr(term)))
+            elif name in names and not exponents[names.index(name)]:
+                faults.append(Fault("", place, f"terms with '{name}'", repr(term)))
+    refuse(faults)
+    return out
 
 
 def _runs(
@@ -247,33 +239,28 @@ def _runs(
     checks: Sequence[tuple[Path | str, Mapping[str, float]]],
 ) -> list[tuple[str, Path, Floats]]:
     """Return parameter, job and values of all parameters of every run."""
-    names = list(parameters)
-    given = {name: [x] if isinstance(x, int | float) else list(x) for name, x in factors.items()}
-    named = {"--factor": given, "--check": [name for _, values in checks for name in values]}
+    out, named = [], [*(("--factor", name) for name in factors)]
+    named += [("--check", name) for _, values in checks for name in values]
     faults = [
-        Fault("", option, "a parameter", suggestion(name, names))
-        for option, known in named.items()
-        for name in known
-        if name not in names
+        Fault("", option, "a parameter", suggestion(name, parameters))
+        for option, name in named
+        if name not in parameters
     ]
-    refuse(
-        faults
-        + [
-            Fault("", f"--factor {name}", "a factor above 0, and not 1", f"{factor:g}")
-            for name, each in given.items()
-            for factor in each
-            if name in names and (not 0 < factor < np.inf or factor == 1)
-        ]
-    )
-    out = []
     for k, (name, jobs) in enumerate(parameters.items()):
-        paths = [jobs] if isinstance(jobs, str | Path) else list(jobs)
-        values = given.get(name) or [2.0] * (len(paths) == 1)
+        paths, place = [jobs] if isinstance(jobs, str | Path) else list(jobs), f"--factor {name}"
+        given = np.ravel(factors.get(name, []))
+        values = given if given.size else np.full(int(len(paths) == 1), 2.0)
+        faults += [
+            Fault("", place, "a factor above 0, and not 1", f"{factor:g}")
+            for factor in given.tolist()
+            if not 0 < factor < np.inf or factor == 1
+        ]
         if len(values) != len(paths):
             expected = f"{len(paths)} factors, one for each of its runs"
-            raise InputError(Fault("", f"--factor {name}", expected, str(len(given.get(name, [])))))
-        thetas = np.where(np.arange(len(names)) == k, np.reshape(values, (-1, 1)), 1.0)
-        out += [(name, Path(path), theta) for path, theta in zip(paths, thetas, strict=True)]
+            faults.append(Fault("", place, expected, str(given.size)))
+        thetas = np.where(np.arange(len(parameters)) == k, values[:, None], 1.0)
+        out += [(name, Path(path), theta) for path, theta in zip(paths, thetas, strict=False)]
+    refuse(faults)
     return out
 
 
@@ -335,8 +322,7 @@ def _study(imported: Imported, folder: Path) -> str:
         *(["floating = true"] if imported.floating else []),
         *quantities,
     ]
-    used = [d for d in DIRECTIONS[:3] if ((dofs.direction == number_of(d)) & (dofs.node > 0)).any()]
-    if used:
+    if used := [d for d in DIRECTIONS[:3] if dofs.of_direction(d)]:
         base = ", ".join(f'{d} = {{ direction = "{d}" }}' for d in used)
         lines.append(f"base = {{ {base} }}")
     for name in imported.terms.parameters:
@@ -454,9 +440,8 @@ def import_deck(
     lines = list(lines_of(path))
     targets = _targets(path, lines, parameters)
     terms: Functions = {**_of_thickness(lines, targets), **(functions or {})}
-    in_terms = [_of_quantity(terms, quantity) for quantity in QUANTITIES]
-    count = {name: max(len(x.get(name, "1")) for x in in_terms) for name in targets}
-    factors = {name: FACTORS[: count[name]] for name in targets}
+    in_terms = [_terms_of(tuple(targets), terms, quantity) for quantity in QUANTITIES]
+    factors = {name: FACTORS[: max(len(x[name]) for x in in_terms)] for name in targets}
     jobs = {f"{name}-{factor:g}": {name: factor} for name in targets for factor in factors[name]}
     check = dict(zip(targets, cycle(CHECK), strict=False))
     with writing(folder):
@@ -494,10 +479,8 @@ def import_deck(
     error = np.abs(computed[elastic] / printed[elastic] - 1).max(initial=0.0)
     note = f"the first {len(printed)} frequencies are those that the program prints, to {error:.0e}"
     if error >= 1e-4:  # as the digits of the program do not explain
-        shown = " ".join(f"{x:.5g}" for x in printed)
-        note = (
-            f"the program prints {shown} Hz, up to {100 * error:.2g} % from those of its matrices"
-        )
+        said = f"the program prints {' '.join(f'{x:.5g}' for x in printed)} Hz"
+        note = f"{said}, up to {100 * error:.2g} % from those of its matrices"
     return replace(imported, notes=(*imported.notes, note))
 
 

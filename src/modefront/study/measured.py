@@ -20,16 +20,13 @@ from modefront.inputs import file_size, wrong
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry, axis_name
 from modefront.models.matrices import MatrixModel
-from modefront.options import NAME, Table, any_of, closed, keys, text, whole
+from modefront.options import NAME, Table, any_of, keys, of_options, text, whole
 from modefront.text import Shown
 
 FILE = text("the name of a file of modal data")
 COVARIANCE = text("the name of a file of covariances of shapes, in CSV")
-NODE = whole(0, 10**9)
-OF_PLACE = keys(["node", "direction"], node=NODE, direction=DIRECTION)
-PLACE = any_of(
-    NAME, closed({"node": NODE.schema, "direction": DIRECTION.schema}, ["node", "direction"])
-)
+OF_PLACE = keys(["node", "direction"], node=whole(0, 10**9), direction=DIRECTION)
+PLACE = any_of(NAME, of_options(OF_PLACE))
 
 
 @dataclass(frozen=True, repr=False)
@@ -79,7 +76,17 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
             # Without a model all columns may be sensors: what else is wrong is found nevertheless.
             data = read_csv(table.path(name), sensors, columns)
         elif path.suffix in READERS:
-            data = _read(READERS[path.suffix], table.path(name), sensors)
+            file = table.path(name)
+            file_size(file, "a file of modal data")
+            try:
+                data = READERS[path.suffix].read(file, sensors)
+            except InputError:
+                raise
+            except Exception as error:  # a user's function may raise anything
+                raise wrong(file, "a file of modal data", reason(error)) from error
+            if sensors is not None and tuple(data.sensors) != sensors:
+                expected = f"the sensors {', '.join(sensors)}, in this order"
+                raise wrong(file, expected, ", ".join(data.sensors))
         else:
             endings = ", ".join([*READERS, ".csv", ".uff"])
             table.fault("file", f"a file that ends in {endings} or .unv", f"'{name}'")
@@ -89,21 +96,6 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
     if data and model and len(data.modes) > model.size:
         found = f"{len(data.modes)} in '{name}'"
         root.fault("[data] file", f"at most {model.size} modes, as the model has", found)
-    return data
-
-
-def _read(reader: DataReader, path: Path, sensors: tuple[str, ...] | None) -> ModalData:
-    """Return what a reader of the user makes of a file; raises InputError where that is wrong."""
-    file_size(path, "a file of modal data")
-    try:
-        data = reader.read(path, sensors)
-    except Exception as error:  # a user's function may raise anything
-        if isinstance(error, InputError):
-            raise
-        raise wrong(path, "a file of modal data", reason(error)) from error
-    if sensors is not None and tuple(data.sensors) != sensors:
-        found = ", ".join(data.sensors)
-        raise wrong(path, f"the sensors {', '.join(sensors)}, in this order", found)
     return data
 
 
@@ -120,7 +112,7 @@ def _of_nodes(
     in_space = geometry if geometry is not None and len(geometry.axes) > 1 else None
     placed: dict[str, tuple[int, Floats]] = {}
     before, names = len(table.faults), modes.measured
-    known = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+    known = ", ".join(names[:8]) + f" and {len(names) - 8} more" * (len(names) > 8)
     for name in given:
         if places and name not in model.sensors:
             places.fault(name, "a sensor of the model", suggestion(name, model.sensors))

@@ -201,10 +201,7 @@ def _program() -> str:
 
 
 def worked(study: Study, work: Run) -> Dataset:
-    """Do the work of a study, and return its results.
-
-    Raises InputError where no parameter changes a group.
-    """
+    """Do the work of a study, and return its results; see `run`."""
     problem, seed, file = study.problem, study.seed, str(study.file)
     refuse_too_many(problem, file)
     (unchanged,) = work.run([Task(("check-groups",), unchanged_groups, (problem,))])

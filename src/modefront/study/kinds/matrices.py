@@ -63,17 +63,14 @@ class Matrices(opt.Checked):
         `[[dof, motion], ...]`; with `dofs` also `{ direction = "x" }`, all of a direction
     """
 
-    stiffness: Annotated[Mapping[str, Any], TERMS]
-    mass: Annotated[Mapping[str, Any], TERMS]
-    sensors: Annotated[Mapping[str, Any], PLACES]
+    stiffness: Annotated[Any, TERMS]
+    mass: Annotated[Any, TERMS]
+    sensors: Annotated[Any, PLACES]
     dofs: Annotated[str, opt.text("the name of a table of degrees of freedom")] | None = None
     mesh: Annotated[str, opt.text("the name of a file of nodes and elements")] | None = None
     floating: Annotated[bool, opt.TRUE_OR_FALSE] = False
-    outputs: Annotated[Mapping[str, Any], OUTPUTS] | None = None
-    base: (
-        Annotated[Mapping[str, Any], opt.entries("a table of directions", opt.table_of(MOVING))]
-        | None
-    ) = None
+    outputs: Annotated[Any, OUTPUTS] | None = None
+    base: Annotated[Any, opt.entries("a table of directions", opt.table_of(MOVING))] | None = None
 
 
 def read_matrices(table: opt.Table, parameters: Sequence[str]) -> Model | None:
@@ -140,9 +137,8 @@ def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_arr
         if node not in mesh.number:
             continue
         nodes[k] = np.searchsorted(mesh.number, node)
-        for dof, weight in zip(row.col, row.data, strict=True):
-            if dofs.node[dof] == node and 1 <= dofs.direction[dof] <= 3:
-                directions[k, dofs.direction[dof] - 1] += weight
+        axis = np.where(dofs.node[row.col] == node, dofs.direction[row.col], 0)
+        directions[k] = [row.data[axis == direction].sum() for direction in (1, 2, 3)]
         directions[k] /= np.linalg.norm(directions[k]) or 1.0
     cells = tuple(
         Cells(kind, kind, np.searchsorted(mesh.number, table)) for kind, table in mesh.cells.items()

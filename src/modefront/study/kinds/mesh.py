@@ -1,7 +1,4 @@
-"""``kind = "mesh"``: finite elements on a mesh from a file.
-
-Each key of a table of members is the argument of a class of `modefront.fem`.
-"""
+"""``kind = "mesh"``: finite elements on a mesh from a file."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -50,12 +47,8 @@ ELEMENTS: Mapping[Kind, Callable[..., Group]] = {
 """Classes of groups by their kinds of elements."""
 
 MEMBERS: Mapping[str, Callable[..., Any]] = {
-    "support": fem.Support,
-    "spring": fem.Spring,
-    "mass": fem.Mass,
-    "link": fem.Link,
-    "coupling": fem.Coupling,
-    "load": fem.Load,
+    each.__name__.lower(): each
+    for each in (fem.Support, fem.Spring, fem.Mass, fem.Link, fem.Coupling, fem.Load)
 }
 """Classes of members at nodes by their tables."""
 
@@ -68,16 +61,13 @@ PLACED = {
 }
 """Keys of a sensor besides its direction; one of the first two says where it is."""
 
-OF_GROUP = opt.keys(
-    ["name", "material"],
-    name=opt.text("the name of a group of cells"),
-    material=opt.text("a material"),
-)
-OF_BEAMS = opt.keys(["section"], section=SECTION)
+MATERIAL = opt.text("a material")
 
 
-def _of_group(kind: Kind) -> list[opt.Option]:
-    return [*OF_GROUP, *OF_BEAMS * (kind == "beam"), *opt.options(ELEMENTS[kind])]
+def _of_group(kind: Kind | None, material: opt.Requirement = MATERIAL) -> list[opt.Option]:
+    known = {"name": opt.text("the name of a group of cells"), "material": material}
+    known |= {"section": SECTION} if kind == "beam" else {}
+    return [*opt.keys([*known], **known), *(opt.options(ELEMENTS[kind]) if kind else ())]
 
 
 def _tables(kind: str) -> opt.Requirement:
@@ -88,7 +78,9 @@ MATERIALS = opt.entries(
     "a table of materials, name = { E, nu, rho }",
     opt.table_of(opt.any_of(opt.schema_of(fem.Material), opt.schema_of(fem.Orthotropic)), 1),
 )
-GROUPS = {kind: opt.of_options(_of_group(kind)) for kind in ELEMENTS}
+GROUPS = opt.array(
+    opt.chosen("elements", {kind: opt.of_options(_of_group(kind)) for kind in ELEMENTS}), 1
+)
 PLACES = {
     **opt.closed({key: each.described for key, each in PLACED.items()} | ORIENTED, ["direction"]),
     "oneOf": [{"required": ["node"]}, {"required": ["at"]}],
@@ -122,15 +114,10 @@ class MeshModel(opt.Checked):
     """
 
     file: Annotated[str, opt.text("the name of a mesh file")]
-    material: Annotated[Mapping[str, Any], MATERIALS]
-    group: Annotated[
-        Sequence[Any],
-        opt.entries("tables [[model.group]]", opt.array(opt.chosen("elements", GROUPS), 1)),
-    ]
-    sensors: Annotated[
-        Mapping[str, Any], opt.entries("a table of sensors", opt.table_of(PLACES, 1))
-    ]
-    scale: Annotated[Mapping[str, Any], SCALES]
+    material: Annotated[Any, MATERIALS]
+    group: Annotated[Any, opt.entries("tables [[model.group]]", GROUPS)]
+    sensors: Annotated[Any, opt.entries("a table of sensors", opt.table_of(PLACES, 1))]
+    scale: Annotated[Any, SCALES]
     floating: Annotated[bool, opt.TRUE_OR_FALSE] = False
     support: Annotated[Sequence[Any], _tables("support")] = ()
     spring: Annotated[Sequence[Any], _tables("spring")] = ()
@@ -138,9 +125,7 @@ class MeshModel(opt.Checked):
     link: Annotated[Sequence[Any], _tables("link")] = ()
     coupling: Annotated[Sequence[Any], _tables("coupling")] = ()
     load: Annotated[Sequence[Any], _tables("load")] = ()
-    outputs: (
-        Annotated[Mapping[str, Any], opt.entries("a table of outputs", opt.table_of(PLACES))] | None
-    ) = None
+    outputs: Annotated[Any, opt.entries("a table of outputs", opt.table_of(PLACES))] | None = None
 
 
 def listed(value: object) -> list[Any]:
@@ -214,28 +199,22 @@ def read_mesh_model(table: opt.Table, parameters: Sequence[str]) -> Model | None
 def _groups(model: opt.Table, mesh: Mesh) -> list[Group]:
     """Return the blocks of all groups; one group may have cells of several types."""
     out: list[Group] = []
-    materials = {
-        name: entry.record(
-            fem.Orthotropic if isinstance(entry.values.get("E"), list) else fem.Material
-        )
-        for name, entry in model.entries("material", "a table E, nu, rho", "material")
-    }
+    materials: dict[str, Any] = {}
+    for key, entry in model.entries("material", "a table E, nu, rho", "material"):
+        is_isotropic = not isinstance(entry.values.get("E"), list)
+        materials[key] = entry.record(fem.Material if is_isotropic else fem.Orthotropic)
     declared = model.values.get("material")  # those with faults too, which are said there
-    name_of, material_of = OF_GROUP
-    if isinstance(declared, dict) and declared:
-        material_of = replace(material_of, requirement=opt.one_of(*declared))
+    known = opt.one_of(*declared) if isinstance(declared, dict) and declared else MATERIAL
     for group in model.tables("group", required=True):
         kind: Kind | None = group.value("elements", opt.one_of(*ELEMENTS))
-        own = _of_group(kind)[2:] if kind else ()
-        values, name = group.read([name_of, material_of, *own]), group.values.get("name")
+        values, name = group.read(_of_group(kind, known)), group.values.get("name")
         if kind is None or not opt.is_name(name):
             continue
         with group.noting("name"):
             blocks = mesh.cells_of(str(name), kind)
-            if values and (material := materials.get(values.pop("material"))):
-                out += [
-                    ELEMENTS[kind](cells=cells, material=material, **values) for cells in blocks
-                ]
+            if values and (material := materials.get(values["material"])):
+                values["material"] = material
+                out += [ELEMENTS[kind](cells=cells, **values) for cells in blocks]
     return out
 
 

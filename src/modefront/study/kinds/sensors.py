@@ -137,8 +137,7 @@ def read_places(
 
 def _by_node(table: opt.Table, name: str, dofs: DofTable | None) -> dict[str, SensorSpec]:
     """Return the degrees of freedom of a place given by node and direction; of each direction."""
-    place = table.table(name) if dofs else None
-    if dofs is None or place is None:
+    if dofs is None or (place := table.table(name)) is None:
         expected = 'a degree of freedom; nodes and directions need dofs = "dofs.csv"'
         table.fault(name, expected, opt.shown(table.values[name]))
         return {}
