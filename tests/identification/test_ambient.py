@@ -19,6 +19,7 @@ from modefront.identification.methods.ambient import (
     _harmonic,
     _overlapping,
     _Setup,
+    _starts,
     identify,
 )
 from modefront.identification.sets import merged_shape
@@ -295,6 +296,22 @@ def test_modes_are_flagged_where_their_band_holds_another_one(seed: int) -> None
     both = _fitted(setup, starts, 1e-4, last=True).modes
     assert not one.explained
     assert [mode.explained for mode in both] == [True, True]
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_close_modes_have_one_start_each(seed: int) -> None:
+    rng, rate, f0 = np.random.default_rng(seed), 16.0, np.array([4.6, 4.8, 5.0, 5.2, 5.4, 5.6])
+    f = np.fft.rfftfreq(int(1800 * rate), 1 / rate)
+    phi = rng.standard_normal((len(f0), 8))
+    phi /= np.linalg.norm(phi, axis=1)[:, None]
+    x = f / f0[:, None]
+    y = np.fft.irfft(phi.T @ (_circular(rng, *x.shape) / (1 - x**2 + 0.06j * x)), axis=1)
+    y += 0.02 * y.std() * rng.standard_normal(y.shape)
+    _, starts = _starts(Records("all", tuple("abcdefgh"), rate, y), 3.0, 7.0)
+    near = abs(f0[:, None] - [start.omega / (2 * np.pi) for start in starts]) < 0.1
+    likeness = (phi @ np.array([start.phi for start in starts]).T) ** 2
+    assert (np.where(near, likeness, 0.0).max(axis=1) > 0.96).all()
+    assert len(starts) <= len(f0) + 1
 
 
 def test_blocks_are_fine_at_poles_and_coarse_far_from_them() -> None:

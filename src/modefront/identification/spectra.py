@@ -17,7 +17,7 @@ from modefront.identification.noise import square
 from modefront.identification.spectral_density import Band
 from modefront.rounding import TINY
 
-REFERENCES = 4  # principal components that half spectra are taken with
+REFERENCES = 12  # principal components that half spectra are taken with, one for each close mode
 LAGS = 0.1  # longest lag over the length of the record: longer ones are mostly errors of estimation
 MOST_LINES = 4096  # lines of half spectra, at most
 LEFT = 0.05  # exponential window at the longest lag

@@ -287,9 +287,9 @@ def _of_group(
         omega, zeta, phi = (x[..., : len(held)] for x in (model.omega, model.zeta, model.phi))
         low, high = band.omega[[0, -1]]
         least = chi2.isf(chance, np.maximum(freedom, len(phi) + 2))
-        # a mode that left the band, is as flat as it, narrower than a line, or doubles a stronger
-        # one explains nothing
-        astray = (omega < low) | (omega > high) | (4 * zeta * omega > high - low)
+        # a mode that left the band, is narrower than a line, doubles a stronger one, or is as flat
+        # as the band that its own damping asks for, explains nothing
+        astray = (omega < low) | (omega > high) | (last & (4 * zeta * omega > high - low))
         astray |= 2 * zeta * omega < setup.spacing
         astray |= selection.doubles(omega * (1j - zeta), phi.T.astype(complex), gain)
         worth = np.where(held, np.inf, np.where(astray, 0.0, gain))
