@@ -12,7 +12,7 @@ import scipy.sparse
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
-from modefront.linalg.affine import SparseAffine
+from modefront.linalg.affine import SparseAffine, expanded, merged
 from modefront.linalg.products import threads
 
 MOST = 4
@@ -57,11 +57,9 @@ def analyse(keys: Ints, size: int) -> tuple[rslab.LdltSymbolic, Ints]:
     """Return the analysis of a pattern, and the keys of its entries, ascending.
 
     ``keys`` are column * N + row of entries of the lower triangle of N x N, in any order, some more
-    than once; the diagonal comes to them. Ascending runs are merged, which is far quicker than
-    sorting them.
+    than once; the diagonal comes to them.
     """
-    ranked = np.sort(np.concatenate([keys, np.arange(size) * (size + 1)]), kind="stable")
-    keys = ranked[np.append(True, ranked[1:] != ranked[:-1])]
+    keys = merged(keys, np.arange(size) * (size + 1))
     starts = np.searchsorted(keys, np.arange(size + 1) * size)
     parts = np.ones(keys.size), (keys % size).astype(np.intp), starts.astype(np.intp)
     lower = scipy.sparse.csc_array(parts, shape=(size, size))
@@ -129,6 +127,6 @@ def _lower(A: SparseAffine) -> tuple[Ints, Ints]:
 
     A is symmetric, and its rows are columns of the lower triangle from their diagonals on.
     """
-    row = np.repeat(np.arange(A.size), np.diff(A.indptr))
+    row = expanded(A.indptr)
     take = np.flatnonzero(A.indices >= row)
     return take, row[take] * A.size + A.indices[take]

@@ -105,9 +105,8 @@ def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:
 
     def multiply(first: int, last: int) -> None:
         begin, end = A.indptr[first], A.indptr[last]
-        part = scipy.sparse.csr_array((last - first, N))
-        part.indptr = A.indptr[first : last + 1] - begin
-        part.indices, part.data = A.indices[begin:end], A.data[begin:end]  # views, not copies
+        entries = A.data[begin:end], A.indices[begin:end], A.indptr[first : last + 1] - begin
+        part = scipy.sparse.csr_array(entries, shape=(last - first, N))  # of views, not copies
         out[first:last] = part @ X
 
     _share(multiply, M, A.nnz * X.shape[1])

@@ -10,8 +10,8 @@ the factor that makes it smallest. The form is symmetric, so b may be the forces
 sensors (adjoint, one solution for all modes), whichever is expected to need fewer solutions.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 import scipy.sparse
@@ -55,11 +55,13 @@ ENTRIES = 2**22
 
 FEWEST = 8  # right-hand sides that are solved together however large the model is
 
-Sensors: TypeAlias = Floats | scipy.sparse.csr_array
-
 
 def at_sensors(
-    pencil: Pencil, sensors: Sensors, theta: Floats, spectrum: Spectrum, count: int
+    pencil: Pencil,
+    sensors: scipy.sparse.csr_array,
+    theta: Floats,
+    spectrum: Spectrum,
+    count: int,
 ) -> tuple[Floats, Floats, Bools]:
     """Return dlam (count, p), dphi (sensors, count, p) and which modes coincide with another one.
 
@@ -85,8 +87,7 @@ def at_sensors(
     inside = S[:count] * np.where(same[:count], 0.0, 1 / np.where(same[:count], 1.0, gap))[:, None]
     inside[r[:count], :, r[:count]] = -0.5 * (dM @ spectrum.Phi).reshape(c, p, -1)[r, :, r][:count]
     dphi = np.tensordot(sensors @ spectrum.Phi, inside, axes=(1, 2))
-    force = force[: count * p].tocsr()
-    dphi -= outside(sensors, force, spectrum, count)
+    dphi -= outside(sensors, force[: count * p].tocsr(), spectrum, count)
     return dlam[:count], dphi, coincident[:count]
 
 
@@ -100,7 +101,7 @@ def _same(spectrum: Spectrum) -> Bools:
 # 8 arguments: those of `at_sensors`, and those of `modefront.modes.result.Solve`.
 def everywhere(
     pencil: Pencil,
-    sensors: Sensors,
+    sensors: scipy.sparse.csr_array,
     theta: Floats,
     spectrum: Spectrum,
     count: int,
@@ -118,15 +119,14 @@ def everywhere(
     nearest, _steps = _nearest(spectrum, count)
     shifted, identity = spectrum.factors[nearest[k]], scipy.sparse.eye_array(len(phi)).tocsr()
     tau = np.array([[shifted.sigma - spectrum.lam[k]]])
-    for some in _chunks(right.T):
-        columns = np.ascontiguousarray(right[:, some])
+    for some, columns in _chunks(right.T):
         out[:, some] += _forms(shifted, spectrum, columns, tau, identity)[:, 0]
     dphi = -out[:, :p] - 0.5 * phi * gram(phi, dM_phi)
     return phi, dphi[:, None], out[:, p:]
 
 
 def outside(
-    sensors: Sensors, force: scipy.sparse.csr_array, spectrum: Spectrum, count: int
+    sensors: scipy.sparse.csr_array, force: scipy.sparse.csr_array, spectrum: Spectrum, count: int
 ) -> Floats:
     """Return sensors (K - lam_r M)^+ f_ri, shape (sensors, count, p); f has rows (r, i)."""
     nearest, steps = _nearest(spectrum, count)
@@ -142,14 +142,12 @@ def outside(
         if not rows.nnz:
             continue
         if adjoint < direct:
-            for some in _chunks(sensors):
-                right = _columns(sensors, some)
+            for some, right in _chunks(sensors):
                 product = _forms(shifted, spectrum, right, tau[:, None], rows)
                 terms = np.diagonal(product.reshape(group.size, p, *product.shape[1:]), 0, 0, 2)
                 out[some[:, None], group] = terms.transpose(1, 2, 0)
         else:
-            for some in _chunks(rows):
-                right = _columns(rows, some)
+            for some, right in _chunks(rows):
                 product = _forms(shifted, spectrum, right, tau[some // p][None], sensors)
                 out[:, group[some // p], some % p] = product[:, 0]
     return out
@@ -167,20 +165,23 @@ def _nearest(spectrum: Spectrum, count: int) -> tuple[Ints, Floats]:
     return nearest, 1 + np.log(TOLERANCE) / np.log(np.clip(rate, 1e-12, 0.999))
 
 
-def _chunks(rows: Sensors) -> list[Ints]:
+def _chunks(rows: Floats | scipy.sparse.csr_array) -> Iterator[tuple[Ints, Floats]]:
+    """Yield the numbers of some rows at a time, and these as columns."""
     count, size = rows.shape
     width = min(COLUMNS, max(FEWEST, ENTRIES // size))
-    return [np.arange(k, min(k + width, count)) for k in range(0, count, width)]
-
-
-def _columns(rows: Sensors, some: Ints) -> Floats:
-    chosen = rows[some]
-    dense = chosen if isinstance(chosen, np.ndarray) else chosen.toarray()
-    return np.ascontiguousarray(np.asarray(dense, dtype=float).T)
+    for k in range(0, count, width):
+        some = np.arange(k, min(k + width, count))
+        chosen = rows[some]
+        dense = chosen if isinstance(chosen, np.ndarray) else chosen.toarray()
+        yield some, np.ascontiguousarray(dense.T)
 
 
 def _forms(
-    shifted: Factorisation, spectrum: Spectrum, right: Floats, tau: Floats, left: Sensors
+    shifted: Factorisation,
+    spectrum: Spectrum,
+    right: Floats,
+    tau: Floats,
+    left: scipy.sparse.csr_array,
 ) -> Floats:
     """Return left (K - lam_r M)^+ right, shape (rows of left, shifts, columns of right).
 
@@ -188,7 +189,8 @@ def _forms(
     ``lower`` (left of d in L), ``u`` and ``P`` belong to the last step.
     """
     dual = right - combine(spectrum.MPhi, gram(spectrum.Phi, right))
-    W = _projected(spectrum, shifted.solve(dual))
+    W = shifted.solve(dual)
+    W -= combine(spectrum.Phi, gram(spectrum.MPhi, W))  # on the M-complement of the known modes
     first = beta = _norm(W, dual)
     Q_old, dual_old = np.zeros_like(W), np.zeros_like(W)
     lower = np.zeros((tau.shape[0], beta.size))
@@ -214,18 +216,13 @@ def _forms(
         Q_old -= alpha * W
         dual_old += MQ
         dual_old -= alpha * dual
-        Q_old, W = W, _projected(spectrum, Q_old)
+        Q_old -= combine(spectrum.Phi, gram(spectrum.MPhi, Q_old))
+        Q_old, W = W, Q_old
         dual_old, dual = dual, dual_old
         beta = _norm(W, dual)
         if (np.abs(tau * beta * u / d) <= TOLERANCE * first).all():
             return out
     raise ModelError("the derivatives do not converge: the matrices are too ill-conditioned")
-
-
-def _projected(spectrum: Spectrum, W: Floats) -> Floats:
-    """Return the part of W on the M-complement of the known modes; W is overwritten."""
-    W -= combine(spectrum.Phi, gram(spectrum.MPhi, W))
-    return W
 
 
 def _norm(W: Floats, dual: Floats) -> Floats:

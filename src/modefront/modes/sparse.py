@@ -63,7 +63,7 @@ at 1/3 a step, the factor of the lowest modes at rho = -1."""
 
 def modes(
     pencil: Pencil,
-    sensors: Floats | scipy.sparse.csr_array,
+    sensors: scipy.sparse.csr_array,
     theta: Floats,
     count: int,
     derivatives: bool,
