@@ -187,11 +187,9 @@ def quotients(K: Floats, M: Floats, X: Floats) -> Floats:
 def compared(model: ReducedModel, thetas: Floats) -> list[Comparison]:
     """Return estimated and true errors at some parameters (models, p)."""
     requested = np.arange(MODES)
-    certificates = model.certifier().certify(
-        [(theta, requested) for theta in thetas], MODES + SPARE
-    )
     basis, pencil, out = model.basis, model.full.pencil, []
-    for theta, certificate in zip(thetas, certificates, strict=True):
+    for theta in thetas:
+        certificate = model.certifier().certify(theta, requested, MODES + SPARE)
         K, M = pencil.K.at(theta).toarray(), pencil.M.at(theta).toarray()
         X = scipy.linalg.eigh(M, K)[1][:, ::-1]
         try:

@@ -124,7 +124,7 @@ def weighted_minimum(
         if not isinstance(model, ReducedModel):
             return result
         requested = np.unique(result.evaluation.quantities["paired_mode"].astype(int) - 1)
-        (certificate,) = model.certifier().certify([(result.theta, requested)])
+        certificate = model.certifier().certify(result.theta, requested)
         if certificate.eigenvalue.max() <= model.tolerance:
             return result
         model.take(SnapshotRequest(result.theta, model.count))

@@ -264,7 +264,7 @@ def _errors(
     at is missing, or where better known modes would be paired differently.
     """
     modes, place = np.unique(_paired(solution), return_inverse=True)
-    (certificate,) = certifier.certify([(solution.theta, modes)], _lowest(problem))
+    certificate = certifier.certify(solution.theta, modes, _lowest(problem))
     if certificate.known and not _pairs_alike(problem, solution, certificate):
         return np.full(place.shape, np.inf), np.ones(place.shape)
     return certificate.eigenvalue[place], certificate.shape[place]

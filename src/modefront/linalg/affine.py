@@ -10,12 +10,13 @@ pattern), so that assembly is one matrix-vector product with the data of the ter
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from itertools import pairwise
+from typing import Self
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import coo_array, csc_array, csr_array, sparray
 
 from modefront._typing import Bools, Floats, Ints, Ints32
 from modefront.linalg.products import gram, times
@@ -78,9 +79,7 @@ class Monomials:
         np.add.at(out.transpose(1, 2, 0), (i, k), values.T)
         return out
 
-    def held(
-        self, fixed: Mapping[int, float], tied: Mapping[int, int]
-    ) -> "tuple[Monomials, Floats]":
+    def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> tuple[Self, Floats]:
         """Return the coefficients of the other parameters, and a factor (terms,) for each term.
 
         ``fixed`` parameters have one value, and ``tied`` ones that of another parameter. The origin
@@ -92,7 +91,7 @@ class Monomials:
         for j, i in tied.items():
             e[:, i] += e[:, j]
         free = [j for j in range(e.shape[1]) if j not in fixed and j not in tied]
-        return Monomials(e[:, free]), factors
+        return replace(self, exponents=e[:, free]), factors
 
     def values(self, theta: Floats) -> Floats:
         """Return c(theta), shape (terms,)."""
@@ -121,7 +120,7 @@ class Members:
     of: str  # the matrix, "stiffness" or "mass"
     group: str  # what they are of; empty for none
     nodes: Ints  # (members, ...) between which each is
-    rows: scipy.sparse.csr_array  # (members k, N) all R, one below the other
+    rows: csr_array  # (members k, N) all R, one below the other
     # terms to which they add, (members,), and matrices A (members, k, k)
     shares: Sequence[tuple[Ints, Floats]]
 
@@ -172,7 +171,7 @@ class DenseAffine:
 
     def sparse(self) -> "SparseAffine":
         """Return the same matrix with sparse terms."""
-        terms = [scipy.sparse.coo_array(term) for term in self.terms]
+        terms = [coo_array(term) for term in self.terms]
         return sparse_affine(terms, self.coefficients, self.size)
 
 
@@ -183,7 +182,7 @@ class SparseAffine:
     indptr: Ints32  # (N + 1,) where each row starts in ``indices``
     indices: Ints32  # (entries,) columns, ascending within each row
     # (entries, terms) values of each term; sparse, since most terms are local
-    terms: scipy.sparse.csc_array
+    terms: csc_array
     coefficients: Monomials  # c(theta)
 
     @property
@@ -200,7 +199,7 @@ class SparseAffine:
     def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> "SparseAffine":
         """Return A as a function of the other parameters; see `Monomials.held`."""
         coefficients, factors = self.coefficients.held(fixed, tied)
-        terms = scipy.sparse.csc_array(self.terms * factors[None])
+        terms = csc_array(self.terms * factors[None])
         return SparseAffine(self.indptr, self.indices, terms, coefficients)
 
     def has_pattern_of(self, other: "SparseAffine") -> bool:
@@ -208,20 +207,20 @@ class SparseAffine:
         pairs = (self.indptr, other.indptr), (self.indices, other.indices)
         return all(np.array_equal(*pair) for pair in pairs)
 
-    def at(self, theta: Floats) -> scipy.sparse.csr_array:
+    def at(self, theta: Floats) -> csr_array:
         """Return A(theta), N x N; it holds every entry of the pattern, zero or not."""
         values = self.terms @ self.coefficients.values(theta)
         shape = self.size, self.size
-        return scipy.sparse.csr_array((values, self.indices, self.indptr), shape=shape)
+        return csr_array((values, self.indices, self.indptr), shape=shape)
 
     @cached_property
-    def diagonals(self) -> scipy.sparse.csr_array:
+    def diagonals(self) -> csr_array:
         """The diagonal of each term, (N, terms)."""
         row, terms = expanded(self.indptr), self.terms
         chosen = np.flatnonzero((self.indices == row)[terms.indices])
         place = row[terms.indices[chosen]], expanded(terms.indptr)[chosen]
         shape = self.size, terms.shape[1]
-        return scipy.sparse.csr_array((terms.data[chosen], place), shape=shape)
+        return csr_array((terms.data[chosen], place), shape=shape)
 
     def dense(self) -> DenseAffine:
         """Return the same matrix with dense terms."""
@@ -229,13 +228,13 @@ class SparseAffine:
         out[:, expanded(self.indptr), self.indices] = self.terms.toarray().T
         return DenseAffine(out, self.coefficients)
 
-    def derivative(self, theta: Floats, i: int) -> scipy.sparse.csr_array:
+    def derivative(self, theta: Floats, i: int) -> csr_array:
         """Return dA/dtheta_i, N x N, without the entries that are zero."""
         values = self.terms @ self.coefficients.jacobian(theta)[:, i]
         kept = np.flatnonzero(values)
         rows = np.searchsorted(self.indptr, kept, side="right") - 1
         entries = values[kept], (rows, self.indices[kept])
-        return scipy.sparse.csr_array(entries, shape=(self.size, self.size))
+        return csr_array(entries, shape=(self.size, self.size))
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
@@ -244,7 +243,7 @@ class SparseAffine:
             out[_place(dof), :, i] += rows
         return out
 
-    def derivative_rows(self, theta: Floats, vectors: Floats) -> scipy.sparse.csr_array:
+    def derivative_rows(self, theta: Floats, vectors: Floats) -> csr_array:
         """Return the same products as rows (vector, parameter), sparse: (m * parameters, N).
 
         The row of vector r and parameter i is r * parameters + i. A term that touches few
@@ -257,7 +256,7 @@ class SparseAffine:
             columns.append(np.tile(dof, m))
             values.append(some.T.ravel())
         entries = np.concatenate(rows), np.concatenate(columns)
-        return scipy.sparse.csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
+        return csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
 
     def second_derivatives(self, theta: Floats, left: Floats, right: Floats) -> Floats:
         """Return sum_m left_m^T (d2A / dtheta_i dtheta_k) right_m for each row of left, (n, p, p).
@@ -320,7 +319,7 @@ class SparseAffine:
                 yield j, slice(k, min(k + size, last))
 
     @cached_property
-    def _stack(self) -> tuple[scipy.sparse.csr_array, Ints, Ints]:
+    def _stack(self) -> tuple[csr_array, Ints, Ints]:
         """The rows of the terms that are not zero, one below the other.
 
         Returns the rows (rows, N), their degrees of freedom (rows,) and where each term starts
@@ -334,27 +333,25 @@ class SparseAffine:
         keys = keys[first]
         starts = np.searchsorted(keys, np.arange(terms.shape[1] + 1) * self.size)
         parts = terms.data, self.indices[entry], indptr
-        stack = scipy.sparse.csr_array(parts, shape=(keys.size, self.size))
+        stack = csr_array(parts, shape=(keys.size, self.size))
         return stack, keys % self.size, starts
 
 
-def sparse_rows(values: Floats, columns: Ints, width: int) -> scipy.sparse.csr_array:
+def sparse_rows(values: Floats, columns: Ints, width: int) -> csr_array:
     """Return the matrix (n, width) with values (n, k) in columns (n, k), without its zeros."""
     pointer = np.arange(len(values) + 1) * values.shape[1]
     parts = values.flatten(), columns.flatten(), pointer  # copies, as zeros are taken out in place
-    out = scipy.sparse.csr_array(parts, shape=(len(values), width))
+    out = csr_array(parts, shape=(len(values), width))
     out.eliminate_zeros()
     return out
 
 
-def sparse_affine(
-    terms: Sequence[scipy.sparse.sparray], coefficients: Monomials, size: int
-) -> SparseAffine:
+def sparse_affine(terms: Sequence[sparray], coefficients: Monomials, size: int) -> SparseAffine:
     """Return sum_j c_j(theta) A_j for symmetric sparse matrices A_j of shape (N, N).
 
     The pattern is the union of theirs; entries that are zero in all of them are left out.
     """
-    matrices = [scipy.sparse.csr_array(A, dtype=float, copy=True) for A in terms]
+    matrices = [csr_array(A, dtype=float, copy=True) for A in terms]
     for A in matrices:
         A.sum_duplicates()
         A.eliminate_zeros()
@@ -363,7 +360,7 @@ def sparse_affine(
     values = np.concatenate([A.data for A in matrices])
     rows = np.concatenate([np.searchsorted(union, each) for each in keys])
     parts = values, rows, np.cumsum([0, *(each.size for each in keys)])
-    data = scipy.sparse.csc_array(parts, shape=(union.size, len(matrices)))
+    data = csc_array(parts, shape=(union.size, len(matrices)))
     indptr = np.searchsorted(union, np.arange(size + 1) * size)
     indices = (union % size).astype(np.int32)
     return SparseAffine(indptr.astype(np.int32), indices, data, coefficients)

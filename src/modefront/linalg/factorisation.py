@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import rslab
-import scipy.sparse
+from scipy.sparse import csc_array, sparray, tril
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
@@ -62,16 +62,16 @@ def analyse(keys: Ints, size: int) -> tuple[rslab.LdltSymbolic, Ints]:
     keys = merged(keys, np.arange(size) * (size + 1))
     starts = np.searchsorted(keys, np.arange(size + 1) * size)
     parts = np.ones(keys.size), (keys % size).astype(np.intp), starts.astype(np.intp)
-    lower = scipy.sparse.csc_array(parts, shape=(size, size))
+    lower = csc_array(parts, shape=(size, size))
     return rslab.analyze(lower, path="ldlt"), keys
 
 
-def factorise(A: scipy.sparse.sparray) -> Factorisation:
+def factorise(A: sparray) -> Factorisation:
     """Return the factors of one symmetric matrix, N x N, by itself.
 
     Raises SingularMatrixError where it is singular to working precision.
     """
-    lower = scipy.sparse.tril(A, format="coo")
+    lower = tril(A, format="coo")
     own = lower.col.astype(np.int64) * A.shape[0] + lower.row
     analysis, keys = analyse(own, A.shape[0])
     values = np.bincount(np.searchsorted(keys, own), lower.data, keys.size).astype(float)

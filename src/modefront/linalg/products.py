@@ -7,13 +7,13 @@ be computed by several threads of our own.
 """
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from itertools import pairwise
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront._typing import Floats
 
@@ -86,16 +86,7 @@ def combine(X: Floats, C: Floats) -> Floats:
     return out
 
 
-def combine_all(blocks: Sequence[Floats], C: Floats) -> Floats:
-    """Return X C for C of shape (a, b), where blocks (N, a_i) are the columns of X."""
-    first, *others = np.split(C, np.cumsum([X.shape[1] for X in blocks])[:-1])
-    out = combine(blocks[0], first)
-    for X, part in zip(blocks[1:], others, strict=True):
-        out += combine(X, part)
-    return out
-
-
-def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:
+def times(A: csr_array, X: Floats) -> Floats:
     """Return A X for a sparse A of shape (M, N) and X of shape (N, b)."""
     M, N = A.shape
     if X.shape[1] < WIDE:
@@ -106,7 +97,7 @@ def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:
     def multiply(first: int, last: int) -> None:
         begin, end = A.indptr[first], A.indptr[last]
         entries = A.data[begin:end], A.indices[begin:end], A.indptr[first : last + 1] - begin
-        part = scipy.sparse.csr_array(entries, shape=(last - first, N))  # of views, not copies
+        part = csr_array(entries, shape=(last - first, N))  # of views, not copies
         out[first:last] = part @ X
 
     _share(multiply, M, A.nnz * X.shape[1])

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront._typing import Floats, Ints
 from modefront.data.csv import read_table
@@ -83,7 +83,7 @@ class DofTable:
         return f"node {self.node[dof]} {name_of(int(self.direction[dof]))}"
 
 
-def motion_of_nodes(dofs: DofTable, nodes: Ints) -> scipy.sparse.csr_array:
+def motion_of_nodes(dofs: DofTable, nodes: Ints) -> csr_array:
     """Return the weights of the degrees of freedom in the motion of nodes, (6 nodes, N).
 
     ``nodes`` are ascending numbers; rows are x, y, z, rx, ry, rz of one after the other.
@@ -92,7 +92,7 @@ def motion_of_nodes(dofs: DofTable, nodes: Ints) -> scipy.sparse.csr_array:
     chosen = np.flatnonzero(part)
     row = 6 * np.searchsorted(nodes, dofs.node[chosen]) + dofs.direction[chosen] - 1
     entries = (dofs.weight[chosen], (row, chosen))
-    return scipy.sparse.csr_array(entries, shape=(6 * nodes.size, dofs.size))
+    return csr_array(entries, shape=(6 * nodes.size, dofs.size))
 
 
 def number_of(direction: str) -> int:

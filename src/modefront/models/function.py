@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
-import scipy.sparse
 from numpy.exceptions import ComplexWarning
 from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array, issparse
 
 from modefront._typing import Floats
 from modefront.errors import InputError, ModelError, refuse, wrong
@@ -284,7 +284,7 @@ def _affine(known: Tangent, theta: Floats) -> DenseAffine | SparseAffine:
 def _checked(value: Matrix, place: str, size: int | None, real: bool = True) -> Any:
     """Return a symmetric matrix, an array up to `DENSE` degrees of freedom, else a sparse one."""
     try:
-        A: Any = value if scipy.sparse.issparse(value) else np.asarray(value)
+        A: Any = value if issparse(value) else np.asarray(value)
     except ValueError:  # lists of different lengths
         raise wrong(place, "a matrix", type(value).__name__) from None
     n = size or (A.shape[0] if A.ndim else 0)
@@ -297,8 +297,8 @@ def _checked(value: Matrix, place: str, size: int | None, real: bool = True) -> 
         raise wrong(place, "real numbers for real parameters", "complex numbers")
     A = A.astype(complex if A.dtype.kind == "c" else float)
     if A.shape[0] > DENSE:
-        A = scipy.sparse.csr_array(A)
-    elif scipy.sparse.issparse(A):
+        A = csr_array(A)
+    elif issparse(A):
         A = A.toarray()
     return symmetrised(A, "", place)
 
@@ -309,7 +309,7 @@ def _wrong_entry(A: Any, slope: Any, difference: Any, span: float) -> str:
     ``span`` is the range of the parameter.
     """
     slope = 0 * A if slope is None else slope
-    off = scipy.sparse.coo_array(difference - slope)
+    off = coo_array(difference - slope)
     if not off.nnz:
         return ""
     rows, columns = off.row, off.col

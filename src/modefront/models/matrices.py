@@ -10,7 +10,7 @@ from itertools import compress
 from typing import Any, TypeAlias
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import coo_array, csr_array, issparse, lil_array, sparray
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, refuse, suggestion, wrong
@@ -42,7 +42,7 @@ SensorSpec = int | Sequence[tuple[int, float]]
 DOF = whole(0, WHOLE).schema
 WEIGHTED = any_of(DOF, array(array([DOF, NUMBER], 2, 2), 1))  # schema of a `SensorSpec` in a file
 
-Matrix: TypeAlias = Floats | scipy.sparse.sparray
+Matrix: TypeAlias = Floats | sparray
 
 
 @contextmanager
@@ -64,7 +64,7 @@ class MatrixModel(Shown):
     parameters: tuple[str, ...]  # names of the parameters
     sensors: tuple[str, ...]  # names of the sensors
     # (sensors, N) weights of the degrees of freedom at each sensor
-    selection: scipy.sparse.csr_array
+    selection: csr_array
     stiffness: DenseAffine | SparseAffine  # stiffness, mass: K(theta), M(theta), N x N
     mass: DenseAffine | SparseAffine
     # weights (N,) of the degrees of freedom at places that are no sensors, by name
@@ -316,7 +316,7 @@ def matrices(
 def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) -> SparseAffine:
     """Return base + sum_k c_k(theta) A_k for terms named as `modefront.models.parameters` says."""
     coefficients = Monomials(term_exponents(list(terms), parameters))
-    return sparse_affine(list(map(scipy.sparse.coo_array, terms.values())), coefficients, size)
+    return sparse_affine(list(map(coo_array, terms.values())), coefficients, size)
 
 
 def common_size(
@@ -340,14 +340,12 @@ def common_size(
     return size, faults
 
 
-def select(
-    sensors: Mapping[str, SensorSpec], size: int, place: str = "sensors"
-) -> scipy.sparse.csr_array:
+def select(sensors: Mapping[str, SensorSpec], size: int, place: str = "sensors") -> csr_array:
     """Return the weights of the degrees of freedom at each sensor, shape (sensors, N).
 
     Raises InputError, which names the ``place``, for degrees of freedom that there are not.
     """
-    selection = scipy.sparse.lil_array((len(sensors), size))
+    selection = lil_array((len(sensors), size))
     for row, (name, spec) in enumerate(sensors.items()):
         for dof, weight in [(spec, 1.0)] if isinstance(spec, int | np.integer) else spec:
             if not 0 <= dof < size:
@@ -374,7 +372,7 @@ def symmetrised(
     where a number is not finite and where the matrix is not symmetric.
     """
 
-    def error(B: scipy.sparse.coo_array, wrong: Floats, expected: str, why: str) -> InputError:
+    def error(B: coo_array, wrong: Floats, expected: str, why: str) -> InputError:
         k = int(np.argmax(wrong))
         i, j = int(B.row[k]), int(B.col[k])
         found = f"{A[i, j]:.6g}"
@@ -382,13 +380,13 @@ def symmetrised(
         where = ", ".join(filter(None, (place, label(i, j))))
         return InputError(Fault(file, where, expected, found))
 
-    if not (np.abs(A.data if scipy.sparse.issparse(A) else A) <= LARGEST).all():
-        B = scipy.sparse.coo_array(A)
+    if not (np.abs(A.data if issparse(A) else A) <= LARGEST).all():
+        B = coo_array(A)
         beyond = np.where(np.abs(B.data) <= LARGEST, 0.0, 1.0)
         raise error(B, beyond, f"finite numbers up to {LARGEST:g}", "")
     asymmetry = abs(A - A.T)
     if asymmetry.max() > SYMMETRY * abs(A).max():
-        B = scipy.sparse.coo_array(asymmetry)
+        B = coo_array(asymmetry)
         why = "damping, contact, friction and rotors make it unsymmetric"
         raise error(B, B.data, "a symmetric matrix", why)
     return (A + A.T) / 2

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront import fem
 from modefront.errors import wrong
@@ -70,7 +70,7 @@ def mesh_model(
     named = zip(structure.groups, cells, strict=True)
     known = tuple(Cells(group.name, types[each.shape[1]], each) for group, each in named)
     translations = 6 * np.arange(len(X))[:, None] + np.arange(3)
-    motion = scipy.sparse.csr_array(built.dofs.T[translations.ravel()])
+    motion = csr_array(built.dofs.T[translations.ravel()])
     (at, along), count = built.places, len(structure.sensors)
     return MatrixModel(
         tuple(parameters),

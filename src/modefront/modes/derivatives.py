@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array, dia_array, eye_array
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
@@ -28,10 +28,12 @@ from modefront.rounding import TINY
 class Spectrum:
     """The lowest modes at one theta."""
 
+    pencil: Pencil
+    theta: Floats
     lam: Floats  # (modes,) eigenvalues, ascending
     Phi: Floats  # Phi, MPhi: (N, modes) mass-normalised modes, and M times them
     MPhi: Floats
-    M: scipy.sparse.csr_array  # the mass matrix
+    M: csr_array  # the mass matrix
     noise: Floats  # (modes,) rounding to be expected in ``lam``
     beyond: float  # estimate of the next eigenvalue; infinite where there is none
     proved: int  # how many modes were proved to be the lowest ones
@@ -56,25 +58,19 @@ ENTRIES = 2**22
 FEWEST = 8  # right-hand sides that are solved together however large the model is
 
 
-def at_sensors(
-    pencil: Pencil,
-    sensors: scipy.sparse.csr_array,
-    theta: Floats,
-    spectrum: Spectrum,
-    count: int,
-) -> tuple[Floats, Floats, Bools]:
+def at_sensors(sensors: csr_array, spectrum: Spectrum, count: int) -> tuple[Floats, Floats, Bools]:
     """Return dlam (count, p), dphi (sensors, count, p) and which modes coincide with another one.
 
     ``sensors`` has the shape (sensors, N); the identity gives the derivatives everywhere.
     Raises ModelError where the iteration fails.
     """
-    lam, same = spectrum.lam, _same(spectrum)
-    c, p = count, theta.size
+    pencil, theta, lam = spectrum.pencil, spectrum.theta, spectrum.lam
+    c, p, same = count, theta.size, _same(spectrum)
     while c < spectrum.proved and same[c, :c].any():
         c += 1
     r = np.arange(c)
     dM = pencil.M.derivative_rows(theta, spectrum.Phi[:, :c])
-    scale = scipy.sparse.dia_array((np.repeat(lam[:c], p)[None], 0), shape=(c * p, c * p))
+    scale = dia_array((np.repeat(lam[:c], p)[None], 0), shape=(c * p, c * p))
     force = pencil.K.derivative_rows(theta, spectrum.Phi[:, :c]) - scale @ dM
     S = (force @ spectrum.Phi).reshape(c, p, -1)  # S[r, i, j] = phi_j^T (K_i' - lam_r M_i') phi_r
     dlam = S[r, :, r]
@@ -98,18 +94,11 @@ def _same(spectrum: Spectrum) -> Bools:
     return np.asarray(distance * COINCIDENT <= np.maximum(noise, noise[:, None]))
 
 
-# 8 arguments: those of `at_sensors`, and those of `modefront.modes.result.Solve`.
 def everywhere(
-    pencil: Pencil,
-    sensors: scipy.sparse.csr_array,
-    theta: Floats,
-    spectrum: Spectrum,
-    count: int,
-    r: Ints,
-    b: Floats,
-    _: Ints,
+    sensors: csr_array, spectrum: Spectrum, count: int, r: Ints, b: Floats, _: Ints
 ) -> Solved:
     """Return one mode with adjoints at all DOFs; raises ModelError where the iteration fails."""
+    pencil, theta = spectrum.pencil, spectrum.theta
     k, p, phi = int(r[0]), theta.size, spectrum.Phi[:, r]
     dM_phi = pencil.M.derivatives_times(theta, phi)[:, 0]
     force = pencil.K.derivatives_times(theta, phi)[:, 0] - spectrum.lam[k] * dM_phi
@@ -117,7 +106,7 @@ def everywhere(
     gap = np.where(_same(spectrum)[:, k], np.inf, spectrum.lam - spectrum.lam[k])
     out = combine(spectrum.Phi, gram(spectrum.Phi, right) / gap[:, None])
     nearest, _steps = _nearest(spectrum, count)
-    shifted, identity = spectrum.factors[nearest[k]], scipy.sparse.eye_array(len(phi)).tocsr()
+    shifted, identity = spectrum.factors[nearest[k]], eye_array(len(phi)).tocsr()
     tau = np.array([[shifted.sigma - spectrum.lam[k]]])
     for some, columns in _chunks(right.T):
         out[:, some] += _forms(shifted, spectrum, columns, tau, identity)[:, 0]
@@ -125,9 +114,7 @@ def everywhere(
     return phi, dphi[:, None], out[:, p:]
 
 
-def outside(
-    sensors: scipy.sparse.csr_array, force: scipy.sparse.csr_array, spectrum: Spectrum, count: int
-) -> Floats:
+def outside(sensors: csr_array, force: csr_array, spectrum: Spectrum, count: int) -> Floats:
     """Return sensors (K - lam_r M)^+ f_ri, shape (sensors, count, p); f has rows (r, i)."""
     nearest, steps = _nearest(spectrum, count)
     p = force.shape[0] // count
@@ -165,7 +152,7 @@ def _nearest(spectrum: Spectrum, count: int) -> tuple[Ints, Floats]:
     return nearest, 1 + np.log(TOLERANCE) / np.log(np.clip(rate, 1e-12, 0.999))
 
 
-def _chunks(rows: Floats | scipy.sparse.csr_array) -> Iterator[tuple[Ints, Floats]]:
+def _chunks(rows: Floats | csr_array) -> Iterator[tuple[Ints, Floats]]:
     """Yield the numbers of some rows at a time, and these as columns."""
     count, size = rows.shape
     width = min(COLUMNS, max(FEWEST, ENTRIES // size))
@@ -177,11 +164,7 @@ def _chunks(rows: Floats | scipy.sparse.csr_array) -> Iterator[tuple[Ints, Float
 
 
 def _forms(
-    shifted: Factorisation,
-    spectrum: Spectrum,
-    right: Floats,
-    tau: Floats,
-    left: scipy.sparse.csr_array,
+    shifted: Factorisation, spectrum: Spectrum, right: Floats, tau: Floats, left: csr_array
 ) -> Floats:
     """Return left (K - lam_r M)^+ right, shape (rows of left, shifts, columns of right).
 

@@ -20,7 +20,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
@@ -49,12 +49,7 @@ class Ritz:
 
 
 def greatest(
-    solve: Solve,
-    A: scipy.sparse.csr_array,
-    M: scipy.sparse.csr_array,
-    start: Floats,
-    needed: int,
-    steps: int = STEPS,
+    solve: Solve, A: csr_array, M: csr_array, start: Floats, needed: int, steps: int = STEPS
 ) -> Ritz:
     """Return Ritz pairs of T with the ``needed`` greatest mu, or as many as ``steps`` allow.
 
@@ -113,7 +108,7 @@ def _outside(W: Floats, V: Floats, AV: Floats) -> Floats:
 
 
 def _orthonormal(
-    W: Floats, A: scipy.sparse.csr_array, least: float, most: int | None = None
+    W: Floats, A: csr_array, least: float, most: int | None = None
 ) -> tuple[Floats, Floats, Floats]:
     """Return Q, A Q and R with W = Q R and Q orthonormal in A.
 

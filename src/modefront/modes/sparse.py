@@ -19,7 +19,7 @@ from functools import partial
 
 import numpy as np
 import scipy.linalg
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
@@ -62,11 +62,7 @@ at 1/3 a step, the factor of the lowest modes at rho = -1."""
 
 
 def modes(
-    pencil: Pencil,
-    sensors: scipy.sparse.csr_array,
-    theta: Floats,
-    count: int,
-    derivatives: bool,
+    pencil: Pencil, sensors: csr_array, theta: Floats, count: int, derivatives: bool
 ) -> Modes:
     """Return the ``count`` lowest modes at the sensors, shape (sensors, N), in ascending order.
 
@@ -78,9 +74,9 @@ def modes(
     phi = sensors @ spectrum.Phi[:, :count]
     if not derivatives:
         return Modes(spectrum.lam[:count], phi)
-    dlam, dphi, coincident = exact.at_sensors(pencil, sensors, theta, spectrum, count)
+    dlam, dphi, coincident = exact.at_sensors(sensors, spectrum, count)
     lam = spectrum.lam[:count]
-    solve = partial(exact.everywhere, pencil, sensors, theta, spectrum, count)
+    solve = partial(exact.everywhere, sensors, spectrum, count)
     # Mode by mode, to bound the memory.
     second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solve, 1)
     return Modes(lam, phi, ModeDerivatives(dlam, dphi, coincident, second))
@@ -138,7 +134,8 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
                 if refined is not None:
                     beyond = lam[refined[0].size] if finite > refined[0].size else np.inf
                     noise = np.asarray(np.finfo(float).eps * (K.diagonal() @ refined[1] ** 2))
-                    return Spectrum(*refined, M, noise, beyond, lower, (below, above))
+                    factors = below, above
+                    return Spectrum(pencil, theta, *refined, M, noise, beyond, lower, factors)
         needed, block = 2 * needed, 2 * block
     if lost:
         raise ModelError(
@@ -151,9 +148,7 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
     )
 
 
-def _finite(
-    pencil: Pencil, K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, lam: Floats
-) -> int:
+def _finite(pencil: Pencil, K: csr_array, M: csr_array, lam: Floats) -> int:
     """Return how many modes have a finite frequency, up to far beyond known eigenvalues.
 
     All have one where M is positive definite; else those below a shift are counted (Sylvester).
@@ -196,13 +191,8 @@ def _gap(lam: Floats, known: int, count: int, s: float, complete: bool) -> tuple
 
 
 def _positive_definite(
-    pencil: Pencil,
-    K: scipy.sparse.csr_array,
-    M: scipy.sparse.csr_array,
-    needed: int,
-    right: Floats,
-    least: float,
-) -> tuple[Factorisation, scipy.sparse.csr_array, Floats]:
+    pencil: Pencil, K: csr_array, M: csr_array, needed: int, right: Floats, least: float
+) -> tuple[Factorisation, csr_array, Floats]:
     """Return the factor of A = K + s M, A, and A^-1 right to begin the Lanczos iteration with.
 
     s is ``least``, or greater where that leaves A singular.
@@ -235,12 +225,7 @@ def _positive_definite(
 
 # 6 arguments: the matrices, the right-hand sides and the tolerance.
 def _regular(
-    pencil: Pencil,
-    K: scipy.sparse.csr_array,
-    M: scipy.sparse.csr_array,
-    s: float,
-    right: Floats,
-    singular: float = SINGULAR,
+    pencil: Pencil, K: csr_array, M: csr_array, s: float, right: Floats, singular: float = SINGULAR
 ) -> tuple[Factorisation | None, Floats]:
     """Return the factor of A = K + s M and A^-1 right, or None unless A is positive definite.
 
@@ -262,7 +247,7 @@ def _regular(
 
 
 def _refined(
-    above: Factorisation, M: scipy.sparse.csr_array, lam: Floats, Phi: Floats, needed: int
+    above: Factorisation, M: csr_array, lam: Floats, Phi: Floats, needed: int
 ) -> tuple[Floats, Floats, Floats] | None:
     r"""Return eigenvalues, modes and M times the modes after subspace iteration with B.
 

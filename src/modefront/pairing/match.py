@@ -1,7 +1,5 @@
-r"""Which model mode belongs to which measured mode.
+"""Which model mode belongs to which measured mode (``docs/methods/residuals.md``).
 
-The modes are assigned one to one so that the sum of :math:`1 - \mathrm{MAC}` over the measured
-modes is least; a mode measured by its frequency alone costs :math:`|\ln f / \hat f|` instead.
 Candidates whose frequency lies outside the window cost more than any within. On request modes are
 paired in their order: measured mode r is model mode r.
 """

@@ -1,10 +1,6 @@
-r"""The updating problem: objectives that are sums of squares of the residuals of their members.
+"""The updating problem: objectives that are sums of squares of the residuals of their members.
 
-The kinds of residuals are in `modefront.residuals.base` and the files beside it. An objective
-stacks those of its group's members into one vector r, :math:`J = \|r\|^2`, with the exact
-derivative :math:`2 r^T \partial r` and Gauss-Newton's :math:`2\, \partial r^T \partial r`, or all
-of its second derivatives, :math:`2\, \partial r^T \partial r + 2 \sum_k r_k \nabla^2 r_k`. Its
-count :math:`a_i` of measured properties is the sum of theirs.
+Second derivatives are those of Gauss and Newton, or all of them.
 """
 
 from collections.abc import Hashable, Mapping, Sequence
@@ -38,7 +34,7 @@ from modefront.pairing.match import (
 from modefront.residuals.base import Member, ModeErrors, Stack
 from modefront.residuals.groups import Group
 from modefront.text import Shown
-from modefront.work.transfer import Shared, is_shared, shared
+from modefront.work.transfer import is_shared, shared
 
 
 # 11 fields: model and data, limits of the parameters, and how both are compared.
@@ -121,12 +117,7 @@ class UpdatingProblem(Shown):
         return getattr(self.model, "version", 0)
 
     @property
-    def footprint(self) -> float:
-        """Bytes that it takes besides its model: nothing to speak of."""
-        return 0.0
-
-    @property
-    def parts(self) -> tuple[Shared, ...]:
+    def parts(self) -> tuple[Model, ...]:
         """The model, which is sent to other processes on its own."""
         return (self.model,) if is_shared(self.model) else ()
 
@@ -190,12 +181,8 @@ class UpdatingProblem(Shown):
 
     def residuals_at(self, modes: Modes, pairs: Pairs) -> tuple[Residual, ...]:
         """Return the residual vector of each group at paired modes with derivatives."""
-        out = []
-        for row in self._stacks:
-            parts = [stack.with_slopes(modes, pairs) for stack in row]
-            r, dr = map(np.concatenate, zip(*parts, strict=True))
-            out.append(Residual(r, dr))
-        return tuple(out)
+        of_all = [[stack.with_slopes(modes, pairs) for stack in row] for row in self._stacks]
+        return tuple(Residual(*map(np.concatenate, zip(*x, strict=True))) for x in of_all)
 
     def slopes_at(self, modes: Modes, pairs: Pairs) -> dict[str, Floats]:
         """Return the derivatives (measured modes, p) of paired frequencies and MAC values."""

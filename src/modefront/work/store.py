@@ -27,7 +27,7 @@ from modefront.outputs import write_bytes, write_text
 from modefront.text import NAME, clean
 from modefront.work.codec import decode, encode
 from modefront.work.progress import Progress
-from modefront.work.task import Costs, Count, Key, R, Task
+from modefront.work.task import Costs, Count, Executor, Key, R, Task
 from modefront.work.workers import Workers
 
 FOLDER, NOTE = "tasks", "study"
@@ -136,7 +136,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 @dataclass
-class Run:
+class Run(Executor):
     """Has a backend carry out tasks, keeps results in a store, and counts the costs of all."""
 
     store: Store | None = None

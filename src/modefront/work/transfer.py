@@ -11,24 +11,12 @@ import uuid
 from collections import OrderedDict
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol, TypeGuard, TypeVar
+from typing import Any, TypeVar
 from weakref import ref
 
 from modefront.work.task import Done, Task, computed
 
 KNOWN = 3  # shared objects that a process keeps at most: those used last
-
-
-class Shared(Protocol):
-    """An object that many tasks have among their arguments.
-
-    One that changes has a number ``version``, which changes with it. One with objects that change
-    less often, and are sent on their own, has a sequence of these, ``parts``.
-    """
-
-    @property
-    def footprint(self) -> float:
-        """Bytes that a process takes to work with it, estimated."""
 
 
 S = TypeVar("S", bound=type)
@@ -37,12 +25,17 @@ _REGISTERED: set[type] = set()
 
 
 def shared(kind: S) -> S:
-    """Register a class of objects that are sent to a process once; they are `Shared`."""
+    """Register a class of objects that many tasks have, and that are sent to a process once.
+
+    One that changes has a number ``version``, which changes with it. One with objects that change
+    less often, and are sent on their own, has a sequence of these, ``parts``. One with which a
+    process takes much memory to work has a ``footprint``, these bytes, estimated.
+    """
     _REGISTERED.add(kind)
     return kind
 
 
-def is_shared(value: object) -> TypeGuard[Shared]:
+def is_shared(value: object) -> bool:
     """Return whether an object is of a class that is registered."""
     return type(value) in _REGISTERED
 
@@ -60,12 +53,12 @@ class Message:
 class Sender:
     """Makes bytes of tasks."""
 
-    _objects: dict[tuple[int, Hashable], tuple[str, ref[Shared]]] = field(default_factory=dict)
+    _objects: dict[tuple[int, Hashable], tuple[str, ref[object]]] = field(default_factory=dict)
 
     def message(self, tasks: Sequence[Task[Any]]) -> Message:
         """Return tasks as bytes. Raises what `pickle` raises for what cannot be pickled."""
         pickled = _Pickler(self, list(tasks))
-        memory = max((x.footprint for x in pickled.met.values()), default=0.0)
+        memory = max((getattr(x, "footprint", 0.0) for x in pickled.met.values()), default=0.0)
         memory += max((task.memory for task in tasks), default=0.0)
         return Message(pickled.content, tuple(pickled.met), memory)
 
@@ -74,7 +67,7 @@ class Sender:
         values = {name: found() for name, found in self._objects.values()}
         return {name: _Pickler(self, values[name]).content for name in names}
 
-    def name(self, value: Shared) -> str:
+    def name(self, value: object) -> str:
         """Return the name of a shared object; another version of it has another name."""
         key = id(value), getattr(value, "version", 0)
         name, known = self._objects.get(key, ("", None))
@@ -93,7 +86,7 @@ class _Pickler(pickle.Pickler):
     def __init__(self, sender: Sender, root: object) -> None:
         super().__init__(stream := io.BytesIO(), pickle.HIGHEST_PROTOCOL)
         self.sender, self.root = sender, root
-        self.met: dict[str, Shared] = {}
+        self.met: dict[str, object] = {}
         self.dump(root)
         self.content = stream.getvalue()
 

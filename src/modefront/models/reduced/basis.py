@@ -16,6 +16,7 @@ changes by factors, most eigenvalues of :math:`A^{-1} C` are 1 or one of these. 
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
 
@@ -25,10 +26,10 @@ from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
 from modefront.linalg.factorisation import Factorisation, Pencil, SingularMatrixError
-from modefront.linalg.products import combine, combine_all, gram, times
+from modefront.linalg.products import combine, gram, times
 from modefront.models.matrices import MatrixModel
 from modefront.modes import dense
-from modefront.modes.dense import Decomposition, decompose
+from modefront.modes.dense import Decomposition
 from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 
@@ -57,11 +58,21 @@ class Basis:
 
     def combine(self, C: Floats) -> Floats:
         """Return V C for C of shape (n, m)."""
-        return combine_all(self.blocks, C)
+        first, *others = np.split(C, np.cumsum([X.shape[1] for X in self.blocks])[:-1])
+        out = combine(self.blocks[0], first)
+        for X, part in zip(self.blocks[1:], others, strict=True):
+            out += combine(X, part)
+        return out
 
     def lowest(self, theta: Floats, count: int) -> Decomposition:
         """Return all Ritz values and modes, of which the ``count`` lowest are precise."""
-        return decompose(self.K.at(theta), self.M.at(theta), count)
+        return dense.decompose(self.K.at(theta), self.M.at(theta), count)
+
+    def ritz_values(self, theta: Floats, count: int) -> Floats:
+        """Return the same Ritz values; none where the model has no modes."""
+        with suppress(ModelError):
+            return self.lowest(theta, count).lam
+        return np.zeros(0)
 
 
 def empty(pencil: Pencil, factor: Factorisation, theta: Floats, sigma: float) -> Basis:
@@ -189,18 +200,19 @@ def lacking_lengths(basis: Basis, thetas: Sequence[Floats], count: int) -> Float
 
 def with_modes(
     basis: Basis, thetas: Sequence[Floats], count: int, request: CorrectionRequest
-) -> tuple[Basis, Floats] | None:
+) -> tuple[Basis, Floats]:
     """Return the basis with what the ``count`` lowest modes at some parameters lack in it.
 
     Returned as well are the relative errors (thetas,) that the eigenvalues had at the worst, as
-    the first step tells. None where exact modes would take too many steps.
+    the first step tells. Raises ModelError where exact modes would take too many steps, and where
+    a larger space sees that a matrix is indefinite.
     """
     errors = []
     for some in _shares(basis, thetas, count):
         columns = np.arange(len(some) * count).reshape(-1, count)
         basis, before, settled = _with(basis, _modes(some, count), columns, request)
         if not (settled or request.share):
-            return None
+            raise ModelError("exact modes would take too many steps")
         errors.append(before)
     return basis, np.concatenate(errors)
 
@@ -305,23 +317,16 @@ class Certifier:
         """The full model, which is sent to other processes on its own."""
         return (self.full,)
 
-    def certify(
-        self, requests: Sequence[tuple[Floats, Ints]], lowest: int = 0
-    ) -> list[Certificate]:
-        """Return bounds of the errors of modes at some parameters; see `Certificate`.
+    def certify(self, theta: Floats, modes: Ints, lowest: int = 0) -> Certificate:
+        """Return bounds of the errors of modes, counted from 0, at theta (p,).
 
-        ``requests`` are theta (p,) and the modes in question, counted from 0. Their errors are
-        infinite where one of the ``lowest`` modes, or a mode below the requested ones, is missing.
-        Each takes a factorisation.
+        They are infinite where one of the ``lowest`` modes, or a mode below the requested ones, is
+        missing. It takes a factorisation.
         """
         started = time.perf_counter()
-        certificates = []
-        for theta, modes in requests:
-            known = self._bounds(theta, max(lowest, int(modes.max()) + 1))
-            error, shape = known.eigenvalue[modes], known.shape[modes]
-            certificates.append(replace(known, eigenvalue=error, shape=shape))
-        spend(Costs(certificates=len(requests), certificate_time=time.perf_counter() - started))
-        return certificates
+        known = self._bounds(theta, max(lowest, int(modes.max()) + 1))
+        spend(Costs(certificates=1, certificate_time=time.perf_counter() - started))
+        return replace(known, eigenvalue=known.eigenvalue[modes], shape=known.shape[modes])
 
     def _bounds(self, theta: Floats, count: int) -> Certificate:
         """Return the errors of the ``count`` lowest modes or more.

@@ -3,7 +3,7 @@
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import combinations
+from itertools import combinations, islice
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -125,16 +125,12 @@ class ReducedModel(Shown):
     transfer = passed_on("full", "transfer")
     unused = passed_on("full", "unused")
     selection = passed_on("full", "selection")
+    columns = passed_on("basis", "columns")  # that the basis has
 
     @property
     def capacity(self) -> int:
         """Columns that the basis may have: as many modes as are asked for, at least."""
         return max(self.count, int(self.memory * 2**30 // (8 * self.size)))
-
-    @property
-    def columns(self) -> int:
-        """Columns that the basis has."""
-        return self.basis.columns
 
     @property
     def first(self) -> SnapshotRequest:
@@ -223,10 +219,9 @@ class ReducedModel(Shown):
         for pair in combinations(range(self.nominal.size), 2):
             theta = self.nominal.copy()
             theta[list(pair)] = self.lower[list(pair)]
-            with suppress(ModelError):
-                lam = basis.lowest(theta, count + bases.LATER).lam
-                if lam.size > count:
-                    doubtful.append((-lam[count - 1], pair, theta, lam))
+            lam = basis.ritz_values(theta, count + bases.LATER)
+            if lam.size > count:
+                doubtful.append((-lam[count - 1], pair, theta, lam))
         chosen = sorted(doubtful, key=lambda entry: entry[:2])[:24]  # each takes a factorisation
         return [theta for *_, theta, lam in chosen if self._lacks(basis, theta, lam, count)]
 
@@ -278,7 +273,7 @@ class ReducedModel(Shown):
         models, error = what.models, 0.0
         if self._basis is None:
             basis = self._solved(None, models.pop(0), what)
-            return (self._added_to(basis, models, what)[0] if models else basis), np.inf
+            return self._added_to(basis, models, what)[0], np.inf
         if what.modes == 0:
             return self._excluding(self._basis, models), np.inf
         if what.enough:
@@ -301,10 +296,9 @@ class ReducedModel(Shown):
                 failed += 1
                 continue
             lam, lacked = larger.lowest(theta, what.modes).lam[: what.modes], np.inf
-            with suppress(ModelError):
-                before = basis.lowest(theta, what.modes).lam[: what.modes]
-                if before.size == lam.size:
-                    lacked = float(((before - lam) / (lam - larger.sigma)).max())
+            before = basis.ritz_values(theta, what.modes)[: what.modes]
+            if before.size == lam.size:
+                lacked = float(((before - lam) / (lam - larger.sigma)).max())
             basis, error = larger, max(error, lacked)
         if models and failed == len(what.models):
             raise ModelError("none of the models of a snapshot has modes")
@@ -312,27 +306,22 @@ class ReducedModel(Shown):
 
     def _worst(self, basis: bases.Basis, what: SnapshotRequest) -> tuple[list[Floats], float]:
         """Return the models of a snapshot that the basis knows least, and its error there."""
-        models = []
-        for theta in what.models:
-            with suppress(ModelError):
-                enough = basis.lowest(theta, what.modes).lam.size >= what.modes
-                models += [theta] if enough else []
+        n = what.modes
+        models = [theta for theta in what.models if basis.ritz_values(theta, n).size >= n]
         if not models:
             return what.models[:WORST], np.inf
-        lengths = bases.lacking_lengths(basis, models, what.modes)
+        lengths = bases.lacking_lengths(basis, models, n)
         ranked = np.argsort(-lengths, kind="stable")[:WORST]
         return [models[k] for k in ranked if lengths[k] >= what.enough], float(lengths.max())
 
     def _is_near(self, basis: bases.Basis, theta: Floats, what: SnapshotRequest) -> bool:
         """Return whether the factor at hand is of use for a model, and no mode is missing."""
-        with suppress(ModelError):
-            lam = basis.lowest(theta, what.modes + bases.LATER).lam
-            return (
-                lam.size > what.modes
-                and _condition(basis, theta) <= FAR
-                and (what.enough > 0 or not self._lacks(basis, theta, lam, what.modes))
-            )
-        return False
+        lam = basis.ritz_values(theta, what.modes + bases.LATER)
+        return (
+            lam.size > what.modes
+            and _condition(basis, theta) <= FAR
+            and (what.enough > 0 or not self._lacks(basis, theta, lam, what.modes))
+        )
 
     def _lacks(self, basis: bases.Basis, theta: Floats, lam: Floats, count: int) -> bool:
         """Return whether a mode is missing among the lowest ones, of the eigenvalues ``lam``."""
@@ -348,12 +337,9 @@ class ReducedModel(Shown):
         started = time.perf_counter()
         request = bases.CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
         try:
-            known = bases.with_modes(basis, near, what.modes, request)
+            basis, errors = bases.with_modes(basis, near, what.modes, request)
         except ModelError:
-            return None  # a larger space sees that a matrix is indefinite
-        if known is None:
             return None
-        basis, errors = known
         count = int((errors >= what.enough).sum())
         if count and what.derivatives:
             basis = self._with_derivatives(basis, near[int(errors.argmax())], what.modes)
@@ -426,8 +412,7 @@ class ReducedModel(Shown):
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
             for end in ends:
                 nearby = (theta + unit[i] * ((end - theta[i]) / 2**k) for k in range(5))
-                first = next((x for x in nearby if _condition(basis, x) <= FAR), None)
-                bounds += [] if first is None else [first]
+                bounds += islice((x for x in nearby if _condition(basis, x) <= FAR), 1)
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
@@ -435,8 +420,7 @@ class ReducedModel(Shown):
         for some in (bounds, *([theta] for theta in bounds)):
             # A larger space may see that a matrix is indefinite at one of them: then each alone.
             with suppress(ModelError):
-                known = bases.with_modes(basis, some, count, request)
-                basis = known[0] if known else basis
+                basis, _ = bases.with_modes(basis, some, count, request)
                 spend(Costs(corrected=len(some)))
                 if some is bounds:
                     break
