@@ -121,8 +121,8 @@ def test_a_shared_object_is_sent_where_it_is_not_known(forgets: bool) -> None:
 @given(st.lists(st.sets(st.integers(0, 2)), min_size=1, max_size=5))
 def test_another_process_may_take_what_one_has_lacked(known: list[set[int]]) -> None:
     part = Big(np.ones(5))
-    middle = Big(np.ones(4), parts=[part])
-    big = Big(np.ones(3), parts=[middle])
+    middle = Big(np.ones(4), part=part)
+    big = Big(np.ones(3), part=middle)
     pool = Threads(1)
     with Workers(pool) as workers:
         work = Run(backend=workers)

@@ -165,11 +165,6 @@ class FunctionModel(Shown):
     selection = passed_on("nominal", "selection")
     footprint = passed_on("nominal", "footprint")
 
-    @property
-    def parts(self) -> tuple[MatrixModel]:
-        """The nominal model, which is sent to other processes on its own."""
-        return (self.nominal,)
-
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         modes = self.at(theta, derivatives=derivatives).modes(theta, count, derivatives=derivatives)

@@ -34,7 +34,7 @@ from modefront.pairing.match import (
 from modefront.residuals.base import Member, ModeErrors, Stack
 from modefront.residuals.groups import Group
 from modefront.text import Shown
-from modefront.work.transfer import is_shared, shared
+from modefront.work.transfer import shared
 
 
 # 11 fields: model and data, limits of the parameters, and how both are compared.
@@ -115,11 +115,6 @@ class UpdatingProblem(Shown):
     def version(self) -> Hashable:
         """That of the model, of which other processes have another one when it changes."""
         return getattr(self.model, "version", 0)
-
-    @property
-    def parts(self) -> tuple[Model, ...]:
-        """The model, which is sent to other processes on its own."""
-        return (self.model,) if is_shared(self.model) else ()
 
     @property
     def objectives(self) -> tuple[str, ...]:

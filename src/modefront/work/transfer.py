@@ -27,17 +27,12 @@ _REGISTERED: set[type] = set()
 def shared(kind: S) -> S:
     """Register a class of objects that many tasks have, and that are sent to a process once.
 
-    One that changes has a number ``version``, which changes with it. One with objects that change
-    less often, and are sent on their own, has a sequence of these, ``parts``. One with which a
-    process takes much memory to work has a ``footprint``, these bytes, estimated.
+    Attributes of such classes are sent on their own. An object that changes has a number
+    ``version``, which changes with it. One with which a process takes much memory to work has a
+    ``footprint``, these bytes, estimated.
     """
     _REGISTERED.add(kind)
     return kind
-
-
-def is_shared(value: object) -> bool:
-    """Return whether an object is of a class that is registered."""
-    return type(value) in _REGISTERED
 
 
 @dataclass(frozen=True)
@@ -91,9 +86,9 @@ class _Pickler(pickle.Pickler):
         self.content = stream.getvalue()
 
     def persistent_id(self, value: Any) -> str | None:
-        if not is_shared(value) or value is self.root:
+        if type(value) not in _REGISTERED or value is self.root:
             return None
-        for part in getattr(value, "parts", ()):
+        for part in vars(value).values():
             self.persistent_id(part)
         name = self.sender.name(value)
         self.met[name] = value

@@ -14,7 +14,7 @@ import signal
 import threading
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
@@ -244,7 +244,7 @@ class _Call:
     tasks: Sequence[Task[Any]]
     pending: deque[int]
     alone: deque[int] = field(default_factory=deque)
-    flying: dict[Future[Reply], tuple[Sequence[int], Message, frozenset[str]]] = field(
+    flying: dict[Future[Reply], tuple[Sequence[int], Message, Collection[str]]] = field(
         default_factory=dict
     )
     errors: dict[int, Exception] = field(default_factory=dict)
@@ -347,11 +347,7 @@ class Workers:
             raise wrong("workers", expected, error) from None
 
     def _submit(
-        self,
-        call: _Call,
-        positions: Sequence[int],
-        message: Message,
-        lacked: frozenset[str] = frozenset(),
+        self, call: _Call, positions: Sequence[int], message: Message, lacked: Collection[str] = ()
     ) -> None:
         objects = self._sender.objects([name for name in message.names if name in lacked])
         try:
@@ -370,7 +366,7 @@ class Workers:
         except call.pool.gone:
             raise UnfinishedError(GONE) from None
         if reply.lacking:
-            self._submit(call, positions, message, lacked.union(reply.lacking))
+            self._submit(call, positions, message, {*lacked, *reply.lacking})
             return
         for k, done in zip(positions, reply.done, strict=False):
             spend(done.costs)

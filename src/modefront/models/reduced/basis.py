@@ -312,11 +312,6 @@ class Certifier:
         """Bytes that the basis takes, and an eigensolution of the full model."""
         return self.full.footprint + sum(block.nbytes for block in self.basis.blocks)
 
-    @property
-    def parts(self) -> tuple[MatrixModel]:
-        """The full model, which is sent to other processes on its own."""
-        return (self.full,)
-
     def certify(self, theta: Floats, modes: Ints, lowest: int = 0) -> Certificate:
         """Return bounds of the errors of modes, counted from 0, at theta (p,).
 

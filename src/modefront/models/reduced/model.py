@@ -108,11 +108,6 @@ class ReducedModel(Shown):
         return tuple(what.key for what in self.snapshots)
 
     @property
-    def parts(self) -> tuple[MatrixModel]:
-        """The full model, which is sent to other processes on its own."""
-        return (self.full,)
-
-    @property
     def footprint(self) -> float:
         """Bytes that the projected matrices take; nothing else is needed for modes."""
         return 8.0 * 8 * self._projected()[1].size ** 2 if self._is_at_hand else 0.0
