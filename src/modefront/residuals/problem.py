@@ -117,6 +117,11 @@ class UpdatingProblem(Shown):
         return getattr(self.model, "version", 0)
 
     @property
+    def footprint(self) -> float:
+        """Bytes that the model takes; those of a reduced one are not those of the full one."""
+        return getattr(self.model, "footprint", 0.0)
+
+    @property
     def objectives(self) -> tuple[str, ...]:
         """Names of the groups."""
         return tuple(group.name for group in self.groups)

@@ -53,8 +53,7 @@ class Sender:
     def message(self, tasks: Sequence[Task[Any]]) -> Message:
         """Return tasks as bytes. Raises what `pickle` raises for what cannot be pickled."""
         pickled = _Pickler(self, list(tasks))
-        memory = max((getattr(x, "footprint", 0.0) for x in pickled.met.values()), default=0.0)
-        memory += max((task.memory for task in tasks), default=0.0)
+        memory = pickled.memory + max((task.memory for task in tasks), default=0.0)
         return Message(pickled.content, tuple(pickled.met), memory)
 
     def objects(self, names: Sequence[str]) -> dict[str, bytes]:
@@ -76,22 +75,32 @@ class Sender:
 
 
 class _Pickler(pickle.Pickler):
-    """Pickles tasks, or a shared object, with names of the shared objects that are ``met``."""
+    """Pickles tasks, or a shared object, with names of the shared objects that are ``met``.
+
+    ``memory`` are the bytes that a process takes to work with the one that takes most.
+    """
 
     def __init__(self, sender: Sender, root: object) -> None:
         super().__init__(stream := io.BytesIO(), pickle.HIGHEST_PROTOCOL)
         self.sender, self.root = sender, root
-        self.met: dict[str, object] = {}
+        self.met: dict[str, None] = {}  # in order
+        self.memory = 0.0
         self.dump(root)
         self.content = stream.getvalue()
 
     def persistent_id(self, value: Any) -> str | None:
         if type(value) not in _REGISTERED or value is self.root:
             return None
+        self.memory = max(self.memory, getattr(value, "footprint", 0.0))
+        return self._meet(value)
+
+    def _meet(self, value: Any) -> str:
+        """Return the name of a shared object, after those of its attributes."""
         for part in vars(value).values():
-            self.persistent_id(part)
+            if type(part) in _REGISTERED:
+                self._meet(part)
         name = self.sender.name(value)
-        self.met[name] = value
+        self.met[name] = None
         return name
 
 

@@ -22,9 +22,7 @@ from modefront.text import Shown, brief_model
 from modefront.work.task import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
 
-SPARE = 2
-"""Modes in the basis beyond those that are used, without derivatives: they may enter later."""
-
+SPARE = 2  # modes in the basis beyond those in use, without derivatives: they may enter later
 SHARE = 0.1  # remainder of a correction over all of it, where it need not be exact
 FAR = 30.0  # condition of K over that of the factor up to which a snapshot has no factor of its own
 WORST = 6  # models of a snapshot that are corrected at once, the worst ones
@@ -109,8 +107,10 @@ class ReducedModel(Shown):
 
     @property
     def footprint(self) -> float:
-        """Bytes that the projected matrices take; nothing else is needed for modes."""
-        return 8.0 * 8 * self._projected()[1].size ** 2 if self._is_at_hand else 0.0
+        """Bytes that the projected matrices take, which are all that is needed once they are."""
+        if not self._is_at_hand:
+            return self.full.footprint
+        return 8.0 * 8 * self._projected()[1].size ** 2
 
     parameters = passed_on("full", "parameters")
     sensors = passed_on("full", "sensors")
