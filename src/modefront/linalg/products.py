@@ -27,9 +27,7 @@ again after every few rows, which is 25 times slower for 300 columns."""
 
 SHARED = 2**22  # multiplications from which on a product is shared among threads
 WIDE = 2  # columns from which on that pays for a sparse matrix
-
-THREADS = "RAYON_NUM_THREADS"
-"""Variable of the environment that limits the threads of products, and of factors by rslab."""
+THREADS = "RAYON_NUM_THREADS"  # limits the threads of products, and of factors by rslab
 
 
 PARTS, PART = 16, 2**22

@@ -50,8 +50,7 @@ Tangent: TypeAlias = tuple[Any, tuple[Any, ...]]
 """A matrix (N, N) at one theta, an array of a small model, else a sparse one, and its derivatives:
 one a parameter, None for one without effect."""
 
-DIFFERENCE = 1e-6
-"""Step of the differences that derivatives are compared with, over the range of the parameter."""
+DIFFERENCE = 1e-6  # step of the differences, over the range of the parameter
 
 RETURNED = "K and M, or K, M and lists of their derivatives dK and dM"
 

@@ -29,12 +29,8 @@ from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 
 DENSE = 180  # degrees of freedom up to which dense matrices are faster
-
-ARRAYS = 8
-"""Matrices N x N that a dense solution holds: K, M, their factors, the modes and workspace."""
-
-FACTOR = 40
-"""Entries of the two factors of a sparse solution and of what belongs to it, over N^(4/3)."""
+ARRAYS = 8  # matrices N x N of a dense solution: K, M, their factors, the modes and workspace
+FACTOR = 40  # entries of a sparse solution, its two factors and all else, over N^(4/3)
 
 SensorSpec = int | Sequence[tuple[int, float]]
 """A sensor: a degree of freedom, counted from 0, or weighted degrees of freedom."""

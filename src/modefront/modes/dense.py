@@ -27,33 +27,15 @@ from modefront.modes.result import FullModes, ModeDerivatives, Modes, SecondDeri
 from modefront.rounding import TINY
 
 CLOSE = 1e-2  # relative gap of eigenvalues below which a quotient is formed with the gap itself
-
-SHIFT = 1e-5
-"""sigma over trace(K) / trace(M), where K is singular: balances rounding in low and high modes."""
-
-MIDDLE = 100.0
-"""Factor around the middle of the spectrum within which the two ways of solving are joined."""
-
+SHIFT = 1e-5  # sigma over trace(K) / trace(M): balances rounding in low and high modes
+MIDDLE = 100.0  # factor about the middle of the spectrum within which both ways are joined
 RIGID = 1e-4  # eigenvalue over the shift, below which a mode counts as a rigid-body mode
-
-INDEFINITE = 1e-2
-"""Negative eigenvalue over the shift that passes for rounding; below it, K is indefinite."""
-
-INDEFINITE_MASS = 1e-10
-"""Negative mu over the greatest one, beyond which M is indefinite, and not by rounding."""
-
-FINITE = 1e-13
-"""mu over the greatest one, above which a mode has a finite frequency: below is rounding of the
-zeros of a singular M."""
-
-PRECISE = 1e-8
-"""mu over the greatest one, below which digits of it are lost that can be had otherwise."""
-
-COINCIDENT = 1e-8
-"""Relative error of a quotient, as caused by rounding in its gap, above which it is left out."""
-
-_ROUNDING = 10 * np.finfo(float).eps
-"""Error of a sum of products, relative, of some ten terms of like size."""
+INDEFINITE = 1e-2  # negative eigenvalue over the shift, up to which it is rounding
+INDEFINITE_MASS = 1e-10  # negative mu over the greatest one, up to which it is rounding
+FINITE = 1e-13  # mu over the greatest one, below which it is rounding of the zeros of a singular M
+PRECISE = 1e-8  # mu over the greatest one, below which digits are lost that can be had otherwise
+COINCIDENT = 1e-8  # relative error of a quotient, by rounding in its gap, that leaves it out
+_ROUNDING = 10 * np.finfo(float).eps  # relative error of a sum of some ten products
 
 
 def modes(

@@ -51,10 +51,7 @@ than the gaps between modes that count as coincident.
 TOLERANCE = 1e-10  # residual of a solution over that of zero
 STEPS = 1000  # steps after which the iteration is given up
 COLUMNS = 64  # right-hand sides that are solved together: more would only take more memory
-
-ENTRIES = 2**22
-"""Entries that a block of right-hand sides holds at most, unless it has `FEWEST` columns."""
-
+ENTRIES = 2**22  # of a block of right-hand sides at most, unless it has `FEWEST` columns
 FEWEST = 8  # right-hand sides that are solved together however large the model is
 
 

@@ -27,12 +27,8 @@ from modefront.errors import ModelError
 from modefront.linalg.products import combine, gram, times
 from modefront.modes.dense import FINITE, INDEFINITE_MASS
 
-TOLERANCE = 1e-7
-"""Residual of a Ritz pair over its mu; modes are usually refined once more with another shift."""
-
-NEW = 1e-8
-"""Share of a random block, after T, outside the basis below which there are no more modes."""
-
+TOLERANCE = 1e-7  # residual of a Ritz pair over its mu; modes are usually refined once more
+NEW = 1e-8  # share of a random block outside the basis, below which there are no more modes
 STEPS = 500  # steps after which the iteration is given up
 
 Solve = Callable[[Floats], Floats]

@@ -39,22 +39,12 @@ sought among them, and the more there are, the faster subspace iteration is."""
 
 ATTEMPTS = 4  # runs, each with more modes and a larger block, before missing modes are an error
 SINGULAR = 1e-13  # x^T A x / x^T diag(A) x below which A is singular to working precision
-
-GAP = 1e-2
-"""Relative gap of eigenvalues that is wide enough for sigma; else the widest one is taken."""
-
+GAP = 1e-2  # relative gap of eigenvalues that is wide enough for sigma; else the widest is taken
 NARROW = 1e-6  # relative gap that is too narrow for sigma: more modes are sought
-
-RESTART = 1e-2
-"""s over the greatest known eigenvalue, where the iteration has lost modes and is begun again."""
-
-ALL_AT_ONCE = 3000
-"""Degrees of freedom up to which all modes are solved for where the iteration loses some."""
-
+RESTART = 1e-2  # s over the greatest known eigenvalue, where the iteration is begun again
+ALL_AT_ONCE = 3000  # degrees of freedom up to which all modes are solved for where some are lost
 BEYOND = 1e3  # eigenvalue up to which modes are counted, over the greatest known one
-
-CONVERGED = 1e-8
-"""Change of a mode in subspace iteration, after which the next one is exact to rounding."""
+CONVERGED = 1e-8  # change of a mode in an iteration, after which the next is exact to rounding
 
 REFINEMENTS = 17
 """Subspace iterations, after which more modes are sought instead: from an error of 1 to `CONVERGED`

@@ -17,9 +17,7 @@ from modefront.rounding import TINY
 
 POOR = 0.5  # MAC below which a pair is poor
 OUTSIDE = 1e3  # cost of a candidate outside the window of frequencies
-
-UNSEEN = 1e-6
-"""Greatest component of a mode at the sensors, over that of all modes, below which it is noise."""
+UNSEEN = 1e-6  # component of a mode at the sensors, over that of all, below which it is noise
 
 REACH, FEWEST, MOST = 1.3, 3, 40
 """Frequency of the nominal model, over the highest measured one, up to which its modes are

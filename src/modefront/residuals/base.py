@@ -19,8 +19,7 @@ from modefront.pairing.match import Pairs
 Scale = Literal["measured", "std"]
 """Unit by which errors are divided: one that follows from the measured values, or their std."""
 
-NEGLIGIBLE = 1e-9
-"""Standard deviation, over the greatest one or the frequency, below which it is rounding."""
+NEGLIGIBLE = 1e-9  # standard deviation, over the greatest one or the frequency, that is rounding
 
 
 @dataclass(frozen=True)

@@ -34,9 +34,8 @@ FOLDER, NOTE = "tasks", "study"
 """Folder of the kept results within that of a run's results, and the file in it with the path of
 the study file from there."""
 
-CHECKSUM, LONGEST = 32, 60
-"""Bytes of the checksum at the end of a file; characters of a key in its name, at most."""
-
+CHECKSUM = 32  # bytes of the checksum at the end of a file
+LONGEST = 60  # characters of a key in the name of a file, at most
 LONG = 1.0  # s of a task for whose result the drive is waited for; shorter ones are soon done anew
 
 

@@ -35,18 +35,14 @@ SHORT, TINY = 0.02, 0.005
 """Seconds of tasks that are sent together, about, and of all tasks below which they are computed in
 the calling process."""
 
-QUEUED, SHARE = 2, 0.6
-"""Messages that are sent, over the number of processes, which may take this share of the memory."""
-
-WARM = "modefront.front.pareto", "modefront.analysis.front"
-"""What processes import when they start: nearly all that the tasks of a run need."""
-
+QUEUED = 2  # messages that are sent at a time, over the number of processes
+SHARE = 0.6  # of the memory that is free, for all processes together
+WARM = "modefront.front.pareto", "modefront.analysis.front"  # what processes import as they start
 MOST = 61  # processes of this machine at most; Windows waits for no more
 
 GONE = "the Dask scheduler is gone; what was done is kept"
 
-ANSWER, JOIN = 10.0, 60.0
-"""Seconds in which a scheduler has to answer, and one of its workers to join."""
+ANSWER, JOIN = 10.0, 60.0  # s in which a scheduler has to answer, and a worker to join
 
 ONE_THREAD = {"RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 """Environment of a process with one thread: of rslab, `modefront.linalg.products` and the BLAS. A
