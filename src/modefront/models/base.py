@@ -111,8 +111,7 @@ def matrices_at(model: Model, theta: Floats) -> "MatrixModel | None":
 
 def geometry_of(model: Model) -> "Geometry | None":
     """Return where the degrees of freedom of a model are; None where that is not known."""
-    full: Any = full_of(model)
-    return full.geometry if hasattr(type(full), "geometry") else None
+    return getattr(full_of(model), "geometry", None)
 
 
 def shapes_at(model: Model, theta: Floats, count: int) -> tuple[Floats, Floats, Floats | None]:

@@ -24,7 +24,7 @@ from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion, writing
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import fortran, wrong
-from modefront.models.dofs import number_of, write_dofs
+from modefront.models.dofs import write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.parameters import exponents_of, form_of
 from modefront.outputs import output, write_text
@@ -335,7 +335,7 @@ def _study(imported: Imported, folder: Path) -> str:
         *(["floating = true"] if imported.floating else []),
         *quantities,
     ]
-    used = [d for d in DIRECTIONS[:3] if ((dofs.direction == number_of(d)) & (dofs.node > 0)).any()]
+    used = [d for d in DIRECTIONS[:3] if dofs.of_direction(d)]
     if used:
         base = ", ".join(f'{d} = {{ direction = "{d}" }}' for d in used)
         lines.append(f"base = {{ {base} }}")

@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -134,55 +135,46 @@ class CorrectionRequest:
     enough: float = 0.0  # relative error of eigenvalues below which a model is left as it is
 
 
-_Sought: TypeAlias = Callable[[Basis], tuple[Floats, Floats, Callable[[Ints], Floats]]]
-"""Finds modes or derivatives of them in a space, of unit energy, in columns: their coordinates
-(n, m), the eigenvalue of the mode of each (m,), and what returns residuals (N, some) of some."""
+_Found: TypeAlias = tuple[Floats, Floats, Callable[[Ints], Floats]]
+"""Modes or derivatives of them in a space, of unit energy, in columns: their coordinates (n, m),
+the eigenvalue of the mode of each (m,), and what returns residuals (N, some) of some."""
 
 
-def _modes(models: Sequence[Floats], count: int) -> _Sought:
-    """Return what finds the lowest modes of several models, those of the first one first."""
+def _modes(models: Sequence[Floats], count: int, space: Basis) -> _Found:
+    """Return the lowest modes of several models, those of the first one first."""
+    found = [space.lowest(theta, count) for theta in models]
+    lam = np.concatenate([modes.lam[:count] for modes in found])
+    Y = np.hstack([modes.Phi[:, :count] for modes in found]) / np.sqrt(lam - space.sigma)
     thetas = np.repeat(models, count, axis=0)
 
-    def within(space: Basis) -> tuple[Floats, Floats, Callable[[Ints], Floats]]:
-        found = [space.lowest(theta, count) for theta in models]
-        lam = np.concatenate([modes.lam[:count] for modes in found])
-        Y = np.hstack([modes.Phi[:, :count] for modes in found]) / np.sqrt(lam - space.sigma)
+    def residuals_of(some: Ints) -> Floats:
+        return residuals(space.pencil, thetas[some], lam[some], space.combine(Y[:, some]))
 
-        def residuals_of(some: Ints) -> Floats:
-            return residuals(space.pencil, thetas[some], lam[some], space.combine(Y[:, some]))
-
-        return Y, lam, residuals_of
-
-    return within
+    return Y, lam, residuals_of
 
 
-def _derivatives(theta: Floats, count: int, half_range: Floats) -> _Sought:
-    """Return what finds the derivatives of some modes by each parameter, over half its range."""
-    p = theta.size
+def _derivatives(theta: Floats, count: int, half_range: Floats, space: Basis) -> _Found:
+    """Return the derivatives of some modes by each parameter, over half its range."""
+    p, pencil = theta.size, space.pencil
+    ritz = space.lowest(theta, 0)
+    slopes, S, *_ = dense.nelson(space.K, space.M, theta, ritz, count)
+    lam, dlam = np.repeat(ritz.lam[:count], p), slopes[:count].ravel()
+    unit = np.tile(half_range, count) / np.sqrt(lam - space.sigma)
+    Y = ritz.X @ S[:, :count].reshape(space.columns, -1) * unit
 
-    def within(space: Basis) -> tuple[Floats, Floats, Callable[[Ints], Floats]]:
-        ritz = dense.decompose(space.K.at(theta), space.M.at(theta))
-        slopes, S, *_ = dense.nelson(space.K, space.M, theta, ritz, count)
-        lam, dlam = np.repeat(ritz.lam[:count], p), slopes[:count].ravel()
-        unit = np.tile(half_range, count) / np.sqrt(lam - space.sigma)
-        Y = ritz.X @ S[:, :count].reshape(space.columns, -1) * unit
+    def residuals_of(some: Ints) -> Floats:
+        modes, of = np.unique(some // p, return_inverse=True)
+        thetas, few, own = np.tile(theta, (some.size, 1)), unit[some], lam[some]
+        dX, X = space.combine(Y[:, some]), space.combine(ritz.Phi[:, modes])
+        R = pencil.M.each(thetas, -own * dX - few * dlam[some] * X[:, of])
+        R += pencil.K.each(thetas, dX)
+        for A, factor in ((pencil.K, few), (pencil.M, -own * few)):
+            if A.coefficients.varies:
+                forces = A.derivatives_times(theta, X).reshape(len(X), -1)
+                R += forces[:, of * p + some % p] * factor
+        return R
 
-        def residuals_of(some: Ints) -> Floats:
-            pencil = space.pencil
-            modes, of = np.unique(some // p, return_inverse=True)
-            thetas, few, own = np.tile(theta, (some.size, 1)), unit[some], lam[some]
-            dX, X = space.combine(Y[:, some]), space.combine(ritz.Phi[:, modes])
-            R = pencil.M.each(thetas, -own * dX - few * dlam[some] * X[:, of])
-            R += pencil.K.each(thetas, dX)
-            for A, factor in ((pencil.K, few), (pencil.M, -own * few)):
-                if A.coefficients.exponents.any():
-                    forces = A.derivatives_times(theta, X).reshape(len(X), -1)
-                    R += forces[:, of * p + some % p] * factor
-            return R
-
-        return Y, lam, residuals_of
-
-    return within
+    return Y, lam, residuals_of
 
 
 def lacking_lengths(basis: Basis, thetas: Sequence[Floats], count: int) -> Floats:
@@ -192,7 +184,7 @@ def lacking_lengths(basis: Basis, thetas: Sequence[Floats], count: int) -> Float
     """
     worth = []
     for some in _shares(basis, thetas, count):
-        _, lam, residuals_of = _modes(some, count)(basis)
+        _, lam, residuals_of = _modes(some, count, basis)
         R = residuals_of(np.arange(lam.size))
         worth.append(np.einsum("nc,nc->c", R, basis.factor.solve(R)).reshape(-1, count).max(axis=1))
     return np.concatenate(worth)
@@ -210,7 +202,7 @@ def with_modes(
     errors = []
     for some in _shares(basis, thetas, count):
         columns = np.arange(len(some) * count).reshape(-1, count)
-        basis, before, settled = _with(basis, _modes(some, count), columns, request)
+        basis, before, settled = _with(basis, partial(_modes, some, count), columns, request)
         if not (settled or request.share):
             raise ModelError("exact modes would take too many steps")
         errors.append(before)
@@ -225,7 +217,7 @@ def with_derivatives(
     The modes themselves must be in it. Derivatives are over ``half_range`` (p,). They need not be
     exact to be of use.
     """
-    sought = _derivatives(theta, count, half_range)
+    sought = partial(_derivatives, theta, count, half_range)
     columns, width = count * theta.size, _together(basis)
     for first in range(0, columns, width):
         some = np.arange(first, min(first + width, columns))
@@ -234,7 +226,7 @@ def with_derivatives(
 
 
 def _with(
-    basis: Basis, sought: _Sought, columns: Ints, request: CorrectionRequest
+    basis: Basis, sought: Callable[[Basis], _Found], columns: Ints, request: CorrectionRequest
 ) -> tuple[Basis, Floats, bool]:
     """Return the basis with some of what is sought; each row of ``columns`` is of one model.
 

@@ -226,8 +226,7 @@ class ReducedModel(Shown):
         if not self.snapshots:
             self.take(self.first)
         self._compute()
-        if self._basis is None:
-            raise ModelError("the model cannot be solved at the nominal parameters")
+        assert self._basis is not None, "there is a snapshot"
         return self._basis
 
     @property
