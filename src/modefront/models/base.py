@@ -101,10 +101,7 @@ def is_reduced(model: Model) -> bool:
 
 
 def matrices_at(model: Model, theta: Floats) -> "MatrixModel | None":
-    """Return the model with the matrices, and their derivatives, that a model has at ``theta``.
-
-    A reduced model has those of the full one; None for a model that has no matrices.
-    """
+    """Return the full model with the matrices and derivatives at ``theta``; None without any."""
     full: Any = full_of(model)
     return full.at(theta) if hasattr(type(full), "at") else None
 

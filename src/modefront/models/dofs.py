@@ -75,10 +75,7 @@ class DofTable:
 
 
 def motion_of_nodes(dofs: DofTable, nodes: Ints) -> csr_array:
-    """Return the weights of the degrees of freedom in the motion of nodes, (6 nodes, N).
-
-    ``nodes`` are ascending numbers; rows are x, y, z, rx, ry, rz of one after the other.
-    """
+    """Return weights (6 nodes, N) of x, y, z, rx, ry, rz of one after the other ascending node."""
     part = (dofs.direction >= 1) & (dofs.direction <= 6) & np.isin(dofs.node, nodes)
     chosen = np.flatnonzero(part)
     row = 6 * np.searchsorted(nodes, dofs.node[chosen]) + dofs.direction[chosen] - 1

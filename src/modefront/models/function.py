@@ -84,10 +84,7 @@ class CheckedFunction:
     def check_derivatives(
         self, theta: Floats, lower: Floats, upper: Floats, known: tuple[Tangent, Tangent]
     ) -> None:
-        """Raise InputError where derivatives at ``theta`` differ from differences by far.
-
-        Steps stay within the bounds ``lower`` and ``upper``.
-        """
+        """Raise InputError where derivatives differ by far from differences within the bounds."""
         for i, (name, span) in enumerate(zip(self.names, upper - lower, strict=True)):
             ahead, h = theta.copy(), DIFFERENCE * span
             ahead[i] += h if theta[i] + h <= upper[i] else -h
@@ -298,10 +295,7 @@ def _checked(value: Matrix, place: str, size: int | None, real: bool = True) -> 
 
 
 def _wrong_entry(A: Any, slope: Any, difference: Any, span: float) -> str:
-    """Return the entry of a derivative that differs from a difference most, or nothing.
-
-    ``span`` is the range of the parameter.
-    """
+    """Return the entry that is wrong by most, or nothing; ``span`` is the parameter's range."""
     slope = 0 * A if slope is None else slope
     off = coo_array(difference - slope)
     if not off.nnz:

@@ -58,11 +58,11 @@ def mesh_model(
             raise wrong("parameters", expected, f"no {name}")
     own = [[float(x == name) for x in parameters] for name in built.parameters]
     of = np.array(own).reshape(len(own), len(parameters))
+    pair = built.stiffness, built.mass
+    exponents = [A.coefficients.exponents for A in pair]
     K, M = (
-        replace(A, coefficients=Monomials(A.coefficients.exponents @ of))
-        for A in (built.stiffness, built.mass)
+        replace(A, coefficients=Monomials(e @ of)) for A, e in zip(pair, exponents, strict=True)
     )
-    exponents = [A.coefficients.exponents for A in (built.stiffness, built.mass)]
     direction, X = built.dofs.free[:, 1], check_points(structure.nodes)
     types = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
     types |= {15: "wedge15", 20: "hexahedron20"}

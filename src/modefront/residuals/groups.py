@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Literal, get_args
 
 from modefront.data.modal import ModalData
@@ -96,11 +97,12 @@ class Group(Shown):
         return dict(self.chosen).get(kind, ())
 
     def positions(self, data: ModalData) -> list[tuple[ResidualKind, tuple[int, ...]]]:
-        """Return the positions of the chosen modes in the data, for each kind of the group."""
+        """Return the positions of the chosen modes in the data, for each kind that has any."""
         places, out = {mode: r for r, mode in enumerate(data.modes)}, []
         for name, modes in self.chosen:
             numbers = _measured_modes(name, data) if modes == "all" else modes
-            out.append((KINDS[name], tuple(places[int(mode)] for mode in numbers)))
+            if numbers:
+                out.append((KINDS[name], tuple(places[int(mode)] for mode in numbers)))
         return out
 
     def members(self, data: ModalData) -> list[Member]:
@@ -111,19 +113,12 @@ class Group(Shown):
         for key, expected, found in faults(self, data):
             place = f"group '{self.name}'" + (f": {key}" if key else "")
             raise ValueError(f"{place}: expected {expected}, found {found}")
-        return [
-            member
-            for kind, positions in self.positions(data)
-            for member in kind.members(data, positions, self.scale)
-        ]
+        kinds = (kind.members(data, some, self.scale) for kind, some in self.positions(data))
+        return list(chain.from_iterable(kinds))
 
     def stacks(self, data: ModalData) -> list[Stack]:
         """Return the members of the group, those of each kind together, in the same order."""
-        return [
-            kind.stack(data, positions, self.scale)
-            for kind, positions in self.positions(data)
-            if positions
-        ]
+        return [kind.stack(data, some, self.scale) for kind, some in self.positions(data)]
 
 
 def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str]]:
@@ -142,7 +137,7 @@ def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str
                 wrong.append((name, f"one of the measured modes {measured}", str(mode)))
         yield from wrong
         chosen = [] if wrong else group.positions(data)
-        if not wrong and not any(positions for _, positions in chosen):
+        if not (wrong or chosen):
             yield "", "at least one measured property", "none in the data"
         for kind, r in [(kind, r) for kind, positions in chosen for r in positions]:
             if group.scale == "std" and not kind.has_usable_std(data, r):

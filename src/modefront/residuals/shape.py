@@ -115,13 +115,12 @@ class ShapeResiduals:
     @property
     def count(self) -> float:
         """Mean number of components over the data sets that have the shape."""
-        return float(self.sets.size / max(len(self.shapes), 1))
+        return float(self.sets.size / len(self.shapes))
 
     @property
     def sets(self) -> Ints:
         """Data set of each component."""
-        every = [np.full(x.sensors.size, x.set) for x in self.shapes]
-        return np.concatenate([np.zeros(0, dtype=np.intp), *every])
+        return np.concatenate([np.full(x.sensors.size, x.set) for x in self.shapes])
 
     @property
     def remark(self) -> str:

@@ -75,10 +75,7 @@ class Sender:
 
 
 class _Pickler(pickle.Pickler):
-    """Pickles tasks, or a shared object, with names of the shared objects that are ``met``.
-
-    ``memory`` are the bytes that a process takes to work with the one that takes most.
-    """
+    """Pickles tasks, or a shared object; shared objects are ``met``, and take some ``memory``."""
 
     def __init__(self, sender: Sender, root: object) -> None:
         super().__init__(stream := io.BytesIO(), pickle.HIGHEST_PROTOCOL)
@@ -128,10 +125,7 @@ class Reply:
 
 
 def work(message: Message, objects: dict[str, bytes]) -> Reply:
-    """Compute the tasks of a message, which comes with shared objects or without.
-
-    Shared objects come after their parts.
-    """
+    """Compute the tasks of a message; with it come shared objects or none, after their parts."""
     with _LOCK:  # workers of a cluster may have several threads
         lacking = tuple(x for x in message.names if x not in _OBJECTS and x not in objects)
         if lacking:  # they may be parts of those that came

@@ -44,6 +44,8 @@ class Basis:
     factor: Factorisation
     theta: Floats  # theta, sigma: the parameters and the shift of A = K - sigma M
     sigma: float
+    shortest: float  # length of the directions that are too short to matter, in energy
+    capacity: int  # columns that it may have
     blocks: tuple[Floats, ...]  # (N, n_i) the columns of V, some after the others
     K: DenseAffine  # K, M: the matrices in the basis
     M: DenseAffine
@@ -76,29 +78,29 @@ class Basis:
         return np.zeros(0)
 
 
-def empty(pencil: Pencil, factor: Factorisation, theta: Floats, sigma: float) -> Basis:
-    """Return the basis without columns in the norm of K - sigma M at ``theta``."""
+def empty(
+    pencil: Pencil, factor: Factorisation, theta: Floats, shortest: float, capacity: int
+) -> Basis:
+    """Return the basis without columns in the norm of the factor's matrix, that at ``theta``."""
     pair = (pencil.K, pencil.M)
     K, M = (DenseAffine(np.zeros((A.terms.shape[1], 0, 0)), A.coefficients) for A in pair)
-    return Basis(pencil, factor, theta, sigma, (), K, M)
+    return Basis(pencil, factor, theta, factor.sigma, shortest, capacity, (), K, M)
 
 
-def extended(basis: Basis, vectors: Floats, shortest: float, capacity: int) -> Basis:
+def extended(basis: Basis, vectors: Floats) -> Basis:
     """Return the basis extended by vectors (N, m), the longest directions first.
 
-    Directions shorter than ``shortest``, and those beyond ``capacity`` columns, are left out. Of
-    the projected matrices only the new rows and columns are computed.
+    Of the projected matrices only the new rows and columns are computed.
     """
-    pencil = basis.pencil
-    W = vectors
-    for least in (shortest, 0.3):  # what rounding leaves of the basis goes the second time
+    pencil, W = basis.pencil, vectors
+    for least in (basis.shortest, 0.3):  # what rounding leaves of the basis goes the second time
         theta, sigma = np.tile(basis.theta, (W.shape[1], 1)), np.full(W.shape[1], basis.sigma)
         AW = residuals(pencil, theta, sigma, W)
         if basis.columns:
             W = W - basis.combine(np.vstack([gram(block, AW) for block in basis.blocks]))
             AW = residuals(pencil, theta, sigma, W)
         squares, U = np.linalg.eigh(gram(W, AW))
-        kept = np.flatnonzero(squares > least**2)[::-1][: capacity - basis.columns]
+        kept = np.flatnonzero(squares > least**2)[::-1][: basis.capacity - basis.columns]
         if not kept.size:
             return basis
         W = combine(W, U[:, kept] / np.sqrt(squares[kept]))
@@ -123,16 +125,6 @@ def residuals(pencil: Pencil, thetas: Floats, lam: Floats, X: Floats) -> Floats:
 
 STEPS = 30  # steps, after which a full solution is better
 SLOWEST = 0.5  # ratio of steps at most that what is left is extrapolated with
-
-
-@dataclass(frozen=True)
-class CorrectionRequest:
-    """Accuracy and size requested of an extension of the basis."""
-
-    share: float  # what is left over all that was lacking
-    shortest: float  # length of the directions that are too short to matter, in energy
-    capacity: int  # columns that the basis may have
-    enough: float = 0.0  # relative error of eigenvalues below which a model is left as it is
 
 
 _Found: TypeAlias = tuple[Floats, Floats, Callable[[Ints], Floats]]
@@ -191,26 +183,27 @@ def lacking_lengths(basis: Basis, thetas: Sequence[Floats], count: int) -> Float
 
 
 def with_modes(
-    basis: Basis, thetas: Sequence[Floats], count: int, request: CorrectionRequest
+    basis: Basis, thetas: Sequence[Floats], count: int, share: float, enough: float = 0.0
 ) -> tuple[Basis, Floats]:
     """Return the basis with what the ``count`` lowest modes at some parameters lack in it.
 
-    Returned as well are the relative errors (thetas,) that the eigenvalues had at the worst, as
-    the first step tells. Raises ModelError where exact modes would take too many steps, and where
-    a larger space sees that a matrix is indefinite.
+    All of it but a ``share`` of its square; models are left as they are where errors of eigenvalues
+    are below ``enough``. Returned as well are the relative errors (thetas,) that these had at the
+    worst, as the first step tells. Raises ModelError where exact modes would take too many steps,
+    and where a larger space sees that a matrix is indefinite.
     """
     errors = []
     for some in _shares(basis, thetas, count):
         columns = np.arange(len(some) * count).reshape(-1, count)
-        basis, before, settled = _with(basis, partial(_modes, some, count), columns, request)
-        if not (settled or request.share):
+        basis, before, settled = _with(basis, partial(_modes, some, count), columns, share, enough)
+        if not (settled or share):
             raise ModelError("exact modes would take too many steps")
         errors.append(before)
     return basis, np.concatenate(errors)
 
 
 def with_derivatives(
-    basis: Basis, theta: Floats, count: int, half_range: Floats, request: CorrectionRequest
+    basis: Basis, theta: Floats, count: int, half_range: Floats, share: float
 ) -> Basis:
     """Return the basis with what the derivatives of the ``count`` lowest modes lack in it.
 
@@ -221,41 +214,42 @@ def with_derivatives(
     columns, width = count * theta.size, _together(basis)
     for first in range(0, columns, width):
         some = np.arange(first, min(first + width, columns))
-        basis, *_ = _with(basis, sought, some[None], request)
+        basis, *_ = _with(basis, sought, some[None], share, 0.0)
     return basis
 
 
 def _with(
-    basis: Basis, sought: Callable[[Basis], _Found], columns: Ints, request: CorrectionRequest
+    basis: Basis, sought: Callable[[Basis], _Found], columns: Ints, share: float, enough: float
 ) -> tuple[Basis, Floats, bool]:
     """Return the basis with some of what is sought; each row of ``columns`` is of one model.
 
     Further the relative errors of the models' eigenvalues before, and whether all is settled.
     """
-    space, active, errors = basis, columns.ravel(), np.zeros(0)
+    space, active = replace(basis, capacity=basis.pencil.size), columns.ravel()
+    errors = np.zeros(0)
     Y, lam, residuals_of = sought(space)
     total, last = np.zeros((2, lam.size))
     for step in range(STEPS):
         R = residuals_of(active)
         Z = basis.factor.solve(R)
         worth = np.einsum("nc,nc->c", R, Z)
-        space = extended(space, Z, request.shortest, space.pencil.size)
+        space = extended(space, Z)
         before, (Y, lam, residuals_of) = lam, sought(space)
         if step == 0:
             gain = (before - lam) / (lam - space.sigma)
             errors = np.maximum(gain[columns].max(axis=1), 0.0)
-            columns = columns[errors >= request.enough]
+            columns = columns[errors >= enough]
         total[active] += worth
         ratio = np.full(worth.shape, SLOWEST)
         np.divide(worth, last[active], out=ratio, where=last[active] > 0)
         left = worth * np.minimum(ratio, SLOWEST)
         last[active] = worth
-        active = active[left > np.maximum(request.share * total[active], request.shortest**2)]
+        active = active[left > np.maximum(share * total[active], basis.shortest**2)]
         active = active[np.isin(active, columns)]
         if not active.size:
             break
     if (Y := Y[:, columns.ravel()]).size:
-        basis = extended(basis, space.combine(Y), request.shortest, request.capacity)
+        basis = extended(basis, space.combine(Y))
     return basis, errors, not active.size
 
 

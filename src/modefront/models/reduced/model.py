@@ -329,9 +329,8 @@ class ReducedModel(Shown):
         None where the models need factors of their own.
         """
         started = time.perf_counter()
-        request = bases.CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
         try:
-            basis, errors = bases.with_modes(basis, near, what.modes, request)
+            basis, errors = bases.with_modes(basis, near, what.modes, 0.0, what.enough)
         except ModelError:
             return None
         count = int((errors >= what.enough).sum())
@@ -344,9 +343,7 @@ class ReducedModel(Shown):
         self, known: bases.Basis | None, theta: Floats, what: SnapshotRequest
     ) -> bases.Basis:
         """Return the basis with the modes of a model and, where they are wanted, derivatives."""
-        modes = what.modes
-        started = time.perf_counter()
-        pencil = self.full.pencil
+        started, modes, pencil = time.perf_counter(), what.modes, self.full.pencil
         count, spectrum = min(modes + SPARE, self.size), None
         if known is None:  # as many more as there are
             count = min(max(count, self.count), self.size)
@@ -355,11 +352,12 @@ class ReducedModel(Shown):
                 spectrum = lowest(pencil, theta, min(2 * count, self.size))
         spectrum = spectrum or lowest(pencil, theta, count)
         below = spectrum.factors[0]
-        vectors = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
+        # Of directions of equal length, the lowest ones.
+        vectors = (spectrum.Phi / np.sqrt(spectrum.lam - below.sigma))[:, : self.capacity]
         del spectrum  # the other factor
-        vectors = vectors[:, : self.capacity]  # of directions of equal length, the lowest ones
-        basis = known or bases.empty(pencil, below, theta, below.sigma)
-        basis = bases.extended(basis, vectors, self._shortest, self.capacity)
+        shortest = 0.1 * float(np.sqrt(self.tolerance))  # an error is the square of what is lacking
+        basis = known or bases.empty(pencil, below, theta, shortest, self.capacity)
+        basis = bases.extended(basis, vectors)
         solved = time.perf_counter()
         spend(Costs(eigenproblems=1, full_time=solved - started))
         if what.derivatives:  # of which the model's own factor knows more
@@ -389,13 +387,12 @@ class ReducedModel(Shown):
         vectors = np.hstack(found)
         if not vectors.shape[1]:
             raise ModelError("no direction of negative stiffness is found")
-        return bases.extended(basis, vectors, self._shortest, self.capacity)
+        return bases.extended(basis, vectors)
 
     def _with_derivatives(self, basis: bases.Basis, theta: Floats, modes: int) -> bases.Basis:
         if (count := min(modes, basis.columns - 1)) < 1:
             return basis
-        request = bases.CorrectionRequest(SHARE, self._shortest, self.capacity)
-        return bases.with_derivatives(basis, theta, count, (self.upper - self.lower) / 2, request)
+        return bases.with_derivatives(basis, theta, count, (self.upper - self.lower) / 2, SHARE)
 
     def _at_bounds(self, basis: bases.Basis, theta: Floats) -> bases.Basis:
         """Return the basis with the modes where one parameter is at a bound, or nearer to theta.
@@ -410,19 +407,15 @@ class ReducedModel(Shown):
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
-        request = bases.CorrectionRequest(SHARE, 3e-3, (basis.columns + self.capacity) // 2)
+        small = replace(basis, shortest=3e-3, capacity=(basis.columns + self.capacity) // 2)
         for some in (bounds, *([theta] for theta in bounds)):
             # A larger space may see that a matrix is indefinite at one of them: then each alone.
             with suppress(ModelError):
-                basis, _ = bases.with_modes(basis, some, count, request)
+                small, _ = bases.with_modes(small, some, count, SHARE)
                 spend(Costs(corrected=len(some)))
                 if some is bounds:
                     break
-        return basis
-
-    @property
-    def _shortest(self) -> float:
-        return 0.1 * float(np.sqrt(self.tolerance))  # an error is the square of what is lacking
+        return replace(small, shortest=basis.shortest, capacity=basis.capacity)
 
 
 def _condition(basis: bases.Basis, theta: Floats) -> float:
