@@ -265,7 +265,8 @@ def _errors(
     """
     modes, place = np.unique(_paired(solution), return_inverse=True)
     certificate = certifier.certify(solution.theta, modes, _lowest(problem))
-    if certificate.known and not _pairs_alike(problem, solution, certificate):
+    finite = np.isfinite(certificate.eigenvalue).all()
+    if finite and not _pairs_alike(problem, solution, certificate):
         return np.full(place.shape, np.inf), np.ones(place.shape)
     return certificate.eigenvalue[place], certificate.shape[place]
 

@@ -259,10 +259,7 @@ class SparseAffine:
         return csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
 
     def second_derivatives(self, theta: Floats, left: Floats, right: Floats) -> Floats:
-        """Return sum_m left_m^T (d2A / dtheta_i dtheta_k) right_m for each row of left, (n, p, p).
-
-        ``left`` has the shape (n, N, m) and ``right`` (N, m).
-        """
+        """Return the same as `DenseAffine.second_derivatives`."""
         if not self.coefficients.curved:
             return np.zeros((len(left), theta.size, theta.size))
         stack, dof, starts = self._stack
@@ -373,10 +370,7 @@ def _place(dof: Ints) -> slice | Ints:
 
 
 def merged(first: Ints, *others: Ints) -> Ints:
-    """Return all numbers of ascending runs, ascending, each once.
-
-    It is far quicker to merge the runs than to sort their numbers.
-    """
+    """Return all numbers of ascending runs, ascending, each once: merged, which is far quicker."""
     ranked = np.sort(np.concatenate([first, *others]), kind="stable")
     return ranked[np.append(True, ranked[1:] != ranked[:-1])[: ranked.size]]
 

@@ -67,10 +67,7 @@ def analyse(keys: Ints, size: int) -> tuple[rslab.LdltSymbolic, Ints]:
 
 
 def factorise(A: sparray) -> Factorisation:
-    """Return the factors of one symmetric matrix, N x N, by itself.
-
-    Raises SingularMatrixError where it is singular to working precision.
-    """
+    """Return the factors of one symmetric matrix, N x N; SingularMatrixError as of `factor`."""
     lower = tril(A, format="coo")
     own = lower.col.astype(np.int64) * A.shape[0] + lower.row
     analysis, keys = analyse(own, A.shape[0])

@@ -20,19 +20,13 @@ from modefront._typing import Floats
 WORK = 2**17  # multiplications a block; OpenBLAS shares products from 2**18 on
 CHUNK = 2**12  # rows that are combined at once, which stay in the cache
 GROUP = 16  # blocks of which products are added up together
-
-TILE = 64
-"""Rows and columns of a matrix X^T Y that are computed together: a greater one would be written
-again after every few rows, which is 25 times slower for 300 columns."""
-
+TILE = 64  # rows and columns of X^T Y that are computed together, which stay in the cache too
 SHARED = 2**22  # multiplications from which on a product is shared among threads
 WIDE = 2  # columns from which on that pays for a sparse matrix
 THREADS = "RAYON_NUM_THREADS"  # limits the threads of products, and of factors by rslab
 
-
-PARTS, PART = 16, 2**22
-"""Parts of the rows at most, of which products X^T Y are computed each by itself and added up, and
-multiplications of a part at least."""
+PARTS = 16  # parts of the rows at most, of which products X^T Y are added up
+PART = 2**22  # multiplications of a part at least
 
 
 def gram(X: Floats, Y: Floats) -> Floats:

@@ -65,10 +65,7 @@ class CheckedFunction:
     def at(
         self, theta: Floats, size: int | None, *, derivatives: bool = True
     ) -> tuple[Tangent, Tangent]:
-        """Return K and M at ``theta``, of ``size`` N where that is known, with derivatives.
-
-        Raises InputError where the function does not return such matrices.
-        """
+        """Return K and M, of ``size`` N if that is known, with derivatives; else InputError."""
         place = self._place(theta)
         returned = self._call(theta.copy(), place, RETURNED)
         K = _checked(returned[0], f"{place}: K", size)

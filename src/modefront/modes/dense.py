@@ -86,10 +86,7 @@ def lowest(K: Floats, M: Floats, count: int) -> tuple[Floats, Floats] | None:
 def full_modes(
     K: DenseAffine, M: DenseAffine, theta: Floats, count: int, loads: Floats
 ) -> FullModes:
-    """Return the ``count`` lowest modes and the static response to loads (N, loads).
-
-    Raises ModelError as `modes`.
-    """
+    """Return the ``count`` lowest modes and static responses to loads (N, loads); see `modes`."""
     Kt = K.at(theta)
     known = decompose(Kt, M.at(theta), count)
     refuse_fewer(known.lam.size, count)
@@ -104,10 +101,7 @@ def full_modes(
 
 
 def without_rounding(diagonal: Floats, lam: Floats, Phi: Floats) -> Floats:
-    """Return eigenvalues with zeros for those of rigid-body modes.
-
-    These are below the rounding that phi^T diag(K) phi leaves in them.
-    """
+    """Return eigenvalues with zeros for those below the rounding that phi^T diag(K) phi leaves."""
     return np.where(lam < FINITE * (diagonal @ Phi**2), 0.0, lam)
 
 

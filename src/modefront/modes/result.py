@@ -165,10 +165,7 @@ class Modes(Shown):
 
     @cached_property
     def dfrequency(self) -> Floats:
-        """Derivatives of the natural frequencies in Hz, shape (modes, parameters).
-
-        Raises ValueError where derivatives were not requested.
-        """
+        """Derivatives of ``frequency``, (modes, parameters); ValueError if they are not there."""
         return self.dlam * self.frequency_by_lam[:, None]
 
     @cached_property

@@ -32,11 +32,8 @@ from modefront.modes.lanczos import greatest
 from modefront.modes.result import FullModes, ModeDerivatives, Modes, SecondDerivatives
 
 BLOCK = 8  # columns of a block: greatest multiplicity of an eigenvalue that is found at once
-
+# Modes beyond those asked for, half of their number or more: sigma is sought in a gap among them.
 LEAST = 2
-"""Modes beyond those asked for: half of their number, but no fewer than this. The gap for sigma is
-sought among them, and the more there are, the faster subspace iteration is."""
-
 ATTEMPTS = 4  # runs, each with more modes and a larger block, before missing modes are an error
 SINGULAR = 1e-13  # x^T A x / x^T diag(A) x below which A is singular to working precision
 GAP = 1e-2  # relative gap of eigenvalues that is wide enough for sigma; else the widest is taken
@@ -73,10 +70,7 @@ def modes(
 
 
 def full_modes(pencil: Pencil, theta: Floats, count: int, loads: Floats) -> FullModes:
-    """Return the ``count`` lowest modes and the static response to loads (N, loads).
-
-    Raises ModelError as `modes`.
-    """
+    """Return the ``count`` lowest modes and static responses to loads (N, loads); see `modes`."""
     known, static = lowest(pencil, theta, count), None
     lam = dense.without_rounding(pencil.K.at(theta).diagonal(), known.lam, known.Phi)
     below = known.factors[0]

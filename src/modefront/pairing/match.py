@@ -18,10 +18,9 @@ from modefront.rounding import TINY
 POOR = 0.5  # MAC below which a pair is poor
 OUTSIDE = 1e3  # cost of a candidate outside the window of frequencies
 UNSEEN = 1e-6  # component of a mode at the sensors, over that of all, below which it is noise
-
+# Candidates, unless a number is given: the nominal model's modes up to this frequency, over the
+# highest measured one; beyond the measured ones, so many at least and at most.
 REACH, FEWEST, MOST = 1.3, 3, 40
-"""Frequency of the nominal model, over the highest measured one, up to which its modes are
-candidates unless a number is given; how many are so beyond the measured ones, at least and most."""
 
 WINDOW = number("a ratio of frequencies above 1", above=1)
 

@@ -106,10 +106,7 @@ class Group(Shown):
         return out
 
     def members(self, data: ModalData) -> list[Member]:
-        """Return the members of the group.
-
-        Raises ValueError where the data have no such members; see `faults`.
-        """
+        """Return the members of the group; ValueError where the data lack some, see `faults`."""
         for key, expected, found in faults(self, data):
             place = f"group '{self.name}'" + (f": {key}" if key else "")
             raise ValueError(f"{place}: expected {expected}, found {found}")

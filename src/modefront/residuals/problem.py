@@ -265,23 +265,13 @@ def updating_problem(
     given = in_order(parameters or parameters_of(bounds or {}, nominal or {}), model.parameters)
     whole = (model, tuple(given)) if any(each.fixed for each in given) else None
     model, chosen = of_free(model, given)
-    pairing = _with_spare(pairing or Pairing(), model, data, chosen)
+    limits, pairing = _limits(chosen), pairing or Pairing()
+    if pairing.spare is None and pairing.method != "order" and isinstance(model, MatrixModel):
+        highest = float(np.nanmax(data.mean_frequency, initial=0.0))
+        below = model.modes_below(limits["start"], REACH * highest)
+        pairing = replace(pairing, spare=int(np.clip(below - len(data.modes), FEWEST, MOST)))
     model = (reduction or Reduction()).of(model, data, pairing, chosen)
-    return UpdatingProblem(
-        model, data, tuple(groups), pairing=pairing, whole=whole, **_limits(chosen)
-    )
-
-
-def _with_spare(
-    pairing: Pairing, model: Model, data: ModalData, parameters: Sequence[Parameter]
-) -> Pairing:
-    """Return how modes are paired, with the number of candidates where that is not given."""
-    if pairing.spare is not None or pairing.method == "order" or not isinstance(model, MatrixModel):
-        return pairing
-    nominal = np.array([each.nominal for each in parameters])
-    highest = float(np.nanmax(data.mean_frequency, initial=0.0))
-    below = model.modes_below(nominal, REACH * highest)
-    return replace(pairing, spare=int(np.clip(below - len(data.modes), FEWEST, MOST)))
+    return UpdatingProblem(model, data, tuple(groups), pairing=pairing, whole=whole, **limits)
 
 
 def _limits(parameters: Sequence[Parameter]) -> dict[str, Any]:

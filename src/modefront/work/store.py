@@ -30,10 +30,8 @@ from modefront.work.progress import Progress
 from modefront.work.task import Costs, Count, Executor, Key, R, Task
 from modefront.work.workers import Workers
 
-FOLDER, NOTE = "tasks", "study"
-"""Folder of the kept results within that of a run's results, and the file in it with the path of
-the study file from there."""
-
+FOLDER = "tasks"  # folder of the kept results within that of a run's results
+NOTE = "study"  # file in it with the path of the study file from there
 CHECKSUM = 32  # bytes of the checksum at the end of a file
 LONGEST = 60  # characters of a key in the name of a file, at most
 LONG = 1.0  # s of a task for whose result the drive is waited for; shorter ones are soon done anew
@@ -87,9 +85,8 @@ def hash_text(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-FILE, HOLDER = "lock", "lock-holder"
-"""File that is locked, which stays, since a lock on a file that is removed keeps nobody out; and
-file that says which process holds the lock."""
+FILE = "lock"  # is locked, and stays, since a lock on a file that is removed keeps nobody out
+HOLDER = "lock-holder"  # file that says which process holds the lock
 
 
 @contextmanager

@@ -31,17 +31,14 @@ from modefront.inputs import available_memory
 from modefront.work.task import Done, Key, Task, computed, spend
 from modefront.work.transfer import Message, Reply, Sender, work
 
-SHORT, TINY = 0.02, 0.005
-"""Seconds of tasks that are sent together, about, and of all tasks below which they are computed in
-the calling process."""
-
+SHORT = 0.02  # s of tasks that are sent together, about
+TINY = 0.005  # s of all tasks, below which they are computed in the calling process
 QUEUED = 2  # messages that are sent at a time, over the number of processes
 SHARE = 0.6  # of the memory that is free, for all processes together
 WARM = "modefront.front.pareto", "modefront.analysis.front"  # what processes import as they start
 MOST = 61  # processes of this machine at most; Windows waits for no more
 
 GONE = "the Dask scheduler is gone; what was done is kept"
-
 ANSWER, JOIN = 10.0, 60.0  # s in which a scheduler has to answer, and a worker to join
 
 ONE_THREAD = {"RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}

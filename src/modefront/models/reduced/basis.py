@@ -279,11 +279,6 @@ class Certificate:
     lam: Floats = field(default_factory=lambda: np.zeros(0))
     phi: Floats = field(default_factory=lambda: np.zeros((0, 0)))
 
-    @property
-    def known(self) -> bool:
-        """Whether the errors are finite."""
-        return bool(np.isfinite(self.eigenvalue).all())
-
 
 @shared
 @dataclass(frozen=True, eq=False)

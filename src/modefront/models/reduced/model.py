@@ -165,10 +165,7 @@ class ReducedModel(Shown):
         return modes
 
     def full_modes(self, theta: Floats, count: int) -> FullModes:
-        """Return the ``count`` lowest modes at all degrees of freedom, by the basis.
-
-        Raises ModelError where the model has no such modes.
-        """
+        """Return the ``count`` lowest modes at all degrees of freedom; see `MatrixModel`."""
         if count > self.count:
             return self.full.full_modes(theta, count)
         basis = self.basis
