@@ -15,9 +15,7 @@ from modefront.errors import ModelError
 from modefront.linalg.affine import SparseAffine, expanded, merged
 from modefront.linalg.products import threads
 
-MOST = 4
-"""Threads of a factor, and of solutions with it, at most. Without a number, rslab would take as
-many on a machine with two processors, whatever the environment says."""
+MOST = 4  # threads of a factor at most; rslab would take as many, whatever the environment says
 
 
 class SingularMatrixError(ModelError):

@@ -41,12 +41,9 @@ class Spectrum:
     factors: tuple[Factorisation, Factorisation]
 
 
+# Relative error of a quotient, as bounded by rounding in its gap, above which it is left out. The
+# bound is ten to a hundred times the rounding itself.
 COINCIDENT = 1e-6
-"""Relative error of a quotient, as bounded by rounding in its gap, above which it is left out.
-
-The bound is ten to a hundred times the rounding itself, and far less in ill-conditioned models
-than the gaps between modes that count as coincident.
-"""
 
 TOLERANCE = 1e-10  # residual of a solution over that of zero
 STEPS = 1000  # steps after which the iteration is given up

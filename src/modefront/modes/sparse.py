@@ -42,10 +42,9 @@ RESTART = 1e-2  # s over the greatest known eigenvalue, where the iteration is b
 ALL_AT_ONCE = 3000  # degrees of freedom up to which all modes are solved for where some are lost
 BEYOND = 1e3  # eigenvalue up to which modes are counted, over the greatest known one
 CONVERGED = 1e-8  # change of a mode in an iteration, after which the next is exact to rounding
-
+# Subspace iterations, after which more modes are sought instead: from an error of 1 to `CONVERGED`
+# at 1/3 a step, the factor of the lowest modes at rho = -1.
 REFINEMENTS = 17
-"""Subspace iterations, after which more modes are sought instead: from an error of 1 to `CONVERGED`
-at 1/3 a step, the factor of the lowest modes at rho = -1."""
 
 
 def modes(

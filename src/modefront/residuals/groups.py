@@ -15,7 +15,6 @@ from modefront.residuals.shape import ShapeKind
 from modefront.text import Shown
 
 NEEDED = ("name", "plural", "usable_std", "measured", "has_usable_std", "members", "stack")
-"""What a kind has, see `ResidualKind`."""
 
 KINDS: Family[ResidualKind] = Family(
     "modefront.residuals",
@@ -37,7 +36,6 @@ MODE_NUMBERS = Requirement(
     "'all' or a list of measured modes, counted from 1, each once",
     any_of({"enum": ["all"]}, array(whole(1, WHOLE).schema, once=True)),
 )
-"""Requirement of `ModeNumbers`."""
 
 
 @dataclass(frozen=True, init=False)

@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from multiprocessing import connection, resource_tracker
 from pickle import PicklingError
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias
 
 from threadpoolctl import threadpool_limits
 
@@ -46,8 +46,14 @@ ONE_THREAD = {"RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 BLAS that is limited only after it has started its threads makes imports take half as long again."""
 
 
+Errors: TypeAlias = tuple[type[Exception], ...]
+
+
 class Pool(Protocol):
     """Processes that compute messages."""
+
+    lost: Errors  # of messages whose process has ended
+    gone: Errors  # where there are no processes any more
 
     @property
     def count(self) -> int:
@@ -56,14 +62,6 @@ class Pool(Protocol):
     @property
     def ready(self) -> bool:
         """Whether a message would be computed at once."""
-
-    @property
-    def lost(self) -> tuple[type[Exception], ...]:
-        """Errors of messages whose process has ended."""
-
-    @property
-    def gone(self) -> tuple[type[Exception], ...]:
-        """Errors where there are no processes any more."""
 
     def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
         """Compute a message in one of the processes."""
@@ -79,7 +77,8 @@ class LocalPool:
     has ended, the executor ends the others, and new ones compute what is sent next.
     """
 
-    lost, gone = (BrokenProcessPool,), ()
+    lost: Errors = (BrokenProcessPool,)
+    gone: Errors = ()
 
     def __init__(self, count: int, warm: Sequence[str] = ()) -> None:
         self.count, self._warm = count, warm
@@ -182,8 +181,8 @@ class Cluster:
         except ImportError:
             expected = "the extra 'cluster': pip install modefront[cluster]"
             raise wrong("--scheduler", expected, "no package 'distributed'") from None
-        self.lost = (distributed.KilledWorker,)
-        self.gone = (CancelledError, OSError, distributed.client.ClosedClientError)
+        self.lost: Errors = (distributed.KilledWorker,)
+        self.gone: Errors = (CancelledError, OSError, distributed.client.ClosedClientError)
         try:
             logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors say what it logs
             self._client = distributed.Client(address, timeout=ANSWER, set_as_default=False)

@@ -210,6 +210,7 @@ def with_derivatives(
     The modes themselves must be in it. Derivatives are over ``half_range`` (p,). They need not be
     exact to be of use.
     """
+    count = min(count, basis.columns - 1)
     sought = partial(_derivatives, theta, count, half_range)
     columns, width = count * theta.size, _together(basis)
     for first in range(0, columns, width):
@@ -310,13 +311,14 @@ class Certifier:
         One step of inverse iteration makes better modes of X: (X - B^-1 R) (I + S^-1 P) Y, with
         the eigenvectors Y of diag(rho) - P; what they differ from X is the error of the shapes.
         """
-        basis, pencil = self.basis, self.full.pencil
+        pencil = self.full.pencil
+        basis = replace(self.basis, pencil=pencil)
         unknown = Certificate(np.full(count, np.inf), np.ones(count))
         try:
             ritz = basis.lowest(theta, count + LATER)
         except ModelError:
             return unknown
-        above = level(pencil, theta, ritz.lam, count, basis.sigma)
+        above = level(basis, theta, ritz.lam, count)
         if above is None:
             return unknown
         m = int(np.searchsorted(ritz.lam, above.sigma))
@@ -350,16 +352,15 @@ class Certifier:
         return Certificate(relative, np.minimum(shape, 1.0), ell, phi)
 
 
-def level(
-    pencil: Pencil, theta: Floats, lam: Floats, count: int, shift: float
-) -> Factorisation | None:
+def level(basis: Basis, theta: Floats, lam: Floats, count: int) -> Factorisation | None:
     """Return a level above the lowest ``count`` Ritz values below which no mode is missing.
 
     With it comes the factor that proves it. It is in the first wide gap of the Ritz values
-    ``lam`` above these, or in the widest of the next ones; gaps are relative to lam - ``shift``.
-    None where a mode is missing, or there is no gap.
+    ``lam`` above these, or in the widest of the next ones; gaps are relative to lam - sigma. None
+    where a mode is missing, or there is no gap.
     """
-    gaps = np.diff(lam[count - 1 : count + LATER]) / (lam[count : count + LATER] - shift)
+    pencil = basis.pencil
+    gaps = np.diff(lam[count - 1 : count + LATER]) / (lam[count : count + LATER] - basis.sigma)
     if not gaps.size or gaps.max() <= 1e-6:
         return None
     wide = gaps > 0.2

@@ -215,7 +215,7 @@ class ReducedModel(Shown):
             if lam.size > count:
                 doubtful.append((-lam[count - 1], pair, theta, lam))
         chosen = sorted(doubtful, key=lambda entry: entry[:2])[:24]  # each takes a factorisation
-        return [theta for *_, theta, lam in chosen if self._lacks(basis, theta, lam, count)]
+        return [x for *_, x, lam in chosen if bases.level(basis, x, lam, count) is None]
 
     @property
     def basis(self) -> bases.Basis:
@@ -261,15 +261,21 @@ class ReducedModel(Shown):
         Models near enough are corrected with the factor at hand, others solved in full. Those that
         have no modes are left out; raises ModelError where all of them have none.
         """
-        models, error = what.models, 0.0
-        if self._basis is None:
+        basis, models, n = self._basis, what.models, what.modes
+        if basis is None:
             basis = self._solved(None, models.pop(0), what)
             return self._added_to(basis, models, what)[0], np.inf
-        if what.modes == 0:
-            return self._excluding(self._basis, models), np.inf
+        if n == 0:
+            return self._excluding(basis, models), np.inf
         if what.enough:
-            models, error = self._worst(self._basis, what)
-        return self._added_to(self._basis, models, what) if models else (self._basis, error)
+            if known := [theta for theta in models if basis.ritz_values(theta, n).size >= n]:
+                lengths = bases.lacking_lengths(basis, known, n)
+                ranked = np.argsort(-lengths, kind="stable")
+                models = [known[k] for k in ranked if lengths[k] >= what.enough]
+                if not models:
+                    return basis, float(lengths.max())
+            models = models[:WORST]
+        return self._added_to(basis, models, what)
 
     def _added_to(
         self, basis: bases.Basis, models: list[Floats], what: SnapshotRequest
@@ -295,28 +301,14 @@ class ReducedModel(Shown):
             raise ModelError("none of the models of a snapshot has modes")
         return basis, error
 
-    def _worst(self, basis: bases.Basis, what: SnapshotRequest) -> tuple[list[Floats], float]:
-        """Return the models of a snapshot that the basis knows least, and its error there."""
-        n = what.modes
-        models = [theta for theta in what.models if basis.ritz_values(theta, n).size >= n]
-        if not models:
-            return what.models[:WORST], np.inf
-        lengths = bases.lacking_lengths(basis, models, n)
-        ranked = np.argsort(-lengths, kind="stable")[:WORST]
-        return [models[k] for k in ranked if lengths[k] >= what.enough], float(lengths.max())
-
     def _is_near(self, basis: bases.Basis, theta: Floats, what: SnapshotRequest) -> bool:
         """Return whether the factor at hand is of use for a model, and no mode is missing."""
         lam = basis.ritz_values(theta, what.modes + bases.LATER)
         return (
             lam.size > what.modes
             and _condition(basis, theta) <= FAR
-            and (what.enough > 0 or not self._lacks(basis, theta, lam, what.modes))
+            and (what.enough > 0 or bases.level(basis, theta, lam, what.modes) is not None)
         )
-
-    def _lacks(self, basis: bases.Basis, theta: Floats, lam: Floats, count: int) -> bool:
-        """Return whether a mode is missing among the lowest ones, of the eigenvalues ``lam``."""
-        return bases.level(self.full.pencil, theta, lam, count, basis.sigma) is None
 
     def _corrected(
         self, basis: bases.Basis, near: list[Floats], what: SnapshotRequest
@@ -332,7 +324,8 @@ class ReducedModel(Shown):
             return None
         count = int((errors >= what.enough).sum())
         if count and what.derivatives:
-            basis = self._with_derivatives(basis, near[int(errors.argmax())], what.modes)
+            worst, half_range = near[int(errors.argmax())], (self.upper - self.lower) / 2
+            basis = bases.with_derivatives(basis, worst, what.modes, half_range, SHARE)
         spend(Costs(corrected=count, corrected_time=time.perf_counter() - started))
         return basis, float(errors.max())
 
@@ -358,7 +351,8 @@ class ReducedModel(Shown):
         solved = time.perf_counter()
         spend(Costs(eigenproblems=1, full_time=solved - started))
         if what.derivatives:  # of which the model's own factor knows more
-            own = self._with_derivatives(replace(basis, factor=below), theta, modes)
+            own, half_range = replace(basis, factor=below), (self.upper - self.lower) / 2
+            own = bases.with_derivatives(own, theta, modes, half_range, SHARE)
             basis = replace(own, factor=basis.factor)
         if known is None:
             basis = self._at_bounds(basis, theta)
@@ -385,11 +379,6 @@ class ReducedModel(Shown):
         if not vectors.shape[1]:
             raise ModelError("no direction of negative stiffness is found")
         return bases.extended(basis, vectors)
-
-    def _with_derivatives(self, basis: bases.Basis, theta: Floats, modes: int) -> bases.Basis:
-        if (count := min(modes, basis.columns - 1)) < 1:
-            return basis
-        return bases.with_derivatives(basis, theta, count, (self.upper - self.lower) / 2, SHARE)
 
     def _at_bounds(self, basis: bases.Basis, theta: Floats) -> bases.Basis:
         """Return the basis with the modes where one parameter is at a bound, or nearer to theta.
