@@ -210,8 +210,7 @@ class SparseAffine:
     def at(self, theta: Floats) -> csr_array:
         """Return A(theta), N x N; it holds every entry of the pattern, zero or not."""
         values = self.terms @ self.coefficients.values(theta)
-        shape = self.size, self.size
-        return csr_array((values, self.indices, self.indptr), shape=shape)
+        return csr_array((values, self.indices, self.indptr), shape=(self.size, self.size))
 
     @cached_property
     def diagonals(self) -> csr_array:
@@ -219,8 +218,7 @@ class SparseAffine:
         row, terms = expanded(self.indptr), self.terms
         chosen = np.flatnonzero((self.indices == row)[terms.indices])
         place = row[terms.indices[chosen]], expanded(terms.indptr)[chosen]
-        shape = self.size, terms.shape[1]
-        return csr_array((terms.data[chosen], place), shape=shape)
+        return csr_array((terms.data[chosen], place), shape=(self.size, terms.shape[1]))
 
     def dense(self) -> DenseAffine:
         """Return the same matrix with dense terms."""
@@ -230,11 +228,10 @@ class SparseAffine:
 
     def derivative(self, theta: Floats, i: int) -> csr_array:
         """Return dA/dtheta_i, N x N, without the entries that are zero."""
-        values = self.terms @ self.coefficients.jacobian(theta)[:, i]
-        kept = np.flatnonzero(values)
-        rows = np.searchsorted(self.indptr, kept, side="right") - 1
-        entries = values[kept], (rows, self.indices[kept])
-        return csr_array(entries, shape=(self.size, self.size))
+        entries = self.terms @ self.coefficients.jacobian(theta)[:, i], self.indices, self.indptr
+        out = csr_array(entries, shape=(self.size, self.size), copy=True)
+        out.eliminate_zeros()
+        return out
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""

@@ -120,9 +120,7 @@ def chain(
     return replace(model, geometry=chain_geometry(n, model.selection))
 
 
-def _terms(
-    B: csr_array, values: Sequence[float] | Floats, scales: Sequence[str | None]
-) -> dict[str, csr_array]:
+def _terms(B: csr_array, values: Numbers, scales: Names) -> dict[str, csr_array]:
     """Return the sums of the values v_i b_i^T b_i of rows of B by the names of their scales."""
     names, out = np.array([name or BASE for name in scales]), {}
     for name in dict.fromkeys([BASE, *names.tolist()]):

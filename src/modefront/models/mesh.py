@@ -52,10 +52,9 @@ def mesh_model(
     whole = replace(structure, sensors=(*structure.sensors, *outputs))
     built = fem.assemble(whole, floating=floating)
     sensors, others = np.split(np.arange(len(built.sensors)), [len(structure.sensors)])
-    for name in built.parameters:
-        if name not in parameters:
-            expected = f"the structure's {', '.join(built.parameters)}"
-            raise wrong("parameters", expected, f"no {name}")
+    if missing := [name for name in built.parameters if name not in parameters]:
+        expected = f"the structure's {', '.join(built.parameters)}"
+        raise wrong("parameters", expected, f"no {missing[0]}")
     own = [[float(x == name) for x in parameters] for name in built.parameters]
     of = np.array(own).reshape(len(own), len(parameters))
     pair = built.stiffness, built.mass

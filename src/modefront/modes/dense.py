@@ -61,10 +61,8 @@ def modes(
         return decomposition.Phi[:, r], first_axis(X, S[:, r]), Z
 
     second = SecondDerivatives(K, M, theta, lam[:count], phi, dlam[:count], solve, count)
-    slopes = ModeDerivatives(
-        dlam[:count], first_axis(seen, S[:, :count]), coincident[:count], second
-    )
-    return Modes(lam[:count], phi, slopes)
+    dphi = first_axis(seen, S[:, :count])
+    return Modes(lam[:count], phi, ModeDerivatives(dlam[:count], dphi, coincident[:count], second))
 
 
 def lowest(K: Floats, M: Floats, count: int) -> tuple[Floats, Floats] | None:

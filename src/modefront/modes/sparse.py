@@ -57,11 +57,10 @@ def modes(
     was missed.
     """
     spectrum = lowest(pencil, theta, count)
-    phi = sensors @ spectrum.Phi[:, :count]
+    lam, phi = spectrum.lam[:count], sensors @ spectrum.Phi[:, :count]
     if not derivatives:
-        return Modes(spectrum.lam[:count], phi)
+        return Modes(lam, phi)
     dlam, dphi, coincident = exact.at_sensors(sensors, spectrum, count)
-    lam = spectrum.lam[:count]
     solve = partial(exact.everywhere, sensors, spectrum, count)
     # Mode by mode, to bound the memory.
     second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solve, 1)
