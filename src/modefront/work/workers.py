@@ -378,9 +378,9 @@ class Workers:
         self._losses[task.identity] += 1
         if self._losses[task.identity] == 1:
             call.alone.append(position)
-            return
-        text = f"task '{task.name}' could not be done: {reason}, twice; all others are kept"
-        call.errors[position] = UnfinishedError(text)
+        else:
+            text = f"task '{task.name}' could not be done: {reason}, twice; all others are kept"
+            call.errors[position] = UnfinishedError(text)
 
     def _learnt(self, task: Task[Any], done: Done) -> Done:
         kind = _kind(task)

@@ -111,8 +111,7 @@ def extended(basis: Basis, vectors: Floats) -> Basis:
         across, inner = new[:, :n], (new[:, n:] + new[:, n:].transpose(0, 2, 1)) / 2
         terms = np.block([[known.terms, across], [across.transpose(0, 2, 1), inner]])
         matrices.append(DenseAffine(terms, known.coefficients))
-    K, M = matrices
-    return replace(basis, blocks=blocks, K=K, M=M)
+    return replace(basis, blocks=blocks, K=matrices[0], M=matrices[1])
 
 
 def residuals(pencil: Pencil, thetas: Floats, lam: Floats, X: Floats) -> Floats:
@@ -175,8 +174,8 @@ def lacking_lengths(basis: Basis, thetas: Sequence[Floats], count: int) -> Float
     That is the relative error of its eigenvalue but for the condition of :math:`A^{-1} C`.
     """
     worth = []
-    for some in _shares(basis, thetas, count):
-        _, lam, residuals_of = _modes(some, count, basis)
+    for part in _batches(basis, len(thetas), count):
+        _, lam, residuals_of = _modes(thetas[part], count, basis)
         R = residuals_of(np.arange(lam.size))
         worth.append(np.einsum("nc,nc->c", R, basis.factor.solve(R)).reshape(-1, count).max(axis=1))
     return np.concatenate(worth)
@@ -193,7 +192,8 @@ def with_modes(
     and where a larger space sees that a matrix is indefinite.
     """
     errors = []
-    for some in _shares(basis, thetas, count):
+    for part in _batches(basis, len(thetas), count):
+        some = thetas[part]
         columns = np.arange(len(some) * count).reshape(-1, count)
         basis, before, settled = _with(basis, partial(_modes, some, count), columns, share, enough)
         if not (settled or share):
@@ -212,10 +212,9 @@ def with_derivatives(
     """
     count = min(count, basis.columns - 1)
     sought = partial(_derivatives, theta, count, half_range)
-    columns, width = count * theta.size, _together(basis)
-    for first in range(0, columns, width):
-        some = np.arange(first, min(first + width, columns))
-        basis, *_ = _with(basis, sought, some[None], share, 0.0)
+    columns = np.arange(count * theta.size)
+    for part in _batches(basis, columns.size):
+        basis, *_ = _with(basis, sought, columns[None, part], share, 0.0)
     return basis
 
 
@@ -254,13 +253,10 @@ def _with(
     return basis, errors, not active.size
 
 
-def _shares(basis: Basis, thetas: Sequence[Floats], count: int) -> list[Sequence[Floats]]:
-    width = max(1, _together(basis) // count)
-    return [thetas[first : first + width] for first in range(0, len(thetas), width)]
-
-
-def _together(basis: Basis) -> int:
-    return max(64, 2**19 // basis.pencil.size)
+def _batches(basis: Basis, count: int, columns: int = 1) -> list[slice]:
+    """Return which of ``count`` things, of so many columns each, are solved for together."""
+    width = max(1, max(64, 2**19 // basis.pencil.size) // columns)
+    return [slice(first, first + width) for first in range(0, count, width)]
 
 
 LATER = 4  # gaps above the last mode in question among which the widest is taken
@@ -275,8 +271,7 @@ class Certificate:
     eigenvalue: Floats
     shape: Floats  # (modes,) errors of the mode shapes in the norm of M, over their length
     # lam, phi: (lowest modes,), (sensors, lowest modes) eigenvalues and mass-normalised shapes of
-    # all modes that were looked at, much nearer to those of the full model; none where the errors
-    # are infinite
+    # all modes that were looked at, much nearer to the full model's; none where nothing is proved
     lam: Floats = field(default_factory=lambda: np.zeros(0))
     phi: Floats = field(default_factory=lambda: np.zeros((0, 0)))
 
