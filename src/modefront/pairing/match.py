@@ -88,7 +88,9 @@ def match(
         return Pairs(index, values[np.arange(m), index])
     if q < m:
         raise ValueError(f"{m} measured modes cannot be paired with {q} model modes")
-    distance, outside = log_ratio(data, frequency), np.zeros((m, q))
+    with np.errstate(divide="ignore"):
+        ratio = np.maximum(frequency, TINY) / data.mean_frequency[:, None]
+        distance, outside = np.abs(np.log(ratio)), np.zeros((m, q))
     if pairing.window is not None:
         outside = np.where(distance > np.log(pairing.window), OUTSIDE, 0.0)
     cost = np.where(np.isnan(values), distance, 1 - values)
@@ -109,12 +111,6 @@ def match(
             found.append((value, kept))
         index = min(found, key=lambda x: x[0])[1]
     return Pairs(index, values[np.arange(m), index])
-
-
-def log_ratio(data: ModalData, frequency: Floats) -> Floats:
-    """Return |ln f / f^| of measured and model modes, (measured modes, modes)."""
-    with np.errstate(divide="ignore"):
-        return np.abs(np.log(np.maximum(frequency, TINY) / data.mean_frequency[:, None]))
 
 
 def assigned(cost: Floats) -> Ints:
