@@ -60,7 +60,7 @@ def modes(
         Z = X @ ((seen.T @ b) / energy[:, r[owner]])
         return decomposition.Phi[:, r], first_axis(X, S[:, r]), Z
 
-    second = SecondDerivatives(K, M, theta, lam[:count], phi, dlam[:count], solve, count)
+    second = SecondDerivatives(K, M, theta, solve, count)
     dphi = first_axis(seen, S[:, :count])
     return Modes(lam[:count], phi, ModeDerivatives(dlam[:count], dphi, coincident[:count], second))
 

@@ -63,7 +63,7 @@ def modes(
     dlam, dphi, coincident = exact.at_sensors(sensors, spectrum, count)
     solve = partial(exact.everywhere, sensors, spectrum, count)
     # Mode by mode, to bound the memory.
-    second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solve, 1)
+    second = SecondDerivatives(pencil.K, pencil.M, theta, solve, 1)
     return Modes(lam, phi, ModeDerivatives(dlam, dphi, coincident, second))
 
 
