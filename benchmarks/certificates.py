@@ -32,6 +32,7 @@ from modefront.errors import ModelError
 from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
+from modefront.models.reduced.basis import certificate_of
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.modes import dense
 from modefront.work.task import counted
@@ -189,7 +190,7 @@ def compared(model: ReducedModel, thetas: Floats) -> list[Comparison]:
     requested = np.arange(MODES)
     basis, pencil, out = model.basis, model.full.pencil, []
     for theta in thetas:
-        certificate = model.certifier().certify(theta, requested, MODES + SPARE)
+        certificate = certificate_of(model.basis, theta, requested, MODES + SPARE)
         K, M = pencil.K.at(theta).toarray(), pencil.M.at(theta).toarray()
         X = scipy.linalg.eigh(M, K)[1][:, ::-1]
         try:

@@ -44,6 +44,7 @@ from modefront.identifiability.combinations import Identifiability
 from modefront.linalg.affine import DenseAffine
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
+from modefront.models.reduced.basis import certificate_of
 from modefront.models.reduced.model import ReducedModel
 from modefront.modes import dense
 from modefront.modes.sparse import lowest
@@ -180,7 +181,7 @@ def sharpness(full: MatrixModel, model: ReducedModel, result: xr.Dataset) -> Flo
     basis = model.basis
     ratios = []
     for theta, r in requests_of(result):
-        certificate = model.certifier().certify(theta, r)
+        certificate = certificate_of(model.basis, theta, r)
         K, M = full.pencil.K.at(theta), full.pencil.M.at(theta)
         exact = lowest(full.pencil, theta, model.count)
         ritz = basis.combine(dense.decompose(basis.K.at(theta), basis.M.at(theta)).Phi[:, r])
@@ -232,7 +233,7 @@ def line(
     out["error"] = float(data_of["eigenvalue_error"].max())
     out["converged"] = float(data_of["converged"].mean())
     alone = reduced_model(full, count)
-    nominal = [alone.certifier().certify(*x) for x in requests_of(data_of)]
+    nominal = [certificate_of(alone.basis, *x) for x in requests_of(data_of)]
     out["error_nominal"] = max(float(certificate.eigenvalue.max()) for certificate in nominal)
     out |= {name: value for name, value in vars(costs).items() if name.endswith("_time")}
     if exact:

@@ -18,7 +18,7 @@ from modefront.errors import ModelError, UnfinishedError
 from modefront.front.front import Front, best_minima
 from modefront.front.point import Point
 from modefront.front.search import Search
-from modefront.models.reduced.basis import Certificate, Certifier
+from modefront.models.reduced.basis import Basis, Certificate, certificate_of
 from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import Solution
@@ -246,25 +246,23 @@ def _certify(
     work: Executor,
 ) -> None:
     """Let the model keep the errors of solutions."""
-    certifier = model.certifier() if solutions else None
+    basis = model.basis if solutions else None
     tasks = [
-        Task(("certificate", name, k + 1), _errors, (problem, certifier, solution))
+        Task(("certificate", name, k + 1), _errors, (problem, basis, solution))
         for k, solution in enumerate(solutions)
     ]
     found = zip(solutions, work.run(tasks), strict=True)
     model.errors.update({_key(solution): errors for solution, errors in found})
 
 
-def _errors(
-    problem: UpdatingProblem, certifier: Certifier, solution: Solution
-) -> tuple[Floats, Floats]:
+def _errors(problem: UpdatingProblem, basis: Basis, solution: Solution) -> tuple[Floats, Floats]:
     """Return the errors of the modes that are paired with measured ones, and of their shapes.
 
     They are infinite where the full model may pair other modes: where one of those that are looked
     at is missing, or where better known modes would be paired differently.
     """
     modes, place = np.unique(_paired(solution), return_inverse=True)
-    certificate = certifier.certify(solution.theta, modes, _lowest(problem))
+    certificate = certificate_of(basis, solution.theta, modes, _lowest(problem))
     finite = np.isfinite(certificate.eigenvalue).all()
     if finite and not _pairs_alike(problem, solution, certificate):
         return np.full(place.shape, np.inf), np.ones(place.shape)

@@ -93,7 +93,7 @@ class _Pickler(pickle.Pickler):
 
     def _meet(self, value: Any) -> str:
         """Return the name of a shared object, after those of its attributes."""
-        for part in vars(value).values():
+        for part in value.__getstate__().values():
             if type(part) in _REGISTERED:
                 self._meet(part)
         name = self.sender.name(value)

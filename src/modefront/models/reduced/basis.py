@@ -35,13 +35,13 @@ from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 
 
+@shared
 @dataclass(frozen=True, eq=False)
 class Basis:
     """A basis and the model in it."""
 
-    # pencil, factor: the full matrices, and the factor of A; lost on the way to other processes
-    pencil: Pencil
-    factor: Factorisation
+    full: MatrixModel  # the model with sparse matrices
+    factor: Factorisation  # of A; lost on the way to other processes
     theta: Floats  # theta, sigma: the parameters and the shift of A = K - sigma M
     sigma: float
     shortest: float  # length of the directions that are too short to matter, in energy
@@ -51,8 +51,18 @@ class Basis:
     M: DenseAffine
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state without what is large and known to others, or cannot be sent."""
-        return {**vars(self), "pencil": None, "factor": None}
+        """Return the state without the factor, which cannot be sent."""
+        return {**vars(self), "factor": None}
+
+    @property
+    def footprint(self) -> float:
+        """Bytes that the basis takes, and an eigensolution of the full model."""
+        return self.full.footprint + sum(block.nbytes for block in self.blocks)
+
+    @property
+    def pencil(self) -> Pencil:
+        """The matrices of the full model."""
+        return self.full.pencil
 
     @property
     def columns(self) -> int:
@@ -79,12 +89,12 @@ class Basis:
 
 
 def empty(
-    pencil: Pencil, factor: Factorisation, theta: Floats, shortest: float, capacity: int
+    full: MatrixModel, factor: Factorisation, theta: Floats, shortest: float, capacity: int
 ) -> Basis:
     """Return the basis without columns in the norm of the factor's matrix, that at ``theta``."""
-    pair = (pencil.K, pencil.M)
+    pair = (full.pencil.K, full.pencil.M)
     K, M = (DenseAffine(np.zeros((A.terms.shape[1], 0, 0)), A.coefficients) for A in pair)
-    return Basis(pencil, factor, theta, factor.sigma, shortest, capacity, (), K, M)
+    return Basis(full, factor, theta, factor.sigma, shortest, capacity, (), K, M)
 
 
 def extended(basis: Basis, vectors: Floats) -> Basis:
@@ -276,75 +286,61 @@ class Certificate:
     phi: Floats = field(default_factory=lambda: np.zeros((0, 0)))
 
 
-@shared
-@dataclass(frozen=True, eq=False)
-class Certifier:
-    """Judges the modes of a basis in the full model."""
+def certificate_of(basis: Basis, theta: Floats, modes: Ints, lowest: int = 0) -> Certificate:
+    """Return bounds of the errors of modes, counted from 0, at theta (p,).
 
-    full: MatrixModel  # the model with sparse matrices
-    basis: Basis  # with the model in it
+    They are infinite where one of the ``lowest`` modes, or a mode below the requested ones, is
+    missing. It takes a factorisation.
+    """
+    started = time.perf_counter()
+    known = _bounds(basis, theta, max(lowest, int(modes.max()) + 1))
+    spend(Costs(certificates=1, certificate_time=time.perf_counter() - started))
+    return replace(known, eigenvalue=known.eigenvalue[modes], shape=known.shape[modes])
 
-    @property
-    def footprint(self) -> float:
-        """Bytes that the basis takes, and an eigensolution of the full model."""
-        return self.full.footprint + sum(block.nbytes for block in self.basis.blocks)
 
-    def certify(self, theta: Floats, modes: Ints, lowest: int = 0) -> Certificate:
-        """Return bounds of the errors of modes, counted from 0, at theta (p,).
+def _bounds(basis: Basis, theta: Floats, count: int) -> Certificate:
+    """Return the errors of the ``count`` lowest modes or more.
 
-        They are infinite where one of the ``lowest`` modes, or a mode below the requested ones, is
-        missing. It takes a factorisation.
-        """
-        started = time.perf_counter()
-        known = self._bounds(theta, max(lowest, int(modes.max()) + 1))
-        spend(Costs(certificates=1, certificate_time=time.perf_counter() - started))
-        return replace(known, eigenvalue=known.eigenvalue[modes], shape=known.shape[modes])
-
-    def _bounds(self, theta: Floats, count: int) -> Certificate:
-        """Return the errors of the ``count`` lowest modes or more.
-
-        One step of inverse iteration makes better modes of X: (X - B^-1 R) (I + S^-1 P) Y, with
-        the eigenvectors Y of diag(rho) - P; what they differ from X is the error of the shapes.
-        """
-        pencil = self.full.pencil
-        basis = replace(self.basis, pencil=pencil)
-        unknown = Certificate(np.full(count, np.inf), np.ones(count))
-        try:
-            ritz = basis.lowest(theta, count + LATER)
-        except ModelError:
-            return unknown
-        above = level(basis, theta, ritz.lam, count)
-        if above is None:
-            return unknown
-        m = int(np.searchsorted(ritz.lam, above.sigma))
-        rho, X = ritz.lam[:m], basis.combine(ritz.Phi[:, :m])
-        K, M = pencil.K.at(theta), pencil.M.at(theta)
-        R = times(K, X) - times(M, X) * rho
-        Z = above.solve(R)
-        room = above.sigma - rho  # the diagonal of S
-        E, unit = gram(R, Z), np.sqrt(np.outer(room, room))
-        values, U = np.linalg.eigh((E + E.T) / 2 / unit)
-        if values[-1] >= 1:  # E < S does not hold
-            return unknown
-        values = np.maximum(values, 0.0)  # but for rounding
-        P = (U * (values / (1 - values))) @ U.T * unit
-        noise = np.finfo(float).eps * (K.diagonal() @ X**2)
-        forms = gram(X, R)  # should vanish; what is beyond rounding is an error of the projection
-        forms[np.abs(forms) <= 100 * np.sqrt(np.outer(noise, noise))] = 0.0
-        ell, Y = np.linalg.eigh(np.diag(rho) + (forms + forms.T) / 2 - P)
-        Y *= np.where(np.diag(Y) < 0, -1.0, 1.0)
-        error = np.maximum(np.abs(rho - ell), np.diag(P))  # without cancellation, where P is small
-        left = rho - basis.sigma - error
-        relative = np.divide(error, left, out=np.full(m, np.inf), where=left > 0)
-        turn = Y + P @ Y / room[:, None]
-        change = combine(X, turn - np.eye(m)) - combine(Z, turn)
-        better = X + change
-        MX = times(M, better)
-        square = np.einsum("nr,nr->r", better, MX)
-        off = change - better * (np.einsum("nr,nr->r", change, MX) / square)
-        shape = np.sqrt(np.maximum(np.einsum("nr,nr->r", off, times(M, off)), 0.0))
-        phi = self.full.selection @ better / np.sqrt(square)
-        return Certificate(relative, np.minimum(shape, 1.0), ell, phi)
+    One step of inverse iteration makes better modes of X: (X - B^-1 R) (I + S^-1 P) Y, with
+    the eigenvectors Y of diag(rho) - P; what they differ from X is the error of the shapes.
+    """
+    pencil, unknown = basis.pencil, Certificate(np.full(count, np.inf), np.ones(count))
+    try:
+        ritz = basis.lowest(theta, count + LATER)
+    except ModelError:
+        return unknown
+    above = level(basis, theta, ritz.lam, count)
+    if above is None:
+        return unknown
+    m = int(np.searchsorted(ritz.lam, above.sigma))
+    rho, X = ritz.lam[:m], basis.combine(ritz.Phi[:, :m])
+    K, M = pencil.K.at(theta), pencil.M.at(theta)
+    R = times(K, X) - times(M, X) * rho
+    Z = above.solve(R)
+    room = above.sigma - rho  # the diagonal of S
+    E, unit = gram(R, Z), np.sqrt(np.outer(room, room))
+    values, U = np.linalg.eigh((E + E.T) / 2 / unit)
+    if values[-1] >= 1:  # E < S does not hold
+        return unknown
+    values = np.maximum(values, 0.0)  # but for rounding
+    P = (U * (values / (1 - values))) @ U.T * unit
+    noise = np.finfo(float).eps * (K.diagonal() @ X**2)
+    forms = gram(X, R)  # should vanish; what is beyond rounding is an error of the projection
+    forms[np.abs(forms) <= 100 * np.sqrt(np.outer(noise, noise))] = 0.0
+    ell, Y = np.linalg.eigh(np.diag(rho) + (forms + forms.T) / 2 - P)
+    Y *= np.where(np.diag(Y) < 0, -1.0, 1.0)
+    error = np.maximum(np.abs(rho - ell), np.diag(P))  # without cancellation, where P is small
+    left = rho - basis.sigma - error
+    relative = np.divide(error, left, out=np.full(m, np.inf), where=left > 0)
+    turn = Y + P @ Y / room[:, None]
+    change = combine(X, turn - np.eye(m)) - combine(Z, turn)
+    better = X + change
+    MX = times(M, better)
+    square = np.einsum("nr,nr->r", better, MX)
+    off = change - better * (np.einsum("nr,nr->r", change, MX) / square)
+    shape = np.sqrt(np.maximum(np.einsum("nr,nr->r", off, times(M, off)), 0.0))
+    phi = basis.full.selection @ better / np.sqrt(square)
+    return Certificate(relative, np.minimum(shape, 1.0), ell, phi)
 
 
 def level(basis: Basis, theta: Floats, lam: Floats, count: int) -> Factorisation | None:

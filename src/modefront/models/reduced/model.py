@@ -195,10 +195,6 @@ class ReducedModel(Shown):
         K, M = (replace(A, terms=V.T @ A.terms @ V) for A in matrices)
         return replace(self, _small=(what, K, M, sensed @ V))
 
-    def certifier(self) -> bases.Certifier:
-        """Return what judges modes of the basis."""
-        return bases.Certifier(self.full, self.basis)
-
     def lacking(self, count: int) -> list[Floats]:
         """Return models with two parameters at their lower bounds where modes are missing.
 
@@ -346,7 +342,7 @@ class ReducedModel(Shown):
         vectors = (spectrum.Phi / np.sqrt(spectrum.lam - below.sigma))[:, : self.capacity]
         del spectrum  # the other factor
         shortest = 0.1 * float(np.sqrt(self.tolerance))  # an error is the square of what is lacking
-        basis = known or bases.empty(pencil, below, theta, shortest, self.capacity)
+        basis = known or bases.empty(self.full, below, theta, shortest, self.capacity)
         basis = bases.extended(basis, vectors)
         solved = time.perf_counter()
         spend(Costs(eigenproblems=1, full_time=solved - started))
