@@ -17,7 +17,7 @@ from modefront.errors import Fault, InputError, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Members, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Pencil, SingularMatrixError, pencil
 from modefront.linalg.products import gram
-from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
+from modefront.models.base import LoadCase, Model, NamedWeights, Transfer, passed_on
 from modefront.models.geometry import Geometry
 from modefront.models.parameters import BASE, Parameter, exponents_of, form_of, term_exponents
 from modefront.modes import dense, sparse
@@ -77,10 +77,7 @@ class MatrixModel(Shown):
 
     __repr__ = brief_model
 
-    @property
-    def size(self) -> int:
-        """Number of degrees of freedom N."""
-        return self.stiffness.size
+    size = passed_on("stiffness", "size")
 
     @property
     def footprint(self) -> float:

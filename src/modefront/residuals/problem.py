@@ -3,7 +3,7 @@
 Second derivatives are those of Gauss and Newton, or all of them.
 """
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -13,7 +13,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
-from modefront.models.base import Model
+from modefront.models.base import Model, passed_on
 from modefront.models.matrices import MatrixModel, of_free
 from modefront.models.parameters import Parameter, Prior, in_order, parameters_of
 from modefront.models.reduced.model import ReducedModel
@@ -111,15 +111,9 @@ class UpdatingProblem(Shown):
         """The members of each group, those of a kind together."""
         return tuple(tuple(group.stacks(self.data)) for group in self.groups)
 
-    @property
-    def version(self) -> Hashable:
-        """That of the model, of which other processes have another one when it changes."""
-        return getattr(self.model, "version", 0)
-
-    @property
-    def footprint(self) -> float:
-        """Bytes that the model takes; those of a reduced one are not those of the full one."""
-        return getattr(self.model, "footprint", 0.0)
+    # those of the model, where it has them: see `modefront.work.transfer.shared`
+    version = passed_on("model", "version")
+    footprint = passed_on("model", "footprint")
 
     @property
     def objectives(self) -> tuple[str, ...]:
