@@ -59,19 +59,16 @@ class MatrixModel(Shown):
 
     parameters: tuple[str, ...]  # names of the parameters
     sensors: tuple[str, ...]  # names of the sensors
-    # (sensors, N) weights of the degrees of freedom at each sensor
-    selection: csr_array
+    selection: csr_array  # (sensors, N) weights of the degrees of freedom at each sensor
     stiffness: DenseAffine | SparseAffine  # stiffness, mass: K(theta), M(theta), N x N
     mass: DenseAffine | SparseAffine
     # weights (N,) of the degrees of freedom at places that are no sensors, by name
     outputs: Mapping[str, Floats] = field(default_factory=dict)
     # motion (N,) of the degrees of freedom with the base, by the name of its direction
     base: Mapping[str, Floats] = field(default_factory=dict)
-    # whether the stiffness matrix may be singular: rigid-body modes are wanted
-    floating: bool = True
+    floating: bool = True  # whether K may be singular: rigid-body modes are wanted
     limits: tuple[str, ...] = ()  # warnings on the elements of which the matrices are made
-    # where the degrees of freedom are in space; None where that is not known
-    geometry: Geometry | None = None
+    geometry: Geometry | None = None  # of the degrees of freedom; None where it is not known
     # returns what members add to the terms of the matrices; None where that is not known
     members: Callable[[], Sequence[Members]] | None = None
 
