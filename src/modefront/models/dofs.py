@@ -54,7 +54,8 @@ class DofTable:
             near = nodes[np.argsort(np.abs(nodes - node), kind="stable")[:6]]
             named = ", ".join(map(str, np.sort(near).tolist())) + ", …" * (nodes.size > 6)
             raise LookupError(f"a node with degrees of freedom, {named}", str(node))
-        moving, vector, out = dofs[self.weight[dofs] != 0], unit_vector(direction), []
+        moving, out = dofs[self.weight[dofs] != 0], list[tuple[int, float]]()
+        vector = unit_vector(direction)
         for axis in np.flatnonzero(abs(vector) > ACCUMULATED).tolist():  # more is no rounding
             chosen = moving[self.direction[moving] == axis + 1]
             if chosen.size == 0:

@@ -381,7 +381,7 @@ class ReducedModel(Shown):
 
         They are for the global search, and take no more than half of what is left of the memory.
         """
-        bounds, unit = [], np.eye(theta.size)
+        bounds, unit = list[Floats](), np.eye(theta.size)
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
             for end in ends:
                 nearby = (theta + unit[i] * ((end - theta[i]) / 2**k) for k in range(5))
