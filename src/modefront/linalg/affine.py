@@ -43,7 +43,7 @@ class Monomials:
         """1 of each coefficient that is constant, where all others are parameters; else None."""
         e = self.exponents
         linear = np.isin(e, (0, 1)).all() and (e.sum(axis=1) <= 1).all()
-        return 1.0 - e.any(axis=1) if linear else None
+        return np.asarray(1.0 - e.any(axis=1)) if linear else None
 
     @cached_property
     def varies(self) -> bool:
