@@ -32,6 +32,7 @@ from modefront.errors import ModelError
 from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
+from modefront.models.reduced.basis import certificate_of
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.modes import dense
 from modefront.work.task import counted
@@ -187,11 +188,9 @@ def quotients(K: Floats, M: Floats, X: Floats) -> Floats:
 def compared(model: ReducedModel, thetas: Floats) -> list[Comparison]:
     """Return estimated and true errors at some parameters (models, p)."""
     requested = np.arange(MODES)
-    certificates = model.certifier().certify(
-        [(theta, requested) for theta in thetas], MODES + SPARE
-    )
     basis, pencil, out = model.basis, model.full.pencil, []
-    for theta, certificate in zip(thetas, certificates, strict=True):
+    for theta in thetas:
+        certificate = certificate_of(model.basis, theta, requested, MODES + SPARE)
         K, M = pencil.K.at(theta).toarray(), pencil.M.at(theta).toarray()
         X = scipy.linalg.eigh(M, K)[1][:, ::-1]
         try:

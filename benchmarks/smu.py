@@ -16,6 +16,7 @@ from modefront._typing import Floats
 from modefront.analysis.certified import POOR
 from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
+from modefront.models.reduced.basis import certificate_of
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.optim.scalarisation import weighted
 from modefront.optim.sqp import Options, Solution, begin, solve
@@ -124,7 +125,7 @@ def weighted_minimum(
         if not isinstance(model, ReducedModel):
             return result
         requested = np.unique(result.evaluation.quantities["paired_mode"].astype(int) - 1)
-        (certificate,) = model.certifier().certify([(result.theta, requested)])
+        certificate = certificate_of(model.basis, result.theta, requested)
         if certificate.eigenvalue.max() <= model.tolerance:
             return result
         model.take(SnapshotRequest(result.theta, model.count))

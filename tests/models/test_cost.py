@@ -15,6 +15,8 @@ from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
 from modefront.models.reduced.options import SMALLEST, columns, share, stand_in
+from modefront.work.task import Task
+from modefront.work.transfer import Sender
 
 
 def chain(size: int, members: int) -> MatrixModel:
@@ -58,6 +60,18 @@ def test_a_basis_is_taken_where_it_pays(size: int, members: int, reduced: bool) 
         model = problem(chain(size, members), unless_given).model
         assert isinstance(model, ReducedModel) == reduced
     assert isinstance(problem(chain(size, members), mf.Reduction("off")).model, MatrixModel)
+
+
+def test_a_task_on_a_reduced_model_takes_the_memory_of_its_small_matrices() -> None:
+    full, reduced = (problem(chain(400, 2), mf.Reduction(x)) for x in ("off", 1e-8))
+    assert reduced.footprint == full.footprint, "the first process solves the full model"
+    reduced.evaluate(reduced.start)
+    memory = [
+        Sender().message([Task(("nominal",), of.evaluate, (of.start,))]).memory
+        for of in (full, reduced)
+    ]
+    assert memory == [full.footprint, reduced.footprint]
+    assert 0 < reduced.footprint < full.footprint / 2
 
 
 def test_every_model_says_which_one_is_solved_in_full_even_one_that_does_not_know() -> None:

@@ -18,6 +18,7 @@ from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.linalg.factorisation import SingularMatrixError
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.mesh import mesh_model
+from modefront.models.reduced.basis import certificate_of
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.modes import derivatives as exact
 from modefront.modes.sparse import lowest
@@ -79,7 +80,7 @@ def test_derivatives_everywhere_are_those_at_the_sensors(full: MatrixModel) -> N
     theta = np.array([1.1, 0.9, 1.3])
     result = lowest(full.pencil, theta, 8)
     everywhere = scipy.sparse.eye_array(full.size, format="csr")
-    _, dPhi, _ = exact.at_sensors(full.pencil, everywhere, theta, result, 8)
+    _, dPhi, _ = exact.at_sensors(everywhere, result, 8)
     expected = full.modes(theta, 8)
     at_sensors = np.tensordot(full.selection.toarray(), dPhi, axes=1)
     assert at_sensors == pytest.approx(expected.dphi, abs=1e-8 * np.abs(expected.dphi).max())
@@ -159,7 +160,7 @@ def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int)
     for theta in rng.uniform(0.5, 2.3, (3, 3)):
         exact_modes, result = lowest(full.pencil, theta, 8), model.modes(theta, 8)
         r = elastic(result.lam)
-        (certificate,) = model.certifier().certify([(theta, r)])
+        certificate = certificate_of(model.basis, theta, r)
         shift = model.basis.sigma
         noise = 1e2 * exact_modes.noise[r] / exact_modes.lam[r]
         truth = (result.lam[r] - exact_modes.lam[r]) / (result.lam[r] - shift)
@@ -349,20 +350,20 @@ def test_a_mode_that_the_basis_misses_is_found_by_inertia(costs: Costs) -> None:
     full = two_structures()
     bounds = np.full(2, 1e-4), np.full(2, 2.0)
     model = ReducedModel(full, 4, np.ones(2), *bounds)
-    (near,) = model.certifier().certify([(np.array([0.99, 1.0]), np.arange(3))])
+    near = certificate_of(model.basis, np.array([0.99, 1.0]), np.arange(3))
     assert near.eigenvalue.max() < 1e-3
     assert costs.factorisations == 3, "one tells how many modes there are, and their errors"
     theta = np.array([1e-4, 1.0])
     with uncounted():
         assert model.modes(theta, 4).lam[0] > 1.5 * full.modes(theta, 4).lam[0]
-    first, other = model.certifier().certify([(np.ones(2), np.arange(3)), (theta, np.arange(3))])
+    first, other = (certificate_of(model.basis, x, np.arange(3)) for x in (np.ones(2), theta))
     assert np.isfinite(first.eigenvalue).all()
     assert np.isinf(other.eigenvalue).all()
     assert costs.factorisations == 5
-    (alone,) = model.certifier().certify([(theta, np.arange(3))])
+    alone = certificate_of(model.basis, theta, np.arange(3))
     assert np.isinf(alone.eigenvalue).all()
     model.take(SnapshotRequest(theta, 10))
-    (known,) = model.certifier().certify([(theta, np.arange(3))])
+    known = certificate_of(model.basis, theta, np.arange(3))
     assert known.eigenvalue.max() < 1e-8
 
 
@@ -376,7 +377,7 @@ def test_a_certificate_is_an_upper_bound_and_infinite_where_nothing_is_proved(
     theta, requested = np.array([1.0, 0.2, 2.4]), np.arange(6)
     lam, exact = model.modes(theta, 6).lam, full.modes(theta, 6).lam
     factorisations = costs.factorisations
-    (certificate,) = model.certifier().certify([(theta, requested)])
+    certificate = certificate_of(model.basis, theta, requested)
     assert costs.factorisations == factorisations + 1
     truth = lam / exact - 1
     assert truth.max() > 1e-6
@@ -389,7 +390,7 @@ def test_a_certificate_is_an_upper_bound_and_infinite_where_nothing_is_proved(
         raise SingularMatrixError("pivot of zero")
 
     monkeypatch.setattr("modefront.linalg.factorisation.Pencil.factor", singular)
-    (unknown,) = model.certifier().certify([(theta, requested)])
+    unknown = certificate_of(model.basis, theta, requested)
     assert np.isinf(unknown.eigenvalue).all(), "no number is better than a wrong one"
 
 
@@ -417,7 +418,7 @@ def test_certificates_hold_for_close_modes_and_powers(power: float) -> None:
     model = ReducedModel(full, 8, np.ones(2), np.full(2, 0.5), np.full(2, 2.0), spare=3)
     reported = 0
     for theta in ([1.0, 1.0], [1.0, 1.0 + 1e-7], [1.0, 1.001], [0.7, 1.3], [1.8, 0.6]):
-        (certificate,) = model.certifier().certify([(np.array(theta), np.arange(5))])
+        certificate = certificate_of(model.basis, np.array(theta), np.arange(5))
         exact = full.modes(np.array(theta), 5, derivatives=False).lam
         truth = model.modes(np.array(theta), 5, derivatives=False).lam / exact - 1
         assert (certificate.eigenvalue >= truth * (1 - 1e-6) - 1e-13).all()
@@ -457,9 +458,8 @@ def test_a_third_of_every_error_is_found_over_many_decades(bounds: tuple[float, 
         model = ReducedModel(full, 8, np.sqrt(lower * upper), lower, upper, spare=3)
         thetas = np.exp(rng.uniform(np.log(lower), np.log(upper), (5, members)))
         thetas[-1] = np.where(rng.uniform(size=members) < 0.5, lower, upper)
-        for theta, certificate in zip(
-            thetas, model.certifier().certify([(x, requested) for x in thetas]), strict=True
-        ):
+        for theta in thetas:
+            certificate = certificate_of(model.basis, theta, requested)
             K, M = full.pencil.K.at(theta).toarray(), full.pencil.M.at(theta).toarray()
             X = scipy.linalg.eigh(M, K)[1][:, ::-1][:, requested]
             exact = extended_quotients(K, M, X)
@@ -527,7 +527,7 @@ def test_a_model_without_modes_ends_nothing() -> None:
     good, bad = np.array([-0.5, 0.5]), np.array([0.5, -1.1])
     with pytest.raises(ModelError):
         full.modes(bad, 3)
-    here, other = model.certifier().certify([(good, np.arange(3)), (bad, np.arange(3))])
+    here, other = (certificate_of(model.basis, x, np.arange(3)) for x in (good, bad))
     assert np.isfinite(here.eigenvalue).all()
     assert np.isinf(other.eigenvalue).all()
     model.take(SnapshotRequest(np.array([good, bad]), 4))

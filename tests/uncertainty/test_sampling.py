@@ -30,7 +30,7 @@ from modefront.uncertainty.sampling import (
     draw_models,
     find_peak,
 )
-from modefront.work.task import IMMEDIATE, Count, Task, counted
+from modefront.work.task import IMMEDIATE, Count, Executor, Task, counted
 
 NU = 4.0
 
@@ -137,7 +137,7 @@ def test_draws_at_bounds_are_those_of_the_truncated_gaussian(mean: float) -> Non
 
 
 @dataclass
-class Noting:
+class Noting(Executor):
     """An executor that notes how many tasks are still expected, beside those that are done."""
 
     done: int = 0

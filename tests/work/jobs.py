@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -40,7 +39,7 @@ class Big:
     numbers: Floats
     footprint: float = 0.0
     version: int = 0
-    parts: Sequence[Any] = ()
+    part: Any = None
 
 
 def total(big: Big, x: int) -> float:
@@ -49,7 +48,7 @@ def total(big: Big, x: int) -> float:
 
 def total_of_parts(big: Big) -> float:
     time.sleep(0.002)  # else it would be computed in the process that asks for it
-    return float(big.numbers.sum()) + sum(total_of_parts(part) for part in big.parts)
+    return float(big.numbers.sum()) + (total_of_parts(big.part) if big.part else 0.0)
 
 
 def totals(big: Big, turn: int = 0) -> list[Task[float]]:

@@ -23,6 +23,7 @@ from modefront.work.task import (
     IMMEDIATE,
     Costs,
     Count,
+    Executor,
     R,
     Task,
     Within,
@@ -153,7 +154,7 @@ def test_random_numbers_are_those_of_the_task_alone() -> None:
 
 
 @dataclass
-class Noting:
+class Noting(Executor):
     """An executor that takes note of what it is given."""
 
     tasks: list[Task[Any]] = field(default_factory=list)
@@ -201,15 +202,11 @@ def archived(outcomes: Sequence[Outcome]) -> Archive:
     return archive
 
 
-@dataclass
-class Backwards:
+class Backwards(Executor):
     """An executor that computes the last task first, as one of many processes may."""
 
     def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
         return [task() for task in tasks[::-1]][::-1]
-
-    def expect(self, stages: Mapping[str, Count]) -> None:
-        pass
 
 
 @given(st.integers(0, 2**16))

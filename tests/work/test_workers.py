@@ -36,6 +36,7 @@ from modefront.front.pareto import pareto_front
 from modefront.front.search import Search
 from modefront.work.store import Run, Store
 from modefront.work.task import Executor, Task, counted, seed_sequence
+from modefront.work.transfer import Sender
 from modefront.work.workers import QUEUED, Workers, backend
 
 orders = st.lists(st.integers(0, 3), min_size=1, max_size=5)
@@ -121,8 +122,8 @@ def test_a_shared_object_is_sent_where_it_is_not_known(forgets: bool) -> None:
 @given(st.lists(st.sets(st.integers(0, 2)), min_size=1, max_size=5))
 def test_another_process_may_take_what_one_has_lacked(known: list[set[int]]) -> None:
     part = Big(np.ones(5))
-    middle = Big(np.ones(4), parts=[part])
-    big = Big(np.ones(3), parts=[middle])
+    middle = Big(np.ones(4), part=part)
+    big = Big(np.ones(3), part=middle)
     pool = Threads(1)
     with Workers(pool) as workers:
         work = Run(backend=workers)
@@ -144,6 +145,12 @@ def test_memory_bounds_how_many_tasks_run_at_a_time() -> None:
     with Workers(roomy := Threads(3, delays=(3,)), memory=20e9) as workers:
         Run(backend=workers).run(totals(big))
     assert 1 < roomy.most <= QUEUED * 3
+
+
+def test_memory_is_that_of_an_object_and_not_of_its_parts() -> None:
+    big = Big(np.ones(3), footprint=1e6, part=Big(np.ones(3), footprint=4e9))
+    task = Task(("sum",), total_of_parts, (big,), memory=1e5)
+    assert Sender().message([task, *totals(big)]).memory == 1.1e6
 
 
 def test_what_cannot_be_sent_is_an_error_of_the_input() -> None:

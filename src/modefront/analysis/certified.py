@@ -17,7 +17,7 @@ from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
 from modefront.front.front import Front, best_minima
 from modefront.front.search import Search
-from modefront.models.reduced.basis import Certifier
+from modefront.models.reduced.basis import Basis, certificate_of
 from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import Solution
@@ -130,9 +130,9 @@ def certify(
     model = _reduced(problem)
     if model is None or not solutions:
         return
-    certifier = model.certifier()
+    basis = model.basis
     tasks = [
-        Task(("certificate", name, k + 1), _errors, (problem, certifier, solution))
+        Task(("certificate", name, k + 1), _errors, (problem, basis, solution))
         for k, solution in enumerate(solutions)
     ]
     found = zip(solutions, work.run(tasks), strict=True)
@@ -234,9 +234,7 @@ def _lowest(problem: UpdatingProblem) -> int:
     return modes_needed(problem.pairing, problem.data, problem.model.size)
 
 
-def _errors(
-    problem: UpdatingProblem, certifier: Certifier, solution: Solution
-) -> tuple[Floats, Floats]:
+def _errors(problem: UpdatingProblem, basis: Basis, solution: Solution) -> tuple[Floats, Floats]:
     """Return the errors of the modes that are paired with measured ones, and of their shapes.
 
     They are infinite where the full model may pair other modes: where one of those that are looked
@@ -244,8 +242,8 @@ def _errors(
     """
     modes, place = np.unique(_paired(solution), return_inverse=True)
     count = _lowest(problem)
-    (certificate,) = certifier.certify([(solution.theta, modes)], count)
-    if certificate.known:
+    certificate = certificate_of(basis, solution.theta, modes, count)
+    if np.isfinite(certificate.eigenvalue).all():
         frequency = np.sqrt(np.maximum(certificate.lam[:count], 0.0)) / (2 * np.pi)
         pairs = match(problem.pairing, problem.data, frequency, certificate.phi[:, :count])
         if not np.array_equal(pairs.index, _paired(solution)):

@@ -94,9 +94,8 @@ def with_factors(model: MatrixModel, parts: Sequence[Part]) -> MatrixModel:
         A = getattr(model, of)
         own = [(k, x) for k, x in enumerate(parts) if x.of == of]
         e = np.pad(A.coefficients.exponents.astype(float), ((0, 0), (0, count)))
-        origin, p = A.coefficients.origin, e.shape[1] - count
-        if own or origin is not None:
-            origin = np.append(np.zeros(p) if origin is None else origin, np.ones(count))
+        p = e.shape[1] - count
+        origin = np.append(np.zeros(p) + A.coefficients.origin, np.ones(count))
         more = [e[x.terms] + np.eye(p + count)[p + k] for k, x in own]
         terms = np.concatenate([A.terms, *(x.shares for _, x in own)])
         new[of] = DenseAffine(terms, Monomials(np.concatenate([e, *more]), origin))

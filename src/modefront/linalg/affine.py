@@ -9,15 +9,14 @@ The origin :math:`\theta_0` is 0 but for matrices of which only values and first
 pattern), so that assembly is one matrix-vector product with the data of the terms.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, reduce
 from itertools import pairwise
+from typing import Self
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import coo_array, csc_array, csr_array, sparray
 
 from modefront._typing import Bools, Floats, Ints, Ints32
 from modefront.linalg.products import gram, times
@@ -37,13 +36,14 @@ class Monomials:
     """Coefficients c_j(theta) = prod_i (theta_i - origin_i) ** exponents[j, i]."""
 
     exponents: Floats  # (terms, parameters) e
-    origin: Floats | None = None  # (parameters,) theta_0; None for zeros
+    origin: Floats | float = 0.0  # (parameters,) theta_0
 
     @cached_property
-    def _linear(self) -> bool:
-        """Whether every coefficient is constant or a parameter; most models are so."""
+    def _constant(self) -> Floats | None:
+        """1 of each coefficient that is constant, where all others are parameters; else None."""
         e = self.exponents
-        return bool(np.isin(e, (0, 1)).all() and (e.sum(axis=1) <= 1).all())
+        linear = np.isin(e, (0, 1)).all() and (e.sum(axis=1) <= 1).all()
+        return np.asarray(1.0 - e.any(axis=1)) if linear else None
 
     @cached_property
     def varies(self) -> bool:
@@ -73,52 +73,43 @@ class Monomials:
 
     def second_derivatives(self, theta: Floats, forms: Floats) -> Floats:
         """Return sum_j f_j d2 c_j / dtheta_i dtheta_k for each row f of forms (n, terms)."""
-        theta = theta if self.origin is None else theta - self.origin
         j, i, k, factor, lowered = self._second
         out = np.zeros((len(forms), theta.size, theta.size))
-        values = forms[:, j] * (factor * np.prod(theta**lowered, axis=1))
+        values = forms[:, j] * (factor * np.prod((theta - self.origin) ** lowered, axis=1))
         np.add.at(out.transpose(1, 2, 0), (i, k), values.T)
         return out
 
-    def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> tuple[Monomials, Floats]:
+    def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> tuple[Self, Floats]:
         """Return the coefficients of the other parameters, and a factor (terms,) for each term.
 
-        ``fixed`` parameters have one value, and ``tied`` ones that of another parameter.
+        ``fixed`` parameters have one value, and ``tied`` ones that of another parameter. The origin
+        has to be 0.
         """
         e, factors = self.exponents.copy(), np.ones(len(self.exponents))
-        origin = np.zeros(e.shape[1]) if self.origin is None else self.origin
         for j, value in fixed.items():
-            factors *= (value - origin[j]) ** e[:, j]
+            factors *= value ** e[:, j]
         for j, i in tied.items():
-            if origin[j] != origin[i]:
-                raise ValueError("expected tied parameters of one origin, found two")
             e[:, i] += e[:, j]
         free = [j for j in range(e.shape[1]) if j not in fixed and j not in tied]
-        rest = None if self.origin is None else self.origin[free]
-        return Monomials(e[:, free], rest), factors
-
-    @cached_property
-    def _constant(self) -> Floats:
-        return np.asarray(1.0 - self.exponents.any(axis=1))
+        return replace(self, exponents=e[:, free]), factors
 
     def values(self, theta: Floats) -> Floats:
         """Return c(theta), shape (terms,)."""
-        theta = theta if self.origin is None else theta - self.origin
-        if self._linear:
+        theta = theta - self.origin
+        if self._constant is not None:
             return self._constant + self.exponents @ theta
         return np.prod(theta**self.exponents, axis=1)
 
     def jacobian(self, theta: Floats) -> Floats:
         """Return dc/dtheta, shape (terms, parameters)."""
         e = self.exponents
-        if self._linear:
+        if self._constant is not None:
             return e
-        theta = theta if self.origin is None else theta - self.origin
         out = np.zeros(e.shape)
         for i in np.flatnonzero(e.any(axis=0)):
             lowered = e.copy()
             lowered[:, i] = np.where(e[:, i] == 0, 0, e[:, i] - 1)
-            out[:, i] = e[:, i] * np.prod(theta**lowered, axis=1)
+            out[:, i] = e[:, i] * np.prod((theta - self.origin) ** lowered, axis=1)
         return out
 
 
@@ -129,7 +120,7 @@ class Members:
     of: str  # the matrix, "stiffness" or "mass"
     group: str  # what they are of; empty for none
     nodes: Ints  # (members, ...) between which each is
-    rows: scipy.sparse.csr_array  # (members k, N) all R, one below the other
+    rows: csr_array  # (members k, N) all R, one below the other
     # terms to which they add, (members,), and matrices A (members, k, k)
     shares: Sequence[tuple[Ints, Floats]]
 
@@ -173,14 +164,14 @@ class DenseAffine:
         products = (self.terms @ right).reshape(len(self.terms), -1)
         return self.coefficients.second_derivatives(theta, left.reshape(len(left), -1) @ products.T)
 
-    def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> DenseAffine:
+    def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> "DenseAffine":
         """Return A as a function of the other parameters; see `Monomials.held`."""
         coefficients, factors = self.coefficients.held(fixed, tied)
         return DenseAffine(self.terms * factors[:, None, None], coefficients)
 
-    def sparse(self) -> SparseAffine:
+    def sparse(self) -> "SparseAffine":
         """Return the same matrix with sparse terms."""
-        terms = [scipy.sparse.coo_array(term) for term in self.terms]
+        terms = [coo_array(term) for term in self.terms]
         return sparse_affine(terms, self.coefficients, self.size)
 
 
@@ -191,7 +182,7 @@ class SparseAffine:
     indptr: Ints32  # (N + 1,) where each row starts in ``indices``
     indices: Ints32  # (entries,) columns, ascending within each row
     # (entries, terms) values of each term; sparse, since most terms are local
-    terms: scipy.sparse.csc_array
+    terms: csc_array
     coefficients: Monomials  # c(theta)
 
     @property
@@ -205,45 +196,42 @@ class SparseAffine:
         nonzero = np.diff(self.terms.indptr) > 0
         return np.asarray(self.coefficients.exponents[nonzero].any(axis=0))
 
-    def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> SparseAffine:
+    def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> "SparseAffine":
         """Return A as a function of the other parameters; see `Monomials.held`."""
         coefficients, factors = self.coefficients.held(fixed, tied)
-        terms = scipy.sparse.csc_array(self.terms * factors[None])
+        terms = csc_array(self.terms * factors[None])
         return SparseAffine(self.indptr, self.indices, terms, coefficients)
 
-    def has_pattern_of(self, other: SparseAffine) -> bool:
+    def has_pattern_of(self, other: "SparseAffine") -> bool:
         """Return whether both matrices have the same pattern."""
         pairs = (self.indptr, other.indptr), (self.indices, other.indices)
         return all(np.array_equal(*pair) for pair in pairs)
 
-    def at(self, theta: Floats) -> scipy.sparse.csr_array:
+    def at(self, theta: Floats) -> csr_array:
         """Return A(theta), N x N; it holds every entry of the pattern, zero or not."""
         values = self.terms @ self.coefficients.values(theta)
-        shape = self.size, self.size
-        return scipy.sparse.csr_array((values, self.indices, self.indptr), shape=shape)
+        return csr_array((values, self.indices, self.indptr), shape=(self.size, self.size))
 
     @cached_property
-    def diagonals(self) -> scipy.sparse.csr_array:
+    def diagonals(self) -> csr_array:
         """The diagonal of each term, (N, terms)."""
-        row, terms = _expand(self.indptr), self.terms
+        row, terms = expanded(self.indptr), self.terms
         chosen = np.flatnonzero((self.indices == row)[terms.indices])
-        place = row[terms.indices[chosen]], _expand(terms.indptr)[chosen]
-        shape = self.size, terms.shape[1]
-        return scipy.sparse.csr_array((terms.data[chosen], place), shape=shape)
+        place = row[terms.indices[chosen]], expanded(terms.indptr)[chosen]
+        return csr_array((terms.data[chosen], place), shape=(self.size, terms.shape[1]))
 
     def dense(self) -> DenseAffine:
         """Return the same matrix with dense terms."""
         out = np.zeros((self.terms.shape[1], self.size, self.size))
-        out[:, _expand(self.indptr), self.indices] = self.terms.toarray().T
+        out[:, expanded(self.indptr), self.indices] = self.terms.toarray().T
         return DenseAffine(out, self.coefficients)
 
-    def derivative(self, theta: Floats, i: int) -> scipy.sparse.csr_array:
+    def derivative(self, theta: Floats, i: int) -> csr_array:
         """Return dA/dtheta_i, N x N, without the entries that are zero."""
-        values = self.terms @ self.coefficients.jacobian(theta)[:, i]
-        kept = np.flatnonzero(values)
-        rows = np.searchsorted(self.indptr, kept, side="right") - 1
-        entries = values[kept], (rows, self.indices[kept])
-        return scipy.sparse.csr_array(entries, shape=(self.size, self.size))
+        entries = self.terms @ self.coefficients.jacobian(theta)[:, i], self.indices, self.indptr
+        out = csr_array(entries, shape=(self.size, self.size), copy=True)
+        out.eliminate_zeros()
+        return out
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
@@ -252,7 +240,7 @@ class SparseAffine:
             out[_place(dof), :, i] += rows
         return out
 
-    def derivative_rows(self, theta: Floats, vectors: Floats) -> scipy.sparse.csr_array:
+    def derivative_rows(self, theta: Floats, vectors: Floats) -> csr_array:
         """Return the same products as rows (vector, parameter), sparse: (m * parameters, N).
 
         The row of vector r and parameter i is r * parameters + i. A term that touches few
@@ -265,13 +253,10 @@ class SparseAffine:
             columns.append(np.tile(dof, m))
             values.append(some.T.ravel())
         entries = np.concatenate(rows), np.concatenate(columns)
-        return scipy.sparse.csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
+        return csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
 
     def second_derivatives(self, theta: Floats, left: Floats, right: Floats) -> Floats:
-        """Return sum_m left_m^T (d2A / dtheta_i dtheta_k) right_m for each row of left, (n, p, p).
-
-        ``left`` has the shape (n, N, m) and ``right`` (N, m).
-        """
+        """Return the same as `DenseAffine.second_derivatives`."""
         if not self.coefficients.curved:
             return np.zeros((len(left), theta.size, theta.size))
         stack, dof, starts = self._stack
@@ -328,54 +313,48 @@ class SparseAffine:
                 yield j, slice(k, min(k + size, last))
 
     @cached_property
-    def _stack(self) -> tuple[scipy.sparse.csr_array, Ints, Ints]:
+    def _stack(self) -> tuple[csr_array, Ints, Ints]:
         """The rows of the terms that are not zero, one below the other.
 
         Returns the rows (rows, N), their degrees of freedom (rows,) and where each term starts
         (terms + 1,).
         """
         terms = self.terms if self.terms.has_sorted_indices else self.terms.sorted_indices()
-        entry, row = terms.indices, _expand(self.indptr)
-        keys = _expand(terms.indptr) * self.size + row[entry]  # ascending
+        entry, row = terms.indices, expanded(self.indptr)
+        keys = expanded(terms.indptr) * self.size + row[entry]  # ascending
         first = np.flatnonzero(np.append(True, keys[1:] != keys[:-1])[: keys.size])
         indptr = np.append(first, keys.size)
         keys = keys[first]
         starts = np.searchsorted(keys, np.arange(terms.shape[1] + 1) * self.size)
         parts = terms.data, self.indices[entry], indptr
-        stack = scipy.sparse.csr_array(parts, shape=(keys.size, self.size))
+        stack = csr_array(parts, shape=(keys.size, self.size))
         return stack, keys % self.size, starts
 
 
-def sparse_rows(values: Floats, columns: Ints, width: int) -> scipy.sparse.csr_array:
+def sparse_rows(values: Floats, columns: Ints, width: int) -> csr_array:
     """Return the matrix (n, width) with values (n, k) in columns (n, k), without its zeros."""
     pointer = np.arange(len(values) + 1) * values.shape[1]
     parts = values.flatten(), columns.flatten(), pointer  # copies, as zeros are taken out in place
-    out = scipy.sparse.csr_array(parts, shape=(len(values), width))
+    out = csr_array(parts, shape=(len(values), width))
     out.eliminate_zeros()
     return out
 
 
-def sparse_affine(
-    terms: Sequence[scipy.sparse.sparray], coefficients: Monomials, size: int
-) -> SparseAffine:
+def sparse_affine(terms: Sequence[sparray], coefficients: Monomials, size: int) -> SparseAffine:
     """Return sum_j c_j(theta) A_j for symmetric sparse matrices A_j of shape (N, N).
 
     The pattern is the union of theirs; entries that are zero in all of them are left out.
     """
-    matrices = [scipy.sparse.csr_array(A, dtype=float, copy=True) for A in terms]
+    matrices = [csr_array(A, dtype=float, copy=True) for A in terms]
     for A in matrices:
         A.sum_duplicates()
         A.eliminate_zeros()
-    keys = [_expand(A.indptr) * size + A.indices for A in matrices]
-    union = keys[0]
-    for each in keys[1:]:
-        # Ascending runs are merged, which is far quicker than sorting them.
-        merged = np.sort(np.concatenate([union, each]), kind="stable")
-        union = merged[np.append(True, merged[1:] != merged[:-1])[: merged.size]]
+    keys = [expanded(A.indptr) * size + A.indices for A in matrices]
+    union = reduce(merged, keys)
     values = np.concatenate([A.data for A in matrices])
     rows = np.concatenate([np.searchsorted(union, each) for each in keys])
     parts = values, rows, np.cumsum([0, *(each.size for each in keys)])
-    data = scipy.sparse.csc_array(parts, shape=(union.size, len(matrices)))
+    data = csc_array(parts, shape=(union.size, len(matrices)))
     indptr = np.searchsorted(union, np.arange(size + 1) * size)
     indices = (union % size).astype(np.int32)
     return SparseAffine(indptr.astype(np.int32), indices, data, coefficients)
@@ -387,6 +366,12 @@ def _place(dof: Ints) -> slice | Ints:
     return slice(first, last) if last - first == dof.size else dof
 
 
-def _expand(indptr: Ints32) -> Ints:
+def merged(first: Ints, *others: Ints) -> Ints:
+    """Return all numbers of ascending runs, ascending, each once: merged, which is far quicker."""
+    ranked = np.sort(np.concatenate([first, *others]), kind="stable")
+    return ranked[np.append(True, ranked[1:] != ranked[:-1])[: ranked.size]]
+
+
+def expanded(indptr: Ints32) -> Ints:
     """Return the row (or column) of each entry of compressed rows (or columns)."""
     return np.repeat(np.arange(indptr.size - 1), np.diff(indptr))

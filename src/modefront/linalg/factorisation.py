@@ -8,16 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import rslab
-import scipy.sparse
+from scipy.sparse import csc_array, sparray, tril
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
-from modefront.linalg.affine import SparseAffine
+from modefront.linalg.affine import SparseAffine, expanded, merged
 from modefront.linalg.products import threads
 
-MOST = 4
-"""Threads of a factor, and of solutions with it, at most. Without a number, rslab would take as
-many on a machine with two processors, whatever the environment says."""
+MOST = 4  # threads of a factor at most; rslab would take as many, whatever the environment says
 
 
 class SingularMatrixError(ModelError):
@@ -57,23 +55,18 @@ def analyse(keys: Ints, size: int) -> tuple[rslab.LdltSymbolic, Ints]:
     """Return the analysis of a pattern, and the keys of its entries, ascending.
 
     ``keys`` are column * N + row of entries of the lower triangle of N x N, in any order, some more
-    than once; the diagonal comes to them. Ascending runs are merged, which is far quicker than
-    sorting them.
+    than once; the diagonal comes to them.
     """
-    ranked = np.sort(np.concatenate([keys, np.arange(size) * (size + 1)]), kind="stable")
-    keys = ranked[np.append(True, ranked[1:] != ranked[:-1])]
+    keys = merged(keys, np.arange(size) * (size + 1))
     starts = np.searchsorted(keys, np.arange(size + 1) * size)
     parts = np.ones(keys.size), (keys % size).astype(np.intp), starts.astype(np.intp)
-    lower = scipy.sparse.csc_array(parts, shape=(size, size))
+    lower = csc_array(parts, shape=(size, size))
     return rslab.analyze(lower, path="ldlt"), keys
 
 
-def factorise(A: scipy.sparse.sparray) -> Factorisation:
-    """Return the factors of one symmetric matrix, N x N, by itself.
-
-    Raises SingularMatrixError where it is singular to working precision.
-    """
-    lower = scipy.sparse.tril(A, format="coo")
+def factorise(A: sparray) -> Factorisation:
+    """Return the factors of one symmetric matrix, N x N; SingularMatrixError as of `factor`."""
+    lower = tril(A, format="coo")
     own = lower.col.astype(np.int64) * A.shape[0] + lower.row
     analysis, keys = analyse(own, A.shape[0])
     values = np.bincount(np.searchsorted(keys, own), lower.data, keys.size).astype(float)
@@ -129,6 +122,6 @@ def _lower(A: SparseAffine) -> tuple[Ints, Ints]:
 
     A is symmetric, and its rows are columns of the lower triangle from their diagonals on.
     """
-    row = np.repeat(np.arange(A.size), np.diff(A.indptr))
+    row = expanded(A.indptr)
     take = np.flatnonzero(A.indices >= row)
     return take, row[take] * A.size + A.indices[take]

@@ -7,34 +7,26 @@ be computed by several threads of our own.
 """
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from itertools import pairwise
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront._typing import Floats
 
 WORK = 2**17  # multiplications a block; OpenBLAS shares products from 2**18 on
 CHUNK = 2**12  # rows that are combined at once, which stay in the cache
 GROUP = 16  # blocks of which products are added up together
-
-TILE = 64
-"""Rows and columns of a matrix X^T Y that are computed together: a greater one would be written
-again after every few rows, which is 25 times slower for 300 columns."""
-
+TILE = 64  # rows and columns of X^T Y that are computed together, which stay in the cache too
 SHARED = 2**22  # multiplications from which on a product is shared among threads
 WIDE = 2  # columns from which on that pays for a sparse matrix
+THREADS = "RAYON_NUM_THREADS"  # limits the threads of products, and of factors by rslab
 
-THREADS = "RAYON_NUM_THREADS"
-"""Variable of the environment that limits the threads of products, and of factors by rslab."""
-
-
-PARTS, PART = 16, 2**22
-"""Parts of the rows at most, of which products X^T Y are computed each by itself and added up, and
-multiplications of a part at least."""
+PARTS = 16  # parts of the rows at most, of which products X^T Y are added up
+PART = 2**22  # multiplications of a part at least
 
 
 def gram(X: Floats, Y: Floats) -> Floats:
@@ -86,16 +78,7 @@ def combine(X: Floats, C: Floats) -> Floats:
     return out
 
 
-def combine_all(blocks: Sequence[Floats], C: Floats) -> Floats:
-    """Return X C for C of shape (a, b), where blocks (N, a_i) are the columns of X."""
-    first, *others = np.split(C, np.cumsum([X.shape[1] for X in blocks])[:-1])
-    out = combine(blocks[0], first)
-    for X, part in zip(blocks[1:], others, strict=True):
-        out += combine(X, part)
-    return out
-
-
-def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:
+def times(A: csr_array, X: Floats) -> Floats:
     """Return A X for a sparse A of shape (M, N) and X of shape (N, b)."""
     M, N = A.shape
     if X.shape[1] < WIDE:
@@ -105,9 +88,8 @@ def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:
 
     def multiply(first: int, last: int) -> None:
         begin, end = A.indptr[first], A.indptr[last]
-        part = scipy.sparse.csr_array((last - first, N))
-        part.indptr = A.indptr[first : last + 1] - begin
-        part.indices, part.data = A.indices[begin:end], A.data[begin:end]  # views, not copies
+        entries = A.data[begin:end], A.indices[begin:end], A.indptr[first : last + 1] - begin
+        part = csr_array(entries, shape=(last - first, N))  # of views, not copies
         out[first:last] = part @ X
 
     _share(multiply, M, A.nnz * X.shape[1])

@@ -101,18 +101,14 @@ def is_reduced(model: Model) -> bool:
 
 
 def matrices_at(model: Model, theta: Floats) -> "MatrixModel | None":
-    """Return the model with the matrices, and their derivatives, that a model has at ``theta``.
-
-    A reduced model has those of the full one; None for a model that has no matrices.
-    """
+    """Return the full model with the matrices and derivatives at ``theta``; None without any."""
     full: Any = full_of(model)
     return full.at(theta) if hasattr(type(full), "at") else None
 
 
 def geometry_of(model: Model) -> "Geometry | None":
     """Return where the degrees of freedom of a model are; None where that is not known."""
-    full: Any = full_of(model)
-    return full.geometry if hasattr(type(full), "geometry") else None
+    return getattr(full_of(model), "geometry", None)
 
 
 def shapes_at(model: Model, theta: Floats, count: int) -> tuple[Floats, Floats, Floats | None]:

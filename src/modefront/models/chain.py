@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array, diags_array, eye_array
 
 from modefront import options
 from modefront._typing import Floats
@@ -109,10 +109,10 @@ def chain(
         if name and name not in parameters
     )
     # A row a spring: how its length depends on the displacements.
-    stretch = scipy.sparse.diags_array((1.0, -1.0), offsets=(0, -1), shape=(len(stiffnesses), n))
+    stretch = diags_array((1.0, -1.0), offsets=(0, -1), shape=(len(stiffnesses), n))
     K = _terms(stretch.tocsr(), stiffnesses, stiffness_scales)
-    M = _terms(scipy.sparse.eye_array(n, format="csr"), masses, mass_scales)
-    M[BASE] = scipy.sparse.diags_array(np.asarray(added, dtype=float)) + M[BASE]
+    M = _terms(eye_array(n, format="csr"), masses, mass_scales)
+    M[BASE] = diags_array(np.asarray(added, dtype=float)) + M[BASE]
     if sensors is None:
         sensors = {f"floor{i + 1}": i for i in range(n)}
     base = {"x": [(i, 1.0) for i in range(n)]}
@@ -120,13 +120,11 @@ def chain(
     return replace(model, geometry=chain_geometry(n, model.selection))
 
 
-def _terms(
-    B: scipy.sparse.csr_array, values: Sequence[float] | Floats, scales: Sequence[str | None]
-) -> dict[str, scipy.sparse.csr_array]:
+def _terms(B: csr_array, values: Numbers, scales: Names) -> dict[str, csr_array]:
     """Return the sums of the values v_i b_i^T b_i of rows of B by the names of their scales."""
     names, out = np.array([name or BASE for name in scales]), {}
     for name in dict.fromkeys([BASE, *names.tolist()]):
         chosen = np.flatnonzero(names == name)
-        diagonal = scipy.sparse.diags_array(np.asarray(values, dtype=float)[chosen])
+        diagonal = diags_array(np.asarray(values, dtype=float)[chosen])
         out[name] = (B[chosen].T @ diagonal @ B[chosen]).tocsr()
     return out

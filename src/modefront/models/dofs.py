@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront._typing import Floats, Ints
 from modefront.data.csv import read_table
@@ -16,6 +16,7 @@ from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
 
 COLUMNS = ("node", "direction", "weight")  # header of a file of degrees of freedom
+NUMBERS = {name: k + 1 for k, name in enumerate(DIRECTIONS)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,24 +38,15 @@ class DofTable:
 
     def of_direction(self, direction: str) -> list[tuple[int, float]]:
         """Return all degrees of freedom of nodes in a direction, each with the weight 1."""
-        chosen = np.flatnonzero((self.direction == number_of(direction)) & (self.node > 0))
+        chosen = np.flatnonzero((self.direction == NUMBERS[direction]) & (self.node > 0))
         return [(dof, 1.0) for dof in chosen.tolist()]
 
     def sensor(self, node: int, direction: str | Sequence[float]) -> list[tuple[int, float]]:
         """Return the weighted degrees of freedom that are the motion of a node in a direction.
 
-        Parameters
-        ----------
-        node
-            Number of the node in the program.
-        direction
-            ``x``, ``y``, ``z``, ``rx``, ``ry`` or ``rz``, with a minus sign for the opposite, or a
-            vector of three numbers, which is scaled to the length 1.
-
-        Raises
-        ------
-        LookupError
-            With what was expected and what was found, where the node does not move so.
+        The direction is ``x``, ``y``, ``z``, ``rx``, ``ry`` or ``rz``, with a minus sign for the
+        opposite, or a vector of three numbers, which is scaled to the length 1. Raises LookupError,
+        with what was expected and what was found, where the node does not move so.
         """
         dofs = np.flatnonzero((self.node == node) & (self.node > 0))
         if dofs.size == 0:
@@ -62,19 +54,19 @@ class DofTable:
             near = nodes[np.argsort(np.abs(nodes - node), kind="stable")[:6]]
             named = ", ".join(map(str, np.sort(near).tolist())) + ", …" * (nodes.size > 6)
             raise LookupError(f"a node with degrees of freedom, {named}", str(node))
-        out: dict[int, float] = {}
+        moving, out = dofs[self.weight[dofs] != 0], list[tuple[int, float]]()
         vector = unit_vector(direction)
         for axis in np.flatnonzero(abs(vector) > ACCUMULATED).tolist():  # more is no rounding
-            number, factor = axis + 1, float(vector[axis])
-            chosen = dofs[(self.direction[dofs] == number) & (self.weight[dofs] != 0)]
+            chosen = moving[self.direction[moving] == axis + 1]
             if chosen.size == 0:
-                known = np.unique(self.direction[dofs[self.weight[dofs] != 0]]).tolist()
+                known = np.unique(self.direction[moving]).tolist()
                 names = ", ".join(map(name_of, known)) or "none, all are held"
                 expected = f"a direction in which node {node} can move ({names})"
-                raise LookupError(expected, f"{name_of(number)}, which is held or not in the model")
-            for dof in chosen.tolist():
-                out[dof] = out.get(dof, 0.0) + factor * float(self.weight[dof])
-        return list(out.items())
+                found = f"{name_of(axis + 1)}, which is held or not in the model"
+                raise LookupError(expected, found)
+            weights = float(vector[axis]) * self.weight[chosen]
+            out += zip(chosen.tolist(), weights.tolist(), strict=True)
+        return out
 
     def label(self, dof: int) -> str:
         """Return a degree of freedom as a message names it."""
@@ -83,21 +75,13 @@ class DofTable:
         return f"node {self.node[dof]} {name_of(int(self.direction[dof]))}"
 
 
-def motion_of_nodes(dofs: DofTable, nodes: Ints) -> scipy.sparse.csr_array:
-    """Return the weights of the degrees of freedom in the motion of nodes, (6 nodes, N).
-
-    ``nodes`` are ascending numbers; rows are x, y, z, rx, ry, rz of one after the other.
-    """
+def motion_of_nodes(dofs: DofTable, nodes: Ints) -> csr_array:
+    """Return weights (6 nodes, N) of x, y, z, rx, ry, rz of one after the other ascending node."""
     part = (dofs.direction >= 1) & (dofs.direction <= 6) & np.isin(dofs.node, nodes)
     chosen = np.flatnonzero(part)
     row = 6 * np.searchsorted(nodes, dofs.node[chosen]) + dofs.direction[chosen] - 1
     entries = (dofs.weight[chosen], (row, chosen))
-    return scipy.sparse.csr_array(entries, shape=(6 * nodes.size, dofs.size))
-
-
-def number_of(direction: str) -> int:
-    """Return the number of a named direction, from 1."""
-    return DIRECTIONS.index(direction) + 1
+    return csr_array(entries, shape=(6 * nodes.size, dofs.size))
 
 
 def name_of(direction: int) -> str:
@@ -123,7 +107,7 @@ def read_dofs(path: Path) -> DofTable:
     read.close()
     node, direction = np.zeros((2, len(read.rows)), np.intp)
     table = DofTable(node, direction, np.ones(len(read.rows)))
-    numbers = {name: number_of(name) for name in DIRECTIONS} | {str(k): k for k in range(-1, 1000)}
+    numbers = NUMBERS | {str(k): k for k in range(-1, 1000)}
     for k, (line, row) in enumerate(read.rows):
         try:
             label, name, *weight = row

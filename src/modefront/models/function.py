@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
-import scipy.sparse
 from numpy.exceptions import ComplexWarning
 from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array, issparse
 
 from modefront._typing import Floats
 from modefront.errors import InputError, ModelError, refuse, wrong
@@ -50,8 +50,7 @@ Tangent: TypeAlias = tuple[Any, tuple[Any, ...]]
 """A matrix (N, N) at one theta, an array of a small model, else a sparse one, and its derivatives:
 one a parameter, None for one without effect."""
 
-DIFFERENCE = 1e-6
-"""Step of the differences that derivatives are compared with, over the range of the parameter."""
+DIFFERENCE = 1e-6  # step of the differences, over the range of the parameter
 
 RETURNED = "K and M, or K, M and lists of their derivatives dK and dM"
 
@@ -66,10 +65,7 @@ class CheckedFunction:
     def at(
         self, theta: Floats, size: int | None, *, derivatives: bool = True
     ) -> tuple[Tangent, Tangent]:
-        """Return K and M at ``theta``, of ``size`` N where that is known, with derivatives.
-
-        Raises InputError where the function does not return such matrices.
-        """
+        """Return K and M, of ``size`` N if that is known, with derivatives; else InputError."""
         place = self._place(theta)
         returned = self._call(theta.copy(), place, RETURNED)
         K = _checked(returned[0], f"{place}: K", size)
@@ -85,10 +81,7 @@ class CheckedFunction:
     def check_derivatives(
         self, theta: Floats, lower: Floats, upper: Floats, known: tuple[Tangent, Tangent]
     ) -> None:
-        """Raise InputError where derivatives at ``theta`` differ from differences by far.
-
-        Steps stay within the bounds ``lower`` and ``upper``.
-        """
+        """Raise InputError where derivatives differ by far from differences within the bounds."""
         for i, (name, span) in enumerate(zip(self.names, upper - lower, strict=True)):
             ahead, h = theta.copy(), DIFFERENCE * span
             ahead[i] += h if theta[i] + h <= upper[i] else -h
@@ -164,11 +157,6 @@ class FunctionModel(Shown):
     directions = passed_on("nominal", "directions")
     selection = passed_on("nominal", "selection")
     footprint = passed_on("nominal", "footprint")
-
-    @property
-    def parts(self) -> tuple[MatrixModel]:
-        """The nominal model, which is sent to other processes on its own."""
-        return (self.nominal,)
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
@@ -284,7 +272,7 @@ def _affine(known: Tangent, theta: Floats) -> DenseAffine | SparseAffine:
 def _checked(value: Matrix, place: str, size: int | None, real: bool = True) -> Any:
     """Return a symmetric matrix, an array up to `DENSE` degrees of freedom, else a sparse one."""
     try:
-        A: Any = value if scipy.sparse.issparse(value) else np.asarray(value)
+        A: Any = value if issparse(value) else np.asarray(value)
     except ValueError:  # lists of different lengths
         raise wrong(place, "a matrix", type(value).__name__) from None
     n = size or (A.shape[0] if A.ndim else 0)
@@ -297,19 +285,16 @@ def _checked(value: Matrix, place: str, size: int | None, real: bool = True) -> 
         raise wrong(place, "real numbers for real parameters", "complex numbers")
     A = A.astype(complex if A.dtype.kind == "c" else float)
     if A.shape[0] > DENSE:
-        A = scipy.sparse.csr_array(A)
-    elif scipy.sparse.issparse(A):
+        A = csr_array(A)
+    elif issparse(A):
         A = A.toarray()
     return symmetrised(A, "", place)
 
 
 def _wrong_entry(A: Any, slope: Any, difference: Any, span: float) -> str:
-    """Return the entry of a derivative that differs from a difference most, or nothing.
-
-    ``span`` is the range of the parameter.
-    """
+    """Return the entry that is wrong by most, or nothing; ``span`` is the parameter's range."""
     slope = 0 * A if slope is None else slope
-    off = scipy.sparse.coo_array(difference - slope)
+    off = coo_array(difference - slope)
     if not off.nnz:
         return ""
     rows, columns = off.row, off.col

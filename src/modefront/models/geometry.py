@@ -6,7 +6,7 @@ Geometry is for pictures and for other programs; no result depends on it.
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront._typing import Floats, Ints
 from modefront.fem.structure import DIRECTIONS
@@ -32,11 +32,11 @@ class Geometry(Shown):
 
     nodes: Floats
     cells: tuple[Cells, ...]
-    motion: scipy.sparse.csr_array
+    motion: csr_array
     sensor_nodes: Ints
     sensor_directions: Floats
 
-    def weights(self, nodes: Ints, directions: Floats) -> scipy.sparse.csr_array:
+    def weights(self, nodes: Ints, directions: Floats) -> csr_array:
         """Return weights (sensors, N) of sensors at nodes along ``directions`` (sensors, 3)."""
         columns = 3 * nodes[:, None] + np.arange(3)
         return (sparse_rows(directions, columns, self.motion.shape[0]) @ self.motion).tocsr()
@@ -52,7 +52,7 @@ class Geometry(Shown):
         return np.asarray(self.motion @ shapes).T.reshape(-1, len(self.nodes), 3)
 
 
-def chain_geometry(masses: int, sensors: scipy.sparse.csr_array) -> Geometry:
+def chain_geometry(masses: int, sensors: csr_array) -> Geometry:
     """Return the geometry of a chain: masses above each other, which move along x.
 
     The ground is the node at height 0, mass i is at height i. A sensor of several masses is drawn
@@ -62,7 +62,7 @@ def chain_geometry(masses: int, sensors: scipy.sparse.csr_array) -> Geometry:
     nodes[1:, 2] = lower + 1
     lines = np.column_stack([lower, lower + 1])
     entries = np.ones(masses), (3 * lower + 3, lower)
-    motion = scipy.sparse.csr_array(entries, shape=(3 * (masses + 1), masses))
+    motion = csr_array(entries, shape=(3 * (masses + 1), masses))
     weights = sensors.toarray()
     greatest = np.abs(weights).argmax(axis=1)
     directions = np.zeros((len(weights), 3))

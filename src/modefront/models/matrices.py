@@ -10,14 +10,14 @@ from itertools import compress
 from typing import Any, TypeAlias
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import coo_array, csr_array, issparse, lil_array, sparray
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Members, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Pencil, SingularMatrixError, pencil
 from modefront.linalg.products import gram
-from modefront.models.base import LoadCase, Model, NamedWeights, Transfer
+from modefront.models.base import LoadCase, Model, NamedWeights, Transfer, passed_on
 from modefront.models.geometry import Geometry
 from modefront.models.parameters import BASE, Parameter, exponents_of, form_of, term_exponents
 from modefront.modes import dense, sparse
@@ -29,12 +29,8 @@ from modefront.work.task import Costs, spend
 from modefront.work.transfer import shared
 
 DENSE = 180  # degrees of freedom up to which dense matrices are faster
-
-ARRAYS = 8
-"""Matrices N x N that a dense solution holds: K, M, their factors, the modes and workspace."""
-
-FACTOR = 40
-"""Entries of the two factors of a sparse solution and of what belongs to it, over N^(4/3)."""
+ARRAYS = 8  # matrices N x N of a dense solution: K, M, their factors, the modes and workspace
+FACTOR = 40  # entries of a sparse solution, its two factors and all else, over N^(4/3)
 
 SensorSpec = int | Sequence[tuple[int, float]]
 """A sensor: a degree of freedom, counted from 0, or weighted degrees of freedom."""
@@ -42,7 +38,7 @@ SensorSpec = int | Sequence[tuple[int, float]]
 DOF = whole(0, WHOLE).schema
 WEIGHTED = any_of(DOF, array(array([DOF, NUMBER], 2, 2), 1))  # schema of a `SensorSpec` in a file
 
-Matrix: TypeAlias = Floats | scipy.sparse.sparray
+Matrix: TypeAlias = Floats | sparray
 
 
 @contextmanager
@@ -63,28 +59,22 @@ class MatrixModel(Shown):
 
     parameters: tuple[str, ...]  # names of the parameters
     sensors: tuple[str, ...]  # names of the sensors
-    # (sensors, N) weights of the degrees of freedom at each sensor
-    selection: scipy.sparse.csr_array
+    selection: csr_array  # (sensors, N) weights of the degrees of freedom at each sensor
     stiffness: DenseAffine | SparseAffine  # stiffness, mass: K(theta), M(theta), N x N
     mass: DenseAffine | SparseAffine
     # weights (N,) of the degrees of freedom at places that are no sensors, by name
     outputs: Mapping[str, Floats] = field(default_factory=dict)
     # motion (N,) of the degrees of freedom with the base, by the name of its direction
     base: Mapping[str, Floats] = field(default_factory=dict)
-    # whether the stiffness matrix may be singular: rigid-body modes are wanted
-    floating: bool = True
+    floating: bool = True  # whether K may be singular: rigid-body modes are wanted
     limits: tuple[str, ...] = ()  # warnings on the elements of which the matrices are made
-    # where the degrees of freedom are in space; None where that is not known
-    geometry: Geometry | None = None
+    geometry: Geometry | None = None  # of the degrees of freedom; None where it is not known
     # returns what members add to the terms of the matrices; None where that is not known
     members: Callable[[], Sequence[Members]] | None = None
 
     __repr__ = brief_model
 
-    @property
-    def size(self) -> int:
-        """Number of degrees of freedom N."""
-        return self.stiffness.size
+    size = passed_on("stiffness", "size")
 
     @property
     def footprint(self) -> float:
@@ -316,7 +306,7 @@ def matrices(
 def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) -> SparseAffine:
     """Return base + sum_k c_k(theta) A_k for terms named as `modefront.models.parameters` says."""
     coefficients = Monomials(term_exponents(list(terms), parameters))
-    return sparse_affine(list(map(scipy.sparse.coo_array, terms.values())), coefficients, size)
+    return sparse_affine(list(map(coo_array, terms.values())), coefficients, size)
 
 
 def common_size(
@@ -340,14 +330,12 @@ def common_size(
     return size, faults
 
 
-def select(
-    sensors: Mapping[str, SensorSpec], size: int, place: str = "sensors"
-) -> scipy.sparse.csr_array:
+def select(sensors: Mapping[str, SensorSpec], size: int, place: str = "sensors") -> csr_array:
     """Return the weights of the degrees of freedom at each sensor, shape (sensors, N).
 
     Raises InputError, which names the ``place``, for degrees of freedom that there are not.
     """
-    selection = scipy.sparse.lil_array((len(sensors), size))
+    selection = lil_array((len(sensors), size))
     for row, (name, spec) in enumerate(sensors.items()):
         for dof, weight in [(spec, 1.0)] if isinstance(spec, int | np.integer) else spec:
             if not 0 <= dof < size:
@@ -374,7 +362,7 @@ def symmetrised(
     where a number is not finite and where the matrix is not symmetric.
     """
 
-    def error(B: scipy.sparse.coo_array, wrong: Floats, expected: str, why: str) -> InputError:
+    def error(B: coo_array, wrong: Floats, expected: str, why: str) -> InputError:
         k = int(np.argmax(wrong))
         i, j = int(B.row[k]), int(B.col[k])
         found = f"{A[i, j]:.6g}"
@@ -382,13 +370,13 @@ def symmetrised(
         where = ", ".join(filter(None, (place, label(i, j))))
         return InputError(Fault(file, where, expected, found))
 
-    if not (np.abs(A.data if scipy.sparse.issparse(A) else A) <= LARGEST).all():
-        B = scipy.sparse.coo_array(A)
+    if not (np.abs(A.data if issparse(A) else A) <= LARGEST).all():
+        B = coo_array(A)
         beyond = np.where(np.abs(B.data) <= LARGEST, 0.0, 1.0)
         raise error(B, beyond, f"finite numbers up to {LARGEST:g}", "")
     asymmetry = abs(A - A.T)
     if asymmetry.max() > SYMMETRY * abs(A).max():
-        B = scipy.sparse.coo_array(asymmetry)
+        B = coo_array(asymmetry)
         why = "damping, contact, friction and rotors make it unsymmetric"
         raise error(B, B.data, "a symmetric matrix", why)
     return (A + A.T) / 2

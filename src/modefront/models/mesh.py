@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront import fem
 from modefront.errors import wrong
@@ -52,17 +52,16 @@ def mesh_model(
     whole = replace(structure, sensors=(*structure.sensors, *outputs))
     built = fem.assemble(whole, floating=floating)
     sensors, others = np.split(np.arange(len(built.sensors)), [len(structure.sensors)])
-    for name in built.parameters:
-        if name not in parameters:
-            expected = f"the structure's {', '.join(built.parameters)}"
-            raise wrong("parameters", expected, f"no {name}")
+    if missing := [name for name in built.parameters if name not in parameters]:
+        expected = f"the structure's {', '.join(built.parameters)}"
+        raise wrong("parameters", expected, f"no {missing[0]}")
     own = [[float(x == name) for x in parameters] for name in built.parameters]
     of = np.array(own).reshape(len(own), len(parameters))
+    pair = built.stiffness, built.mass
+    exponents = [A.coefficients.exponents for A in pair]
     K, M = (
-        replace(A, coefficients=Monomials(A.coefficients.exponents @ of))
-        for A in (built.stiffness, built.mass)
+        replace(A, coefficients=Monomials(e @ of)) for A, e in zip(pair, exponents, strict=True)
     )
-    exponents = [A.coefficients.exponents for A in (built.stiffness, built.mass)]
     direction, X = built.dofs.free[:, 1], check_points(structure.nodes)
     types = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
     types |= {15: "wedge15", 20: "hexahedron20"}
@@ -70,7 +69,7 @@ def mesh_model(
     named = zip(structure.groups, cells, strict=True)
     known = tuple(Cells(group.name, types[each.shape[1]], each) for group, each in named)
     translations = 6 * np.arange(len(X))[:, None] + np.arange(3)
-    motion = scipy.sparse.csr_array(built.dofs.T[translations.ravel()])
+    motion = csr_array(built.dofs.T[translations.ravel()])
     (at, along), count = built.places, len(structure.sensors)
     return MatrixModel(
         tuple(parameters),

@@ -89,10 +89,7 @@ class Parameter(Shown):
 def parameters_of(
     bounds: Mapping[str, tuple[float, float]], nominal: Mapping[str, float]
 ) -> list[Parameter]:
-    """Return the parameters of which bounds and nominal values are given by name.
-
-    Raises InputError with all that is wrong with them.
-    """
+    """Return the parameters with these bounds and nominal values; InputError with all faults."""
     out, faults = [], list[Fault]()
     for name in dict.fromkeys([*bounds, *nominal]):
         known: Any = nominal.get(name), bounds.get(name)

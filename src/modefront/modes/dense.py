@@ -27,33 +27,15 @@ from modefront.modes.result import FullModes, ModeDerivatives, Modes, SecondDeri
 from modefront.rounding import TINY
 
 CLOSE = 1e-2  # relative gap of eigenvalues below which a quotient is formed with the gap itself
-
-SHIFT = 1e-5
-"""sigma over trace(K) / trace(M), where K is singular: balances rounding in low and high modes."""
-
-MIDDLE = 100.0
-"""Factor around the middle of the spectrum within which the two ways of solving are joined."""
-
+SHIFT = 1e-5  # sigma over trace(K) / trace(M): balances rounding in low and high modes
+MIDDLE = 100.0  # factor about the middle of the spectrum within which both ways are joined
 RIGID = 1e-4  # eigenvalue over the shift, below which a mode counts as a rigid-body mode
-
-INDEFINITE = 1e-2
-"""Negative eigenvalue over the shift that passes for rounding; below it, K is indefinite."""
-
-INDEFINITE_MASS = 1e-10
-"""Negative mu over the greatest one, beyond which M is indefinite, and not by rounding."""
-
-FINITE = 1e-13
-"""mu over the greatest one, above which a mode has a finite frequency: below is rounding of the
-zeros of a singular M."""
-
-PRECISE = 1e-8
-"""mu over the greatest one, below which digits of it are lost that can be had otherwise."""
-
-COINCIDENT = 1e-8
-"""Relative error of a quotient, as caused by rounding in its gap, above which it is left out."""
-
-_ROUNDING = 10 * np.finfo(float).eps
-"""Error of a sum of products, relative, of some ten terms of like size."""
+INDEFINITE = 1e-2  # negative eigenvalue over the shift, up to which it is rounding
+INDEFINITE_MASS = 1e-10  # negative mu over the greatest one, up to which it is rounding
+FINITE = 1e-13  # mu over the greatest one, below which it is rounding of the zeros of a singular M
+PRECISE = 1e-8  # mu over the greatest one, below which digits are lost that can be had otherwise
+COINCIDENT = 1e-8  # relative error of a quotient, by rounding in its gap, that leaves it out
+_ROUNDING = 10 * np.finfo(float).eps  # relative error of a sum of some ten products
 
 
 def modes(
@@ -78,11 +60,9 @@ def modes(
         Z = X @ ((seen.T @ b) / energy[:, r[owner]])
         return decomposition.Phi[:, r], first_axis(X, S[:, r]), Z
 
-    second = SecondDerivatives(K, M, theta, lam[:count], phi, dlam[:count], solve, count)
-    slopes = ModeDerivatives(
-        dlam[:count], first_axis(seen, S[:, :count]), coincident[:count], second
-    )
-    return Modes(lam[:count], phi, slopes)
+    second = SecondDerivatives(K, M, theta, solve, count)
+    dphi = first_axis(seen, S[:, :count])
+    return Modes(lam[:count], phi, ModeDerivatives(dlam[:count], dphi, coincident[:count], second))
 
 
 def lowest(K: Floats, M: Floats, count: int) -> tuple[Floats, Floats] | None:
@@ -104,10 +84,7 @@ def lowest(K: Floats, M: Floats, count: int) -> tuple[Floats, Floats] | None:
 def full_modes(
     K: DenseAffine, M: DenseAffine, theta: Floats, count: int, loads: Floats
 ) -> FullModes:
-    """Return the ``count`` lowest modes and the static response to loads (N, loads).
-
-    Raises ModelError as `modes`.
-    """
+    """Return the ``count`` lowest modes and static responses to loads (N, loads); see `modes`."""
     Kt = K.at(theta)
     known = decompose(Kt, M.at(theta), count)
     refuse_fewer(known.lam.size, count)
@@ -122,10 +99,7 @@ def full_modes(
 
 
 def without_rounding(diagonal: Floats, lam: Floats, Phi: Floats) -> Floats:
-    """Return eigenvalues with zeros for those of rigid-body modes.
-
-    These are below the rounding that phi^T diag(K) phi leaves in them.
-    """
+    """Return eigenvalues with zeros for those below the rounding that phi^T diag(K) phi leaves."""
     return np.where(lam < FINITE * (diagonal @ Phi**2), 0.0, lam)
 
 

@@ -10,11 +10,11 @@ the factor that makes it smallest. The form is symmetric, so b may be the forces
 sensors (adjoint, one solution for all modes), whichever is expected to need fewer solutions.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array, dia_array, eye_array
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
@@ -28,10 +28,12 @@ from modefront.rounding import TINY
 class Spectrum:
     """The lowest modes at one theta."""
 
+    pencil: Pencil
+    theta: Floats
     lam: Floats  # (modes,) eigenvalues, ascending
     Phi: Floats  # Phi, MPhi: (N, modes) mass-normalised modes, and M times them
     MPhi: Floats
-    M: scipy.sparse.csr_array  # the mass matrix
+    M: csr_array  # the mass matrix
     noise: Floats  # (modes,) rounding to be expected in ``lam``
     beyond: float  # estimate of the next eigenvalue; infinite where there is none
     proved: int  # how many modes were proved to be the lowest ones
@@ -39,40 +41,30 @@ class Spectrum:
     factors: tuple[Factorisation, Factorisation]
 
 
+# Relative error of a quotient, as bounded by rounding in its gap, above which it is left out. The
+# bound is ten to a hundred times the rounding itself.
 COINCIDENT = 1e-6
-"""Relative error of a quotient, as bounded by rounding in its gap, above which it is left out.
-
-The bound is ten to a hundred times the rounding itself, and far less in ill-conditioned models
-than the gaps between modes that count as coincident.
-"""
 
 TOLERANCE = 1e-10  # residual of a solution over that of zero
 STEPS = 1000  # steps after which the iteration is given up
 COLUMNS = 64  # right-hand sides that are solved together: more would only take more memory
-
-ENTRIES = 2**22
-"""Entries that a block of right-hand sides holds at most, unless it has `FEWEST` columns."""
-
+ENTRIES = 2**22  # of a block of right-hand sides at most, unless it has `FEWEST` columns
 FEWEST = 8  # right-hand sides that are solved together however large the model is
 
-Sensors: TypeAlias = Floats | scipy.sparse.csr_array
 
-
-def at_sensors(
-    pencil: Pencil, sensors: Sensors, theta: Floats, spectrum: Spectrum, count: int
-) -> tuple[Floats, Floats, Bools]:
+def at_sensors(sensors: csr_array, spectrum: Spectrum, count: int) -> tuple[Floats, Floats, Bools]:
     """Return dlam (count, p), dphi (sensors, count, p) and which modes coincide with another one.
 
     ``sensors`` has the shape (sensors, N); the identity gives the derivatives everywhere.
     Raises ModelError where the iteration fails.
     """
-    lam, same = spectrum.lam, _same(spectrum)
-    c, p = count, theta.size
+    pencil, theta, lam = spectrum.pencil, spectrum.theta, spectrum.lam
+    c, p, same = count, theta.size, _same(spectrum)
     while c < spectrum.proved and same[c, :c].any():
         c += 1
     r = np.arange(c)
     dM = pencil.M.derivative_rows(theta, spectrum.Phi[:, :c])
-    scale = scipy.sparse.dia_array((np.repeat(lam[:c], p)[None], 0), shape=(c * p, c * p))
+    scale = dia_array((np.repeat(lam[:c], p)[None], 0), shape=(c * p, c * p))
     force = pencil.K.derivative_rows(theta, spectrum.Phi[:, :c]) - scale @ dM
     S = (force @ spectrum.Phi).reshape(c, p, -1)  # S[r, i, j] = phi_j^T (K_i' - lam_r M_i') phi_r
     dlam = S[r, :, r]
@@ -85,8 +77,7 @@ def at_sensors(
     inside = S[:count] * np.where(same[:count], 0.0, 1 / np.where(same[:count], 1.0, gap))[:, None]
     inside[r[:count], :, r[:count]] = -0.5 * (dM @ spectrum.Phi).reshape(c, p, -1)[r, :, r][:count]
     dphi = np.tensordot(sensors @ spectrum.Phi, inside, axes=(1, 2))
-    force = force[: count * p].tocsr()
-    dphi -= outside(sensors, force, spectrum, count)
+    dphi -= outside(sensors, force[: count * p].tocsr(), spectrum, count)
     return dlam[:count], dphi, coincident[:count]
 
 
@@ -97,18 +88,11 @@ def _same(spectrum: Spectrum) -> Bools:
     return np.asarray(distance * COINCIDENT <= np.maximum(noise, noise[:, None]))
 
 
-# 8 arguments: those of `at_sensors`, and those of `modefront.modes.result.Solve`.
 def everywhere(
-    pencil: Pencil,
-    sensors: Sensors,
-    theta: Floats,
-    spectrum: Spectrum,
-    count: int,
-    r: Ints,
-    b: Floats,
-    _: Ints,
+    sensors: csr_array, spectrum: Spectrum, count: int, r: Ints, b: Floats, _: Ints
 ) -> Solved:
     """Return one mode with adjoints at all DOFs; raises ModelError where the iteration fails."""
+    pencil, theta = spectrum.pencil, spectrum.theta
     k, p, phi = int(r[0]), theta.size, spectrum.Phi[:, r]
     dM_phi = pencil.M.derivatives_times(theta, phi)[:, 0]
     force = pencil.K.derivatives_times(theta, phi)[:, 0] - spectrum.lam[k] * dM_phi
@@ -116,18 +100,15 @@ def everywhere(
     gap = np.where(_same(spectrum)[:, k], np.inf, spectrum.lam - spectrum.lam[k])
     out = combine(spectrum.Phi, gram(spectrum.Phi, right) / gap[:, None])
     nearest, _steps = _nearest(spectrum, count)
-    shifted, identity = spectrum.factors[nearest[k]], scipy.sparse.eye_array(len(phi)).tocsr()
+    shifted, identity = spectrum.factors[nearest[k]], eye_array(len(phi)).tocsr()
     tau = np.array([[shifted.sigma - spectrum.lam[k]]])
-    for some in _chunks(right.T):
-        columns = np.ascontiguousarray(right[:, some])
+    for some, columns in _chunks(right.T):
         out[:, some] += _forms(shifted, spectrum, columns, tau, identity)[:, 0]
     dphi = -out[:, :p] - 0.5 * phi * gram(phi, dM_phi)
     return phi, dphi[:, None], out[:, p:]
 
 
-def outside(
-    sensors: Sensors, force: scipy.sparse.csr_array, spectrum: Spectrum, count: int
-) -> Floats:
+def outside(sensors: csr_array, force: csr_array, spectrum: Spectrum, count: int) -> Floats:
     """Return sensors (K - lam_r M)^+ f_ri, shape (sensors, count, p); f has rows (r, i)."""
     nearest, steps = _nearest(spectrum, count)
     p = force.shape[0] // count
@@ -142,14 +123,12 @@ def outside(
         if not rows.nnz:
             continue
         if adjoint < direct:
-            for some in _chunks(sensors):
-                right = _columns(sensors, some)
+            for some, right in _chunks(sensors):
                 product = _forms(shifted, spectrum, right, tau[:, None], rows)
                 terms = np.diagonal(product.reshape(group.size, p, *product.shape[1:]), 0, 0, 2)
                 out[some[:, None], group] = terms.transpose(1, 2, 0)
         else:
-            for some in _chunks(rows):
-                right = _columns(rows, some)
+            for some, right in _chunks(rows):
                 product = _forms(shifted, spectrum, right, tau[some // p][None], sensors)
                 out[:, group[some // p], some % p] = product[:, 0]
     return out
@@ -167,20 +146,19 @@ def _nearest(spectrum: Spectrum, count: int) -> tuple[Ints, Floats]:
     return nearest, 1 + np.log(TOLERANCE) / np.log(np.clip(rate, 1e-12, 0.999))
 
 
-def _chunks(rows: Sensors) -> list[Ints]:
+def _chunks(rows: Floats | csr_array) -> Iterator[tuple[Ints, Floats]]:
+    """Yield the numbers of some rows at a time, and these as columns."""
     count, size = rows.shape
     width = min(COLUMNS, max(FEWEST, ENTRIES // size))
-    return [np.arange(k, min(k + width, count)) for k in range(0, count, width)]
-
-
-def _columns(rows: Sensors, some: Ints) -> Floats:
-    chosen = rows[some]
-    dense = chosen if isinstance(chosen, np.ndarray) else chosen.toarray()
-    return np.ascontiguousarray(np.asarray(dense, dtype=float).T)
+    for k in range(0, count, width):
+        some = np.arange(k, min(k + width, count))
+        chosen = rows[some]
+        dense = chosen if isinstance(chosen, np.ndarray) else chosen.toarray()
+        yield some, np.ascontiguousarray(dense.T)
 
 
 def _forms(
-    shifted: Factorisation, spectrum: Spectrum, right: Floats, tau: Floats, left: Sensors
+    shifted: Factorisation, spectrum: Spectrum, right: Floats, tau: Floats, left: csr_array
 ) -> Floats:
     """Return left (K - lam_r M)^+ right, shape (rows of left, shifts, columns of right).
 
@@ -188,7 +166,8 @@ def _forms(
     ``lower`` (left of d in L), ``u`` and ``P`` belong to the last step.
     """
     dual = right - combine(spectrum.MPhi, gram(spectrum.Phi, right))
-    W = _projected(spectrum, shifted.solve(dual))
+    W = shifted.solve(dual)
+    W -= combine(spectrum.Phi, gram(spectrum.MPhi, W))  # on the M-complement of the known modes
     first = beta = _norm(W, dual)
     Q_old, dual_old = np.zeros_like(W), np.zeros_like(W)
     lower = np.zeros((tau.shape[0], beta.size))
@@ -214,18 +193,13 @@ def _forms(
         Q_old -= alpha * W
         dual_old += MQ
         dual_old -= alpha * dual
-        Q_old, W = W, _projected(spectrum, Q_old)
+        Q_old -= combine(spectrum.Phi, gram(spectrum.MPhi, Q_old))
+        Q_old, W = W, Q_old
         dual_old, dual = dual, dual_old
         beta = _norm(W, dual)
         if (np.abs(tau * beta * u / d) <= TOLERANCE * first).all():
             return out
     raise ModelError("the derivatives do not converge: the matrices are too ill-conditioned")
-
-
-def _projected(spectrum: Spectrum, W: Floats) -> Floats:
-    """Return the part of W on the M-complement of the known modes; W is overwritten."""
-    W -= combine(spectrum.Phi, gram(spectrum.MPhi, W))
-    return W
 
 
 def _norm(W: Floats, dual: Floats) -> Floats:

@@ -20,19 +20,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.linalg.products import combine, gram, times
 from modefront.modes.dense import FINITE, INDEFINITE_MASS
 
-TOLERANCE = 1e-7
-"""Residual of a Ritz pair over its mu; modes are usually refined once more with another shift."""
-
-NEW = 1e-8
-"""Share of a random block, after T, outside the basis below which there are no more modes."""
-
+TOLERANCE = 1e-7  # residual of a Ritz pair over its mu; modes are usually refined once more
+NEW = 1e-8  # share of a random block outside the basis, below which there are no more modes
 STEPS = 500  # steps after which the iteration is given up
 
 Solve = Callable[[Floats], Floats]
@@ -49,12 +45,7 @@ class Ritz:
 
 
 def greatest(
-    solve: Solve,
-    A: scipy.sparse.csr_array,
-    M: scipy.sparse.csr_array,
-    start: Floats,
-    needed: int,
-    steps: int = STEPS,
+    solve: Solve, A: csr_array, M: csr_array, start: Floats, needed: int, steps: int = STEPS
 ) -> Ritz:
     """Return Ritz pairs of T with the ``needed`` greatest mu, or as many as ``steps`` allow.
 
@@ -113,7 +104,7 @@ def _outside(W: Floats, V: Floats, AV: Floats) -> Floats:
 
 
 def _orthonormal(
-    W: Floats, A: scipy.sparse.csr_array, least: float, most: int | None = None
+    W: Floats, A: csr_array, least: float, most: int | None = None
 ) -> tuple[Floats, Floats, Floats]:
     """Return Q, A Q and R with W = Q R and Q orthonormal in A.
 

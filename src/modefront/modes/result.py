@@ -50,36 +50,33 @@ class SecondDerivatives:
     K: DenseAffine | SparseAffine  # K, M: stiffness and mass matrix
     M: DenseAffine | SparseAffine
     theta: Floats  # (p,) parameters
-    lam: Floats  # lam, phi, dlam: the modes at the sensors as in `modefront.modes.result.Modes`
-    phi: Floats
-    dlam: Floats
     solve: Solve  # gives the modes at all degrees of freedom, and adjoints
     most: int  # number of modes that are solved for at once, at most
 
-    def of_sums(self, r: Ints, w: Floats, v: Floats) -> Floats:
+    def of_sums(self, modes: "Modes", r: Ints, w: Floats, v: Floats) -> Floats:
         """Return the Hessians of sum_r w_r lam_r + v_r^T phi_r for several w and v, (n, p, p).
 
-        ``r`` are modes, ``w`` has the shape (n, modes) and ``v`` (n, sensors, modes).
+        ``r`` are some of the modes, ``w`` has the shape (n, some) and ``v`` (n, sensors, some).
         """
         if not r.size:
             return np.zeros((len(w), self.theta.size, self.theta.size))
         if r.size > self.most:
             some, others = slice(self.most), slice(self.most, None)
-            first = self.of_sums(r[some], w[:, some], v[:, :, some])
-            return first + self.of_sums(r[others], w[:, others], v[:, :, others])
+            first = self.of_sums(modes, r[some], w[:, some], v[:, :, some])
+            return first + self.of_sums(modes, r[others], w[:, others], v[:, :, others])
         # The forms are w times that of each eigenvalue, and that of each adjoint.
         of, owner = np.nonzero(v.any(axis=1))
         b = v[of, :, owner]
-        s = np.vecdot(b, self.phi[:, r[owner]].T)
+        s = np.vecdot(b, modes.phi[:, r[owner]].T)
         (Phi, dPhi, Z), mass = self.solve(r, b.T, owner), self.M.at(self.theta)
         (N, m, p), mode = dPhi.shape, np.append(np.arange(r.size), owner)
-        vectors, dlam = np.hstack([Phi, -Z]), self.dlam[r[mode]]
+        vectors, dlam = np.hstack([Phi, -Z]), modes.dlam[r[mode]]
         MdPhi = (mass @ dPhi.reshape(N, -1)).reshape(N, m, p)
         left, change = self.K.derivatives_times(self.theta, vectors), MdPhi
         c = np.zeros((mode.size, p))
         if self.M.coefficients.varies:
             dM = self.M.derivatives_times(self.theta, vectors)
-            left = left - self.lam[r[mode], None] * dM
+            left = left - modes.lam[r[mode], None] * dM
             c[:m] = -0.5 * np.einsum("nr,nri->ri", Phi, dM[:, :m])
             change = MdPhi + dM[:, :m]
         c[m:] = np.einsum("nk,nki->ki", Z, change[:, owner])
@@ -93,7 +90,7 @@ class SecondDerivatives:
             y[of, :, owner] -= Z.T
             sphi[of, :, owner] = (s * Phi[:, owner]).T
             out += self.K.second_derivatives(self.theta, y, Phi)
-            out -= self.M.second_derivatives(self.theta, self.lam[r] * y + 0.5 * sphi, Phi)
+            out -= self.M.second_derivatives(self.theta, modes.lam[r] * y + 0.5 * sphi, Phi)
         return out
 
 
@@ -150,7 +147,7 @@ class Modes(Shown):
         r, second = np.flatnonzero(w.any(axis=0) | v.any(axis=(0, 1))), self._requested.second
         if second is None or self.coincident[r].any():
             return None
-        return second.of_sums(r, w[:, r], v[:, :, r])
+        return second.of_sums(self, r, w[:, r], v[:, :, r])
 
     @property
     def _requested(self) -> ModeDerivatives:
@@ -165,10 +162,7 @@ class Modes(Shown):
 
     @cached_property
     def dfrequency(self) -> Floats:
-        """Derivatives of the natural frequencies in Hz, shape (modes, parameters).
-
-        Raises ValueError where derivatives were not requested.
-        """
+        """Derivatives of ``frequency``, (modes, parameters); ValueError if they are not there."""
         return self.dlam * self.frequency_by_lam[:, None]
 
     @cached_property

@@ -19,7 +19,7 @@ from functools import partial
 
 import numpy as np
 import scipy.linalg
-import scipy.sparse
+from scipy.sparse import csr_array
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
@@ -32,41 +32,23 @@ from modefront.modes.lanczos import greatest
 from modefront.modes.result import FullModes, ModeDerivatives, Modes, SecondDerivatives
 
 BLOCK = 8  # columns of a block: greatest multiplicity of an eigenvalue that is found at once
-
+# Modes beyond those asked for, half of their number or more: sigma is sought in a gap among them.
 LEAST = 2
-"""Modes beyond those asked for: half of their number, but no fewer than this. The gap for sigma is
-sought among them, and the more there are, the faster subspace iteration is."""
-
 ATTEMPTS = 4  # runs, each with more modes and a larger block, before missing modes are an error
 SINGULAR = 1e-13  # x^T A x / x^T diag(A) x below which A is singular to working precision
-
-GAP = 1e-2
-"""Relative gap of eigenvalues that is wide enough for sigma; else the widest one is taken."""
-
+GAP = 1e-2  # relative gap of eigenvalues that is wide enough for sigma; else the widest is taken
 NARROW = 1e-6  # relative gap that is too narrow for sigma: more modes are sought
-
-RESTART = 1e-2
-"""s over the greatest known eigenvalue, where the iteration has lost modes and is begun again."""
-
-ALL_AT_ONCE = 3000
-"""Degrees of freedom up to which all modes are solved for where the iteration loses some."""
-
+RESTART = 1e-2  # s over the greatest known eigenvalue, where the iteration is begun again
+ALL_AT_ONCE = 3000  # degrees of freedom up to which all modes are solved for where some are lost
 BEYOND = 1e3  # eigenvalue up to which modes are counted, over the greatest known one
-
-CONVERGED = 1e-8
-"""Change of a mode in subspace iteration, after which the next one is exact to rounding."""
-
+CONVERGED = 1e-8  # change of a mode in an iteration, after which the next is exact to rounding
+# Subspace iterations, after which more modes are sought instead: from an error of 1 to `CONVERGED`
+# at 1/3 a step, the factor of the lowest modes at rho = -1.
 REFINEMENTS = 17
-"""Subspace iterations, after which more modes are sought instead: from an error of 1 to `CONVERGED`
-at 1/3 a step, the factor of the lowest modes at rho = -1."""
 
 
 def modes(
-    pencil: Pencil,
-    sensors: Floats | scipy.sparse.csr_array,
-    theta: Floats,
-    count: int,
-    derivatives: bool,
+    pencil: Pencil, sensors: csr_array, theta: Floats, count: int, derivatives: bool
 ) -> Modes:
     """Return the ``count`` lowest modes at the sensors, shape (sensors, N), in ascending order.
 
@@ -75,22 +57,18 @@ def modes(
     was missed.
     """
     spectrum = lowest(pencil, theta, count)
-    phi = sensors @ spectrum.Phi[:, :count]
+    lam, phi = spectrum.lam[:count], sensors @ spectrum.Phi[:, :count]
     if not derivatives:
-        return Modes(spectrum.lam[:count], phi)
-    dlam, dphi, coincident = exact.at_sensors(pencil, sensors, theta, spectrum, count)
-    lam = spectrum.lam[:count]
-    solve = partial(exact.everywhere, pencil, sensors, theta, spectrum, count)
+        return Modes(lam, phi)
+    dlam, dphi, coincident = exact.at_sensors(sensors, spectrum, count)
+    solve = partial(exact.everywhere, sensors, spectrum, count)
     # Mode by mode, to bound the memory.
-    second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solve, 1)
+    second = SecondDerivatives(pencil.K, pencil.M, theta, solve, 1)
     return Modes(lam, phi, ModeDerivatives(dlam, dphi, coincident, second))
 
 
 def full_modes(pencil: Pencil, theta: Floats, count: int, loads: Floats) -> FullModes:
-    """Return the ``count`` lowest modes and the static response to loads (N, loads).
-
-    Raises ModelError as `modes`.
-    """
+    """Return the ``count`` lowest modes and static responses to loads (N, loads); see `modes`."""
     known, static = lowest(pencil, theta, count), None
     lam = dense.without_rounding(pencil.K.at(theta).diagonal(), known.lam, known.Phi)
     below = known.factors[0]
@@ -138,7 +116,8 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
                 if refined is not None:
                     beyond = lam[refined[0].size] if finite > refined[0].size else np.inf
                     noise = np.asarray(np.finfo(float).eps * (K.diagonal() @ refined[1] ** 2))
-                    return Spectrum(*refined, M, noise, beyond, lower, (below, above))
+                    factors = below, above
+                    return Spectrum(pencil, theta, *refined, M, noise, beyond, lower, factors)
         needed, block = 2 * needed, 2 * block
     if lost:
         raise ModelError(
@@ -151,9 +130,7 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
     )
 
 
-def _finite(
-    pencil: Pencil, K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, lam: Floats
-) -> int:
+def _finite(pencil: Pencil, K: csr_array, M: csr_array, lam: Floats) -> int:
     """Return how many modes have a finite frequency, up to far beyond known eigenvalues.
 
     All have one where M is positive definite; else those below a shift are counted (Sylvester).
@@ -196,13 +173,8 @@ def _gap(lam: Floats, known: int, count: int, s: float, complete: bool) -> tuple
 
 
 def _positive_definite(
-    pencil: Pencil,
-    K: scipy.sparse.csr_array,
-    M: scipy.sparse.csr_array,
-    needed: int,
-    right: Floats,
-    least: float,
-) -> tuple[Factorisation, scipy.sparse.csr_array, Floats]:
+    pencil: Pencil, K: csr_array, M: csr_array, needed: int, right: Floats, least: float
+) -> tuple[Factorisation, csr_array, Floats]:
     """Return the factor of A = K + s M, A, and A^-1 right to begin the Lanczos iteration with.
 
     s is ``least``, or greater where that leaves A singular.
@@ -235,12 +207,7 @@ def _positive_definite(
 
 # 6 arguments: the matrices, the right-hand sides and the tolerance.
 def _regular(
-    pencil: Pencil,
-    K: scipy.sparse.csr_array,
-    M: scipy.sparse.csr_array,
-    s: float,
-    right: Floats,
-    singular: float = SINGULAR,
+    pencil: Pencil, K: csr_array, M: csr_array, s: float, right: Floats, singular: float = SINGULAR
 ) -> tuple[Factorisation | None, Floats]:
     """Return the factor of A = K + s M and A^-1 right, or None unless A is positive definite.
 
@@ -262,7 +229,7 @@ def _regular(
 
 
 def _refined(
-    above: Factorisation, M: scipy.sparse.csr_array, lam: Floats, Phi: Floats, needed: int
+    above: Factorisation, M: csr_array, lam: Floats, Phi: Floats, needed: int
 ) -> tuple[Floats, Floats, Floats] | None:
     r"""Return eigenvalues, modes and M times the modes after subspace iteration with B.
 

@@ -1,7 +1,5 @@
-r"""Which model mode belongs to which measured mode.
+"""Which model mode belongs to which measured mode (``docs/methods/residuals.md``).
 
-The modes are assigned one to one so that the sum of :math:`1 - \mathrm{MAC}` over the measured
-modes is least; a mode measured by its frequency alone costs :math:`|\ln f / \hat f|` instead.
 Candidates whose frequency lies outside the window cost more than any within. On request modes are
 paired in their order: measured mode r is model mode r.
 """
@@ -19,13 +17,10 @@ from modefront.rounding import TINY
 
 POOR = 0.5  # MAC below which a pair is poor
 OUTSIDE = 1e3  # cost of a candidate outside the window of frequencies
-
-UNSEEN = 1e-6
-"""Greatest component of a mode at the sensors, over that of all modes, below which it is noise."""
-
+UNSEEN = 1e-6  # component of a mode at the sensors, over that of all, below which it is noise
+# Candidates, unless a number is given: the nominal model's modes up to this frequency, over the
+# highest measured one; beyond the measured ones, so many at least and at most.
 REACH, FEWEST, MOST = 1.3, 3, 40
-"""Frequency of the nominal model, over the highest measured one, up to which its modes are
-candidates unless a number is given; how many are so beyond the measured ones, at least and most."""
 
 WINDOW = number("a ratio of frequencies above 1", above=1)
 
@@ -93,7 +88,9 @@ def match(
         return Pairs(index, values[np.arange(m), index])
     if q < m:
         raise ValueError(f"{m} measured modes cannot be paired with {q} model modes")
-    distance, outside = log_ratio(data, frequency), np.zeros((m, q))
+    with np.errstate(divide="ignore"):
+        ratio = np.maximum(frequency, TINY) / data.mean_frequency[:, None]
+        distance, outside = np.abs(np.log(ratio)), np.zeros((m, q))
     if pairing.window is not None:
         outside = np.where(distance > np.log(pairing.window), OUTSIDE, 0.0)
     cost = np.where(np.isnan(values), distance, 1 - values)
@@ -114,12 +111,6 @@ def match(
             found.append((value, kept))
         index = min(found, key=lambda x: x[0])[1]
     return Pairs(index, values[np.arange(m), index])
-
-
-def log_ratio(data: ModalData, frequency: Floats) -> Floats:
-    """Return |ln f / f^| of measured and model modes, (measured modes, modes)."""
-    with np.errstate(divide="ignore"):
-        return np.abs(np.log(np.maximum(frequency, TINY) / data.mean_frequency[:, None]))
 
 
 def assigned(cost: Floats) -> Ints:

@@ -1,14 +1,4 @@
-r"""Interface of kinds of residuals: equation (1) over any unit.
-
-The residuals of a measured property are its errors over a unit u, such that their squares add up
-to the mean over the K data sets in which it was measured,
-
-.. math:: r = \frac{1}{\sqrt K} \frac{m(\theta) - \hat m}{u}, \qquad J = \|r\|^2 .
-
-On the scale ``"std"`` the unit is the standard deviation of each measured value. On the scale
-``"measured"`` it follows from the measured values themselves, which gives the relative errors of
-equation (1) of Christodoulou et al. (2008, doi:10.1016/j.cma.2008.04.010). Everything but the
-unit is the same on both.
+"""Interface of kinds of residuals, whose equations are in ``docs/methods/residuals.md``.
 
 A kind (`ResidualKind`) says which measured modes it can be formed of, makes the members of groups
 (`Member`) and evaluates the residuals of several members at once (`Stack`). Kinds are named in
@@ -29,8 +19,7 @@ from modefront.pairing.match import Pairs
 Scale = Literal["measured", "std"]
 """Unit by which errors are divided: one that follows from the measured values, or their std."""
 
-NEGLIGIBLE = 1e-9
-"""Standard deviation, over the greatest one or the frequency, below which it is rounding."""
+NEGLIGIBLE = 1e-9  # standard deviation, over the greatest one or the frequency, that is rounding
 
 
 @dataclass(frozen=True)

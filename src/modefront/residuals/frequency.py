@@ -1,12 +1,6 @@
-r"""Residuals of natural frequencies.
+r"""Residuals of natural frequencies (``docs/methods/residuals.md``).
 
-For measured mode r, in each of the K data sets in which its frequency was measured,
-
-.. math:: r = \frac{\omega_r - \hat\omega_r}{u \sqrt K} .
-
-The unit u is the measured frequency :math:`\hat\omega_r`, as in equation (1), or its standard
-deviation. With y = :math:`\hat\omega_r` an error of measurement changes :math:`J = (f - y)^2 / u^2`
-of a data set by
+An error of a measured frequency y changes :math:`J = (f - y)^2 / u^2` of its data set by
 
 .. math:: \frac{\partial J}{\partial y} = -\frac{2 (f - y)}{u^2} q, \qquad
     \frac{\partial}{\partial y} \partial J = -\frac{2 \partial f}{u^2} (2 q - 1),

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Literal, get_args
 
 from modefront.data.modal import ModalData
@@ -14,7 +15,6 @@ from modefront.residuals.shape import ShapeKind
 from modefront.text import Shown
 
 NEEDED = ("name", "plural", "usable_std", "measured", "has_usable_std", "members", "stack")
-"""What a kind has, see `ResidualKind`."""
 
 KINDS: Family[ResidualKind] = Family(
     "modefront.residuals",
@@ -36,7 +36,6 @@ MODE_NUMBERS = Requirement(
     "'all' or a list of measured modes, counted from 1, each once",
     any_of({"enum": ["all"]}, array(whole(1, WHOLE).schema, once=True)),
 )
-"""Requirement of `ModeNumbers`."""
 
 
 @dataclass(frozen=True, init=False)
@@ -96,34 +95,25 @@ class Group(Shown):
         return dict(self.chosen).get(kind, ())
 
     def positions(self, data: ModalData) -> list[tuple[ResidualKind, tuple[int, ...]]]:
-        """Return the positions of the chosen modes in the data, for each kind of the group."""
+        """Return the positions of the chosen modes in the data, for each kind that has any."""
         places, out = {mode: r for r, mode in enumerate(data.modes)}, []
         for name, modes in self.chosen:
             numbers = _measured_modes(name, data) if modes == "all" else modes
-            out.append((KINDS[name], tuple(places[int(mode)] for mode in numbers)))
+            if numbers:
+                out.append((KINDS[name], tuple(places[int(mode)] for mode in numbers)))
         return out
 
     def members(self, data: ModalData) -> list[Member]:
-        """Return the members of the group.
-
-        Raises ValueError where the data have no such members; see `faults`.
-        """
+        """Return the members of the group; ValueError where the data lack some, see `faults`."""
         for key, expected, found in faults(self, data):
             place = f"group '{self.name}'" + (f": {key}" if key else "")
             raise ValueError(f"{place}: expected {expected}, found {found}")
-        return [
-            member
-            for kind, positions in self.positions(data)
-            for member in kind.members(data, positions, self.scale)
-        ]
+        kinds = (kind.members(data, some, self.scale) for kind, some in self.positions(data))
+        return list(chain.from_iterable(kinds))
 
     def stacks(self, data: ModalData) -> list[Stack]:
         """Return the members of the group, those of each kind together, in the same order."""
-        return [
-            kind.stack(data, positions, self.scale)
-            for kind, positions in self.positions(data)
-            if positions
-        ]
+        return [kind.stack(data, some, self.scale) for kind, some in self.positions(data)]
 
 
 def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str]]:
@@ -142,7 +132,7 @@ def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str
                 wrong.append((name, f"one of the measured modes {measured}", str(mode)))
         yield from wrong
         chosen = [] if wrong else group.positions(data)
-        if not wrong and not any(positions for _, positions in chosen):
+        if not (wrong or chosen):
             yield "", "at least one measured property", "none in the data"
         for kind, r in [(kind, r) for kind, positions in chosen for r in positions]:
             if group.scale == "std" and not kind.has_usable_std(data, r):

@@ -1,13 +1,9 @@
-r"""The updating problem: objectives that are sums of squares of the residuals of their members.
+"""The updating problem: objectives that are sums of squares of the residuals of their members.
 
-The kinds of residuals are in `modefront.residuals.base` and the files beside it. An objective
-stacks those of its group's members into one vector r, :math:`J = \|r\|^2`, with the exact
-derivative :math:`2 r^T \partial r` and Gauss-Newton's :math:`2\, \partial r^T \partial r`, or all
-of its second derivatives, :math:`2\, \partial r^T \partial r + 2 \sum_k r_k \nabla^2 r_k`. Its
-count :math:`a_i` of measured properties is the sum of theirs.
+Second derivatives are those of Gauss and Newton, or all of them.
 """
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -17,7 +13,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
-from modefront.models.base import Model
+from modefront.models.base import Model, passed_on
 from modefront.models.matrices import MatrixModel, of_free
 from modefront.models.parameters import Parameter, Prior, in_order, parameters_of
 from modefront.models.reduced.model import ReducedModel
@@ -38,7 +34,7 @@ from modefront.pairing.match import (
 from modefront.residuals.base import Member, ModeErrors, Stack
 from modefront.residuals.groups import Group
 from modefront.text import Shown
-from modefront.work.transfer import Shared, is_shared, shared
+from modefront.work.transfer import shared
 
 
 # 11 fields: model and data, limits of the parameters, and how both are compared.
@@ -115,20 +111,9 @@ class UpdatingProblem(Shown):
         """The members of each group, those of a kind together."""
         return tuple(tuple(group.stacks(self.data)) for group in self.groups)
 
-    @property
-    def version(self) -> Hashable:
-        """That of the model, of which other processes have another one when it changes."""
-        return getattr(self.model, "version", 0)
-
-    @property
-    def footprint(self) -> float:
-        """Bytes that it takes besides its model: nothing to speak of."""
-        return 0.0
-
-    @property
-    def parts(self) -> tuple[Shared, ...]:
-        """The model, which is sent to other processes on its own."""
-        return (self.model,) if is_shared(self.model) else ()
+    # those of the model, where it has them: see `modefront.work.transfer.shared`
+    version = passed_on("model", "version")
+    footprint = passed_on("model", "footprint")
 
     @property
     def objectives(self) -> tuple[str, ...]:
@@ -190,12 +175,8 @@ class UpdatingProblem(Shown):
 
     def residuals_at(self, modes: Modes, pairs: Pairs) -> tuple[Residual, ...]:
         """Return the residual vector of each group at paired modes with derivatives."""
-        out = []
-        for row in self._stacks:
-            parts = [stack.with_slopes(modes, pairs) for stack in row]
-            r, dr = map(np.concatenate, zip(*parts, strict=True))
-            out.append(Residual(r, dr))
-        return tuple(out)
+        of_all = [[stack.with_slopes(modes, pairs) for stack in row] for row in self._stacks]
+        return tuple(Residual(*map(np.concatenate, zip(*x, strict=True))) for x in of_all)
 
     def slopes_at(self, modes: Modes, pairs: Pairs) -> dict[str, Floats]:
         """Return the derivatives (measured modes, p) of paired frequencies and MAC values."""
@@ -278,23 +259,13 @@ def updating_problem(
     given = in_order(parameters or parameters_of(bounds or {}, nominal or {}), model.parameters)
     whole = (model, tuple(given)) if any(each.fixed for each in given) else None
     model, chosen = of_free(model, given)
-    pairing = _with_spare(pairing or Pairing(), model, data, chosen)
+    limits, pairing = _limits(chosen), pairing or Pairing()
+    if pairing.spare is None and pairing.method != "order" and isinstance(model, MatrixModel):
+        highest = float(np.nanmax(data.mean_frequency, initial=0.0))
+        below = model.modes_below(limits["start"], REACH * highest)
+        pairing = replace(pairing, spare=int(np.clip(below - len(data.modes), FEWEST, MOST)))
     model = (reduction or Reduction()).of(model, data, pairing, chosen)
-    return UpdatingProblem(
-        model, data, tuple(groups), pairing=pairing, whole=whole, **_limits(chosen)
-    )
-
-
-def _with_spare(
-    pairing: Pairing, model: Model, data: ModalData, parameters: Sequence[Parameter]
-) -> Pairing:
-    """Return how modes are paired, with the number of candidates where that is not given."""
-    if pairing.spare is not None or pairing.method == "order" or not isinstance(model, MatrixModel):
-        return pairing
-    nominal = np.array([each.nominal for each in parameters])
-    highest = float(np.nanmax(data.mean_frequency, initial=0.0))
-    below = model.modes_below(nominal, REACH * highest)
-    return replace(pairing, spare=int(np.clip(below - len(data.modes), FEWEST, MOST)))
+    return UpdatingProblem(model, data, tuple(groups), pairing=pairing, whole=whole, **limits)
 
 
 def _limits(parameters: Sequence[Parameter]) -> dict[str, Any]:

@@ -1,19 +1,14 @@
-r"""Residuals of mode shapes, and of the spans of close ones.
+r"""Residuals of mode shapes, and of the spans of close ones (``docs/methods/residuals.md``).
 
-For measured mode r, in each of the K data sets in which its shape was measured, with the
-:math:`N_0` components that the sensors measured,
+In each of the K data sets in which a shape was measured, at :math:`N_0` sensors,
 
 .. math:: r = X c - \psi, \qquad c = (X^T X)^{-1} X^T \psi, \qquad
     \psi = \frac{\hat\varphi}{u \sqrt K}, \qquad X = \frac{\Phi}{u \sqrt K},
 
-where :math:`\Phi` (components, m) is the shape of the paired mode, m = 1, since a mode has no
-scale, or those of all m modes of a cluster. Shapes of close modes turn into each other with small
-errors of model and data, and those of modes that coincide are any basis of their span, on which r
-does not depend. The unit u is :math:`\|\hat\varphi\| / \sqrt{N_0}`, as in equation (1), or the
-standard deviation of each component. A standard deviation that is 0 or rounding, such as that of
-the component to which a shape was normalised, is replaced by the median of the others in its shape.
-Where their covariance :math:`C = D R D` is known, D the deviations and :math:`R = L L^T` the
-correlations, :math:`1/u` is the matrix :math:`W = L^{-1} D^{-1}`, and residuals are independent.
+where :math:`\Phi` (components, m) is the shape of the paired mode, or those of all m modes of a
+cluster. A standard deviation that is 0 or rounding, such as that of the component to which a shape
+was normalised, is replaced by the median of the others in its shape. With covariances,
+:math:`1/u` is the matrix :math:`L^{-1} D^{-1}`.
 
 From :math:`X^T r = 0` (Golub & Pereyra 1973, doi:10.1137/0710036)
 
@@ -120,13 +115,12 @@ class ShapeResiduals:
     @property
     def count(self) -> float:
         """Mean number of components over the data sets that have the shape."""
-        return float(self.sets.size / max(len(self.shapes), 1))
+        return float(self.sets.size / len(self.shapes))
 
     @property
     def sets(self) -> Ints:
         """Data set of each component."""
-        every = [np.full(x.sensors.size, x.set) for x in self.shapes]
-        return np.concatenate([np.zeros(0, dtype=np.intp), *every])
+        return np.concatenate([np.full(x.sensors.size, x.set) for x in self.shapes])
 
     @property
     def remark(self) -> str:

@@ -35,7 +35,6 @@ from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
 from modefront.work.store import hash_text
 from modefront.work.task import Executor, Part, Task, seed_sequence
-from modefront.work.transfer import is_shared
 
 Arrays = Mapping[str, Floats]
 
@@ -130,7 +129,7 @@ class PredictionRunner:
             function,
             (self.problem, prediction, numbers, *arguments),
             # Responses are those of the full model.
-            memory=full.footprint if is_reduced(self.problem.model) and is_shared(full) else 0.0,
+            memory=getattr(full, "footprint", 0.0) if is_reduced(self.problem.model) else 0.0,
         )
 
 

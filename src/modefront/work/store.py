@@ -27,16 +27,13 @@ from modefront.outputs import write_bytes, write_text
 from modefront.text import NAME, clean
 from modefront.work.codec import decode, encode
 from modefront.work.progress import Progress
-from modefront.work.task import Costs, Count, Key, R, Task
+from modefront.work.task import Costs, Count, Executor, Key, R, Task
 from modefront.work.workers import Workers
 
-FOLDER, NOTE = "tasks", "study"
-"""Folder of the kept results within that of a run's results, and the file in it with the path of
-the study file from there."""
-
-CHECKSUM, LONGEST = 32, 60
-"""Bytes of the checksum at the end of a file; characters of a key in its name, at most."""
-
+FOLDER = "tasks"  # folder of the kept results within that of a run's results
+NOTE = "study"  # file in it with the path of the study file from there
+CHECKSUM = 32  # bytes of the checksum at the end of a file
+LONGEST = 60  # characters of a key in the name of a file, at most
 LONG = 1.0  # s of a task for whose result the drive is waited for; shorter ones are soon done anew
 
 
@@ -88,9 +85,8 @@ def hash_text(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-FILE, HOLDER = "lock", "lock-holder"
-"""File that is locked, which stays, since a lock on a file that is removed keeps nobody out; and
-file that says which process holds the lock."""
+FILE = "lock"  # is locked, and stays, since a lock on a file that is removed keeps nobody out
+HOLDER = "lock-holder"  # file that says which process holds the lock
 
 
 @contextmanager
@@ -136,7 +132,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 @dataclass
-class Run:
+class Run(Executor):
     """Has a backend carry out tasks, keeps results in a store, and counts the costs of all."""
 
     store: Store | None = None

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -122,33 +122,22 @@ class Task(Generic[R]):
         return self.function(*self.arguments, rng=np.random.default_rng(self.seed))
 
 
-class Executor(Protocol):
-    """Carries out tasks."""
+class Executor:
+    """Carries out tasks: at once, unless others do so in their way; keeps and reports nothing."""
 
     def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
         """Return the results of independent tasks, in their order."""
+        return [task() for task in tasks]
 
     def expect(self, stages: Mapping[str, Count]) -> None:
         """Take note of how many tasks of each stage are still to come, from and to."""
 
 
-@dataclass(frozen=True)
-class Immediate:
-    """Computes every task at once, keeps and reports nothing."""
-
-    def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
-        """Return the results of the tasks."""
-        return [task() for task in tasks]
-
-    def expect(self, stages: Mapping[str, Count]) -> None:
-        """Ignore the extent of the work."""
-
-
-IMMEDIATE = Immediate()
+IMMEDIATE = Executor()
 
 
 @dataclass(frozen=True)
-class Within:
+class Within(Executor):
     """An executor for a repetition of the work, whose tasks have a further turn."""
 
     inner: Executor

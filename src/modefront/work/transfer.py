@@ -11,24 +11,12 @@ import uuid
 from collections import OrderedDict
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol, TypeGuard, TypeVar
+from typing import Any, TypeVar
 from weakref import ref
 
 from modefront.work.task import Done, Task, computed
 
 KNOWN = 3  # shared objects that a process keeps at most: those used last
-
-
-class Shared(Protocol):
-    """An object that many tasks have among their arguments.
-
-    One that changes has a number ``version``, which changes with it. One with objects that change
-    less often, and are sent on their own, has a sequence of these, ``parts``.
-    """
-
-    @property
-    def footprint(self) -> float:
-        """Bytes that a process takes to work with it, estimated."""
 
 
 S = TypeVar("S", bound=type)
@@ -37,14 +25,14 @@ _REGISTERED: set[type] = set()
 
 
 def shared(kind: S) -> S:
-    """Register a class of objects that are sent to a process once; they are `Shared`."""
+    """Register a class of objects that many tasks have, and that are sent to a process once.
+
+    Attributes of such classes are sent on their own. An object that changes has a number
+    ``version``, which changes with it. One with which a process takes much memory to work has a
+    ``footprint``, these bytes, estimated.
+    """
     _REGISTERED.add(kind)
     return kind
-
-
-def is_shared(value: object) -> TypeGuard[Shared]:
-    """Return whether an object is of a class that is registered."""
-    return type(value) in _REGISTERED
 
 
 @dataclass(frozen=True)
@@ -60,13 +48,12 @@ class Message:
 class Sender:
     """Makes bytes of tasks."""
 
-    _objects: dict[tuple[int, Hashable], tuple[str, ref[Shared]]] = field(default_factory=dict)
+    _objects: dict[tuple[int, Hashable], tuple[str, ref[object]]] = field(default_factory=dict)
 
     def message(self, tasks: Sequence[Task[Any]]) -> Message:
         """Return tasks as bytes. Raises what `pickle` raises for what cannot be pickled."""
         pickled = _Pickler(self, list(tasks))
-        memory = max((x.footprint for x in pickled.met.values()), default=0.0)
-        memory += max((task.memory for task in tasks), default=0.0)
+        memory = pickled.memory + max((task.memory for task in tasks), default=0.0)
         return Message(pickled.content, tuple(pickled.met), memory)
 
     def objects(self, names: Sequence[str]) -> dict[str, bytes]:
@@ -74,7 +61,7 @@ class Sender:
         values = {name: found() for name, found in self._objects.values()}
         return {name: _Pickler(self, values[name]).content for name in names}
 
-    def name(self, value: Shared) -> str:
+    def name(self, value: object) -> str:
         """Return the name of a shared object; another version of it has another name."""
         key = id(value), getattr(value, "version", 0)
         name, known = self._objects.get(key, ("", None))
@@ -88,22 +75,29 @@ class Sender:
 
 
 class _Pickler(pickle.Pickler):
-    """Pickles tasks, or a shared object, with names of the shared objects that are ``met``."""
+    """Pickles tasks, or a shared object; shared objects are ``met``, and take some ``memory``."""
 
     def __init__(self, sender: Sender, root: object) -> None:
         super().__init__(stream := io.BytesIO(), pickle.HIGHEST_PROTOCOL)
         self.sender, self.root = sender, root
-        self.met: dict[str, Shared] = {}
+        self.met: dict[str, None] = {}  # in order
+        self.memory = 0.0
         self.dump(root)
         self.content = stream.getvalue()
 
     def persistent_id(self, value: Any) -> str | None:
-        if not is_shared(value) or value is self.root:
+        if type(value) not in _REGISTERED or value is self.root:
             return None
-        for part in getattr(value, "parts", ()):
-            self.persistent_id(part)
+        self.memory = max(self.memory, getattr(value, "footprint", 0.0))
+        return self._meet(value)
+
+    def _meet(self, value: Any) -> str:
+        """Return the name of a shared object, after those of its attributes."""
+        for part in value.__getstate__().values():
+            if type(part) in _REGISTERED:
+                self._meet(part)
         name = self.sender.name(value)
-        self.met[name] = value
+        self.met[name] = None
         return name
 
 
@@ -131,10 +125,7 @@ class Reply:
 
 
 def work(message: Message, objects: dict[str, bytes]) -> Reply:
-    """Compute the tasks of a message, which comes with shared objects or without.
-
-    Shared objects come after their parts.
-    """
+    """Compute the tasks of a message; with it come shared objects or none, after their parts."""
     with _LOCK:  # workers of a cluster may have several threads
         lacking = tuple(x for x in message.names if x not in _OBJECTS and x not in objects)
         if lacking:  # they may be parts of those that came

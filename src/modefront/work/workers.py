@@ -14,7 +14,7 @@ import signal
 import threading
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from multiprocessing import connection, resource_tracker
 from pickle import PicklingError
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias
 
 from threadpoolctl import threadpool_limits
 
@@ -31,30 +31,29 @@ from modefront.inputs import available_memory
 from modefront.work.task import Done, Key, Task, computed, spend
 from modefront.work.transfer import Message, Reply, Sender, work
 
-SHORT, TINY = 0.02, 0.005
-"""Seconds of tasks that are sent together, about, and of all tasks below which they are computed in
-the calling process."""
-
-QUEUED, SHARE = 2, 0.6
-"""Messages that are sent, over the number of processes, which may take this share of the memory."""
-
-WARM = "modefront.front.pareto", "modefront.analysis.front"
-"""What processes import when they start: nearly all that the tasks of a run need."""
-
+SHORT = 0.02  # s of tasks that are sent together, about
+TINY = 0.005  # s of all tasks, below which they are computed in the calling process
+QUEUED = 2  # messages that are sent at a time, over the number of processes
+SHARE = 0.6  # of the memory that is free, for all processes together
+WARM = "modefront.front.pareto", "modefront.analysis.front"  # what processes import as they start
 MOST = 61  # processes of this machine at most; Windows waits for no more
 
 GONE = "the Dask scheduler is gone; what was done is kept"
-
-ANSWER, JOIN = 10.0, 60.0
-"""Seconds in which a scheduler has to answer, and one of its workers to join."""
+ANSWER, JOIN = 10.0, 60.0  # s in which a scheduler has to answer, and a worker to join
 
 ONE_THREAD = {"RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 """Environment of a process with one thread: of rslab, `modefront.linalg.products` and the BLAS. A
 BLAS that is limited only after it has started its threads makes imports take half as long again."""
 
 
+Errors: TypeAlias = tuple[type[Exception], ...]
+
+
 class Pool(Protocol):
     """Processes that compute messages."""
+
+    lost: Errors  # of messages whose process has ended
+    gone: Errors  # where there are no processes any more
 
     @property
     def count(self) -> int:
@@ -63,14 +62,6 @@ class Pool(Protocol):
     @property
     def ready(self) -> bool:
         """Whether a message would be computed at once."""
-
-    @property
-    def lost(self) -> tuple[type[Exception], ...]:
-        """Errors of messages whose process has ended."""
-
-    @property
-    def gone(self) -> tuple[type[Exception], ...]:
-        """Errors where there are no processes any more."""
 
     def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
         """Compute a message in one of the processes."""
@@ -86,7 +77,8 @@ class LocalPool:
     has ended, the executor ends the others, and new ones compute what is sent next.
     """
 
-    lost, gone = (BrokenProcessPool,), ()
+    lost: Errors = (BrokenProcessPool,)
+    gone: Errors = ()
 
     def __init__(self, count: int, warm: Sequence[str] = ()) -> None:
         self.count, self._warm = count, warm
@@ -189,8 +181,8 @@ class Cluster:
         except ImportError:
             expected = "the extra 'cluster': pip install modefront[cluster]"
             raise wrong("--scheduler", expected, "no package 'distributed'") from None
-        self.lost = (distributed.KilledWorker,)
-        self.gone = (CancelledError, OSError, distributed.client.ClosedClientError)
+        self.lost: Errors = (distributed.KilledWorker,)
+        self.gone: Errors = (CancelledError, OSError, distributed.client.ClosedClientError)
         try:
             logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors say what it logs
             self._client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
@@ -244,7 +236,7 @@ class _Call:
     tasks: Sequence[Task[Any]]
     pending: deque[int]
     alone: deque[int] = field(default_factory=deque)
-    flying: dict[Future[Reply], tuple[Sequence[int], Message, frozenset[str]]] = field(
+    flying: dict[Future[Reply], tuple[Sequence[int], Message, Collection[str]]] = field(
         default_factory=dict
     )
     errors: dict[int, Exception] = field(default_factory=dict)
@@ -347,11 +339,7 @@ class Workers:
             raise wrong("workers", expected, error) from None
 
     def _submit(
-        self,
-        call: _Call,
-        positions: Sequence[int],
-        message: Message,
-        lacked: frozenset[str] = frozenset(),
+        self, call: _Call, positions: Sequence[int], message: Message, lacked: Collection[str] = ()
     ) -> None:
         objects = self._sender.objects([name for name in message.names if name in lacked])
         try:
@@ -370,7 +358,7 @@ class Workers:
         except call.pool.gone:
             raise UnfinishedError(GONE) from None
         if reply.lacking:
-            self._submit(call, positions, message, lacked.union(reply.lacking))
+            self._submit(call, positions, message, {*lacked, *reply.lacking})
             return
         for k, done in zip(positions, reply.done, strict=False):
             spend(done.costs)
@@ -390,9 +378,9 @@ class Workers:
         self._losses[task.identity] += 1
         if self._losses[task.identity] == 1:
             call.alone.append(position)
-            return
-        text = f"task '{task.name}' could not be done: {reason}, twice; all others are kept"
-        call.errors[position] = UnfinishedError(text)
+        else:
+            text = f"task '{task.name}' could not be done: {reason}, twice; all others are kept"
+            call.errors[position] = UnfinishedError(text)
 
     def _learnt(self, task: Task[Any], done: Done) -> Done:
         kind = _kind(task)

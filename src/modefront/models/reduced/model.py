@@ -3,7 +3,7 @@
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import combinations
+from itertools import combinations, islice
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -22,9 +22,7 @@ from modefront.text import Shown, brief_model
 from modefront.work.task import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
 
-SPARE = 2
-"""Modes in the basis beyond those that are used, without derivatives: they may enter later."""
-
+SPARE = 2  # modes in the basis beyond those in use, without derivatives: they may enter later
 SHARE = 0.1  # remainder of a correction over all of it, where it need not be exact
 FAR = 30.0  # condition of K over that of the factor up to which a snapshot has no factor of its own
 WORST = 6  # models of a snapshot that are corrected at once, the worst ones
@@ -108,14 +106,11 @@ class ReducedModel(Shown):
         return tuple(what.key for what in self.snapshots)
 
     @property
-    def parts(self) -> tuple[MatrixModel]:
-        """The full model, which is sent to other processes on its own."""
-        return (self.full,)
-
-    @property
     def footprint(self) -> float:
-        """Bytes that the projected matrices take; nothing else is needed for modes."""
-        return 8.0 * 8 * self._projected()[1].size ** 2 if self._is_at_hand else 0.0
+        """Bytes that the projected matrices take, which are all that is needed once they are."""
+        if not self._is_at_hand:
+            return self.full.footprint
+        return 8.0 * 8 * self._projected()[1].size ** 2
 
     parameters = passed_on("full", "parameters")
     sensors = passed_on("full", "sensors")
@@ -125,16 +120,12 @@ class ReducedModel(Shown):
     transfer = passed_on("full", "transfer")
     unused = passed_on("full", "unused")
     selection = passed_on("full", "selection")
+    columns = passed_on("basis", "columns")  # that the basis has
 
     @property
     def capacity(self) -> int:
         """Columns that the basis may have: as many modes as are asked for, at least."""
         return max(self.count, int(self.memory * 2**30 // (8 * self.size)))
-
-    @property
-    def columns(self) -> int:
-        """Columns that the basis has."""
-        return self.basis.columns
 
     @property
     def first(self) -> SnapshotRequest:
@@ -174,10 +165,7 @@ class ReducedModel(Shown):
         return modes
 
     def full_modes(self, theta: Floats, count: int) -> FullModes:
-        """Return the ``count`` lowest modes at all degrees of freedom, by the basis.
-
-        Raises ModelError where the model has no such modes.
-        """
+        """Return the ``count`` lowest modes at all degrees of freedom; see `MatrixModel`."""
         if count > self.count:
             return self.full.full_modes(theta, count)
         basis = self.basis
@@ -207,10 +195,6 @@ class ReducedModel(Shown):
         K, M = (replace(A, terms=V.T @ A.terms @ V) for A in matrices)
         return replace(self, _small=(what, K, M, sensed @ V))
 
-    def certifier(self) -> bases.Certifier:
-        """Return what judges modes of the basis."""
-        return bases.Certifier(self.full, self.basis)
-
     def lacking(self, count: int) -> list[Floats]:
         """Return models with two parameters at their lower bounds where modes are missing.
 
@@ -223,12 +207,11 @@ class ReducedModel(Shown):
         for pair in combinations(range(self.nominal.size), 2):
             theta = self.nominal.copy()
             theta[list(pair)] = self.lower[list(pair)]
-            with suppress(ModelError):
-                lam = basis.lowest(theta, count + bases.LATER).lam
-                if lam.size > count:
-                    doubtful.append((-lam[count - 1], pair, theta, lam))
+            lam = basis.ritz_values(theta, count + bases.LATER)
+            if lam.size > count:
+                doubtful.append((-lam[count - 1], pair, theta, lam))
         chosen = sorted(doubtful, key=lambda entry: entry[:2])[:24]  # each takes a factorisation
-        return [theta for *_, theta, lam in chosen if self._lacks(basis, theta, lam, count)]
+        return [x for *_, x, lam in chosen if bases.level(basis, x, lam, count) is None]
 
     @property
     def basis(self) -> bases.Basis:
@@ -236,8 +219,7 @@ class ReducedModel(Shown):
         if not self.snapshots:
             self.take(self.first)
         self._compute()
-        if self._basis is None:
-            raise ModelError("the model cannot be solved at the nominal parameters")
+        assert self._basis is not None, "there is a snapshot"
         return self._basis
 
     @property
@@ -275,15 +257,21 @@ class ReducedModel(Shown):
         Models near enough are corrected with the factor at hand, others solved in full. Those that
         have no modes are left out; raises ModelError where all of them have none.
         """
-        models, error = what.models, 0.0
-        if self._basis is None:
+        basis, models, n = self._basis, what.models, what.modes
+        if basis is None:
             basis = self._solved(None, models.pop(0), what)
-            return (self._added_to(basis, models, what)[0] if models else basis), np.inf
-        if what.modes == 0:
-            return self._excluding(self._basis, models), np.inf
+            return self._added_to(basis, models, what)[0], np.inf
+        if n == 0:
+            return self._excluding(basis, models), np.inf
         if what.enough:
-            models, error = self._worst(self._basis, what)
-        return self._added_to(self._basis, models, what) if models else (self._basis, error)
+            if known := [theta for theta in models if basis.ritz_values(theta, n).size >= n]:
+                lengths = bases.lacking_lengths(basis, known, n)
+                ranked = np.argsort(-lengths, kind="stable")
+                models = [known[k] for k in ranked if lengths[k] >= what.enough]
+                if not models:
+                    return basis, float(lengths.max())
+            models = models[:WORST]
+        return self._added_to(basis, models, what)
 
     def _added_to(
         self, basis: bases.Basis, models: list[Floats], what: SnapshotRequest
@@ -301,42 +289,22 @@ class ReducedModel(Shown):
                 failed += 1
                 continue
             lam, lacked = larger.lowest(theta, what.modes).lam[: what.modes], np.inf
-            with suppress(ModelError):
-                before = basis.lowest(theta, what.modes).lam[: what.modes]
-                if before.size == lam.size:
-                    lacked = float(((before - lam) / (lam - larger.sigma)).max())
+            before = basis.ritz_values(theta, what.modes)[: what.modes]
+            if before.size == lam.size:
+                lacked = float(((before - lam) / (lam - larger.sigma)).max())
             basis, error = larger, max(error, lacked)
         if models and failed == len(what.models):
             raise ModelError("none of the models of a snapshot has modes")
         return basis, error
 
-    def _worst(self, basis: bases.Basis, what: SnapshotRequest) -> tuple[list[Floats], float]:
-        """Return the models of a snapshot that the basis knows least, and its error there."""
-        models = []
-        for theta in what.models:
-            with suppress(ModelError):
-                enough = basis.lowest(theta, what.modes).lam.size >= what.modes
-                models += [theta] if enough else []
-        if not models:
-            return what.models[:WORST], np.inf
-        lengths = bases.lacking_lengths(basis, models, what.modes)
-        ranked = np.argsort(-lengths, kind="stable")[:WORST]
-        return [models[k] for k in ranked if lengths[k] >= what.enough], float(lengths.max())
-
     def _is_near(self, basis: bases.Basis, theta: Floats, what: SnapshotRequest) -> bool:
         """Return whether the factor at hand is of use for a model, and no mode is missing."""
-        with suppress(ModelError):
-            lam = basis.lowest(theta, what.modes + bases.LATER).lam
-            return (
-                lam.size > what.modes
-                and _condition(basis, theta) <= FAR
-                and (what.enough > 0 or not self._lacks(basis, theta, lam, what.modes))
-            )
-        return False
-
-    def _lacks(self, basis: bases.Basis, theta: Floats, lam: Floats, count: int) -> bool:
-        """Return whether a mode is missing among the lowest ones, of the eigenvalues ``lam``."""
-        return bases.level(self.full.pencil, theta, lam, count, basis.sigma) is None
+        lam = basis.ritz_values(theta, what.modes + bases.LATER)
+        return (
+            lam.size > what.modes
+            and _condition(basis, theta) <= FAR
+            and (what.enough > 0 or bases.level(basis, theta, lam, what.modes) is not None)
+        )
 
     def _corrected(
         self, basis: bases.Basis, near: list[Floats], what: SnapshotRequest
@@ -346,17 +314,14 @@ class ReducedModel(Shown):
         None where the models need factors of their own.
         """
         started = time.perf_counter()
-        request = bases.CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
         try:
-            known = bases.with_modes(basis, near, what.modes, request)
+            basis, errors = bases.with_modes(basis, near, what.modes, 0.0, what.enough)
         except ModelError:
-            return None  # a larger space sees that a matrix is indefinite
-        if known is None:
             return None
-        basis, errors = known
         count = int((errors >= what.enough).sum())
         if count and what.derivatives:
-            basis = self._with_derivatives(basis, near[int(errors.argmax())], what.modes)
+            worst, half_range = near[int(errors.argmax())], (self.upper - self.lower) / 2
+            basis = bases.with_derivatives(basis, worst, what.modes, half_range, SHARE)
         spend(Costs(corrected=count, corrected_time=time.perf_counter() - started))
         return basis, float(errors.max())
 
@@ -364,9 +329,7 @@ class ReducedModel(Shown):
         self, known: bases.Basis | None, theta: Floats, what: SnapshotRequest
     ) -> bases.Basis:
         """Return the basis with the modes of a model and, where they are wanted, derivatives."""
-        modes = what.modes
-        started = time.perf_counter()
-        pencil = self.full.pencil
+        started, modes, pencil = time.perf_counter(), what.modes, self.full.pencil
         count, spectrum = min(modes + SPARE, self.size), None
         if known is None:  # as many more as there are
             count = min(max(count, self.count), self.size)
@@ -375,15 +338,17 @@ class ReducedModel(Shown):
                 spectrum = lowest(pencil, theta, min(2 * count, self.size))
         spectrum = spectrum or lowest(pencil, theta, count)
         below = spectrum.factors[0]
-        vectors = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
+        # Of directions of equal length, the lowest ones.
+        vectors = (spectrum.Phi / np.sqrt(spectrum.lam - below.sigma))[:, : self.capacity]
         del spectrum  # the other factor
-        vectors = vectors[:, : self.capacity]  # of directions of equal length, the lowest ones
-        basis = known or bases.empty(pencil, below, theta, below.sigma)
-        basis = bases.extended(basis, vectors, self._shortest, self.capacity)
+        shortest = 0.1 * float(np.sqrt(self.tolerance))  # an error is the square of what is lacking
+        basis = known or bases.empty(self.full, below, theta, shortest, self.capacity)
+        basis = bases.extended(basis, vectors)
         solved = time.perf_counter()
         spend(Costs(eigenproblems=1, full_time=solved - started))
         if what.derivatives:  # of which the model's own factor knows more
-            own = self._with_derivatives(replace(basis, factor=below), theta, modes)
+            own, half_range = replace(basis, factor=below), (self.upper - self.lower) / 2
+            own = bases.with_derivatives(own, theta, modes, half_range, SHARE)
             basis = replace(own, factor=basis.factor)
         if known is None:
             basis = self._at_bounds(basis, theta)
@@ -409,42 +374,30 @@ class ReducedModel(Shown):
         vectors = np.hstack(found)
         if not vectors.shape[1]:
             raise ModelError("no direction of negative stiffness is found")
-        return bases.extended(basis, vectors, self._shortest, self.capacity)
-
-    def _with_derivatives(self, basis: bases.Basis, theta: Floats, modes: int) -> bases.Basis:
-        if (count := min(modes, basis.columns - 1)) < 1:
-            return basis
-        request = bases.CorrectionRequest(SHARE, self._shortest, self.capacity)
-        return bases.with_derivatives(basis, theta, count, (self.upper - self.lower) / 2, request)
+        return bases.extended(basis, vectors)
 
     def _at_bounds(self, basis: bases.Basis, theta: Floats) -> bases.Basis:
         """Return the basis with the modes where one parameter is at a bound, or nearer to theta.
 
         They are for the global search, and take no more than half of what is left of the memory.
         """
-        bounds, unit = [], np.eye(theta.size)
+        bounds, unit = list[Floats](), np.eye(theta.size)
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
             for end in ends:
                 nearby = (theta + unit[i] * ((end - theta[i]) / 2**k) for k in range(5))
-                first = next((x for x in nearby if _condition(basis, x) <= FAR), None)
-                bounds += [] if first is None else [first]
+                bounds += islice((x for x in nearby if _condition(basis, x) <= FAR), 1)
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
-        request = bases.CorrectionRequest(SHARE, 3e-3, (basis.columns + self.capacity) // 2)
+        small = replace(basis, shortest=3e-3, capacity=(basis.columns + self.capacity) // 2)
         for some in (bounds, *([theta] for theta in bounds)):
             # A larger space may see that a matrix is indefinite at one of them: then each alone.
             with suppress(ModelError):
-                known = bases.with_modes(basis, some, count, request)
-                basis = known[0] if known else basis
+                small, _ = bases.with_modes(small, some, count, SHARE)
                 spend(Costs(corrected=len(some)))
                 if some is bounds:
                     break
-        return basis
-
-    @property
-    def _shortest(self) -> float:
-        return 0.1 * float(np.sqrt(self.tolerance))  # an error is the square of what is lacking
+        return replace(small, shortest=basis.shortest, capacity=basis.capacity)
 
 
 def _condition(basis: bases.Basis, theta: Floats) -> float:

@@ -19,9 +19,7 @@ from modefront.models.reduced.model import MEMORY, TOLERANCE, ReducedModel
 from modefront.options import Checked, Requirement, any_of, number
 from modefront.pairing.match import Pairing, modes_needed
 
-SMALLEST = 100
-"""Degrees of freedom from which there may be a basis; smaller models are solved in full."""
-
+SMALLEST = 100  # degrees of freedom from which there may be a basis
 LEAST, MOST = 1e-12, 1e-2  # tolerances that may be asked for
 
 REDUCTION = Requirement(
