@@ -41,7 +41,7 @@ def figures(studies: Studies) -> Iterator[tuple[str, canvas.Picture]]:
     refuse(faults)
     yield "figure-2", _fronts(studies)
     yield "figure-3", _planes(studies)
-    names = canvas.names_of(studies[0][1], "parameter")
+    names = studies[0][1]["parameter"].values.tolist()
     curves = [
         [(k, x["theta"].values[:, j]) for k, (_, x) in enumerate(studies)] for j in range(count)
     ]

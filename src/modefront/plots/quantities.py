@@ -80,7 +80,7 @@ def _limits(axes: Axes, data: Dataset, error: Floats) -> None:
 
 def _many(data: Dataset, error: Floats, groups: list[str], *, log: bool) -> canvas.Picture:
     """Draw all pairs of errors."""
-    n = len(groups)
+    groups, n = canvas.names_of(data, "group", 18), len(groups)
     size = 2.1 if n < 6 else 1.5
     figure = canvas.picture(max(size * (n - 1), 5.2), size * (n - 1) + 0.2)
     grid = figure.subplots(n - 1, n - 1, squeeze=False, sharex="col", sharey="row")
@@ -94,9 +94,9 @@ def _many(data: Dataset, error: Floats, groups: list[str], *, log: bool) -> canv
             if log:
                 axes.set(xscale="log", yscale="log")
             if i == n - 1:
-                axes.set_xlabel(f"error of {canvas.short(groups[j], 18)}")
+                axes.set_xlabel(f"error of {groups[j]}")
             if j == 0:
-                axes.set_ylabel(f"error of {canvas.short(groups[i], 18)}")
+                axes.set_ylabel(f"error of {groups[i]}")
     handles, labels = grid[0][0].get_legend_handles_labels()
     once = dict(zip(labels, handles, strict=True))
     figure.legend(once.values(), once.keys(), loc="upper right")
@@ -113,7 +113,7 @@ def parameters(data: Dataset) -> canvas.Picture:
             if low - 0.1 * (high - low) <= bound <= high + 0.1 * (high - low):
                 axes.axhline(bound, color="k", ls=":", lw=1, label="bound")
 
-    names = canvas.names_of(data, "parameter")
+    names = data["parameter"].values.tolist()
     return canvas.panels_along(data, theta, names, bars=(theta - std, theta + std), mark=mark)
 
 
