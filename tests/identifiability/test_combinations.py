@@ -16,10 +16,16 @@ from modefront.identifiability.combinations import (
     optimal_weights,
     pairs,
 )
+from modefront.identifiability.scale import Scale
 from modefront.identifiability.sparse import sparse_basis
 from modefront.work.task import counted
 
 NAMES = ("k1", "k2", "k3")
+
+
+def relative(p: int) -> Scale:
+    """Return the scale of changes that are relative to positive parameters."""
+    return Scale(np.ones(p), np.ones(p), np.ones(p, dtype=bool))
 
 
 def chain() -> mf.UpdatingProblem:
@@ -38,7 +44,7 @@ def test_shapes_leave_the_scale_of_all_stiffnesses() -> None:
     result = combinations(problem, theta, 1)
     assert [combination.share > NONE for combination in result] == [True, True, False]
     assert result[-1].direction == pytest.approx(np.ones(3) / np.sqrt(3), abs=1e-9)
-    text = str(summary("shapes", "shape", result, NAMES))
+    text = str(summary("shapes", "shape", result, NAMES, relative(3)))
     assert text.endswith("; k1, k2 and k3 can be scaled together: no shape changes")
     assert text.startswith("group shapes determines 2 of 3 combinations of parameters")
 
@@ -94,14 +100,14 @@ def test_a_basis_is_made_of_what_can_be_said() -> None:
     mixed = np.linalg.qr(known)[0] @ np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
     basis = sparse_basis(mixed)
     names = ("a", "b", "c", "d", "m")
-    messages = [direction_in_words(v, names) for v in basis.T]
+    messages = [direction_in_words(v, names, relative(5)) for v in basis.T]
     assert messages[:2] == ["m can have any value", "a, b, c and d can be scaled together"]
     assert len(messages) == 3
 
 
 def test_long_lists_are_cut() -> None:
     names = tuple(f"k{i}" for i in range(6))
-    text = str(summary("data", "residual", decompose(np.eye(6)[:1]), names))
+    text = str(summary("data", "residual", decompose(np.eye(6)[:1]), names, relative(6)))
     assert text == (
         "group data determines 1 of 6 combinations of parameters; k1 can have any value; "
         "k2 can have any value; k3 can have any value; and 2 more: no residual changes"
@@ -109,7 +115,7 @@ def test_long_lists_are_cut() -> None:
 
 
 def test_what_is_hardly_determined_is_said() -> None:
-    text = str(summary("data", "shape", decompose(np.diag([1.0, 1e-3])), ("a", "b")))
+    text = str(summary("data", "shape", decompose(np.diag([1.0, 1e-3])), "ab", relative(2)))
     assert text == "group data determines 2 of 2 combinations of parameters, and say little about b"
 
 

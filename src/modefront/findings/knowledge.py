@@ -45,7 +45,7 @@ def summary(
     noun: str,
     combinations: Sequence[Combination],
     names: Sequence[str],
-    scale: Scale | None = None,
+    scale: Scale,
     idle: Sequence[int] = (),
     kind: str = "group-data",
     where: str = "",
@@ -53,8 +53,7 @@ def summary(
     """Return what a group of data determines.
 
     ``subject`` are the data in the plural, ``noun`` names what does not change; ``idle`` are
-    parameters without effect on any data, which are left out. Without a ``scale``, changes are
-    relative to the parameters. ``where`` begins the sentence.
+    parameters without effect on any data, which are left out. ``where`` begins the sentence.
     """
     rank = sum(each.share > NONE for each in combinations)
     hardly = [each for each in combinations if NONE < each.share < WEAK]
@@ -74,28 +73,23 @@ def summaries(problem: UpdatingProblem, of: Determination, where: str = "") -> I
     """Yield what each group, then all data determine at a model."""
     names, groups = problem.model.parameters, problem.groups
     for i, (name, combinations) in enumerate(of.combinations):
-        whole = i == len(groups)
-        kinds = {kind for group in (groups if whole else [groups[i]]) for kind, _ in group.chosen}
+        kinds = {kind for group in groups[i : i + 1] or groups for kind, _ in group.chosen}
         noun = kinds.pop() if len(kinds) == 1 else "residual"
         full = sum(x.share >= WEAK for x in combinations) == len(names) - len(of.idle)
-        of_all, of_group = (
-            ("determined", "group-determined") if full else ("all-data", "group-data")
-        )
-        kind = of_all if whole else of_group
+        kind = "group-determined" if full else "group-data"
+        if i == len(groups):
+            kind = "determined" if full else "all-data"
         yield summary(name, noun, combinations, names, of.scale, of.idle, kind, where)
 
 
 def free_in_words(
     combinations: Sequence[Combination],
     names: Sequence[str],
-    scale: Scale | None = None,
+    scale: Scale,
     idle: Sequence[int] = (),
 ) -> list[str]:
     """Return the combinations that are not determined, each as text; see `summary`."""
-    scale = scale or _relative(len(names))
-    free = np.array(
-        [combination.direction for combination in combinations if combination.share <= NONE]
-    ).T
+    free = np.array([x.direction for x in combinations if x.share <= NONE]).T
     free[list(idle)] = 0.0
     lam, V = np.linalg.eigh(free.T @ free)
     kept = free @ V[:, lam > 0.5]  # parameters without effect are directions of their own
@@ -103,8 +97,7 @@ def free_in_words(
         return []
     if kept.shape[1] > MOST:
         return [f"{kept.shape[1]} combinations of parameters can have any values"]
-    whole = [scaling.change / scale.unit for scaling in scale.scalings]
-    whole.append(scale.theta / scale.unit)
+    whole = [x / scale.unit for x in (*(y.change for y in scale.scalings), scale.theta)]
     shares = np.array([combination.share for combination in combinations])
     V = np.array([combination.direction for combination in combinations])
 
@@ -112,11 +105,6 @@ def free_in_words(
         return bool(np.linalg.norm(shares * (V @ v)) <= 3 * NONE * np.linalg.norm(v))
 
     return [direction_in_words(v, names, scale) for v in sparse_basis(kept, whole, holds).T]
-
-
-def _relative(p: int) -> Scale:
-    """Return the scale of changes that are relative to positive parameters."""
-    return Scale(np.ones(p), np.ones(p), np.ones(p, dtype=bool))
 
 
 def no_effect(idle: Sequence[int], names: Sequence[str], where: str = "") -> list[Finding]:
@@ -157,15 +145,15 @@ def _listed(directions: Sequence[str]) -> str:
     return "; ".join(directions[:SHOWN]) + more
 
 
-def direction_in_words(v: Floats, names: Sequence[str], scale: Scale | None = None) -> str:
+def direction_in_words(v: Floats, names: Sequence[str], scale: Scale) -> str:
     """Return how parameters can be changed along a direction, in units of a scale.
 
-    >>> direction_in_words(np.array([0.5, 0.5, 0.0]), ("k1", "k2", "m"))
+    >>> scale = Scale(np.ones(3), np.ones(3), np.ones(3, dtype=bool))
+    >>> direction_in_words(np.array([0.5, 0.5, 0.0]), ("k1", "k2", "m"), scale)
     'k1 and k2 can be scaled together'
-    >>> direction_in_words(np.array([1.0, 0.0, -0.25]), ("k1", "k2", "m"))
+    >>> direction_in_words(np.array([1.0, 0.0, -0.25]), ("k1", "k2", "m"), scale)
     'k1 and m cannot be told apart'
     """
-    scale = scale or _relative(len(names))
     v = v / np.abs(v).max()
     members = np.flatnonzero(np.abs(v) > SAME).tolist()
     if len(members) == 1:
@@ -193,13 +181,14 @@ def _equal(ratio: Floats) -> bool:
 
 def _named(members: Sequence[int], ratio: Floats, names: Sequence[str]) -> str:
     """Return the names of parameters that change in a ratio, or of those that change the most."""
-    if len(members) > PARTS and _equal(ratio) and len(members) == len(names):
-        return f"all {len(names)} parameters"
-    if len(members) <= PARTS or (_equal(ratio) and len(members) <= NAMED):
+    count, equal = len(members), _equal(ratio)
+    if equal and PARTS < count == len(names):
+        return f"all {count} parameters"
+    if count <= PARTS or (equal and count <= NAMED):
         return enumeration([names[i] for i in members])
     most = sorted(np.argsort(-np.abs(ratio), kind="stable")[:PARTS].tolist())
     named = enumeration([names[members[i]] for i in most])
-    return f"{len(members)} parameters, {'among them' if _equal(ratio) else 'most of all'} {named},"
+    return f"{count} parameters, {'among them' if equal else 'most of all'} {named},"
 
 
 def held(names: Sequence[str], sides: Ints, theta: Floats) -> str:

@@ -68,19 +68,11 @@ def findings_of(data: Dataset, *, full: bool = False) -> list[Finding]:
     ``full`` has details of branches, numerics and coverage too, and names all models and modes.
     """
     most = sys.maxsize if full else FEW
-    analysed = data["finding"].values.tolist()
-    kept = data["finding_record"].values.tolist() if "finding_record" in data else analysed
-    out = [
-        *_failures(data),
-        *_front(data),
-        *_misfit(data),
-        *_pairs(data, most),
-        *_at_bounds(data, most),
-        *(from_text(str(record), str(text)) for text, record in zip(analysed, kept, strict=True)),
-        *_ranges(data),
-    ]
-    if full:
-        out += [*_weights(data), *_numerics(data)]
+    texts = data["finding"].values.tolist()
+    records = data["finding_record"].values.tolist() if "finding_record" in data else texts
+    parts = _failures, _front, _misfit, _ranges, _weights, _numerics
+    out = [finding for part in parts for finding in part(data)]
+    out += [*_pairs(data, most), *_at_bounds(data, most), *map(from_text, records, texts)]
     return in_order(x for x in out if full or x.severity is not Severity.DETAIL)
 
 
@@ -286,11 +278,8 @@ def _times(ratio: float) -> str:
     """
     if ratio < 2:
         return f"by {100 * (ratio - 1):.2g} %"
-    if ratio < 10:
-        return f"by a factor of {ratio:.2g}"
     if ratio < 1e6:
-        digits = len(str(int(ratio)))
-        return f"by a factor of {round(ratio, 2 - digits):,.0f}"
+        return f"by a factor of {float(f'{ratio:.2g}'):,.7g}"
     return f"by more than {int(np.log10(ratio))} powers of ten"
 
 

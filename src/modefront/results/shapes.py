@@ -116,17 +116,12 @@ def write_vtu(path: Path, shapes: PairedShapes) -> None:
             "mode shapes at nodes: expected a model with geometry (a chain or finite elements), "
             "found matrices alone"
         )
-    vectors = {
-        f"mode {mode} ({frequency:.5g} Hz)": displacement[r]
-        for r, (mode, frequency) in enumerate(zip(shapes.modes, shapes.frequency, strict=True))
-    }
-    for r, mode in enumerate(shapes.modes):
-        known = np.isfinite(shapes.measured[:, r])
-        total = np.where(known, shapes.measured[:, r], 0.0).sum(axis=0)  # over the data sets
-        mean = total / np.maximum(known.sum(axis=0), 1)
-        vectors[f"mode {mode} measured"] = np.zeros(geometry.nodes.shape)
-        moved = mean[:, None] * geometry.sensor_directions
-        np.add.at(vectors[f"mode {mode} measured"], geometry.sensor_nodes, moved)
+    named = [f"mode {r} ({f:.5g} Hz)" for r, f in zip(shapes.modes, shapes.frequency, strict=True)]
+    vectors = dict(zip(named, displacement, strict=True))
+    total, count = np.nansum(shapes.measured, axis=0), np.isfinite(shapes.measured).sum(axis=0)
+    for mode, mean in zip(shapes.modes, total / np.maximum(count, 1), strict=True):
+        vectors[f"mode {mode} measured"] = at_nodes = np.zeros(geometry.nodes.shape)
+        np.add.at(at_nodes, geometry.sensor_nodes, mean[:, None] * geometry.sensor_directions)
     write_grid(path, geometry.nodes, geometry.cells, vectors)
 
 
@@ -143,12 +138,9 @@ def write_grid(
         expected = "meshio, which `pip install modefront[mesh]` brings"
         raise InputError(Fault(str(path), "VTU", expected, "no such package")) from None
     groups = sorted({part.group for part in cells})
-    mesh = meshio.Mesh(
-        nodes,
-        [(part.type, part.nodes) for part in cells],
-        point_data=dict(point_data),
-        cell_data={"group": [np.full(len(x.nodes), groups.index(x.group)) for x in cells]},
-    )
+    numbers = [np.full(len(part.nodes), groups.index(part.group)) for part in cells]
+    blocks = [(part.type, part.nodes) for part in cells]
+    mesh = meshio.Mesh(nodes, blocks, dict(point_data), {"group": numbers})
     with (
         writing(path, "file"),
         contextlib.redirect_stdout(io.StringIO()),  # meshio prints warnings of its own
@@ -259,7 +251,7 @@ def with_mode_shapes(
         "measured_shape": measured.shape,
         **shapes,
     }
-    coordinates: dict[str, object] = {"set": list(measured.sets), "sensor": list(measured.sensors)}
+    coordinates: dict[str, object] = {"set": measured.sets, "sensor": measured.sensors}
     geometry, attributes = geometry_of(problem.model), {}
     if geometry is not None and "shape_basis" in shapes:
         nodes, lines, faces = drawing(geometry)
@@ -272,7 +264,7 @@ def with_mode_shapes(
             "shape_basis": shapes["shape_basis"].astype(np.float32),
         }
         coordinates["axis"] = list("xyz")
-        groups = [cells.group for cells in geometry.cells]
-        attributes["geometry"] = "chain" if groups == ["chain"] else "mesh"
+        is_chain = [cells.group for cells in geometry.cells] == ["chain"]
+        attributes["geometry"] = "chain" if is_chain else "mesh"
     out = data.assign(described(values)).assign_coords(coordinates)
     return out.assign_attrs(attributes)
