@@ -207,7 +207,12 @@ def uncertainty(data: Dataset) -> canvas.Picture:
     _parameters(row[0], data)
     canvas.legend(figure, row.pop(0), "outside lower left", 3)
     if covariance is not None:
-        _correlation(row.pop(0), data, covariance)
+        axes = row.pop(0)
+        size = np.sqrt(np.maximum(np.diag(covariance), 0))
+        scale = np.outer(size, size)
+        r = np.divide(covariance, scale, out=np.zeros(covariance.shape), where=scale > 0)
+        canvas.draw_matrix(axes, r, canvas.names_of(data, "parameter", 18), -1, "PuOr")
+        axes.set_title(f"correlation at {canvas.short(preferred(data.attrs))}", loc="left")
     if scattered:
         _ellipses(row.pop(0), data)
     return figure
@@ -233,14 +238,6 @@ def _parameters(axes: Axes, data: Dataset) -> None:
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.set_xlabel(title)
     axes.set_title("with 1 and 2 standard deviations", loc="left")
-
-
-def _correlation(axes: Axes, data: Dataset, covariance: Floats) -> None:
-    size = np.sqrt(np.maximum(np.diag(covariance), 0))
-    scale = np.outer(size, size)
-    r = np.divide(covariance, scale, out=np.zeros(covariance.shape), where=scale > 0)
-    canvas.draw_matrix(axes, r, canvas.names_of(data, "parameter", 18), -1, "PuOr")
-    axes.set_title(f"correlation at {canvas.short(preferred(data.attrs))}", loc="left")
 
 
 def _ellipses(axes: Axes, data: Dataset) -> None:

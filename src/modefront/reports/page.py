@@ -62,7 +62,7 @@ def payload(results: Sequence[tuple[str, Dataset]]) -> tuple[str, str]:
     }
     infinite = {"Infinity": 10**400, "-Infinity": -(10**400)}  # which JavaScript reads as such
     text = json_of(report, infinite, separators=(",", ":")).encode()
-    return title, packed(len(text).to_bytes(4, "little") + text + arrays.content)
+    return title, packed(len(text).to_bytes(4, "little") + text + arrays)
 
 
 def packed(content: bytes) -> str:
@@ -70,11 +70,8 @@ def packed(content: bytes) -> str:
     return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode("ascii")
 
 
-class _Arrays:
+class _Arrays(bytearray):
     """The binary part: arrays behind each other, each at a multiple of four bytes."""
-
-    def __init__(self) -> None:
-        self.content = bytearray()
 
     def whole(self, values: Floats) -> dict[str, Any]:
         """Add numbers as 16-bit integers of a common unit, and return where they are."""
@@ -87,10 +84,10 @@ class _Arrays:
         return self._add("int32", np.asarray(values).astype("<i4"))
 
     def _add(self, kind: str, values: np.ndarray[Any, Any]) -> dict[str, Any]:
-        out = {"at": len(self.content), "type": kind, "shape": list(values.shape)}
-        self.content += values.tobytes()
-        self.content += bytes(-len(self.content) % 4)
-        return out
+        at = len(self)
+        self.extend(values.tobytes())
+        self.extend(bytes(-len(self) % 4))
+        return {"at": at, "type": kind, "shape": values.shape}
 
 
 VARIABLES = (
@@ -101,8 +98,6 @@ VARIABLES = (
 
 
 def _front(name: str, data: Dataset, arrays: _Arrays) -> dict[str, Any]:
-    """Return all that the page shows of one study."""
-
     def known(of: str) -> Any:
         return data[of].values.tolist() if of in data.variables else None
 
@@ -183,7 +178,6 @@ def _geometry(data: Dataset, arrays: _Arrays) -> dict[str, Any] | None:
 
 
 def _prediction(of: RecordedPrediction, x: Quantity) -> dict[str, Any]:
-    """Return a quantity that all models predict."""
     return {
         "title": of.name,
         "place": x.label,

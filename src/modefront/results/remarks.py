@@ -82,14 +82,11 @@ def _failures(data: Dataset) -> Iterator[Finding]:
         spent = int(data.attrs["front_evaluations"])
         yield found("no-test", str(data.attrs["method"]), evaluations=spent)
     marked = {"not-converged": not_converged(data), "inaccurate": uncertified(data)}
-    marked["jump"] = status == "jump"
+    marked["jump"], weight = status == "jump", data["stationary_weight"].values
+    marked["not-optimal"] = (weight < -NEGATIVE).any(axis=1) & ~np.isnan(weight).any(axis=1)
     if "piece" in data:
         on_front = data["kind"].values == Kind.FRONT.value
         marked["between-branches"] = on_front & ~pareto & ~data["dominated_among_front"].values
-    if "stationary_weight" in data:
-        weight = data["stationary_weight"].values
-        negative = (weight < -NEGATIVE).any(axis=1)
-        marked["not-optimal"] = negative & ~np.isnan(weight).any(axis=1)
     yield from (found(kind, places(data, x)) for kind, x in marked.items() if x.any())
 
 
@@ -104,11 +101,10 @@ def _front(data: Dataset) -> Iterator[Finding]:
         yield found("front", points=int(front.size), optimal=said)
     if gaps := data.sizes.get("end", 0) // 2:
         yield found("branches", branches=gaps + 1)
-    for k in range(gaps):
-        ends = data["end_objective"].values[2 * k : 2 * k + 2]
-        if np.isfinite(ends).all():
-            end, start = ("(" + ", ".join(f"{x:.5g}" for x in J) + ")" for J in ends)
-            yield found("branch-ends", str(k + 1), other=k + 2, end=end, start=start)
+        for k, ends in enumerate(data["end_objective"].values.reshape(gaps, 2, -1), start=1):
+            if np.isfinite(ends).all():
+                end, start = ("(" + ", ".join(f"{x:.5g}" for x in J) + ")" for J in ends)
+                yield found("branch-ends", str(k), other=k + 1, end=end, start=start)
     gap, requested = data.attrs.get("largest_gap", 0.0), data.attrs.get("refined", np.inf)
     if gap > requested:
         yield found("spacing", gap=float(gap), requested=float(requested))
@@ -196,16 +192,14 @@ def _weights(data: Dataset) -> Iterator[Finding]:
     optimal = data["theta"].values[data["kind"].values == Kind.OPTIMAL.value]
     if not optimal.size:
         return
-    exact = data["group"].values[data["exact"].values.astype(bool)].tolist()
-    if exact:
+    if exact := data["group"].values[data["exact"].values].tolist():
         yield found("exact-fit", ", ".join(exact))
     iterated = data["minimum_theta"].values[data["minimum_of"].values == "iterated-weights"]
-    if not len(iterated):
+    away = np.abs(iterated - optimal[:1]) / np.ptp(data["bounds"].values, axis=1)
+    if not len(away):
         yield found("iteration-ends")
-        return
-    away = np.abs(iterated[0] - optimal[0]) / np.ptp(data["bounds"].values, axis=1)
-    agree = away.max(initial=0.0) < ARRIVED
-    yield found("iteration-agrees" if agree else "iteration-differs")
+    else:
+        yield found("iteration-agrees" if away.max() < ARRIVED else "iteration-differs")
 
 
 def _pairs(data: Dataset, most: int) -> Iterator[Finding]:
@@ -253,18 +247,17 @@ def _at_bounds(data: Dataset, most: int) -> Iterator[Finding]:
 
 def _ranges(data: Dataset) -> Iterator[Finding]:
     """Yield how far parameters and predictions go over the Pareto-optimal models."""
-    best = np.flatnonzero(data["pareto"].values)
-    if best.size > 1:
-        theta, span = data["theta"].values[best], np.ptp(data["bounds"].values, axis=1)
+    theta, span = data["theta"].values[data["pareto"].values], np.ptp(data["bounds"].values, axis=1)
+    if len(theta) > 1:
         low, high = theta.min(axis=0), theta.max(axis=0)
         order = np.argsort((low - high) / np.where(span > 0, span, 1.0), kind="stable").tolist()
         names, first = data["parameter"].values, order[:RANGES]
         said = ", ".join(f"{names[j]} from {low[j]:.3g} to {high[j]:.3g}" for j in first)
         rest = len(order) - len(first)
         less = f" ({rest} parameter{'s' * (rest > 1)} more var{'y' if rest > 1 else 'ies'} less)"
-        yield found("ranges", said + less * (rest > 0), models=int(best.size))
+        yield found("ranges", said + less * (rest > 0), models=len(theta))
     every = (x for each in predictions_in(data) for x in each.quantities)
-    wide = (x for x in every if np.isfinite(x.extent[2]) and x.extent[2] > WIDE)
+    wide = (x for x in every if WIDE < x.extent[2] < np.inf)
     if widest := sorted(wide, key=lambda x: -x.extent[2])[:3]:
         texts = (f"{x.variable.key} of {x.label} {_times(x.extent[2])}" for x in widest)
         yield found("spread", "; ".join(texts))

@@ -15,6 +15,7 @@ import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -72,8 +73,7 @@ def paired_shapes(row: Dataset, problem: UpdatingProblem) -> PairedShapes:
         raise ModelError(f"{row['label'].values!s} has no modes: its model cannot be solved")
     index = paired.astype(int) - 1
     _, phi, Phi = shapes_at(full_of(problem.model), row["theta"].values, int(index.max()) + 1)
-    Phi = None if Phi is None else Phi[:, index]
-    computed, displacement = _scaled(problem, Phi, phi[:, index])
+    computed, displacement = _scaled(problem, Phi, phi, index)
     product = np.nansum(data.shape * computed, axis=2)
     square = np.nansum(data.shape**2, axis=2)
     factor = np.divide(product, square, out=np.zeros(square.shape), where=square > 0)
@@ -83,20 +83,19 @@ def paired_shapes(row: Dataset, problem: UpdatingProblem) -> PairedShapes:
 
 
 def _scaled(
-    problem: UpdatingProblem, Phi: Floats | None, phi: Floats, nodes: Ints | None = None
+    problem: UpdatingProblem, Phi: Floats | None, phi: Floats, index: Ints, nodes: Any = slice(None)
 ) -> tuple[Floats, Floats | None]:
     """Return modes at the sensors (modes, sensors) and at nodes (modes, nodes, 3) in one scale.
 
-    ``Phi`` (N, modes) and ``phi`` (sensors, modes) are the modes of the model. The greatest length
-    at the nodes is 1, with the sign of the first measured shape. A model without geometry has
-    nothing at nodes, and a greatest component of 1.
+    ``index`` (modes,) are positions in ``Phi`` (N, all) and ``phi`` (sensors, all), the modes of
+    the model. The greatest length at the nodes is 1, with the sign of the first measured shape. A
+    model without geometry has nothing at nodes, and a greatest component of 1.
     """
     geometry, measured = geometry_of(problem.model), problem.data.shape
-    computed, displacement = phi.T, None
+    computed, displacement = phi[:, index].T, None
     size = np.abs(computed).max(axis=1)
     if geometry is not None and Phi is not None:
-        displacement = geometry.displacement(Phi)
-        displacement = displacement if nodes is None else displacement[:, nodes]
+        displacement = geometry.displacement(Phi[:, index])[:, nodes]
         size = np.sqrt((displacement**2).sum(axis=2)).max(axis=1)
     product = np.nansum(measured * computed, axis=2)
     first = product[np.argmax(product != 0, axis=0), np.arange(len(size))]
@@ -204,8 +203,7 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> dic
             continue
         frequency[i] = np.sqrt(np.maximum(lam[:count], 0)) / (2 * np.pi)
         mac[i] = mean_mac(data, phi[:, :count])
-        Phi = Phi[:, index] if drawn.size and Phi is not None else None
-        sensed[i], u = _scaled(problem, Phi, phi[:, index], drawn)
+        sensed[i], u = _scaled(problem, Phi, phi, index, drawn)
         U = np.zeros((0, modes)) if u is None else u.reshape(modes, -1).T
         Q = _extended(Q, U)
         rows[i] = Q.T @ U
