@@ -39,56 +39,32 @@ def in_words(combination: Combination, names: Sequence[str]) -> str:
     return enumeration([*order[:PARTS], *(["others"] if len(order) > PARTS else [])])
 
 
-# 8 arguments: the data, what they determine, and how the sentence begins.
-def summary(
-    subject: str,
-    noun: str,
-    combinations: Sequence[Combination],
-    names: Sequence[str],
-    scale: Scale,
-    idle: Sequence[int] = (),
-    kind: str = "group-data",
-    where: str = "",
-) -> Finding:
-    """Return what a group of data determines.
-
-    ``subject`` are the data in the plural, ``noun`` names what does not change; ``idle`` are
-    parameters without effect on any data, which are left out. ``where`` begins the sentence.
-    """
-    rank = sum(each.share > NONE for each in combinations)
-    hardly = [each for each in combinations if NONE < each.share < WEAK]
-    p = len(names) - len(idle)
-    text = " that have an effect" if idle else ""
-    if hardly:
-        parts = list(dict.fromkeys(in_words(each, names) for each in hardly[::-1]))
-        text += f", and say little about {_listed(parts)}"
-    if rank < p:
-        free = _listed(free_in_words(combinations, names, scale, idle))
-        text += f"; {free}: no {noun} changes"
-    count = f"{p} combination{'s' * (p > 1)}"
-    return found(kind, subject, where=where, rank=rank, combinations=count, free=text)
-
-
 def summaries(problem: UpdatingProblem, of: Determination, where: str = "") -> Iterator[Finding]:
-    """Yield what each group, then all data determine at a model."""
+    """Yield what each group, then all data determine at a model; ``where`` begins the sentences."""
     names, groups = problem.model.parameters, problem.groups
-    for i, (name, combinations) in enumerate(of.combinations):
+    p = len(names) - len(of.idle)
+    for i, (subject, combinations) in enumerate(of.combinations):
         kinds = {kind for group in groups[i : i + 1] or groups for kind, _ in group.chosen}
         noun = kinds.pop() if len(kinds) == 1 else "residual"
-        full = sum(x.share >= WEAK for x in combinations) == len(names) - len(of.idle)
+        full = sum(x.share >= WEAK for x in combinations) == p
         kind = "group-determined" if full else "group-data"
         if i == len(groups):
             kind = "determined" if full else "all-data"
-        yield summary(name, noun, combinations, names, of.scale, of.idle, kind, where)
+        rank = sum(x.share > NONE for x in combinations)
+        text = " that have an effect" if of.idle else ""
+        if hardly := [in_words(x, names) for x in combinations[::-1] if NONE < x.share < WEAK]:
+            text += f", and say little about {_listed(list(dict.fromkeys(hardly)))}"
+        if rank < p:
+            free = _listed(free_in_words(combinations, names, of.scale, of.idle))
+            text += f"; {free}: no {noun} changes"
+        count = f"{p} combination{'s' * (p > 1)}"
+        yield found(kind, subject, where=where, rank=rank, combinations=count, free=text)
 
 
 def free_in_words(
-    combinations: Sequence[Combination],
-    names: Sequence[str],
-    scale: Scale,
-    idle: Sequence[int] = (),
+    combinations: Sequence[Combination], names: Sequence[str], scale: Scale, idle: Sequence[int]
 ) -> list[str]:
-    """Return the combinations that are not determined, each as text; see `summary`."""
+    """Return the combinations that are not determined, each as text; ``idle`` have no effect."""
     free = np.array([x.direction for x in combinations if x.share <= NONE]).T
     free[list(idle)] = 0.0
     lam, V = np.linalg.eigh(free.T @ free)

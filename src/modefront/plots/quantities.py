@@ -221,15 +221,13 @@ def uncertainty(data: Dataset) -> canvas.Picture:
 def _parameters(axes: Axes, data: Dataset) -> None:
     unit, title = unit_of(data)
     std, theta = parameter_std(data) / unit, data["theta"].values / unit
-    kinds, best = data["kind"].values, position(data)
-    rows = [best, *np.flatnonzero(kinds == "edge").tolist()]
+    rows = [position(data), *np.flatnonzero(data["kind"].values == "edge").tolist()]
     names = canvas.names_of(data, "parameter", 18)
-    y = np.arange(len(names))
+    y, (blue, red, *more) = np.arange(len(names)), canvas.COLOURS
+    others = blue, "0.3", *more
     for k, i in enumerate(rows):
         shift = y + 0.7 * ((k + 0.5) / len(rows) - 0.5)
-        colour = canvas.colour_of(1 if i == best else k - 1)
-        if i != best and colour == canvas.COLOURS[1]:
-            colour = "0.3"
+        colour = others[(k - 1) % len(others)] if k else red
         for width, reach in ((1.0, 2 * std[i]), (2.4, std[i])):
             axes.hlines(shift, theta[i] - reach, theta[i] + reach, colour, lw=width)
         label = canvas.short(data["label"].values[i])

@@ -21,8 +21,7 @@ from modefront._typing import Floats
 from modefront._version import __version__
 from modefront.datasets import Dataset
 from modefront.errors import Fault, InputError, writing
-from modefront.findings.catalogue import Severity
-from modefront.findings.record import meaning_of
+from modefront.findings.record import Severity, meaning_of
 from modefront.front.methods import METHODS
 from modefront.front.point import front_points, position
 from modefront.outputs import write_text

@@ -33,7 +33,7 @@ from modefront.results.schema import Values, described
 from modefront.uncertainty import prediction as spread
 from modefront.uncertainty.scatter import Posterior
 from modefront.work.store import hash_text
-from modefront.work.task import Executor, Part, Task, seed_sequence
+from modefront.work.task import Executor, Key, Task, seed_sequence
 from modefront.work.transfer import is_shared
 
 Arrays = Mapping[str, Floats]
@@ -64,7 +64,7 @@ class PredictionRunner:
     def at_models(
         self,
         prediction: Prediction,
-        thetas: Sequence[Floats] | Floats,
+        thetas: Floats,
         name: str,
         labels: Sequence[str] = (),
         method: Literal["evaluate", "check"] = "evaluate",
@@ -75,12 +75,12 @@ class PredictionRunner:
         not suit them, and UnfinishedError where they have not the modes that are needed; others
         have NaN then, and are counted.
         """
-        parts: list[tuple[Part, ...]] = [(name, label) for label in labels] or [
+        parts: list[Key] = [(name, label) for label in labels] or [
             (name, i, hash_text(f"{theta.tolist()}")[:8]) for i, theta in enumerate(thetas, start=1)
         ]
         file = str(self.file) if labels else ""
         tasks = [
-            self._task(prediction, part, _predicted, (theta, method, file, part[-1]))
+            self._task(prediction, part, _predicted, theta, method, file, part[-1])
             for part, theta in zip(parts, thetas, strict=True)
         ]
         rows = self.work.run(tasks)
@@ -108,7 +108,7 @@ class PredictionRunner:
         # Ends share what is solved between points; over equivalent models each is work of its own.
         parts = [[end] for end in ends] if front.is_open else [ends]
         tasks = [
-            self._task(prediction, ("ends", k, mark), _ends, (front, values, part))
+            self._task(prediction, ("ends", k, mark), _ends, front, values, part)
             for k, part in enumerate(parts, start=1)
         ]
         found = np.concatenate(self.work.run(tasks))
@@ -160,25 +160,21 @@ class PredictionRunner:
         return out.assign_attrs({ATTRIBUTE: as_text(self.kinds)})
 
     def to_first_order(
-        self,
-        data: Dataset,
-        kind: PredictionKind,
-        differences: spread.Stencil,
-        limits: list[Finding],
+        self, data: Dataset, kind: PredictionKind, stencil: spread.Stencil, limits: list[Finding]
     ) -> Values:
         """Return standard deviations and covariances, of the logarithms where these are linearised.
 
         What limits them is added to ``limits``.
         """
-        m, _, p = differences.theta.shape
-        thetas = differences.theta.reshape(2 * m, p)
+        m, _, p = stencil.theta.shape
+        thetas = stencil.theta.reshape(2 * m, p)
         values = _beside([self.at_models(each, thetas, "axis")[0] for each in self.kinds[kind]])
         out: Values = {}
         unknown = np.zeros(data.sizes[kind.dimension], dtype=np.bool_)
         for variable in kind.ranged:
             middle = data[variable.name].values[position(data)]
             beside = _scaled(values[variable.key].reshape(m, 2, -1), variable)
-            S = differences.slopes(_scaled(middle, variable), beside)
+            S = stencil.slopes(_scaled(middle, variable), beside)
             S[~np.isfinite(S).all(axis=1)] = np.nan
             C = S @ S.T
             std, name = np.sqrt(np.diag(C)), f"posterior_{variable.name}"
@@ -223,11 +219,7 @@ class PredictionRunner:
         return out
 
     def _task(
-        self,
-        prediction: Prediction,
-        part: tuple[Part, ...],
-        function: Callable[..., T],
-        arguments: tuple[Any, ...],
+        self, prediction: Prediction, part: Key, function: Callable[..., T], *arguments: Any
     ) -> Task[T]:
         """Return a task whose key tells apart all that the prediction depends on."""
         mark = hash_text(f"{prediction!r} {self.seed}")[:8]

@@ -9,9 +9,8 @@ import numpy as np
 
 from modefront._typing import Bools
 from modefront.datasets import Dataset
-from modefront.findings.catalogue import Severity
 from modefront.findings.knowledge import enumeration
-from modefront.findings.record import Finding, found, from_text, in_order
+from modefront.findings.record import Finding, Severity, found, from_text, in_order
 from modefront.front.point import Kind, front_points, preferred
 from modefront.optim.problem import at_bounds
 from modefront.pairing.match import POOR
@@ -70,7 +69,7 @@ def findings_of(data: Dataset, *, full: bool = False) -> list[Finding]:
     most = sys.maxsize if full else FEW
     texts = data["finding"].values.tolist()
     records = data["finding_record"].values.tolist() if "finding_record" in data else texts
-    parts = _failures, _front, _misfit, _ranges, _weights, _numerics
+    parts = [_failures, _front, _misfit, _ranges, *([_weights, _numerics] if full else [])]
     out = [finding for part in parts for finding in part(data)]
     out += [*_pairs(data, most), *_at_bounds(data, most), *map(from_text, records, texts)]
     return in_order(x for x in out if full or x.severity is not Severity.DETAIL)

@@ -4,10 +4,9 @@ Model shapes have a greatest displacement of 1 at the nodes; the measured shape 
 scale factor :math:`\hat\varphi^T \varphi / (\hat\varphi^T \hat\varphi)` at the sensors (Allemang,
 Sound and Vibration 37 (8), 2003).
 
-Results hold those of all points in a common basis: the displacements u_r of the drawn nodes in mode
-r of a point are :math:`u_r = \sum_b c_{rb} B_b`, with the few columns B that the shapes of all
-points need up to `TOLERANCE`, and coefficients c between -1 and 1. Drawn are the nodes of lines and
-faces, of solids those of the surface. Q and C are an orthonormal basis, and the coefficients in it.
+Results hold those of all points in a common basis B of the few columns that these need up to
+`TOLERANCE`, with coefficients c between -1 and 1. Q and C are an orthonormal basis, and the
+coefficients in it.
 """
 
 import contextlib

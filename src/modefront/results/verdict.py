@@ -12,8 +12,8 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.datasets import Dataset
-from modefront.findings.catalogue import VERDICT
 from modefront.findings.knowledge import SHOWN, bound, enumeration, held
+from modefront.findings.record import VERDICT
 from modefront.front.point import Kind, front_points, preferred
 from modefront.predictions.base import predictions_in
 from modefront.results.assemble import TRUST

@@ -25,8 +25,7 @@ from modefront.diagnosis.comparison import COMPARED, Comparison, compare
 from modefront.diagnosis.search import diagnose
 from modefront.errors import Fault, ModelError, refuse
 from modefront.findings import knowledge
-from modefront.findings.catalogue import Severity
-from modefront.findings.record import Finding, found
+from modefront.findings.record import Finding, Severity, found
 from modefront.identifiability.combinations import NONE, WEAK, determination, unchanged_groups
 from modefront.identifiability.sensitivity import Sensitivities, sensitivities
 from modefront.inputs import available_memory
