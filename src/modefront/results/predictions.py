@@ -8,7 +8,7 @@ axis of the posterior; with draws, the models drawn.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import compress
+from itertools import compress, product
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -99,22 +99,16 @@ class PredictionRunner:
         (2, places), by the key of each variable of which the range is reported.
         """
         mark = hash_text(f"{front.theta.tolist()} {front.is_open} {front.slack}")[:8]
-        ends: list[End] = [
-            (variable, i, sign)
-            for variable in prediction.kind.ranged
-            for sign in (1.0, -1.0)
-            for i in range(len(prediction.places))
-        ]
+        ranged, count = prediction.kind.ranged, len(prediction.places)
+        ends: list[End] = list(product(ranged, (1.0, -1.0), range(count)))
         # Ends share what is solved between points; over equivalent models each is work of its own.
         parts = [[end] for end in ends] if front.is_open else [ends]
         tasks = [
             self._task(prediction, ("ends", k, mark), _ends, front, values, part)
             for k, part in enumerate(parts, start=1)
         ]
-        found = np.concatenate(self.work.run(tasks))
-        shape = (len(prediction.kind.ranged), 2, len(prediction.places))
-        keys = (variable.key for variable in prediction.kind.ranged)
-        return dict(zip(keys, found.reshape(shape), strict=True))
+        rows = np.concatenate(self.work.run(tasks)).reshape(len(ranged), 2, count)
+        return dict(zip((variable.key for variable in ranged), rows, strict=True))
 
     def at_points(self, data: ArrayDataset, slack: float) -> ArrayDataset:
         """Return results with the predictions of every point."""
@@ -317,8 +311,8 @@ def _predicted(
     return values
 
 
-End = tuple[ResultVariable, int, float]
-"""A variable at a place, and whether its least (1) or its greatest value (-1) is sought."""
+End = tuple[ResultVariable, float, int]
+"""A variable, whether its least (1) or its greatest value (-1) is sought, and at which place."""
 
 
 def _ends(
@@ -341,7 +335,7 @@ def _ends(
         found = known[key]
         return np.nan if found is None else float(_scaled(found[variable.key], variable)[place])
 
-    for variable, place, sign in ends:
+    for variable, sign, place in ends:
         step, own = ROUGH if variable.logarithmic else STEP, _scaled(values[variable.key], variable)
         value = partial(at, variable=variable, place=place)
         found = extreme(problem, front, own[:, place], value, sign, step)
