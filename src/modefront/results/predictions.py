@@ -107,7 +107,8 @@ class PredictionRunner:
             self._task(prediction, ("ends", k, mark), _ends, front, values, part)
             for k, part in enumerate(parts, start=1)
         ]
-        rows = np.concatenate(self.work.run(tasks)).reshape(len(ranged), 2, count)
+        found = np.array([end for each in self.work.run(tasks) for end in each])
+        rows = found.reshape(len(ranged), 2, count)
         return dict(zip((variable.key for variable in ranged), rows, strict=True))
 
     def at_points(self, data: ArrayDataset, slack: float) -> ArrayDataset:
