@@ -210,9 +210,7 @@ def _least(values: Floats) -> float:
 def _summary(name: str, data: Dataset, first: float) -> Summary:
     length, (models, chosen, optimal) = _length(data), _models(data)
     quantities = ["frequency", "mac", *(x.name for kind in kinds_in(data) for x in kind.ranged)]
-    nearest, of_optimal, of_chosen = (
-        _least(np.linalg.norm(x["error"].values, axis=1)) for x in (models, optimal, chosen)
-    )
+    nearest, best = (_least(np.linalg.norm(x["error"].values, axis=1)) for x in (models, optimal))
     return Summary(
         name,
         str(data.attrs.get("study", "")),
@@ -223,9 +221,9 @@ def _summary(name: str, data: Dataset, first: float) -> Summary:
         length / first if first > 0 else np.nan,
         tuple(np.ptp(models["error"].values, axis=0).tolist()),
         nearest,
-        of_optimal,
+        best,
         preferred(data.attrs),
-        of_chosen,
+        float(np.linalg.norm(chosen["error"].values)),
         tuple(_spreads("theta", "", models, chosen)),
         tuple(x for name in quantities for x in _spreads(name, f"{name} ", models, chosen)),
     )
