@@ -1,6 +1,7 @@
 """What data determine of the parameters, and what they leave open, as findings."""
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -188,14 +189,8 @@ def bound(
     wrong = excluding(sides, theta, misfit, free)
     if not wrong:
         return None
-    i = int(np.argmax(misfit - free.misfit))
-    return found(
-        "bound",
-        enumeration([names[j] for j in wrong]),
-        at=held(names, sides, theta),
-        where=enumeration([f"{names[j]} = {free.theta[j]:.3g}" for j in wrong], SHOWN),
-        group=str(groups[i]),
-        after=float(free.misfit[i]),
-        before=float(misfit[i]),
-        its="its" if len(wrong) == 1 else "their",
-    )
+    i, at = int(np.argmax(misfit - free.misfit)), held(names, sides, theta)
+    where = enumeration([f"{names[j]} = {free.theta[j]:.3g}" for j in wrong], SHOWN)
+    errors: dict[str, Any] = {"after": float(free.misfit[i]), "before": float(misfit[i])}
+    its, named = "its" if len(wrong) == 1 else "their", enumeration([names[j] for j in wrong])
+    return found("bound", named, at=at, where=where, group=str(groups[i]), its=its, **errors)

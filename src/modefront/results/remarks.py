@@ -4,6 +4,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 
@@ -139,15 +140,9 @@ def _misfit(data: Dataset) -> Iterator[Finding]:
     nominal, beside = data["kind"].values == Kind.NOMINAL.value, ""
     if np.isfinite(data["frequency"].values[nominal]).any():
         beside = f"; the nominal model has {fit_of(data, nominal)}"
-    if chosen.any():
-        yield found(
-            "misfit",
-            best,
-            models=int(chosen.sum()),
-            whole=fit_of(data, chosen, whole=True),
-            reference=fit_of(data, data["label"].values == best),
-            nominal=beside,
-        )
+    if count := int(chosen.sum()):
+        whole, own = fit_of(data, chosen, whole=True), fit_of(data, data["label"].values == best)
+        yield found("misfit", best, models=count, whole=whole, reference=own, nominal=beside)
 
 
 def fit_of(data: Dataset, chosen: Bools, *, whole: bool = False) -> str:
@@ -281,15 +276,12 @@ def _numerics(data: Dataset) -> Iterator[Finding]:
     if attrs.get("remark"):
         yield found("remark", str(attrs["remark"]))
     if "certified" in data:
-        predicted = int(attrs.get("prediction_eigensolutions", 0))
-        yield found(
-            "reduced",
-            full=int(attrs["full_eigensolutions"]) - predicted,
-            corrected=int(attrs.get("corrected_eigensolutions", 0)),
-            eigenvalue=float(data["eigenvalue_error"].values.max()),
-            tolerance=float(attrs["eigenvalue_tolerance"]),
-            shape=float(data["shape_error"].values.max()),
+        full, corrected, predicted = (
+            int(attrs.get(f"{x}_eigensolutions", 0)) for x in ("full", "corrected", "prediction")
         )
+        said: dict[str, Any] = {"tolerance": float(attrs["eigenvalue_tolerance"])}
+        said |= {x: float(data[f"{x}_error"].values.max()) for x in ("eigenvalue", "shape")}
+        yield found("reduced", full=full - predicted, corrected=corrected, **said)
         if predicted:
             yield found("not-reduced", full=predicted)
     gap, volume, igd = (float(attrs[x]) for x in ("largest_gap", "hypervolume", "igd_plus"))
