@@ -46,13 +46,9 @@ class Said(NamedTuple):
     def meaning(self) -> list[str]:
         """What it means and what to do, in paragraphs without links; lines of a study as such."""
         parts = [dedent(x).strip() for x in self.text.split("\n\n")]
-        return [
-            x
-            if x.startswith("```")
-            else re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", " ".join(x.split()))
-            for x in parts
-            if x and not x.startswith("|")
-        ]
+        said = [x for x in parts if x and not x.startswith("|")]
+        plain = [re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", " ".join(x.split())) for x in said]
+        return [x if x.startswith("```") else y for x, y in zip(said, plain, strict=True)]
 
 
 def _kinds(name: str) -> dict[str, Said]:

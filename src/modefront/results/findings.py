@@ -119,16 +119,12 @@ def _extent(problem: UpdatingProblem, of: str, manifolds: Sequence[Manifold]) ->
     greatest, many = max(manifolds, key=lambda x: len(x.models)), len(manifolds) > 1
     kind = KINDS.get(greatest.dimension, "manifold")
     more = "" if greatest.dimension in KINDS else f" of dimension {greatest.dimension}"
+    said = f"{len(manifolds)} separate {kind}s{more}" if many else f"a {kind}{more}"
+    where = "; on the greatest" if many else ":"
+    reach = _far(problem, np.array([model.theta for model in greatest.models]))
     spent = f"{greatest.evaluations} eigenproblem{'s' * (greatest.evaluations != 1)}"
-    return found(
-        "manifold",
-        of,
-        many=many,
-        manifolds=f"{len(manifolds)} separate {kind}s{more}" if many else f"a {kind}{more}",
-        where="; on the greatest" if many else ":",
-        reach=_far(problem, np.array([model.theta for model in greatest.models])),
-        count=f"{len(greatest.models)} models, by {spent}, {greatest.extent.value}",
-    )
+    count = f"{len(greatest.models)} models, by {spent}, {greatest.extent.value}"
+    return found("manifold", of, many=many, manifolds=said, where=where, reach=reach, count=count)
 
 
 def _far(problem: UpdatingProblem, theta: Floats) -> str:
