@@ -170,6 +170,7 @@ def wide(groups: int, parameters: int, modes: int) -> xr.Dataset:
             "mac": (("point", "mode"), rng.uniform(0.8, 1, (n, modes))),
             "paired_mode": (("point", "mode"), np.tile(np.arange(1.0, modes + 1), (n, 1))),
             "error": (("point", "group"), rng.uniform(0.01, 1, (n, groups))),
+            "stationary_weight": (("point", "group"), np.full((n, groups), np.nan)),
             "finding": ("finding", [f"finding {i} " + 30 * "word " for i in range(20)]),
         },
         {"parameter": names, "group": of, "mode": np.arange(1, modes + 1)},

@@ -7,11 +7,18 @@ from pathlib import Path
 
 import pytest
 
-from modefront.findings import catalogue
-from modefront.findings.catalogue import CATALOGUE, Severity
-from modefront.findings.record import NUMBER, as_text, found, from_text, in_order
+from modefront.findings import record
+from modefront.findings.record import (
+    CATALOGUE,
+    NUMBER,
+    Severity,
+    as_text,
+    found,
+    from_text,
+    in_order,
+)
 
-TEXT = Path(catalogue.__file__).with_name("findings.md").read_text(encoding="utf-8")
+TEXT = Path(record.__file__).with_name("findings.md").read_text(encoding="utf-8")
 EXAMPLES = dict(re.findall(r"^### (\S+)\n<!-- .+ -->\n> (.+)$", TEXT, re.MULTILINE))
 
 
@@ -37,10 +44,10 @@ def test_the_example_on_the_page_is_what_the_kind_says(kind: str) -> None:
 
 
 def test_a_page_of_another_form_is_an_error_and_no_kind_or_unit_less() -> None:
-    assert len(catalogue.UNITS) == TEXT.count("\n|") - 2
+    assert len(record.UNITS) == TEXT.count("\n|") - 2
     for text in ("no table", "| a | b | c |\n|---|---|---|", "| a |\n|---|\n| six | a | b |"):
         with pytest.raises(ValueError, match=r"unpack|convert"):
-            catalogue._units(text)
+            record._units(text)
 
 
 def test_a_finding_says_what_it_means_without_marks_of_a_page() -> None:
@@ -55,8 +62,8 @@ def test_a_record_is_kept_whole_and_one_that_is_not_known_as_its_sentence() -> N
     assert str(alike).endswith("{d} have nearly the same effect on all residuals: fix or tie all "
                                "but one")  # fmt: skip
     assert repr(from_text(as_text(alike), str(alike))) == repr(alike)
-    for record in ("", "[]", '["alike", "a", {}, true]', '["else", "a", {}, true]'):
-        assert str(from_text(record, "as it was")) == "as it was"
+    for kept in ("", "[]", '["alike", "a", {}, true]', '["else", "a", {}, true]'):
+        assert str(from_text(kept, "as it was")) == "as it was"
     assert alike.as_plain()["severity"] == "open"
     spent = found("effort", spent=30, front=9, why="; by chance").as_plain()
     assert spent["numbers"] == {"spent": 30, "front": 9}

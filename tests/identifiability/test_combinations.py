@@ -1,14 +1,20 @@
 """Combinations of parameters with known answers: the chain, and Jacobians made by hand."""
 
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import modefront as mf
-from modefront.findings.knowledge import direction_in_words, summary
+from modefront.findings.knowledge import direction_in_words, summaries
 from modefront.identifiability.combinations import (
     NONE,
+    Combination,
+    Determination,
     combinations,
     cosines,
     decompose,
@@ -16,10 +22,24 @@ from modefront.identifiability.combinations import (
     optimal_weights,
     pairs,
 )
+from modefront.identifiability.scale import Scale
 from modefront.identifiability.sparse import sparse_basis
 from modefront.work.task import counted
 
 NAMES = ("k1", "k2", "k3")
+
+
+def relative(p: int) -> Scale:
+    """Return the scale of changes that are relative to positive parameters."""
+    return Scale(np.ones(p), np.ones(p), np.ones(p, dtype=bool))
+
+
+def said(group: mf.Group, determined: Sequence[Combination], names: Sequence[str]) -> str:
+    """Return what is said of a group that determines these combinations."""
+    problem: Any = SimpleNamespace(model=SimpleNamespace(parameters=names), groups=(group,))
+    p = len(names)
+    of = Determination(relative(p), [], [(group.name, determined)], np.eye(p))
+    return str(next(summaries(problem, of)))
 
 
 def chain() -> mf.UpdatingProblem:
@@ -38,7 +58,7 @@ def test_shapes_leave_the_scale_of_all_stiffnesses() -> None:
     result = combinations(problem, theta, 1)
     assert [combination.share > NONE for combination in result] == [True, True, False]
     assert result[-1].direction == pytest.approx(np.ones(3) / np.sqrt(3), abs=1e-9)
-    text = str(summary("shapes", "shape", result, NAMES))
+    text = said(problem.groups[1], result, NAMES)
     assert text.endswith("; k1, k2 and k3 can be scaled together: no shape changes")
     assert text.startswith("group shapes determines 2 of 3 combinations of parameters")
 
@@ -94,14 +114,15 @@ def test_a_basis_is_made_of_what_can_be_said() -> None:
     mixed = np.linalg.qr(known)[0] @ np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
     basis = sparse_basis(mixed, [np.ones(len(mixed))], lambda _: True)
     names = ("a", "b", "c", "d", "m")
-    messages = [direction_in_words(v, names) for v in basis.T]
+    messages = [direction_in_words(v, names, relative(5)) for v in basis.T]
     assert messages[:2] == ["m can have any value", "a, b, c and d can be scaled together"]
     assert len(messages) == 3
 
 
 def test_long_lists_are_cut() -> None:
     names = tuple(f"k{i}" for i in range(6))
-    text = str(summary("data", "residual", decompose(np.eye(6)[:1]), names))
+    both = mf.Group("data", frequency="all", shape="all")
+    text = said(both, decompose(np.eye(6)[:1]), names)
     assert text == (
         "group data determines 1 of 6 combinations of parameters; k1 can have any value; "
         "k2 can have any value; k3 can have any value; and 2 more: no residual changes"
@@ -109,7 +130,7 @@ def test_long_lists_are_cut() -> None:
 
 
 def test_what_is_hardly_determined_is_said() -> None:
-    text = str(summary("data", "shape", decompose(np.diag([1.0, 1e-3])), ("a", "b")))
+    text = said(mf.Group("data", shape="all"), decompose(np.diag([1.0, 1e-3])), "ab")
     assert text == "group data determines 2 of 2 combinations of parameters, and say little about b"
 
 

@@ -16,8 +16,9 @@ import scipy.sparse
 import modefront as mf
 from modefront import Pairing
 from modefront._typing import Floats
-from modefront.findings.knowledge import alike, free_in_words, summary
+from modefront.findings.knowledge import alike, free_in_words, summaries
 from modefront.identifiability.combinations import (
+    Determination,
     combinations,
     unchanged_groups,
     without_effect,
@@ -179,7 +180,7 @@ def test_shapes_leave_the_scale_of_the_stiffness_in_every_form(
     assert [combination.sensitivity for combination in result] == pytest.approx(
         sigma, abs=1e-6 * sigma[0]
     )
-    (message,) = free_in_words(result, problem.model.parameters, scale)
+    (message,) = free_in_words(result, problem.model.parameters, scale, ())
     if form != "alpha":
         assert message == "k1, k2, k3 and k4 can be scaled together"
     else:
@@ -208,7 +209,7 @@ def test_two_springs_in_series_are_said_as_a_pair(form: str) -> None:
     scale = scale_at(problem, theta)
     for group in (0, 1, None):
         result = combinations(problem, theta, group, scale=scale)
-        message = free_in_words(result, problem.model.parameters, scale)
+        message = free_in_words(result, problem.model.parameters, scale, ())
         assert "k1 and k2 cannot be told apart" in message
     for k1 in (1.6, 2.5):
         other = in_form(form, np.array([k1, 1 / (1 / 2.0 + 1 / 0.8 - 1 / k1), 1.0, 1.1]))
@@ -235,7 +236,8 @@ def test_null_directions_of_few_data_hold_in_both_directions(form: str) -> None:
         for h in (1e-3, -1e-3):
             other = residuals(problem, theta + h * scale.unit * v, 0)
             assert np.abs(other - here).max() < 10 * h**2, "to first order"
-    text = str(summary("frequencies", "frequency", result, problem.model.parameters, scale))
+    of = Determination(scale, [], [("frequencies", result)], np.eye(n))
+    text = str(next(summaries(problem, of)))
     assert text.startswith("group frequencies determines 4 of 12 combinations of parameters; ")
     assert text.endswith("; and 5 more: no frequency changes")
     assert "any value" not in text
@@ -363,5 +365,5 @@ def test_without_matrices_changes_are_over_the_range() -> None:
     assert scale.unit == pytest.approx(problem.upper - problem.lower)
     assert scale.scalings == []
     result = combinations(opaque, opaque.start, 1)
-    text = free_in_words(result, problem.model.parameters, scale)
+    text = free_in_words(result, problem.model.parameters, scale, ())
     assert text == ["k1, k2, k3 and k4 cannot be told apart"]

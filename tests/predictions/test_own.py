@@ -181,3 +181,16 @@ def test_entry_points_of_installed_packages_bring_classes(tmp_path: Path) -> Non
     )
     assert run.returncode == 2
     assert "expected a mode from 1 to 2, found 5" in run.stderr
+
+
+def test_a_kind_without_ranges_is_predicted_where_equivalent_models_count_too(
+    tmp_path: Path,
+) -> None:
+    variable = ResultVariable("plain_length", "period", "period of the mode", "s", ranged=False)
+    kind = mf.PredictionKind("plain", "plain", (variable,))
+    plain: type[Any] = type("Plain", (Period,), {"kind": kind})
+    study = mf.load(write_study(tmp_path, ""))
+    data = mf.run(replace(study, predictions=[plain("slow")], slack=0.1)).data
+    frequency = data["frequency"].values[:, 0]
+    assert data["plain_length"].values[:, 0] == pytest.approx(1 / frequency)
+    assert "plain_length_range" not in data

@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from modefront.findings import catalogue
-from modefront.findings.catalogue import VERDICT
-from modefront.findings.record import meaning_of
+from modefront.findings import record
+from modefront.findings.record import VERDICT, meaning_of
 from modefront.front.point import Kind
 from modefront.results.assemble import intervals
 from modefront.results.findings import _scatter
@@ -22,7 +21,7 @@ from modefront.uncertainty.scatter import LinearisationWarning
 
 DOCS = Path(__file__).parents[2] / "docs"
 DATA = ("frequency", "shape", "frequency_std", "shape_std")
-TEXT = Path(catalogue.__file__).with_name("verdicts.md").read_text(encoding="utf-8")
+TEXT = Path(record.__file__).with_name("verdicts.md").read_text(encoding="utf-8")
 FORM = r"^### ([^\n]+)\n(?:<!-- [^\n]+ -->\n)?(.+?)(?=^##|\Z)"
 SECTIONS = dict(re.findall(FORM, TEXT, re.MULTILINE | re.DOTALL))
 HOW_TO = ("choose", "read-a-front", "modes-swap", "undetermined", "large-models")

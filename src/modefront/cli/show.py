@@ -13,8 +13,7 @@ from modefront._typing import Floats
 from modefront.cli.layout import BLANK, Line, Screen, number, plural
 from modefront.cli.terminal import command, say_next
 from modefront.datasets import Dataset
-from modefront.findings.catalogue import Severity
-from modefront.findings.record import meaning_of
+from modefront.findings.record import Severity, meaning_of
 from modefront.front.point import INTERNAL, Kind, position, preferred
 from modefront.predictions import ResultVariable
 from modefront.predictions.base import Quantity, predictions_in, quantity

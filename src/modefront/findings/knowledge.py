@@ -1,6 +1,7 @@
 """What data determine of the parameters, and what they leave open, as findings."""
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -39,63 +40,33 @@ def in_words(combination: Combination, names: Sequence[str]) -> str:
     return enumeration([*order[:PARTS], *(["others"] if len(order) > PARTS else [])])
 
 
-# 8 arguments: the data, what they determine, and how the sentence begins.
-def summary(
-    subject: str,
-    noun: str,
-    combinations: Sequence[Combination],
-    names: Sequence[str],
-    scale: Scale | None = None,
-    idle: Sequence[int] = (),
-    kind: str = "group-data",
-    where: str = "",
-) -> Finding:
-    """Return what a group of data determines.
-
-    ``subject`` are the data in the plural, ``noun`` names what does not change; ``idle`` are
-    parameters without effect on any data, which are left out. Without a ``scale``, changes are
-    relative to the parameters. ``where`` begins the sentence.
-    """
-    rank = sum(each.share > NONE for each in combinations)
-    hardly = [each for each in combinations if NONE < each.share < WEAK]
-    p = len(names) - len(idle)
-    text = " that have an effect" if idle else ""
-    if hardly:
-        parts = list(dict.fromkeys(in_words(each, names) for each in hardly[::-1]))
-        text += f", and say little about {_listed(parts)}"
-    if rank < p:
-        free = _listed(free_in_words(combinations, names, scale, idle))
-        text += f"; {free}: no {noun} changes"
-    count = f"{p} combination{'s' * (p > 1)}"
-    return found(kind, subject, where=where, rank=rank, combinations=count, free=text)
-
-
 def summaries(problem: UpdatingProblem, of: Determination, where: str = "") -> Iterator[Finding]:
-    """Yield what each group, then all data determine at a model."""
+    """Yield what each group, then all data determine at a model; ``where`` begins the sentences."""
     names, groups = problem.model.parameters, problem.groups
-    for i, (name, combinations) in enumerate(of.combinations):
-        whole = i == len(groups)
-        kinds = {kind for group in (groups if whole else [groups[i]]) for kind, _ in group.chosen}
+    p = len(names) - len(of.idle)
+    for i, (subject, combinations) in enumerate(of.combinations):
+        kinds = {kind for group in groups[i : i + 1] or groups for kind, _ in group.chosen}
         noun = kinds.pop() if len(kinds) == 1 else "residual"
-        full = sum(x.share >= WEAK for x in combinations) == len(names) - len(of.idle)
-        of_all, of_group = (
-            ("determined", "group-determined") if full else ("all-data", "group-data")
-        )
-        kind = of_all if whole else of_group
-        yield summary(name, noun, combinations, names, of.scale, of.idle, kind, where)
+        full = sum(x.share >= WEAK for x in combinations) == p
+        kind = "group-determined" if full else "group-data"
+        if i == len(groups):
+            kind = "determined" if full else "all-data"
+        rank = sum(x.share > NONE for x in combinations)
+        text = " that have an effect" if of.idle else ""
+        if hardly := [in_words(x, names) for x in combinations[::-1] if NONE < x.share < WEAK]:
+            text += f", and say little about {_listed(list(dict.fromkeys(hardly)))}"
+        if rank < p:
+            free = _listed(free_in_words(combinations, names, of.scale, of.idle))
+            text += f"; {free}: no {noun} changes"
+        count = f"{p} combination{'s' * (p > 1)}"
+        yield found(kind, subject, where=where, rank=rank, combinations=count, free=text)
 
 
 def free_in_words(
-    combinations: Sequence[Combination],
-    names: Sequence[str],
-    scale: Scale | None = None,
-    idle: Sequence[int] = (),
+    combinations: Sequence[Combination], names: Sequence[str], scale: Scale, idle: Sequence[int]
 ) -> list[str]:
-    """Return the combinations that are not determined, each as text; see `summary`."""
-    scale = scale or _relative(len(names))
-    free = np.array(
-        [combination.direction for combination in combinations if combination.share <= NONE]
-    ).T
+    """Return the combinations that are not determined, each as text; ``idle`` have no effect."""
+    free = np.array([x.direction for x in combinations if x.share <= NONE]).T
     free[list(idle)] = 0.0
     lam, V = np.linalg.eigh(free.T @ free)
     kept = free @ V[:, lam > 0.5]  # parameters without effect are directions of their own
@@ -103,8 +74,7 @@ def free_in_words(
         return []
     if kept.shape[1] > MOST:
         return [f"{kept.shape[1]} combinations of parameters can have any values"]
-    whole = [scaling.change / scale.unit for scaling in scale.scalings]
-    whole.append(scale.theta / scale.unit)
+    whole = [x / scale.unit for x in (*(y.change for y in scale.scalings), scale.theta)]
     shares = np.array([combination.share for combination in combinations])
     V = np.array([combination.direction for combination in combinations])
 
@@ -112,11 +82,6 @@ def free_in_words(
         return bool(np.linalg.norm(shares * (V @ v)) <= 3 * NONE * np.linalg.norm(v))
 
     return [direction_in_words(v, names, scale) for v in sparse_basis(kept, whole, holds).T]
-
-
-def _relative(p: int) -> Scale:
-    """Return the scale of changes that are relative to positive parameters."""
-    return Scale(np.ones(p), np.ones(p), np.ones(p, dtype=bool))
 
 
 def no_effect(idle: Sequence[int], names: Sequence[str], where: str = "") -> list[Finding]:
@@ -157,15 +122,15 @@ def _listed(directions: Sequence[str]) -> str:
     return "; ".join(directions[:SHOWN]) + more
 
 
-def direction_in_words(v: Floats, names: Sequence[str], scale: Scale | None = None) -> str:
+def direction_in_words(v: Floats, names: Sequence[str], scale: Scale) -> str:
     """Return how parameters can be changed along a direction, in units of a scale.
 
-    >>> direction_in_words(np.array([0.5, 0.5, 0.0]), ("k1", "k2", "m"))
+    >>> scale = Scale(np.ones(3), np.ones(3), np.ones(3, dtype=bool))
+    >>> direction_in_words(np.array([0.5, 0.5, 0.0]), ("k1", "k2", "m"), scale)
     'k1 and k2 can be scaled together'
-    >>> direction_in_words(np.array([1.0, 0.0, -0.25]), ("k1", "k2", "m"))
+    >>> direction_in_words(np.array([1.0, 0.0, -0.25]), ("k1", "k2", "m"), scale)
     'k1 and m cannot be told apart'
     """
-    scale = scale or _relative(len(names))
     v = v / np.abs(v).max()
     members = np.flatnonzero(np.abs(v) > SAME).tolist()
     if len(members) == 1:
@@ -193,13 +158,14 @@ def _equal(ratio: Floats) -> bool:
 
 def _named(members: Sequence[int], ratio: Floats, names: Sequence[str]) -> str:
     """Return the names of parameters that change in a ratio, or of those that change the most."""
-    if len(members) > PARTS and _equal(ratio) and len(members) == len(names):
-        return f"all {len(names)} parameters"
-    if len(members) <= PARTS or (_equal(ratio) and len(members) <= NAMED):
+    count, equal = len(members), _equal(ratio)
+    if equal and PARTS < count == len(names):
+        return f"all {count} parameters"
+    if count <= PARTS or (equal and count <= NAMED):
         return enumeration([names[i] for i in members])
     most = sorted(np.argsort(-np.abs(ratio), kind="stable")[:PARTS].tolist())
     named = enumeration([names[members[i]] for i in most])
-    return f"{len(members)} parameters, {'among them' if _equal(ratio) else 'most of all'} {named},"
+    return f"{count} parameters, {'among them' if equal else 'most of all'} {named},"
 
 
 def held(names: Sequence[str], sides: Ints, theta: Floats) -> str:
@@ -223,14 +189,8 @@ def bound(
     wrong = excluding(sides, theta, misfit, free)
     if not wrong:
         return None
-    i = int(np.argmax(misfit - free.misfit))
-    return found(
-        "bound",
-        enumeration([names[j] for j in wrong]),
-        at=held(names, sides, theta),
-        where=enumeration([f"{names[j]} = {free.theta[j]:.3g}" for j in wrong], SHOWN),
-        group=str(groups[i]),
-        after=float(free.misfit[i]),
-        before=float(misfit[i]),
-        its="its" if len(wrong) == 1 else "their",
-    )
+    i, at = int(np.argmax(misfit - free.misfit)), held(names, sides, theta)
+    where = enumeration([f"{names[j]} = {free.theta[j]:.3g}" for j in wrong], SHOWN)
+    errors: dict[str, Any] = {"after": float(free.misfit[i]), "before": float(misfit[i])}
+    its, named = "its" if len(wrong) == 1 else "their", enumeration([names[j] for j in wrong])
+    return found("bound", named, at=at, where=where, group=str(groups[i]), its=its, **errors)

@@ -1,13 +1,84 @@
-"""Findings: kind, subject, and the numbers and names of their sentences."""
+"""Findings, and the catalogue of all sentences: of findings and of the verdict.
+
+The sentences are on the pages ``findings.md``, the most important first, and ``verdicts.md``: below
+the name of a kind there are its sentence in a comment, an example, what it means and what to do. A
+heading is how severe the findings below it are. In sentences, ``{name}`` is a value, and
+``{it|them}`` has the words for one and several subjects. Those of mistakes say what is wrong before
+the first semicolon, and what mends it behind.
+"""
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from enum import Enum
+from pathlib import Path
+from textwrap import dedent
+from typing import Any, NamedTuple
 
-from modefront.findings.catalogue import CATALOGUE, VERDICT, Severity
 from modefront.text import Shown
+
+
+class Severity(Enum):
+    """How severe a finding is, by the question that it answers."""
+
+    MISTAKE = "What is wrong with model or data"
+    FAILURE = "What was not done"
+    FIT = "How well the models do"
+    CAUTION = "What to beware of"
+    OPEN = "What the data leave open"
+    DETAIL = "How it was found"
+
+
+class Said(NamedTuple):
+    """What a page says of a kind; the text of what it means and what to do is Markdown."""
+
+    heading: str
+    sentence: str
+    text: str
+
+    @property
+    def pattern(self) -> str:
+        """The regular expression of what the sentence can say."""
+        return ".+".join(map(re.escape, re.split(r"\{[a-z]+(?::[^{}]*)?\}", self.sentence)))
+
+    @property
+    def meaning(self) -> list[str]:
+        """What it means and what to do, in paragraphs without links; lines of a study as such."""
+        parts = [dedent(x).strip() for x in self.text.split("\n\n")]
+        said = [x for x in parts if x and not x.startswith("|")]
+        plain = [re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", " ".join(x.split())) for x in said]
+        return [x if x.startswith("```") else y for x, y in zip(said, plain, strict=True)]
+
+
+def _kinds(name: str) -> dict[str, Said]:
+    """Return what a page says of each of its kinds; raises ValueError for one without sentence."""
+    out, page = {}, Path(__file__).with_name(name).read_text(encoding="utf-8")
+    for part in page.split("\n## ")[1:]:
+        heading, *kinds = part.split("\n### ")
+        for each in kinds:
+            kind, comment, _, text = f"{each}\n\n".split("\n", 3)
+            (sentence,) = re.findall(r"^<!-- (.*) -->$", comment)
+            out[kind] = Said(heading.partition("\n")[0], sentence, text)
+    return out
+
+
+CATALOGUE: Mapping[str, Said] = _kinds("findings.md")
+"""What is said of each kind of findings, by its name."""
+
+VERDICT: Mapping[str, Said] = _kinds("verdicts.md")
+"""What is said in the first answer, and of reasons of a refusal, by their names."""
+
+
+def _units(text: str) -> list[tuple[float, str, str]]:
+    """Return the rows of a table of units; raises ValueError where there are none."""
+    _, _, first, *rows = [line for line in text.splitlines() if line.startswith("|")]
+    cells = [row.strip("| ").split(" | ") for row in (first, *rows)]
+    return [(float(factor), looks, mend) for factor, looks, mend in cells]
+
+
+UNITS: Sequence[tuple[float, str, str]] = _units(CATALOGUE["frequency-factor"].text)
+"""Measured frequencies over the model's, what makes them so, and what mends it."""
 
 NUMBER = re.compile(r"\{([^{}|]*)\|([^{}|]*)\}")
 """Words of a sentence on one subject, and on several."""

@@ -29,18 +29,18 @@ PLOTS: Mapping[str, tuple[tuple[str, ...], str]] = {
 """Pictures in the order of their files: variables or dimensions, one of which each shows, and what
 results without any lack. They are drawn by functions of these names."""
 
+STYLE = Path(__file__).with_name("style.mplstyle")
+
 
 @contextmanager
-def _drawing() -> Iterator[None]:
+def drawing() -> Iterator[None]:
     """Draw in the style of all pictures; raises InputError without matplotlib."""
     try:
-        from matplotlib import rc_context
+        from matplotlib import rc_context, rc_params_from_file
     except ImportError:
         expected = "matplotlib, which `pip install modefront[figures]` brings"
         raise InputError(Fault("", "figures", expected, "no such package")) from None
-    from modefront.plots.canvas import STYLE
-
-    with rc_context(dict(STYLE)):
+    with rc_context(rc_params_from_file(STYLE, use_default_template=False)):
         yield
 
 
@@ -91,7 +91,7 @@ class Plots:
 
     def _draw(self, name: str, **options: Any) -> Picture:
         module = "modes" if name == "modes" else "quantities"
-        with _drawing():
+        with drawing():
             if not _is_held(self.data, name):
                 expected = f"results with {PLOTS[name][1]}"
                 raise InputError(Fault("", f"plot of {name}", expected, "none"))
@@ -115,7 +115,7 @@ def pictures(data: Dataset) -> Iterator[tuple[str, Picture]]:
 
 def figures(module: str, *arguments: object) -> Iterator[tuple[str, Picture]]:
     """Yield names and figures of a module: ``quantities``, ``paper`` or ``identification``."""
-    with _drawing():
+    with drawing():
         yield from import_module(f"modefront.plots.{module}").figures(*arguments)
 
 
@@ -128,7 +128,7 @@ def write_figures(
     """
     written: list[Path] = []
     metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form)
-    with writing(folder), _drawing():
+    with writing(folder), drawing():
         folder.mkdir(parents=True, exist_ok=True)
         for name, figure in named:
             path = folder / f"{file_name(name, [each.stem for each in written])}.{form}"

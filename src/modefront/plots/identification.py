@@ -69,9 +69,8 @@ def _indicators(identification: Identification) -> Picture:
 
 def _functions(identification: Identification) -> Picture:
     """Draw synthesised over measured functions, those with the greatest residuals first."""
-    fitted = identification.functions
-    share = np.where(np.isfinite(fitted.residuals.share), fitted.residuals.share, -1.0)
-    listed = np.argsort(-share.ravel())[: int((share >= 0).sum())][:MOST_PANELS]
+    fitted, share = identification.functions, identification.functions.residuals.share
+    listed = np.argsort(-share, axis=None)[: int(np.isfinite(share).sum())][:MOST_PANELS]
     figure, grid = panels(listed.size)
     for axes, position in zip(grid, listed, strict=True):
         j, i = np.unravel_index(position, share.shape)

@@ -17,9 +17,9 @@ REACH, NAMES = 0.15, 14
 """Greatest displacement over the diagonal of the model; sensors up to which each is named."""
 
 
-_Shape: TypeAlias = tuple[str, Floats, Floats, Floats | None]
+_Shape: TypeAlias = tuple[str, Floats, Floats, Floats]
 """One mode: title; (sensors,) of the model; (sets, sensors) as measured, in the same scale; and
-displacements (nodes, 3), None without geometry."""
+displacements (nodes, 3), of no nodes without geometry."""
 
 
 def modes(data: Dataset, *, point: str | int | None = None) -> Picture:
@@ -49,17 +49,17 @@ def _shape(data: Dataset, i: int, r: int) -> _Shape:
     factor = np.divide(product, square, out=np.zeros(square.shape), where=square > 0)
     f, mac = data["frequency"].values[i, r], data["mac"].values[i, r]
     title = f"mode {data['mode'].values[r]}: {f:.4g} Hz, MAC {mac:.3f}"
-    moved = None
+    moved = np.empty((0, 3))
     if "shape_basis" in data:
         c, B = data["shape_coefficient"].values[i, r], data["shape_basis"].values
         moved = np.einsum("b,bnk->nk", c, B)
     return title, computed, measured * factor[:, None], moved
 
 
-def _from_the_side(axes: Axes, data: Dataset, measured: Floats, moved: Floats | None) -> None:
+def _from_the_side(axes: Axes, data: Dataset, measured: Floats, moved: Floats) -> None:
     """Draw displacements of a chain over its heights."""
     nodes, sensor_nodes = data["node"].values, data["sensor_node"].values
-    x, height = np.zeros(len(nodes)) if moved is None else moved[:, 0], nodes[:, 2]
+    x, height = moved[:, 0], nodes[:, 2]
     axes.axvline(0, color="0.6", lw=0.8)
     for line in data["line_nodes"].values:
         axes.plot(x[line], height[line], "-", color=COLOURS[0], lw=1.6)
@@ -98,7 +98,7 @@ def _in_space(data: Dataset, shapes: list[_Shape]) -> Picture:
     for k, (title, computed, measured, moved) in enumerate(shapes):
         axes = figure.add_subplot(rows, columns, k + 1, projection="3d")
         assert isinstance(axes, Axes3D)
-        deformed = nodes if moved is None else nodes + reach * moved
+        deformed = nodes + reach * moved
         _mesh(axes, nodes, *cells, "0.75", 0.0)
         _mesh(axes, deformed, *cells, COLOURS[0], 0.25)
         for values, colour in ((computed[None], COLOURS[0]), (measured, COLOURS[1])):

@@ -8,12 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Ellipse
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from modefront._typing import Floats
+from modefront._typing import Bools, Floats
 from modefront.datasets import Dataset
 from modefront.front.methods import METHODS
 from modefront.front.point import front_points, position, preferred
 from modefront.plots import canvas
 from modefront.predictions.base import RecordedPrediction, predictions_in
+from modefront.text import NAME
 
 FAR = 2.5
 """Error over the greatest of the Pareto-optimal models from which a model is beyond the axes."""
@@ -21,85 +22,87 @@ FAR = 2.5
 
 def front(data: Dataset, *, log: bool = False) -> canvas.Picture:
     """Return the front in the space of errors, with logarithmic axes if ``log``."""
-    error = data["error"].values
+    error, groups = data["error"].values, data.sizes["group"]
     if log:
         error = np.maximum(error, 1e-4 * np.nanmax(error))
-    groups = canvas.names_of(data, "group")
-    if len(groups) == 1:
-        return _one(data, error, groups[0])
-    if len(groups) == 2:
-        return _two(data, error, groups, log=log)
-    return _many(data, error, groups, log=log)
+    if groups == 1:
+        return _one(data, error)
+    figure = _two(data, error) if groups == 2 else _many(data, error)
+    if log:
+        for axes in figure.axes:
+            axes.set(xscale="log", yscale="log")
+    elif groups == 2:
+        _limits(figure.axes[0], data, error)
+    return figure
 
 
-def _one(data: Dataset, error: Floats, group: str) -> canvas.Picture:
+def _titles(data: Dataset, most: int = NAME) -> list[str]:
+    """Return what the axes of errors are called."""
+    return [f"error of {group}" for group in canvas.names_of(data, "group", most)]
+
+
+def _one(data: Dataset, error: Floats) -> canvas.Picture:
+    """Draw a line a model."""
     labels = canvas.names_of(data, "label", 24)
     figure, axes = canvas.single(4.6, 0.9 + 0.25 * len(labels))
     canvas.draw_models(axes, data, np.column_stack([error[:, 0], np.arange(len(labels))]))
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()
-    axes.set_xlabel(f"error of {group}")
+    axes.set_xlabel(_titles(data)[0])
     axes.locator_params(axis="x", nbins=5)
     return figure
 
 
-def _two(data: Dataset, error: Floats, groups: list[str], *, log: bool) -> canvas.Picture:
+def _two(data: Dataset, error: Floats) -> canvas.Picture:
     figure, axes = canvas.single(5.2, 4.0)
     method = METHODS.get(data.attrs["method"])
     if canvas.is_path(data) and method is not None and method.programme is not None:
         for branch in canvas.branches(data):
             axes.plot(*error[branch].T, "-", color=canvas.COLOURS[0], lw=1, alpha=0.5)
     canvas.draw_models(axes, data, error)
-    axes.set(xlabel=f"error of {groups[0]}", ylabel=f"error of {groups[1]}")
-    if log:
-        axes.set(xscale="log", yscale="log")
-    else:
-        _limits(axes, data, error)
+    axes.set(**dict(zip(("xlabel", "ylabel"), _titles(data), strict=True)))
     axes.legend()
     return figure
 
 
 def _limits(axes: Axes, data: Dataset, error: Floats) -> None:
     """Leave far models out that are not Pareto optimal, and note their number."""
+
+    def most(chosen: Bools) -> Floats:
+        greatest = np.nanmax(error[chosen], axis=0)
+        return np.where(greatest > 0, greatest, 1.0)
+
     chosen = canvas.shown(data)
-    most = np.nanmax(error[chosen], axis=0)
-    most = np.where(most > 0, most, 1.0)
-    far = ~chosen & (error > FAR * most).any(axis=1)
+    far = ~chosen & (error > FAR * most(chosen)).any(axis=1)
     if not far.any():
         return
-    most = np.nanmax(error[~far], axis=0)
-    most = np.where(most > 0, most, 1.0)
-    axes.set(xlim=(-0.05 * most[0], 1.1 * most[0]), ylim=(-0.05 * most[1], 1.1 * most[1]))
-    count = int(far.sum())
-    text = f"{count} models"
-    if count == 1:
-        (i,) = np.flatnonzero(far)
-        text = f"{canvas.short(data['label'].values[i])} ({error[i, 0]:.3g}, {error[i, 1]:.3g})"
+    x, y = most(~far)
+    axes.set(xlim=(-0.05 * x, 1.1 * x), ylim=(-0.05 * y, 1.1 * y))
+    text = f"{far.sum()} models"
+    if far.sum() == 1:
+        (label,), ((x, y),) = data["label"].values[far], error[far]
+        text = f"{canvas.short(label)} ({x:.3g}, {y:.3g})"
     axes.set_title(f"beyond the axes: {text}", loc="right", color="0.35")
 
 
-def _many(data: Dataset, error: Floats, groups: list[str], *, log: bool) -> canvas.Picture:
+def _many(data: Dataset, error: Floats) -> canvas.Picture:
     """Draw all pairs of errors."""
-    n = len(groups)
+    titles = _titles(data, 18)
+    n = len(titles)
     size = 2.1 if n < 6 else 1.5
     figure = canvas.picture(max(size * (n - 1), 5.2), size * (n - 1) + 0.2)
     grid = figure.subplots(n - 1, n - 1, squeeze=False, sharex="col", sharey="row")
-    for i in range(1, n):
-        for j in range(n - 1):
-            axes = grid[i - 1][j]
-            if j >= i:
-                axes.remove()
-                continue
-            canvas.draw_models(axes, data, error[:, [j, i]])
-            if log:
-                axes.set(xscale="log", yscale="log")
-            if i == n - 1:
-                axes.set_xlabel(f"error of {canvas.short(groups[j], 18)}")
-            if j == 0:
-                axes.set_ylabel(f"error of {canvas.short(groups[i], 18)}")
+    for (i, j), axes in np.ndenumerate(grid):
+        if j > i:
+            axes.remove()
+            continue
+        canvas.draw_models(axes, data, error[:, [j, i + 1]])
+        if i == n - 2:
+            axes.set_xlabel(titles[j])
+        if j == 0:
+            axes.set_ylabel(titles[i + 1])
     handles, labels = grid[0][0].get_legend_handles_labels()
-    once = dict(zip(labels, handles, strict=True))
-    figure.legend(once.values(), once.keys(), loc="upper right")
+    figure.legend(handles, labels, loc="upper right")
     return figure
 
 
@@ -113,8 +116,8 @@ def parameters(data: Dataset) -> canvas.Picture:
             if low - 0.1 * (high - low) <= bound <= high + 0.1 * (high - low):
                 axes.axhline(bound, color="k", ls=":", lw=1, label="bound")
 
-    names = canvas.names_of(data, "parameter")
-    return canvas.panels_along(data, theta, names, bars=(theta - std, theta + std), mark=mark)
+    names, bars = data["parameter"].values.tolist(), (theta - std, theta + std)
+    return canvas.panels_along(data, theta, names, bars, mark=mark)
 
 
 def frequencies(data: Dataset) -> canvas.Picture:
@@ -125,20 +128,24 @@ def frequencies(data: Dataset) -> canvas.Picture:
         if np.isfinite(measured[r]):
             axes.axhline(measured[r], color="k", ls="--", lw=1, label="measured")
 
-    std = data["posterior_frequency_std"].values if "posterior_frequency_std" in data else ()
-    bars = canvas.at_reference(data, f, std)
-    names = [f"mode {r}" for r in data["mode"].values]
-    return canvas.panels_along(data, f, names, "frequency, Hz", bars, mark)
+    bars = canvas.at_reference(data, f, _known(data, "posterior_frequency_std"))
+    return canvas.panels_along(data, f, _modes(data), bars, "frequency, Hz", mark)
 
 
 def mac(data: Dataset) -> canvas.Picture:
     """Return a panel a mode with MAC values."""
     values = data["mac"].values
-    std = data["posterior_mac_std"].values if "posterior_mac_std" in data else ()
-    bars = canvas.at_reference(data, values, std)
-    bars = bars and (bars[0], np.minimum(bars[1], 1.0))
-    names = [f"mode {r}" for r in data["mode"].values]
-    return canvas.panels_along(data, values, names, "MAC", bars)
+    low, high = canvas.at_reference(data, values, _known(data, "posterior_mac_std"))
+    return canvas.panels_along(data, values, _modes(data), (low, np.minimum(high, 1.0)), "MAC")
+
+
+def _modes(data: Dataset) -> list[str]:
+    return [f"mode {r}" for r in data["mode"].values]
+
+
+def _known(data: Dataset, name: str) -> Any:
+    """Return the values of a variable; NaN where there is none."""
+    return data[name].values if name in data else np.nan
 
 
 def parameter_std(data: Dataset) -> Floats:
@@ -146,8 +153,8 @@ def parameter_std(data: Dataset) -> Floats:
     out = np.full(data["theta"].values.shape, np.nan)
     if "theta_std" in data:
         out = data["theta_std"].values
-    elif "posterior_std" in data:
-        out[data["label"].values == preferred(data.attrs)] = data["posterior_std"].values
+    else:
+        out[position(data)] = _known(data, "posterior_std")
     return np.where(np.isfinite(out), out, np.nan)
 
 
@@ -164,9 +171,7 @@ def minima(data: Dataset) -> canvas.Picture:
     names, (unit, title) = canvas.names_of(data, "parameter", 18), unit_of(data)
     figure, axes = canvas.single(max(5.6, 0.45 * len(names)), 3.6)
     x, of = np.arange(len(names)), list(map(str, data["minimum_of"].values))
-    colours = {
-        name: canvas.COLOURS[k % len(canvas.COLOURS)] for k, name in enumerate(dict.fromkeys(of))
-    }
+    colours = {name: canvas.colour_of(k) for k, name in enumerate(dict.fromkeys(of))}
     if "equal_of" in data:
         for name, theta in zip(data["equal_of"].values, data["equal_theta"].values, strict=True):
             axes.plot(x, theta / unit, "-", color=colours.get(str(name), "0.6"), lw=0.5, alpha=0.35)
@@ -191,9 +196,9 @@ def uncertainty(data: Dataset) -> canvas.Picture:
     """Return parameters with deviations, their correlation, and the front with its scatter."""
     covariance = None  # of the parameters at the reference
     if "posterior_covariance" in data:
-        covariance = np.asarray(data["posterior_covariance"].values)
+        covariance = data["posterior_covariance"].values
     elif "theta_covariance" in data:
-        covariance = np.asarray(data["theta_covariance"].values[position(data)])
+        covariance = data["theta_covariance"].values[position(data)]
         covariance = covariance if np.isfinite(covariance).all() else None
     scattered = data.sizes["group"] == 2 and "objective_covariance" in data
     parts = 1 + (covariance is not None) + scattered
@@ -202,7 +207,12 @@ def uncertainty(data: Dataset) -> canvas.Picture:
     _parameters(row[0], data)
     canvas.legend(figure, row.pop(0), "outside lower left", 3)
     if covariance is not None:
-        _correlation(row.pop(0), data, covariance)
+        axes = row.pop(0)
+        size = np.sqrt(np.maximum(np.diag(covariance), 0))
+        scale = np.outer(size, size)
+        r = np.divide(covariance, scale, out=np.zeros(covariance.shape), where=scale > 0)
+        canvas.draw_matrix(axes, r, canvas.names_of(data, "parameter", 18), -1, "PuOr")
+        axes.set_title(f"correlation at {canvas.short(preferred(data.attrs))}", loc="left")
     if scattered:
         _ellipses(row.pop(0), data)
     return figure
@@ -211,15 +221,13 @@ def uncertainty(data: Dataset) -> canvas.Picture:
 def _parameters(axes: Axes, data: Dataset) -> None:
     unit, title = unit_of(data)
     std, theta = parameter_std(data) / unit, data["theta"].values / unit
-    kinds, best = data["kind"].values, position(data)
-    rows = [best, *np.flatnonzero(kinds == "edge").tolist()]
+    rows = [position(data), *np.flatnonzero(data["kind"].values == "edge").tolist()]
     names = canvas.names_of(data, "parameter", 18)
-    y = np.arange(len(names))
+    y, (blue, red, *more) = np.arange(len(names)), canvas.COLOURS
+    others = blue, "0.3", *more
     for k, i in enumerate(rows):
         shift = y + 0.7 * ((k + 0.5) / len(rows) - 0.5)
-        colour = canvas.COLOURS[1] if i == best else canvas.COLOURS[(k - 1) % len(canvas.COLOURS)]
-        if i != best and colour == canvas.COLOURS[1]:
-            colour = "0.3"
+        colour = others[(k - 1) % len(others)] if k else red
         for width, reach in ((1.0, 2 * std[i]), (2.4, std[i])):
             axes.hlines(shift, theta[i] - reach, theta[i] + reach, colour, lw=width)
         label = canvas.short(data["label"].values[i])
@@ -228,14 +236,6 @@ def _parameters(axes: Axes, data: Dataset) -> None:
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.set_xlabel(title)
     axes.set_title("with 1 and 2 standard deviations", loc="left")
-
-
-def _correlation(axes: Axes, data: Dataset, covariance: Floats) -> None:
-    size = np.sqrt(np.maximum(np.diag(covariance), 0))
-    scale = np.outer(size, size)
-    r = np.divide(covariance, scale, out=np.zeros(covariance.shape), where=scale > 0)
-    canvas.draw_matrix(axes, r, canvas.names_of(data, "parameter", 18), -1, "PuOr")
-    axes.set_title(f"correlation at {canvas.short(preferred(data.attrs))}", loc="left")
 
 
 def _ellipses(axes: Axes, data: Dataset) -> None:
@@ -251,16 +251,10 @@ def _ellipses(axes: Axes, data: Dataset) -> None:
         values, vectors = np.linalg.eigh(S)
         width, height = 2 * np.sqrt(np.maximum(values, 0))
         angle = float(np.degrees(np.arctan2(vectors[1, 0], vectors[0, 0])))
-        marks: dict[str, Any] = {
-            "angle": angle,
-            "fc": canvas.COLOURS[4],
-            "ec": canvas.COLOURS[0],
-            "alpha": 0.25,
-        }
-        axes.add_patch(Ellipse(error[i].tolist(), width, height, **marks))
+        marks: dict[str, Any] = {"fc": canvas.COLOURS[4], "ec": canvas.COLOURS[0], "alpha": 0.25}
+        axes.add_patch(Ellipse(error[i].tolist(), width, height, angle=angle, **marks))
     canvas.draw_models(axes, data, error, "nominal")
-    first, second = canvas.names_of(data, "group")
-    axes.set(xlabel=f"error of {first}", ylabel=f"error of {second}")
+    axes.set(**dict(zip(("xlabel", "ylabel"), _titles(data), strict=True)))
     axes.set_title("front with its scatter", loc="left")
 
 
@@ -279,6 +273,8 @@ def predictions(data: Dataset) -> canvas.Picture:
         if x.variable == variable
     ]
     figure, axes = canvas.single(6.4, 1.0 + 0.24 * max(len(rows), 1))
+    bar: dict[str, Any] = {"color": canvas.COLOURS[0], "lw": 5, "alpha": 0.5}
+    star: dict[str, Any] = {"color": canvas.COLOURS[1], "mec": "k", "mew": 0.5, "ms": 9}
     labels, widely = [], False
     for y, (name, of) in enumerate(rows):
         value, known = of.values[best], of.values[chosen & np.isfinite(of.values)]
@@ -290,10 +286,10 @@ def predictions(data: Dataset) -> canvas.Picture:
         std = np.nan if of.std is None else of.std
         std = np.exp(std) if of.variable.logarithmic else 1 + abs(std / value)
         ends = np.array([known.min(), known.max()])
-        axes.plot(ends / value, [y, y], color=canvas.COLOURS[0], lw=5, alpha=0.5)
+        axes.plot(ends / value, [y, y], **bar)
         axes.plot(known / value, [y] * known.size, "|", color=canvas.COLOURS[0], ms=5)
         axes.plot([1 / std, std], [y, y], "-|", color=canvas.COLOURS[1], lw=1.2, ms=8)
-        axes.plot(1, y, "*", color=canvas.COLOURS[1], mec="k", mew=0.5, ms=9)
+        axes.plot(1, y, "*", **star)
         axes.plot(of.values[nominal] / value, [y] * nominal.size, "X", color="0.4", ms=6)
     axes.set_yticks(range(len(rows)), labels)
     axes.set_ylim(len(rows) - 0.4, -0.6)
@@ -301,13 +297,11 @@ def predictions(data: Dataset) -> canvas.Picture:
         axes.set_xscale("log")
     label = canvas.short(data["label"].values[best])
     axes.set_xlabel(f"over that of {label} (its value in brackets)")
-    axes.plot([], [], color=canvas.COLOURS[0], lw=5, alpha=0.5, label="Pareto-optimal models")
-    axes.plot(
-        [], [], "-*", color=canvas.COLOURS[1], mec="k", mew=0.5, ms=9, label=f"{label}, ± 1 std"
-    )
+    axes.plot([], [], **bar, label="Pareto-optimal models")
+    axes.plot([], [], "-*", **star, label=f"{label}, ± 1 std")
     if nominal.size:
         axes.plot([], [], "X", color="0.4", ls="", label="nominal")
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower left", ncols=3)
+    canvas.legend(figure, axes, "outside lower left", 3)
     return figure
 
 
@@ -325,7 +319,7 @@ def _page(data: Dataset, of: RecordedPrediction) -> canvas.Picture:
     variable = (*of.kind.ranged, *of.kind.variables)[0]
     quantities = [x for x in of.quantities if x.variable == variable]
     values = np.column_stack([x.values for x in quantities])
-    std = [x.std for x in quantities if x.std is not None]
+    std = [np.nan if x.std is None else x.std for x in quantities]
     places = [x.place for x in quantities]
     if variable.logarithmic:
         values = np.where(values > 0, values, np.nan)
@@ -334,13 +328,12 @@ def _page(data: Dataset, of: RecordedPrediction) -> canvas.Picture:
         along = canvas.Along(data)
         bars = canvas.at_reference(data, np.log(values), std)
         for k, place in enumerate(places):
-            colour = canvas.COLOURS[k % len(canvas.COLOURS)]
-            along.draw(axes, values[:, k], colour, canvas.short(place, 18))
-            if bars is not None:
-                along.bars(axes, np.exp(bars[0][:, k]), np.exp(bars[1][:, k]), colour)
+            along.draw(axes, values[:, k], canvas.colour_of(k), canvas.short(place, 18))
+            low, high = (np.exp(each[:, k]) for each in bars)
+            along.bars(axes, low, high, canvas.colour_of(k))
         along.finish(figure, [axes], 1)
     else:
         bars = canvas.at_reference(data, values, std)
-        figure = canvas.panels_along(data, values, places, variable.title, bars)
+        figure = canvas.panels_along(data, values, places, bars, variable.title)
     figure.suptitle(canvas.short(of.name + f" ({of.load})" * bool(of.load)), x=0.01, ha="left")
     return figure

@@ -20,15 +20,12 @@ MOST_LINES, MOST_FUNCTIONS = 600, 40
 
 def write_identification(test: IdentifiedTest, path: Path) -> Path:
     """Write the page of an identification; raises InputError where that cannot be done."""
+    chosen = test.test.chosen
     report = {
         "title": test.test.name,
         "version": __version__,
         "warnings": test.warnings,
-        "chosen": {
-            "keep": test.test.chosen.keep,
-            "drop": test.test.chosen.drop,
-            "seed": test.test.chosen.seeds,
-        },
+        "chosen": {"keep": chosen.keep, "drop": chosen.drop, "seed": chosen.seeds},
         "sets": [{"name": name} | _set(test, k) for k, name in enumerate(test.names)],
     }
     data = packed(json_of(report).encode())
@@ -52,7 +49,6 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
     at = [places[x] if placed else ((i, 0, 0), (0, 0, 1)) for i, x in enumerate(each.responses)]
     positions, directions = np.array(at, dtype=float).transpose(1, 0, 2)
     shapes = np.array([mode.shape.complex_shape for mode in each.modes]).T
-    rows: list[Floats] = list(mac(shapes, shapes)) if each.modes else []
     return {
         "band": each.band,
         "quantity": data.quantity,
@@ -83,7 +79,7 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
         "complexIndicators": [_logarithms(row[kept]) for row in complex_indicators(data)],
         "multivariateIndicators": [_rounded(row) for row in multivariate],
         "functions": _functions(each, kept),
-        "mac": [_rounded(row, 3) for row in rows],
+        "mac": [_rounded(row, 3) for row in mac(shapes, shapes)] if each.modes else [],
         "sensors": each.responses,
         "placed": placed,
         "positions": positions,
@@ -93,20 +89,17 @@ def _set(test: IdentifiedTest, k: int) -> dict[str, Any]:
 
 def _functions(each: Identification, kept: Any) -> list[dict[str, Any]]:
     fitted = each.functions
-    share = np.nan_to_num(fitted.residuals.share, nan=-1.0)
-    measured = [p for p in np.argsort(-share.ravel()) if share.ravel()[p] >= 0]
-    out = []
-    for position in measured[:MOST_FUNCTIONS]:
-        j, i = np.unravel_index(position, share.shape)
-        out.append(
-            {
-                "name": f"{fitted.data.references[j]} to {fitted.data.responses[i]}",
-                "residual": float(share[j, i]),
-                "measured": _logarithms(np.abs(fitted.data.H[j, i, kept]) ** 2),
-                "synthesised": _logarithms(np.abs(fitted.synthesised[j, i, kept]) ** 2),
-            }
-        )
-    return out
+    share = fitted.residuals.share
+    listed = np.argsort(-share, axis=None)[: int(np.isfinite(share).sum())]
+    return [
+        {
+            "name": f"{fitted.data.references[j]} to {fitted.data.responses[i]}",
+            "residual": float(share[j, i]),
+            "measured": _logarithms(np.abs(fitted.data.H[j, i, kept]) ** 2),
+            "synthesised": _logarithms(np.abs(fitted.synthesised[j, i, kept]) ** 2),
+        }
+        for j, i in np.transpose(np.unravel_index(listed[:MOST_FUNCTIONS], share.shape))
+    ]
 
 
 def _logarithms(power: Floats) -> list[int | None]:

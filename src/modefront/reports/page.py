@@ -10,7 +10,7 @@ import gzip
 import hashlib
 import html
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -21,8 +21,7 @@ from modefront._typing import Floats
 from modefront._version import __version__
 from modefront.datasets import Dataset
 from modefront.errors import Fault, InputError, writing
-from modefront.findings.catalogue import Severity
-from modefront.findings.record import meaning_of
+from modefront.findings.record import Severity, meaning_of
 from modefront.front.methods import METHODS
 from modefront.front.point import front_points, position
 from modefront.outputs import write_text
@@ -49,14 +48,11 @@ def payload(results: Sequence[tuple[str, Dataset]]) -> tuple[str, str]:
     ``results`` are sound datasets, as `modefront.results.files.read_dataset` returns them, with the
     names of their folders.
     """
-    arrays = _Arrays()
-    names = short_names([name for name, _ in results])
+    arrays, (folders, data) = _Arrays(), zip(*results, strict=True)
     with np.errstate(all="ignore"):  # what is no number is shown as unknown
-        fronts = [
-            _front(name, data, arrays) for name, (_, data) in zip(names, results, strict=True)
-        ]
-    studies = [front["study"] or front["name"] for front in fronts]
-    title = studies[0] if len(studies) == 1 else f"{len(studies)} studies compared"
+        fronts = [_front(*of, arrays) for of in zip(short_names(folders), data, strict=True)]
+    title = fronts[0]["study"] or fronts[0]["name"]
+    title = f"{len(fronts)} studies compared" if fronts[1:] else title
     report = {
         "title": title,
         "version": __version__,
@@ -65,7 +61,7 @@ def payload(results: Sequence[tuple[str, Dataset]]) -> tuple[str, str]:
     }
     infinite = {"Infinity": 10**400, "-Infinity": -(10**400)}  # which JavaScript reads as such
     text = json_of(report, infinite, separators=(",", ":")).encode()
-    return title, packed(len(text).to_bytes(4, "little") + text + arrays.content)
+    return title, packed(len(text).to_bytes(4, "little") + text + arrays)
 
 
 def packed(content: bytes) -> str:
@@ -73,11 +69,8 @@ def packed(content: bytes) -> str:
     return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode("ascii")
 
 
-class _Arrays:
+class _Arrays(bytearray):
     """The binary part: arrays behind each other, each at a multiple of four bytes."""
-
-    def __init__(self) -> None:
-        self.content = bytearray()
 
     def whole(self, values: Floats) -> dict[str, Any]:
         """Add numbers as 16-bit integers of a common unit, and return where they are."""
@@ -90,10 +83,10 @@ class _Arrays:
         return self._add("int32", np.asarray(values).astype("<i4"))
 
     def _add(self, kind: str, values: np.ndarray[Any, Any]) -> dict[str, Any]:
-        out = {"at": len(self.content), "type": kind, "shape": list(values.shape)}
-        self.content += values.tobytes()
-        self.content += bytes(-len(self.content) % 4)
-        return out
+        at = len(self)
+        self.extend(values.tobytes())
+        self.extend(bytes(-len(self) % 4))
+        return {"at": at, "type": kind, "shape": values.shape}
 
 
 VARIABLES = (
@@ -102,47 +95,29 @@ VARIABLES = (
 )
 """Variables of the page, which has other capitals in their names; null where there are none."""
 
-POSTERIOR: Mapping[str, str] = {
-    "theta": "posterior_std",
-    "frequency": "posterior_frequency_std",
-    "mac": "posterior_mac_std",
-}
-"""Variables of the posterior, by their names on the page: all or none."""
-
 
 def _front(name: str, data: Dataset, arrays: _Arrays) -> dict[str, Any]:
-    """Return all that the page shows of one study."""
-
-    def names(of: str) -> list[str]:
-        return data[of].values.tolist() if of in data.variables else []
-
     def known(of: str) -> Any:
-        return data[of].values.tolist() if of in data else None
+        return data[of].values.tolist() if of in data.variables else None
 
-    kinds, interval = names("kind"), data.variables.get("interval")
-    posterior = {key: known(of) for key, of in POSTERIOR.items()}
+    kinds, interval = known("kind"), data.variables.get("interval")
     reported = [i for i, kind in enumerate(kinds) if kind != "nominal"]
+    posterior = {x: known(f"posterior_{x}_std") for x in ("frequency", "mac")}
+    posterior["theta"] = known("posterior_std")
     return {
         "name": name,
-        "study": str(data.attrs.get("study", "")),
-        "inputs": str(data.attrs.get("inputs", "")),
-        "version": str(data.attrs["version"]),
-        "method": str(data.attrs["method"]),
+        **{x: str(data.attrs.get(x, "")) for x in ("study", "inputs", "version", "method")},
         "reference": position(data),
         "nominal": kinds.index("nominal") if "nominal" in kinds else None,
-        "groups": names("group"),
-        "parameters": names("parameter"),
-        "modes": [int(mode) for mode in data["mode"].values],
-        "sensors": names("sensor"),
-        "sets": names("set"),
-        "label": names("label"),
+        **{f"{x}s": known(x) or [] for x in ("group", "parameter", "mode", "sensor", "set")},
+        "label": known("label"),
         "kind": kinds,
-        "pareto": data["pareto"].values.astype(bool).tolist(),
-        "converged": data["converged"].values.astype(bool).tolist(),
-        "piece": list(map(int, data["piece"].values)) if "piece" in data else [1] * len(kinds),
+        "pareto": known("pareto"),
+        "converged": known("converged"),
+        "piece": known("piece") or [1] * len(kinds),
         "order": front_points(data).tolist() or reported or [0],
         **{re.sub("_(.)", lambda x: x[1].upper(), name): known(name) for name in VARIABLES},
-        "posterior": None if None in posterior.values() else posterior,
+        "posterior": posterior if posterior["theta"] else None,
         "bounds": data["bounds"].values,
         "interval": None if interval is None else interval.values[:, [0, -1]],
         "noise": _noise(data),
@@ -165,9 +140,8 @@ def _front(name: str, data: Dataset, arrays: _Arrays) -> dict[str, Any]:
 
 def _noise(data: Dataset) -> Floats:
     """Return the error that is expected of each group at the reference; NaN where unknown."""
-    if "misfit" not in data:
-        return np.full(data.sizes["group"], np.nan)
-    misfit, error = data["misfit"].values, data["error"].values[position(data)]
+    error = data["error"].values[position(data)]
+    misfit = data["misfit"].values if "misfit" in data else np.zeros(error.shape)
     return np.divide(error, misfit, out=np.full(error.shape, np.nan), where=misfit > 0)
 
 
@@ -194,7 +168,7 @@ def _geometry(data: Dataset, arrays: _Arrays) -> dict[str, Any] | None:
         "nodes": arrays.whole(nodes - (nodes.min(axis=0) if len(nodes) else 0.0)),
         "lines": arrays.numbers(data["line_nodes"].values),
         "faces": arrays.numbers(data["face_nodes"].values),
-        "sensorNode": [int(x) for x in data["sensor_node"].values],
+        "sensorNode": data["sensor_node"].values,
         "sensorDirection": data["sensor_direction"].values,
         "basis": arrays.whole(data["shape_basis"].values),
         "columns": data.sizes["basis"],
@@ -203,7 +177,6 @@ def _geometry(data: Dataset, arrays: _Arrays) -> dict[str, Any] | None:
 
 
 def _prediction(of: RecordedPrediction, x: Quantity) -> dict[str, Any]:
-    """Return a quantity that all models predict."""
     return {
         "title": of.name,
         "place": x.label,
@@ -223,18 +196,16 @@ def topics(data: Dataset) -> dict[str, list[tuple[str, list[str]]]]:
 
     Each has what it means and what to do, in paragraphs.
     """
-    found = findings_of(data)
-
-    def of(*severities: Severity) -> list[tuple[str, list[str]]]:
-        chosen = ((str(x), x.meaning) for x in found if x.severity in severities)
-        return [(f"{text[:1].upper()}{text[1:]}".rstrip(".") + ".", why) for text, why in chosen]
-
-    failed = of(Severity.FAILURE) or [("All models that were solved for converged.", [])]
+    of: dict[Severity, list[tuple[str, list[str]]]] = {x: [] for x in Severity}
+    for x in findings_of(data):
+        text = str(x)
+        of[x.severity].append((f"{text[:1].upper()}{text[1:]}".rstrip(".") + ".", x.meaning))
+    failed = of[Severity.FAILURE] or [("All models that were solved for converged.", [])]
     every: dict[str, list[tuple[str, list[str]]]] = {
         "": [(text, meaning_of(text)) for text in verdict(data)],
-        "How well the best models do": of(Severity.FIT),
-        "What to beware of": [*failed, *of(Severity.CAUTION)],
-        "What the data leave open": of(Severity.OPEN),
+        "How well the best models do": of[Severity.FIT],
+        "What to beware of": [*failed, *of[Severity.CAUTION]],
+        "What the data leave open": of[Severity.OPEN],
         "What was studied": [(_study(data), [])],
     }
     return {heading: sentences for heading, sentences in every.items() if sentences}
@@ -255,26 +226,6 @@ def _study(data: Dataset) -> str:
     )
 
 
-PAGE = """\
-<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{policy}">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="generator" content="modefront">
-<title>{title}</title>
-<style>{style}</style>
-</head>
-<body>
-<noscript><p>This report is drawn by a script: please allow scripts for this file.</p></noscript>
-<script type="text/plain" id="data">{data}</script>
-<script>{script}</script>
-</body>
-</html>
-"""
-
-
 def page(results: Sequence[tuple[str, Dataset]]) -> str:
     """Return the page of sound results, given with the names of their folders."""
     return page_of(*payload(results), "report.js")
@@ -283,14 +234,15 @@ def page(results: Sequence[tuple[str, Dataset]]) -> str:
 def page_of(title: str, data: str, name: str) -> str:
     """Return the page with a title, data in base64, and the script of a name."""
     folder = files("modefront.reports")
-    script = (folder / name).read_text(encoding="utf-8")
-    style = (folder / "style.css").read_text(encoding="utf-8")
+    whole, style, script = (
+        (folder / x).read_text(encoding="utf-8") for x in ("page.html", "style.css", name)
+    )
     policy = (
         f"default-src 'none'; script-src '{_digest(script)}'; style-src '{_digest(style)}'; "
         "base-uri 'none'; form-action 'none'"
     )
     shown = "".join(c if c.isprintable() else " " for c in title)
-    return PAGE.format(
+    return whole.format(
         policy=policy, title=html.escape(shown), style=style, data=data, script=script
     )
 
@@ -311,7 +263,7 @@ def report(folders: Path | str | Sequence[Path | str], output: Path | str | None
         For results that are not sound, and a file that cannot be written.
     """
     results = read_together(folders)
-    path = Path(output) if output else Path(results[0][0]) / "report.html"
+    path = Path(output or Path(results[0][0]) / "report.html")
     write_html(page(results), path)
     return path
 

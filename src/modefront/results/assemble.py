@@ -42,8 +42,8 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     reported = [front.reference, *of_kind(front.points, Kind.EDGE)]
     determined = [(x.label, determination(problem, x.solution.evaluation)) for x in reported]
     boundary = METHODS[front.method].programme == "boundary"
-    parts = {Kind.FRONT: "whole" if boundary else ""}
-    parts |= dict.fromkeys((Kind.IDENTIFIABLE, Kind.IDENTIFIABLE_EDGE), "identifiable")
+    parts = dict.fromkeys((Kind.IDENTIFIABLE, Kind.IDENTIFIABLE_EDGE), "identifiable")
+    parts[Kind.FRONT] = "whole" if boundary else ""
     part = analysis.identifiable
     values = _points(problem, front, analysis) | _minima(problem, front)
     values |= _branches(problem, front) | lattice_values(front)
@@ -134,11 +134,10 @@ def _branches(problem: UpdatingProblem, front: Front) -> Values:
     J = np.array([point.solution.J for point in front.points])
     ends = [end for gap in front.gaps for end in (gap.end, gap.start)]
     unknown = np.full(len(problem.model.parameters), np.nan), np.full(2, np.nan)
+    labels = [(f"end-{k}", f"start-{k + 1}") for k in range(1, len(front.gaps) + 1)]
     return {
         "piece": branch_numbers(J, nondominated(J), front.gaps),
-        "end_label": [
-            x for k in range(len(front.gaps)) for x in (f"end-{k + 1}", f"start-{k + 2}")
-        ],
+        "end_label": [label for each in labels for label in each],
         "end_theta": [x.theta if x else unknown[0] for x in ends],
         "end_objective": [x.J if x else unknown[1] for x in ends],
         "end_converged": [x is not None for x in ends],
@@ -156,11 +155,11 @@ def lattice_values(front: Front) -> Values:
 def _weights(front: Front, J: Floats, a: Floats) -> Floats:
     """Return the weights (points, n) that weighted methods used; NaN at other points."""
     out = np.full(J.shape, np.nan)
-    swept = METHODS[front.method].programme == "weights"
+    swept = [Kind.FRONT] * (METHODS[front.method].programme == "weights")
     for i, point in enumerate(front.points):
         if point.kind is Kind.OPTIMAL:
             out[i] = a / J[i]
-        elif point.kind in WEIGHTED or (point.kind is Kind.FRONT and swept):
+        elif point.kind in (*WEIGHTED, *swept):
             out[i] = point.solution.weights
     return out
 
@@ -210,20 +209,18 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
     n, p, modes = len(problem.objectives), len(problem.model.parameters), len(problem.data.modes)
     sizes = {"theta_std": (p,), "theta_covariance": (p, p), "objective_std": (n,)}
     sizes |= {"objective_covariance": (n, n), "frequency_std": (modes,), "mac_std": (modes,)}
-    unknown = {name: np.full(size, np.nan) for name, size in sizes.items()}
-    rows: list[Values] = []
-    for point in front.points:
-        row: Values = {**unknown, "scatter_doubt": ""}
+    out = {name: np.full((len(front.points), *size), np.nan) for name, size in sizes.items()}
+    doubts = [""] * len(front.points)
+    for i, point in enumerate(front.points):
         if (scatter := analysis.scatter.get(point.label)) is not None:
             J = scatter.J.T @ scatter.J
-            row |= {"theta_covariance": scatter.covariance, "objective_covariance": J}
-            row["theta_std"] = _std(scatter.covariance, scatter.free)
-            row["objective_std"] = np.sqrt(np.diag(J))
-            row["scatter_doubt"] = ", ".join(x.name.lower() for x in scatter.warnings)
+            out["theta_covariance"][i], out["objective_covariance"][i] = scatter.covariance, J
+            out["theta_std"][i] = _std(scatter.covariance, scatter.free)
+            out["objective_std"][i] = np.sqrt(np.diag(J))
+            doubts[i] = ", ".join(x.name.lower() for x in scatter.warnings)
             for quantity, slopes in analysis.slopes.get(point.label, {}).items():
-                row[f"{quantity}_std"] = np.linalg.norm(scatter.theta @ slopes.T, axis=0)
-        rows.append(row)
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+                out[f"{quantity}_std"][i] = np.linalg.norm(scatter.theta @ slopes.T, axis=0)
+    return {**out, "scatter_doubt": doubts}
 
 
 def _std(covariance: Floats, free: Floats) -> Floats:
@@ -255,20 +252,17 @@ def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis)
     if not analysis.replicates:
         return {}
     p, n = len(problem.model.parameters), len(problem.objectives)
-    solutions = [[each.get(x.label) for x in front.points] for each in analysis.replicates]
-    nothing = np.full(p + n, np.nan)
-    rows = (
-        [np.concatenate([x.theta, x.J]) if x and x.converged else nothing for x in row]
-        for row in solutions
-    )
-    both = np.array(list(rows))
+    both = np.full((len(analysis.replicates), len(front.points), p + n), np.nan)
+    for k, each in enumerate(analysis.replicates):
+        for i, point in enumerate(front.points):
+            if (found := each.get(point.label)) and found.converged:
+                both[k, i] = np.concatenate([found.theta, found.J])
     deviation = summary(both.reshape(len(both), -1))[1].reshape(-1, p + n)
-    theta, J = both[..., :p], both[..., p:]
     return {
-        "bootstrap_theta": theta,
-        "bootstrap_objective": J,
-        "bootstrap_theta_std": deviation[..., :p],
-        "bootstrap_objective_std": deviation[..., p:],
+        "bootstrap_theta": both[..., :p],
+        "bootstrap_objective": both[..., p:],
+        "bootstrap_theta_std": deviation[:, :p],
+        "bootstrap_objective_std": deviation[:, p:],
     }
 
 

@@ -147,10 +147,10 @@ def compare(folders: Path | str | Sequence[Path | str]) -> Comparison:
         if not data["pareto"].values.any():
             expected = "at least one Pareto-optimal model"
             raise InputError(Fault(folder, "variable 'pareto'", expected, "none"))
-    groups = tuple(map(str, results[0][1]["group"].values))
-    fronts = [_summary(name, data, _length(results[0][1])) for name, data in results]
-    pairs = [_apart(first, other) for first, other in combinations(results, 2)]
-    return Comparison(groups, tuple(fronts), tuple(pairs))
+    first = results[0][1]
+    fronts = tuple(_summary(name, data, _length(first)) for name, data in results)
+    pairs = tuple(_apart(one, other) for one, other in combinations(results, 2))
+    return Comparison(tuple(first["group"].values.tolist()), fronts, pairs)
 
 
 def short_names(folders: Sequence[str]) -> list[str]:
@@ -172,7 +172,7 @@ def read_together(folders: Path | str | Sequence[Path | str]) -> list[tuple[str,
     for folder in listed:
         with noted(faults):
             results.append((str(folder), read_dataset(folder)))
-    groups = [", ".join(map(str, data["group"].values)) for _, data in results]
+    groups = [", ".join(data["group"].values) for _, data in results]
     for (name, _), other in zip(results, groups, strict=True):
         if other != groups[0]:
             faults.append(Fault(name, "groups", f"those of {results[0][0]}: {groups[0]}", other))
@@ -197,17 +197,20 @@ def _length(data: Dataset) -> float:
     return float(scipy.sparse.csgraph.minimum_spanning_tree(lengths).sum()) if len(lengths) else 0.0
 
 
-def _models(data: Dataset) -> tuple[Dataset, Dataset, Dataset]:
-    best, optimal = data["pareto"].values, data["kind"].values == Kind.OPTIMAL.value
-    return data.isel(point=best), data.isel(point=position(data)), data.isel(point=optimal)
+def _models(data: Dataset) -> list[Dataset]:
+    """Return the Pareto-optimal models, the reference, and the optimally weighted one, if any."""
+    of = data["pareto"].values, [position(data)], data["kind"].values == Kind.OPTIMAL.value
+    return [data.isel(point=each) for each in of]
+
+
+def _least(values: Floats) -> float:
+    return min(values.ravel().tolist(), default=np.nan)
 
 
 def _summary(name: str, data: Dataset, first: float) -> Summary:
     length, (models, chosen, optimal) = _length(data), _models(data)
-    e = models["error"].values
-    quantities = [("frequency ", "mode", "frequency"), ("mac ", "mode", "mac")]
-    for kind in kinds_in(data):
-        quantities += [(f"{x.name} ", kind.dimension, x.name) for x in kind.ranged]
+    quantities = ["frequency", "mac", *(x.name for kind in kinds_in(data) for x in kind.ranged)]
+    nearest, best = (_least(np.linalg.norm(x["error"].values, axis=1)) for x in (models, optimal))
     return Summary(
         name,
         str(data.attrs.get("study", "")),
@@ -216,46 +219,37 @@ def _summary(name: str, data: Dataset, first: float) -> Summary:
         int(data.attrs["model_evaluations"]),
         length,
         length / first if first > 0 else np.nan,
-        tuple(np.ptp(e, axis=0).tolist()),
-        float(np.linalg.norm(e, axis=1).min()),
-        _first(np.linalg.norm(optimal["error"].values, axis=1)),
+        tuple(np.ptp(models["error"].values, axis=0).tolist()),
+        nearest,
+        best,
         preferred(data.attrs),
         float(np.linalg.norm(chosen["error"].values)),
-        tuple(_spreads("", "parameter", "theta", models, chosen)),
-        tuple(x for each in quantities for x in _spreads(*each, models, chosen)),
+        tuple(_spreads("theta", "", models, chosen)),
+        tuple(x for name in quantities for x in _spreads(name, f"{name} ", models, chosen)),
     )
 
 
-def _first(values: Floats) -> float:
-    return float(values[0]) if values.size else np.nan
-
-
-def _spreads(
-    prefix: str, dimension: str, variable: str, models: Dataset, chosen: Dataset
-) -> Iterator[Spread]:
-    names, values = models[dimension].values, models[variable].values
-    for name, column, value in zip(names, values.T, chosen[variable].values, strict=True):
-        known = column[np.isfinite(column)]
-        least, greatest = (known.min(), known.max()) if known.size else (np.nan, np.nan)
-        yield Spread(f"{prefix}{name}", float(least), float(greatest), float(value))
+def _spreads(variable: str, prefix: str, models: Dataset, chosen: Dataset) -> Iterator[Spread]:
+    names, values = models[models[variable].dims[1]].values, models[variable].values
+    for name, column, (value,) in zip(names, values.T, chosen[variable].values.T, strict=True):
+        known = column[np.isfinite(column)].tolist() or [np.nan]
+        yield Spread(f"{prefix}{name}", min(known), max(known), float(value))
 
 
 def _apart(first_results: tuple[str, Dataset], second_results: tuple[str, Dataset]) -> Apart:
     (first, a), (second, b) = first_results, second_results
-    names = [x["parameter"].values.tolist() for x in (a, b)]
-    common = [name for name in names[0] if name in names[1]]
+    names, others = (x["parameter"].values.tolist() for x in (a, b))
+    common = tuple(name for name in names if name in others)
     if not common:
         return Apart(first, second, (), *[np.nan] * 4)
-    places = [[each.index(name) for name in common] for each in names]
-    span = np.diff(a["bounds"].values[places[0]], axis=1)[:, 0]
-    # (models, p) of each kind in turn, of both results.
+    here, there = ([each.index(name) for name in common] for each in (names, others))
+    span = np.diff(a["bounds"].values[here], axis=1)[:, 0]
+    # Distances of the Pareto-optimal models, of the references, and of the optimally weighted ones.
     best, chosen, optimal = (
-        [np.atleast_2d(x["theta"].values[..., j] / span) for x, j in zip(each, places, strict=True)]
-        for each in zip(_models(a), _models(b), strict=True)
+        scipy.spatial.distance.cdist(
+            x["theta"].values[:, here] / span, y["theta"].values[:, there] / span
+        )
+        for x, y in zip(_models(a), _models(b), strict=True)
     )
-    away = scipy.spatial.distance.cdist(*best)
-    greatest = max(away.min(axis=0).max(), away.min(axis=1).max())
-    apart = [
-        _first(scipy.spatial.distance.cdist(*each)[:, :1].ravel()) for each in (optimal, chosen)
-    ]
-    return Apart(first, second, tuple(common), float(away.min()), float(greatest), *apart)
+    greatest = float(max(best.min(axis=0).max(), best.min(axis=1).max()))
+    return Apart(first, second, common, _least(best), greatest, _least(optimal), _least(chosen))

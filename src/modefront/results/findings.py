@@ -16,7 +16,6 @@ from modefront.front.point import INTERNAL, Kind, label, of_kind
 from modefront.identifiability.combinations import Determination
 from modefront.optim.problem import AT_BOUND
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.schema import Values
 from modefront.uncertainty.scatter import LinearisationWarning
 
 Determinations = Sequence[tuple[str, Determination]]
@@ -39,7 +38,7 @@ def findings(
     return in_order([*out, *_scatter(problem, front, analysis)])
 
 
-def as_values(findings: Sequence[Finding]) -> Values:
+def as_values(findings: Sequence[Finding]) -> dict[str, list[str]]:
     """Return the variables of results that hold findings: sentences, and records."""
     return {
         "finding": [str(finding) for finding in findings],
@@ -50,10 +49,9 @@ def as_values(findings: Sequence[Finding]) -> Values:
 def _search(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
     if front.open:
         yield found("budget", enumeration(front.open))
-    exact = list(compress(problem.objectives, front.exact))
     if not front.optimal:
         why, probable = "no regular minimum of sum a ln J was found", label(Kind.MOST_PROBABLE)
-        if exact:
+        if exact := list(compress(problem.objectives, front.exact)):
             why = (
                 f"the model can fit {enumeration(exact)} exactly, where the optimal weights are "
                 "not defined, and sum a ln J has no regular minimum"
@@ -121,16 +119,12 @@ def _extent(problem: UpdatingProblem, of: str, manifolds: Sequence[Manifold]) ->
     greatest, many = max(manifolds, key=lambda x: len(x.models)), len(manifolds) > 1
     kind = KINDS.get(greatest.dimension, "manifold")
     more = "" if greatest.dimension in KINDS else f" of dimension {greatest.dimension}"
+    said = f"{len(manifolds)} separate {kind}s{more}" if many else f"a {kind}{more}"
+    where = "; on the greatest" if many else ":"
+    reach = _far(problem, np.array([model.theta for model in greatest.models]))
     spent = f"{greatest.evaluations} eigenproblem{'s' * (greatest.evaluations != 1)}"
-    return found(
-        "manifold",
-        of,
-        many=many,
-        manifolds=f"{len(manifolds)} separate {kind}s{more}" if many else f"a {kind}{more}",
-        where="; on the greatest" if many else ":",
-        reach=_far(problem, np.array([model.theta for model in greatest.models])),
-        count=f"{len(greatest.models)} models, by {spent}, {greatest.extent.value}",
-    )
+    count = f"{len(greatest.models)} models, by {spent}, {greatest.extent.value}"
+    return found("manifold", of, many=many, manifolds=said, where=where, reach=reach, count=count)
 
 
 def _far(problem: UpdatingProblem, theta: Floats) -> str:
@@ -142,7 +136,7 @@ def _far(problem: UpdatingProblem, theta: Floats) -> str:
     all_the_way = np.flatnonzero(share >= 1 - AT_BOUND)
     parts = []
     if all_the_way.size > PARTS:
-        count = f"all {len(names)}" if all_the_way.size == len(names) else str(all_the_way.size)
+        count = "all " * (all_the_way.size == len(names)) + str(all_the_way.size)
         parts.append(f"{count} parameters from bound to bound")
         varied = np.setdiff1d(varied, all_the_way)
     named = varied if varied.size <= PARTS else varied[np.argsort(-share[varied], kind="stable")]
@@ -156,32 +150,29 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
     """Yield where the uncertainty of the data is taken from, and where it is not valid."""
     data = problem.data
     values = np.concatenate([data.frequency.ravel(), data.shape.ravel()])
-    known = np.concatenate([data.frequency_std.ravel(), data.shape_std.ravel()])
+    std = np.concatenate([data.frequency_std.ravel(), data.shape_std.ravel()])
     if analysis.source is None:
-        if np.isfinite(known).any() and not (known > 0).any():
+        if np.isfinite(std).any() and not (std > 0).any():
             yield found("no-deviations")
     else:
         why = {"std": "their standard deviations", "sets": "the scatter of the data sets"}
         yield found("source", why[analysis.source])
-        exact = int((np.isfinite(values) & ~(known > 0)).sum())
+        exact = int((np.isfinite(values) & ~(std > 0)).sum())
         if analysis.source == "std" and exact:
             yield found("exact-data", values=exact)
         kinds = {Kind.NOMINAL.value, *INTERNAL}
         labels = [point.label for point in front.points if point.kind.value not in kinds]
-        missing = [name for name in labels if name not in analysis.scatter]
-        if missing:
+        known = analysis.scatter
+        if missing := [name for name in labels if name not in known]:
             yield found("no-scatter", _places(missing, len(labels)))
-        of_points = [(x, analysis.scatter[x].warnings) for x in labels if x in analysis.scatter]
         for warning in LinearisationWarning:
-            warned = [name for name, warnings in of_points if warning in warnings]
-            if warned:
+            if warned := [x for x in labels if x in known and warning in known[x].warnings]:
                 yield found("approximate", _places(warned, len(labels)), why=warning.value)
     if analysis.posterior is not None and any(analysis.posterior.held):
         held = compress(problem.model.parameters, analysis.posterior.held)
         yield found("held", enumeration(list(held)))
     solutions = [solution for each in analysis.replicates for solution in each.values()]
-    failed = sum(not solution.converged for solution in solutions)
-    if failed:
+    if failed := sum(not solution.converged for solution in solutions):
         yield found("replicates", failed=failed, solutions=len(solutions))
 
 

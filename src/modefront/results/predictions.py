@@ -5,20 +5,20 @@ that predictions differ by the models alone. To first order the scatter needs tw
 axis of the posterior; with draws, the models drawn.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain, compress
+from itertools import compress, product
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numpy as np
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Floats
 from modefront.datasets import ArrayDataset, Dataset
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.findings.knowledge import enumeration
-from modefront.findings.record import Finding, found, from_text
+from modefront.findings.record import Finding, found
 from modefront.front.point import position, preferred
 from modefront.identifiability.combinations import ALL
 from modefront.models.base import full_of, is_reduced
@@ -32,9 +32,8 @@ from modefront.results.findings import as_values
 from modefront.results.schema import Values, described
 from modefront.uncertainty import prediction as spread
 from modefront.uncertainty.scatter import Posterior
-from modefront.work.codec import record
 from modefront.work.store import hash_text
-from modefront.work.task import Executor, Part, Task, seed_sequence
+from modefront.work.task import Executor, Key, Task, seed_sequence
 
 Arrays = Mapping[str, Floats]
 
@@ -43,15 +42,6 @@ T = TypeVar("T")
 STEP, ROUGH = 1e-4, 1e-2
 """Steps of differences of a prediction over the ranges of the parameters: of smooth ones, and of
 those that are estimated from samples."""
-
-
-@record
-@dataclass(frozen=True)
-class Predicted:
-    """A prediction of a model."""
-
-    values: Arrays  # arrays (places,) by key; NaN where the model cannot be solved
-    solved: bool = True  # whether it can
 
 
 @dataclass(frozen=True)
@@ -64,29 +54,42 @@ class PredictionRunner:
     work: Executor
     file: Path  # of the study, named in messages
 
+    @property
+    def kinds(self) -> dict[PredictionKind, list[Prediction]]:
+        """The predictions of each kind."""
+        kinds = dict.fromkeys(each.kind for each in self.predictions)
+        return {kind: [x for x in self.predictions if x.kind == kind] for kind in kinds}
+
     def at_models(
         self,
         prediction: Prediction,
-        thetas: Sequence[Floats] | Floats,
+        thetas: Floats,
         name: str,
         labels: Sequence[str] = (),
         method: Literal["evaluate", "check"] = "evaluate",
-    ) -> list[Predicted]:
+    ) -> tuple[dict[str, Floats], int]:
         """Return a prediction at models (m, p), or the kind's comparison with finer numerics.
 
-        Models with ``labels`` raise InputError where an option does not suit them, and
-        UnfinishedError where they have not the modes that are needed; others have NaN then.
+        Values are (m, places) by key. Models with ``labels`` raise InputError where an option does
+        not suit them, and UnfinishedError where they have not the modes that are needed; others
+        have NaN then, and are counted.
         """
-        parts: list[tuple[Part, ...]] = [(name, label) for label in labels]
-        if not labels:
-            marks = (hash_text(f"{theta.tolist()}")[:8] for theta in thetas)
-            parts = [(name, i, mark) for i, mark in enumerate(marks, start=1)]
+        parts: list[Key] = [(name, label) for label in labels] or [
+            (name, i, hash_text(f"{theta.tolist()}")[:8]) for i, theta in enumerate(thetas, start=1)
+        ]
         file = str(self.file) if labels else ""
         tasks = [
-            self._task(prediction, part, _predicted, (theta, method, file, part[-1]))
+            self._task(prediction, part, _predicted, theta, method, file, part[-1])
             for part, theta in zip(parts, thetas, strict=True)
         ]
-        return self.work.run(tasks)
+        rows = self.work.run(tasks)
+        check, unknown = prediction.kind.check, np.full(len(prediction.places), np.nan)
+        variables = check.variables if check and method == "check" else prediction.kind.variables
+        values = {
+            x.key: np.array([unknown if row is None else row[x.key] for row in rows])
+            for x in variables
+        }
+        return values, sum(row is None for row in rows)
 
     def extremes(self, prediction: Prediction, front: Sampled, values: Arrays) -> dict[str, Floats]:
         """Return least and greatest values over a front, and over all models that are equivalent.
@@ -95,113 +98,134 @@ class PredictionRunner:
         (2, places), by the key of each variable of which the range is reported.
         """
         mark = hash_text(f"{front.theta.tolist()} {front.is_open} {front.slack}")[:8]
-        ends: list[End] = [
-            (variable, i, sign)
-            for variable in prediction.kind.ranged
-            for sign in (1.0, -1.0)
-            for i in range(len(prediction.places))
-        ]
+        ranged, count = prediction.kind.ranged, len(prediction.places)
+        ends: list[End] = list(product(ranged, (1.0, -1.0), range(count)))
         # Ends share what is solved between points; over equivalent models each is work of its own.
         parts = [[end] for end in ends] if front.is_open else [ends]
         tasks = [
-            self._task(prediction, ("ends", k + 1, mark), _ends, (front, values, part))
-            for k, part in enumerate(parts)
+            self._task(prediction, ("ends", k, mark), _ends, front, values, part)
+            for k, part in enumerate(parts, start=1)
         ]
-        found = np.concatenate(self.work.run(tasks))
-        shape = (len(prediction.kind.ranged), 2, len(prediction.places))
-        keys = (variable.key for variable in prediction.kind.ranged)
-        return dict(zip(keys, found.reshape(shape), strict=True))
+        found = np.array([end for each in self.work.run(tasks) for end in each])
+        rows = found.reshape(len(ranged), 2, count)
+        return dict(zip((variable.key for variable in ranged), rows, strict=True))
+
+    def at_points(self, data: ArrayDataset, slack: float) -> ArrayDataset:
+        """Return results with the predictions of every point."""
+        optimal, best = data["pareto"].values, position(data)
+        values: Values = {"frequency_range": _range(data["frequency"].values[optimal])}
+        coordinates = {"range": ["minimum", "maximum", "spread"]}
+        labels, thetas = list(map(str, data["label"].values)), data["theta"].values
+        together = ALL if data.sizes["group"] > 1 else data["group"].values[0]
+        of = data["combination_of"].values == together
+        here = of & (data["combination_at"].values == labels[best])
+        is_open = (data["combination_share"].values[here] <= RANK).any()
+        is_open |= (np.diag(data["collinearity"].values) == 0).any()
+        front = Sampled(
+            thetas[optimal], data["objective"].values[optimal], slack > 0 or bool(is_open), slack
+        )
+        for kind, predictions in self.kinds.items():
+            rows = [self.at_models(each, thetas, "point", labels)[0] for each in predictions]
+            ends = [
+                self.extremes(each, front, {key: x[optimal] for key, x in row.items()})
+                for each, row in zip(predictions, rows, strict=True)
+            ]
+            of_points, of_ends = _beside(rows), _beside(ends)
+            for variable in kind.variables:
+                values[variable.name] = of_points[variable.key]
+            for variable in kind.ranged:
+                # Over the optimal points, and between and beside these over all equivalent ones.
+                over = np.vstack([of_points[variable.key][optimal], of_ends[variable.key]])
+                values[f"{variable.name}_range"] = _range(over)
+            for setting in kind.settings:
+                values[setting.name] = [x for y in predictions for x in y.settings[setting.name]]
+            for name in ("name", "heading"):
+                texts = [getattr(each, name) for each in predictions for _ in each.places]
+                values[f"{kind.dimension}_{name}"] = texts
+            coordinates[kind.dimension] = [place for each in predictions for place in each.places]
+            if kind.check:
+                at = thetas[[best]], kind.check.name, [labels[best]]
+                compared = [self.at_models(each, *at, "check")[0] for each in predictions]
+                checked = _beside(compared)
+                for variable in kind.check.variables:
+                    values[variable.name] = checked[variable.key][0]
+                values[kind.check.label.name] = [labels[best]] * len(coordinates[kind.dimension])
+        out = data.assign(described(values, self.kinds)).assign_coords(coordinates)
+        return out.assign_attrs({ATTRIBUTE: as_text(self.kinds)})
+
+    def to_first_order(
+        self, data: Dataset, kind: PredictionKind, stencil: spread.Stencil, limits: list[Finding]
+    ) -> Values:
+        """Return standard deviations and covariances, of the logarithms where these are linearised.
+
+        What limits them is added to ``limits``.
+        """
+        m, _, p = stencil.theta.shape
+        thetas = stencil.theta.reshape(2 * m, p)
+        values = _beside([self.at_models(each, thetas, "axis")[0] for each in self.kinds[kind]])
+        out: Values = {}
+        unknown = np.zeros(data.sizes[kind.dimension], dtype=np.bool_)
+        for variable in kind.ranged:
+            middle = data[variable.name].values[position(data)]
+            beside = _scaled(values[variable.key].reshape(m, 2, -1), variable)
+            S = stencil.slopes(_scaled(middle, variable), beside)
+            S[~np.isfinite(S).all(axis=1)] = np.nan
+            C = S @ S.T
+            std, name = np.sqrt(np.diag(C)), f"posterior_{variable.name}"
+            unknown |= np.isfinite(middle) & np.isnan(std)
+            of = f"posterior_{kind.dimension}_log" if variable.logarithmic else name
+            out |= {f"{of}_std": std, f"{of}_covariance": C}
+            if variable.logarithmic:
+                out[f"{name}_std"] = spread.lognormal_std(middle, std)
+        best = preferred(data.attrs)
+        limits += [
+            found("no-deviation", str(name), reference=best, undefined=kind.undefined)
+            for name in data[kind.dimension].values[unknown]
+        ]
+        return out
+
+    def of_samples(
+        self, data: Dataset, kind: PredictionKind, samples: Floats, limits: list[Finding]
+    ) -> Values:
+        """Return values at draws and their statistics; what limits them is added to ``limits``."""
+        first, predictions = kind.variables[0], self.kinds[kind]
+        of_each = [self.at_models(each, samples, "draw") for each in predictions]
+        values, failed = _beside([x for x, _ in of_each]), [count for _, count in of_each]
+        out: Values = {}
+        for variable in kind.ranged:
+            out[f"draw_{variable.name}"] = values[variable.key]
+            out[f"posterior_{variable.name}"] = spread.summary(values[variable.key])
+        missing = np.isnan(values[first.key]).sum(axis=0)
+        missing -= np.repeat(failed, [len(each.places) for each in predictions])
+        missing[np.isnan(data[first.name].values[position(data)])] = 0
+        lacking = [
+            (each.name, n, "cannot be solved") for each, n in zip(predictions, failed, strict=True)
+        ]
+        lacking += [
+            (str(name), n, kind.absent)
+            for name, n in zip(data[kind.dimension].values, missing.tolist(), strict=True)
+        ]
+        limits += [
+            found("unsolved-draws", name, count=n, drawn=len(samples), what=what)
+            for name, n, what in lacking
+            if n > 0
+        ]
+        return out
 
     def _task(
-        self,
-        prediction: Prediction,
-        part: tuple[Part, ...],
-        function: Callable[..., T],
-        arguments: tuple[Any, ...],
+        self, prediction: Prediction, part: Key, function: Callable[..., T], *arguments: Any
     ) -> Task[T]:
         """Return a task whose key tells apart all that the prediction depends on."""
         mark = hash_text(f"{prediction!r} {self.seed}")[:8]
         numbers = seed_sequence(self.seed, "predict", prediction.name)
-        key = ("predict", prediction.name, *part, mark)
         full = full_of(self.problem.model)
         return Task(
-            key,
+            ("predict", prediction.name, *part, mark),
             function,
             (self.problem, prediction, numbers, *arguments),
             # Responses are those of the full model.
             memory=getattr(full, "footprint", 0.0) if is_reduced(self.problem.model) else 0.0,
         )
-
-
-# 7 arguments: the problem and the prediction, and the model with its label.
-def _predicted(
-    problem: UpdatingProblem,
-    prediction: Prediction,
-    numbers: np.random.SeedSequence,
-    theta: Floats,
-    method: Literal["evaluate", "check"] = "evaluate",
-    file: str = "",
-    label: str = "",
-) -> Predicted:
-    """Return a prediction at a model; without a file, NaN where it cannot be solved."""
-    try:
-        return Predicted(getattr(prediction, method)(problem, theta, numbers))
-    except (InputError, ModelError) as error:
-        if not file:
-            unknown = np.full(len(prediction.places), np.nan)
-            return Predicted({x.key: unknown for x in prediction.kind.variables}, solved=False)
-        if isinstance(error, ModelError):
-            text = f"no prediction '{prediction.name}' of '{label}': {error}"
-            raise UnfinishedError(text) from None
-        place = f"[[predict.{prediction.kind.table}]] ({prediction.name!r})"
-        raise InputError(
-            Fault(file, f"{place} {fault.place}", f"{fault.expected} of '{label}'", fault.found)
-            for fault in error.faults
-        ) from None
-
-
-End = tuple[ResultVariable, int, float]
-"""A variable at a place, and whether its least (1) or its greatest value (-1) is sought."""
-
-
-def _ends(
-    problem: UpdatingProblem,
-    prediction: Prediction,
-    numbers: np.random.SeedSequence,
-    front: Sampled,
-    values: Arrays,
-    ends: Sequence[End],
-) -> Floats:
-    """Return the ends of ranges over a front of which the predictions are known."""
-    known: dict[bytes, Arrays] = {}
-    # The same work, whatever was done before in this process.
-    front, out = replace(front, between={}), list[float]()
-
-    def scaled(values: Arrays, variable: ResultVariable, place: int) -> Floats:
-        own = values[variable.key][..., place]
-        if not variable.logarithmic:
-            return own
-        return np.log(own, out=np.full(own.shape, np.nan), where=own > 0)
-
-    def at(theta: Floats, variable: ResultVariable, place: int) -> float:
-        key = theta.tobytes()
-        if key not in known:
-            known[key] = _predicted(problem, prediction, numbers, theta).values
-        return float(scaled(known[key], variable, place))
-
-    for variable, place, sign in ends:
-        step, own = ROUGH if variable.logarithmic else STEP, scaled(values, variable, place)
-        value = partial(at, variable=variable, place=place)
-        found = extreme(problem, front, own, value, sign, step)
-        out.append(float(np.exp(found)) if variable.logarithmic else found)
-    return np.array(out)
-
-
-def _by_kind(
-    predictions: Sequence[Prediction],
-) -> Iterator[tuple[PredictionKind, list[Prediction]]]:
-    for kind in dict.fromkeys(each.kind for each in predictions):
-        yield kind, [each for each in predictions if each.kind == kind]
 
 
 # 6 arguments: the results and their predictions, and models drawn from the posterior.
@@ -243,167 +267,97 @@ def with_predictions(
     models = data.sizes["point"] + 2 * len(differences.theta if differences else ()) + len(samples)
     count = sum(models + 1 + (each.kind.check is not None) for each in runner.predictions)
     runner.work.expect({"predict": (count, count)})
-    data = _at_points(data, runner, slack)
+    data = runner.at_points(data, slack)
     values: Values = {}
     coordinates: dict[str, object] = {}
-    for kind, predictions in _by_kind(runner.predictions):
+    for kind in runner.kinds:
         if differences is not None:
-            values |= _to_first_order(data, runner, differences, predictions, limits)
+            values |= runner.to_first_order(data, kind, differences, limits)
             coordinates[f"{kind.dimension}_other"] = data[kind.dimension].values
         if len(samples):
-            values |= _of_samples(data, runner, samples, predictions, limits)
+            values |= runner.of_samples(data, kind, samples, limits)
     if len(samples):
         values["draw_theta"] = samples
         coordinates["statistic"] = np.array(spread.SUMMARY)
-    kept = zip(data["finding"].values.tolist(), data["finding_record"].values, strict=True)
-    values |= as_values([*(from_text(str(text), each) for each, text in kept), *limits])
+    for name, more in as_values(limits).items():
+        values[name] = [*data[name].values.tolist(), *more]
     return data.assign(described(values, kinds_in(data))).assign_coords(coordinates)
 
 
-def _at_points(data: ArrayDataset, runner: PredictionRunner, slack: float) -> ArrayDataset:
-    optimal = data["pareto"].values
-    values: Values = {"frequency_range": _range(data["frequency"].values, optimal)}
-    coordinates = {"range": ["minimum", "maximum", "spread"]}
-    labels, thetas = list(map(str, data["label"].values)), data["theta"].values
-    reference = [preferred(data.attrs)]
-    theta, J = (data[name].values[optimal] for name in ("theta", "objective"))
-    together = ALL if data.sizes["group"] > 1 else data["group"].values[0]
-    of = data["combination_of"].values == together
-    here = of & (data["combination_at"].values == reference[0])
-    is_open = (data["combination_share"].values[here] <= RANK).any()
-    is_open |= (np.diag(data["collinearity"].values) == 0).any()
-    front = Sampled(theta, J, slack > 0 or bool(is_open), slack)
-    kinds = []
-    for kind, predictions in _by_kind(runner.predictions):
-        rows = [
-            [x.values for x in runner.at_models(each, thetas, "point", labels)]
-            for each in predictions
-        ]
-        best = [list(compress(row, optimal)) for row in rows]
-        ends = [
-            runner.extremes(each, front, {key: np.array([x[key] for x in row]) for key in row[0]})
-            for each, row in zip(predictions, best, strict=True)
-        ]
-        of_points = _stacked(kind, rows)
-        for variable in kind.variables:
-            values[variable.name] = of_points[variable.key]
-        for variable in kind.ranged:
-            # Over the optimal points, and between and beside these over all that are equivalent.
-            more = np.hstack([x[variable.key] for x in ends])
-            known = np.append(optimal, np.ones(len(more), dtype=np.bool_))
-            over = np.vstack([of_points[variable.key], more])
-            values[f"{variable.name}_range"] = _range(over, known)
-        for setting in kind.settings:
-            every = (prediction.settings[setting.name] for prediction in predictions)
-            values[setting.name] = list(chain.from_iterable(every))
-        for name in ("name", "heading"):
-            every = ([getattr(each, name)] * len(each.places) for each in predictions)
-            values[f"{kind.dimension}_{name}"] = list(chain.from_iterable(every))
-        coordinates[kind.dimension] = list(chain.from_iterable(x.places for x in predictions))
-        if kind.check:
-            here, name = thetas[[position(data)]], kind.check.name
-            checks = [
-                runner.at_models(each, here, name, reference, "check")[0] for each in predictions
-            ]
-            for variable in kind.check.variables:
-                values[variable.name] = np.concatenate([x.values[variable.key] for x in checks])
-            values[kind.check.label.name] = reference * len(coordinates[kind.dimension])
-        kinds.append(kind)
-    out = data.assign(described(values, kinds)).assign_coords(coordinates)
-    return out.assign_attrs({ATTRIBUTE: as_text(kinds)})
+# 7 arguments: the problem and the prediction, and the model with its label.
+def _predicted(
+    problem: UpdatingProblem,
+    prediction: Prediction,
+    numbers: np.random.SeedSequence,
+    theta: Floats,
+    method: Literal["evaluate", "check"] = "evaluate",
+    file: str = "",
+    label: str = "",
+) -> Arrays | None:
+    """Return a prediction at a model by key; without a file, None where it cannot be solved."""
+    try:
+        values: Arrays = getattr(prediction, method)(problem, theta, numbers)
+    except (InputError, ModelError) as error:
+        if not file:
+            return None
+        if isinstance(error, ModelError):
+            text = f"no prediction '{prediction.name}' of '{label}': {error}"
+            raise UnfinishedError(text) from None
+        place = f"[[predict.{prediction.kind.table}]] ({prediction.name!r})"
+        raise InputError(
+            Fault(file, f"{place} {fault.place}", f"{fault.expected} of '{label}'", fault.found)
+            for fault in error.faults
+        ) from None
+    return values
 
 
-def _range(values: Floats, optimal: Bools) -> Floats:
-    """Return least, greatest and their ratio over the optimal rows, (3, columns); NaN for none."""
-    known = optimal[:, None] & np.isfinite(values)
-    least = np.where(known, values, np.inf).min(axis=0)
-    greatest = np.where(known, values, -np.inf).max(axis=0)
-    none = ~known.any(axis=0)
-    least[none] = greatest[none] = np.nan
+End = tuple[ResultVariable, float, int]
+"""A variable, whether its least (1) or its greatest value (-1) is sought, and at which place."""
+
+
+def _ends(
+    problem: UpdatingProblem,
+    prediction: Prediction,
+    numbers: np.random.SeedSequence,
+    front: Sampled,
+    values: Arrays,
+    ends: Sequence[End],
+) -> Floats:
+    """Return the ends of ranges over a front of which the predictions are known."""
+    known: dict[bytes, Arrays | None] = {}
+    # The same work, whatever was done before in this process.
+    front, out = replace(front, between={}), list[float]()
+
+    def at(theta: Floats, variable: ResultVariable, place: int) -> float:
+        key = theta.tobytes()
+        if key not in known:
+            known[key] = _predicted(problem, prediction, numbers, theta)
+        found = known[key]
+        return np.nan if found is None else float(_scaled(found[variable.key], variable)[place])
+
+    for variable, sign, place in ends:
+        step, own = ROUGH if variable.logarithmic else STEP, _scaled(values[variable.key], variable)
+        value = partial(at, variable=variable, place=place)
+        found = extreme(problem, front, own[:, place], value, sign, step)
+        out.append(float(np.exp(found)) if variable.logarithmic else found)
+    return np.array(out)
+
+
+def _scaled(values: Floats, variable: ResultVariable) -> Floats:
+    """Return values as they are linearised, NaN for no logarithm."""
+    if not variable.logarithmic:
+        return values
+    return np.log(values, out=np.full(values.shape, np.nan), where=values > 0)
+
+
+def _range(values: Floats) -> Floats:
+    """Return least, greatest and their ratio over rows, (3, columns); NaN for none."""
+    known = np.where(np.isfinite(values), values, np.nan)
+    least, greatest = (of.reduce(known, axis=0, initial=np.nan) for of in (np.fmin, np.fmax))
     ratio = np.divide(greatest, least, out=np.full(least.shape, np.nan), where=least > 0)
     return np.array([least, greatest, ratio])
 
 
-def _stacked(
-    kind: PredictionKind, rows: Sequence[Sequence[Mapping[str, Floats]]]
-) -> dict[str, Floats]:
-    """Return values of predictions at models by their keys, each (models, places)."""
-    return {
-        x.key: np.hstack([np.array([values[x.key] for values in row]) for row in rows])
-        for x in kind.variables
-    }
-
-
-def _to_first_order(
-    data: Dataset,
-    runner: PredictionRunner,
-    differences: spread.Stencil,
-    predictions: Sequence[Prediction],
-    limits: list[Finding],
-) -> Values:
-    """Return standard deviations and covariances, of the logarithms where these are linearised.
-
-    What limits them is added to ``limits``.
-    """
-    kind = predictions[0].kind
-    m, _, p = differences.theta.shape
-    thetas = differences.theta.reshape(2 * m, p)
-    rows = [runner.at_models(each, thetas, "axis") for each in predictions]
-    values = _stacked(kind, [[x.values for x in row] for row in rows])
-    out: Values = {}
-    unknown = np.zeros(data.sizes[kind.dimension], dtype=np.bool_)
-    for variable in kind.ranged:
-        middle = data[variable.name].values[position(data)]
-        beside = values[variable.key].reshape(m, 2, -1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            change = (np.log(middle), np.log(beside)) if variable.logarithmic else (middle, beside)
-            S = differences.slopes(*change)
-        S[~np.isfinite(S).all(axis=1)] = np.nan
-        C = S @ S.T
-        std, name = np.sqrt(np.diag(C)), f"posterior_{variable.name}"
-        unknown |= np.isfinite(middle) & np.isnan(std)
-        if variable.logarithmic:
-            start = f"posterior_{kind.dimension}_log"
-            out |= {f"{start}_std": std, f"{start}_covariance": C}
-            out[f"{name}_std"] = spread.lognormal_std(middle, std)
-        else:
-            out |= {f"{name}_std": std, f"{name}_covariance": C}
-    best = preferred(data.attrs)
-    limits += [
-        found("no-deviation", str(name), reference=best, undefined=kind.undefined)
-        for name in data[kind.dimension].values[unknown]
-    ]
-    return out
-
-
-def _of_samples(
-    data: Dataset,
-    runner: PredictionRunner,
-    samples: Floats,
-    predictions: Sequence[Prediction],
-    limits: list[Finding],
-) -> Values:
-    """Return values at draws and their statistics; what limits them is added to ``limits``."""
-    kind, n = predictions[0].kind, len(samples)
-    rows = [runner.at_models(each, samples, "draw") for each in predictions]
-    values = _stacked(kind, [[x.values for x in row] for row in rows])
-    out: Values = {}
-    for variable in kind.ranged:
-        out[f"draw_{variable.name}"] = values[variable.key]
-        out[f"posterior_{variable.name}"] = spread.summary(values[variable.key])
-    failed = [sum(not x.solved for x in row) for row in rows]
-    limits += [
-        found("unsolved-draws", each.name, count=count, drawn=n, what="cannot be solved")
-        for each, count in zip(predictions, failed, strict=True)
-        if count
-    ]
-    first = kind.variables[0]
-    missing = np.isnan(values[first.key]).sum(axis=0)
-    missing -= np.repeat(failed, [len(each.places) for each in predictions])
-    missing[np.isnan(data[first.name].values[position(data)])] = 0
-    limits += [
-        found("unsolved-draws", str(name), count=int(count), drawn=n, what=kind.absent)
-        for name, count in zip(data[kind.dimension].values, missing, strict=True)
-        if count > 0
-    ]
-    return out
+def _beside(rows: Sequence[Arrays]) -> dict[str, Floats]:
+    """Return values of predictions of a kind side by side, by their keys."""
+    return {key: np.hstack([row[key] for row in rows]) for key in rows[0]}

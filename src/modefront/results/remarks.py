@@ -4,14 +4,14 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 
 from modefront._typing import Bools
 from modefront.datasets import Dataset
-from modefront.findings.catalogue import Severity
 from modefront.findings.knowledge import enumeration
-from modefront.findings.record import Finding, found, from_text, in_order
+from modefront.findings.record import Finding, Severity, found, from_text, in_order
 from modefront.front.point import Kind, front_points, preferred
 from modefront.optim.problem import at_bounds
 from modefront.pairing.match import POOR
@@ -68,19 +68,11 @@ def findings_of(data: Dataset, *, full: bool = False) -> list[Finding]:
     ``full`` has details of branches, numerics and coverage too, and names all models and modes.
     """
     most = sys.maxsize if full else FEW
-    analysed = data["finding"].values.tolist()
-    kept = data["finding_record"].values.tolist() if "finding_record" in data else analysed
-    out = [
-        *_failures(data),
-        *_front(data),
-        *_misfit(data),
-        *_pairs(data, most),
-        *_at_bounds(data, most),
-        *(from_text(str(record), str(text)) for text, record in zip(analysed, kept, strict=True)),
-        *_ranges(data),
-    ]
-    if full:
-        out += [*_weights(data), *_numerics(data)]
+    texts = data["finding"].values.tolist()
+    records = data["finding_record"].values.tolist() if "finding_record" in data else texts
+    parts = [_failures, _front, _misfit, _ranges, *([_weights, _numerics] if full else [])]
+    out = [finding for part in parts for finding in part(data)]
+    out += [*_pairs(data, most), *_at_bounds(data, most), *map(from_text, records, texts)]
     return in_order(x for x in out if full or x.severity is not Severity.DETAIL)
 
 
@@ -90,14 +82,11 @@ def _failures(data: Dataset) -> Iterator[Finding]:
         spent = int(data.attrs["front_evaluations"])
         yield found("no-test", str(data.attrs["method"]), evaluations=spent)
     marked = {"not-converged": not_converged(data), "inaccurate": uncertified(data)}
-    marked["jump"] = status == "jump"
+    marked["jump"], weight = status == "jump", data["stationary_weight"].values
+    marked["not-optimal"] = (weight < -NEGATIVE).any(axis=1) & ~np.isnan(weight).any(axis=1)
     if "piece" in data:
         on_front = data["kind"].values == Kind.FRONT.value
         marked["between-branches"] = on_front & ~pareto & ~data["dominated_among_front"].values
-    if "stationary_weight" in data:
-        weight = data["stationary_weight"].values
-        negative = (weight < -NEGATIVE).any(axis=1)
-        marked["not-optimal"] = negative & ~np.isnan(weight).any(axis=1)
     yield from (found(kind, places(data, x)) for kind, x in marked.items() if x.any())
 
 
@@ -112,11 +101,10 @@ def _front(data: Dataset) -> Iterator[Finding]:
         yield found("front", points=int(front.size), optimal=said)
     if gaps := data.sizes.get("end", 0) // 2:
         yield found("branches", branches=gaps + 1)
-    for k in range(gaps):
-        ends = data["end_objective"].values[2 * k : 2 * k + 2]
-        if np.isfinite(ends).all():
-            end, start = ("(" + ", ".join(f"{x:.5g}" for x in J) + ")" for J in ends)
-            yield found("branch-ends", str(k + 1), other=k + 2, end=end, start=start)
+        for k, ends in enumerate(data["end_objective"].values.reshape(gaps, 2, -1), start=1):
+            if np.isfinite(ends).all():
+                end, start = ("(" + ", ".join(f"{x:.5g}" for x in J) + ")" for J in ends)
+                yield found("branch-ends", str(k), other=k + 1, end=end, start=start)
     gap, requested = data.attrs.get("largest_gap", 0.0), data.attrs.get("refined", np.inf)
     if gap > requested:
         yield found("spacing", gap=float(gap), requested=float(requested))
@@ -152,15 +140,9 @@ def _misfit(data: Dataset) -> Iterator[Finding]:
     nominal, beside = data["kind"].values == Kind.NOMINAL.value, ""
     if np.isfinite(data["frequency"].values[nominal]).any():
         beside = f"; the nominal model has {fit_of(data, nominal)}"
-    if chosen.any():
-        yield found(
-            "misfit",
-            best,
-            models=int(chosen.sum()),
-            whole=fit_of(data, chosen, whole=True),
-            reference=fit_of(data, data["label"].values == best),
-            nominal=beside,
-        )
+    if count := int(chosen.sum()):
+        whole, own = fit_of(data, chosen, whole=True), fit_of(data, data["label"].values == best)
+        yield found("misfit", best, models=count, whole=whole, reference=own, nominal=beside)
 
 
 def fit_of(data: Dataset, chosen: Bools, *, whole: bool = False) -> str:
@@ -204,16 +186,14 @@ def _weights(data: Dataset) -> Iterator[Finding]:
     optimal = data["theta"].values[data["kind"].values == Kind.OPTIMAL.value]
     if not optimal.size:
         return
-    exact = data["group"].values[data["exact"].values.astype(bool)].tolist()
-    if exact:
+    if exact := data["group"].values[data["exact"].values].tolist():
         yield found("exact-fit", ", ".join(exact))
     iterated = data["minimum_theta"].values[data["minimum_of"].values == "iterated-weights"]
-    if not len(iterated):
+    away = np.abs(iterated - optimal[:1]) / np.ptp(data["bounds"].values, axis=1)
+    if not len(away):
         yield found("iteration-ends")
-        return
-    away = np.abs(iterated[0] - optimal[0]) / np.ptp(data["bounds"].values, axis=1)
-    agree = away.max(initial=0.0) < ARRIVED
-    yield found("iteration-agrees" if agree else "iteration-differs")
+    else:
+        yield found("iteration-agrees" if away.max() < ARRIVED else "iteration-differs")
 
 
 def _pairs(data: Dataset, most: int) -> Iterator[Finding]:
@@ -261,18 +241,17 @@ def _at_bounds(data: Dataset, most: int) -> Iterator[Finding]:
 
 def _ranges(data: Dataset) -> Iterator[Finding]:
     """Yield how far parameters and predictions go over the Pareto-optimal models."""
-    best = np.flatnonzero(data["pareto"].values)
-    if best.size > 1:
-        theta, span = data["theta"].values[best], np.ptp(data["bounds"].values, axis=1)
+    theta, span = data["theta"].values[data["pareto"].values], np.ptp(data["bounds"].values, axis=1)
+    if len(theta) > 1:
         low, high = theta.min(axis=0), theta.max(axis=0)
         order = np.argsort((low - high) / np.where(span > 0, span, 1.0), kind="stable").tolist()
         names, first = data["parameter"].values, order[:RANGES]
         said = ", ".join(f"{names[j]} from {low[j]:.3g} to {high[j]:.3g}" for j in first)
         rest = len(order) - len(first)
         less = f" ({rest} parameter{'s' * (rest > 1)} more var{'y' if rest > 1 else 'ies'} less)"
-        yield found("ranges", said + less * (rest > 0), models=int(best.size))
+        yield found("ranges", said + less * (rest > 0), models=len(theta))
     every = (x for each in predictions_in(data) for x in each.quantities)
-    wide = (x for x in every if np.isfinite(x.extent[2]) and x.extent[2] > WIDE)
+    wide = (x for x in every if WIDE < x.extent[2] < np.inf)
     if widest := sorted(wide, key=lambda x: -x.extent[2])[:3]:
         texts = (f"{x.variable.key} of {x.label} {_times(x.extent[2])}" for x in widest)
         yield found("spread", "; ".join(texts))
@@ -286,11 +265,8 @@ def _times(ratio: float) -> str:
     """
     if ratio < 2:
         return f"by {100 * (ratio - 1):.2g} %"
-    if ratio < 10:
-        return f"by a factor of {ratio:.2g}"
     if ratio < 1e6:
-        digits = len(str(int(ratio)))
-        return f"by a factor of {round(ratio, 2 - digits):,.0f}"
+        return f"by a factor of {float(f'{ratio:.2g}'):,.7g}"
     return f"by more than {int(np.log10(ratio))} powers of ten"
 
 
@@ -300,15 +276,12 @@ def _numerics(data: Dataset) -> Iterator[Finding]:
     if attrs.get("remark"):
         yield found("remark", str(attrs["remark"]))
     if "certified" in data:
-        predicted = int(attrs.get("prediction_eigensolutions", 0))
-        yield found(
-            "reduced",
-            full=int(attrs["full_eigensolutions"]) - predicted,
-            corrected=int(attrs.get("corrected_eigensolutions", 0)),
-            eigenvalue=float(data["eigenvalue_error"].values.max()),
-            tolerance=float(attrs["eigenvalue_tolerance"]),
-            shape=float(data["shape_error"].values.max()),
+        full, corrected, predicted = (
+            int(attrs.get(f"{x}_eigensolutions", 0)) for x in ("full", "corrected", "prediction")
         )
+        said: dict[str, Any] = {"tolerance": float(attrs["eigenvalue_tolerance"])}
+        said |= {x: float(data[f"{x}_error"].values.max()) for x in ("eigenvalue", "shape")}
+        yield found("reduced", full=full - predicted, corrected=corrected, **said)
         if predicted:
             yield found("not-reduced", full=predicted)
     gap, volume, igd = (float(attrs[x]) for x in ("largest_gap", "hypervolume", "igd_plus"))

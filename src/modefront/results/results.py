@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain, compress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Never
 
@@ -102,8 +103,7 @@ class ReportedModel(Shown):
     def _matrices(self) -> MatrixModel:
         if self.problem is None:
             raise ModelError(f"the matrices of a model: {ALONE}")
-        model = matrices_at(self.problem.model, self._values)
-        if model is None:
+        if (model := matrices_at(self.problem.model, self._values)) is None:
             kind = type(self.problem.model).__name__
             raise ModelError(f"expected a model with matrices, found {kind}")
         return model
@@ -205,7 +205,7 @@ class Results(Shown):
         row = self.data.isel(point=position(self.data, point))
         label, kind = (str(row[name].values) for name in ("label", "kind"))
         theta, J = (
-            dict(zip(map(str, row[names].values), row[values].values.tolist(), strict=True))
+            dict(zip(row[names].values.tolist(), row[values].values.tolist(), strict=True))
             for names, values in (("parameter", "theta"), ("group", "objective"))
         )
         f, mac = row["frequency"].values, row["mac"].values
@@ -237,16 +237,16 @@ class Results(Shown):
         """
         import pandas as pd
 
-        data, modes = self.data, self.data["mode"].values
+        data = self.data
         error = 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
         columns: dict[str, Any] = {"kind": data["kind"].values, "pareto": data["pareto"].values}
-        for names, values in (
-            ([f"J {group}" for group in data["group"].values], data["objective"].values),
-            (map(str, data["parameter"].values), data["theta"].values),
-            ([f"error f{mode} %" for mode in modes], error),
-            ([f"MAC {mode}" for mode in modes], data["mac"].values),
+        for title, names, values in (
+            ("J {}", "group", data["objective"].values),
+            ("{}", "parameter", data["theta"].values),
+            ("error f{} %", "mode", error),
+            ("MAC {}", "mode", data["mac"].values),
         ):
-            columns |= dict(zip(names, values.T, strict=True))
+            columns |= dict(zip(map(title.format, data[names].values), values.T, strict=True))
         frame = pd.DataFrame(columns, index=pd.Index(data["label"].values, name="model"))
         return frame.loc[list(points)] if points else frame
 
@@ -260,11 +260,9 @@ class Results(Shown):
         front, name = self.front["pareto"].values, str(self.attrs.get("study", "")) or "results"
         optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
         said = [f"{name}: {optimal}", *(self.verdict or map(str, findings_of(self.data)))]
-        lines: list[str] = []
-        for wrapped in (textwrap.wrap(text, WIDTH) for text in said):
-            if len(lines) + len(wrapped) > LINES:
-                break
-            lines += wrapped
+        blocks = [textwrap.wrap(text, WIDTH) for text in said]
+        room = np.cumsum([len(block) for block in blocks]) <= LINES
+        lines = list(chain.from_iterable(compress(blocks, room)))
         kinds = self["kind"].values
         order = [i for kind in SHOWN for i in np.flatnonzero(kinds == kind.value)][:ROWS]
         index = pd.Index(self["label"].values[order], name="model")

@@ -4,10 +4,9 @@ Model shapes have a greatest displacement of 1 at the nodes; the measured shape 
 scale factor :math:`\hat\varphi^T \varphi / (\hat\varphi^T \hat\varphi)` at the sensors (Allemang,
 Sound and Vibration 37 (8), 2003).
 
-Results hold those of all points in a common basis: the displacements u_r of the drawn nodes in mode
-r of a point are :math:`u_r = \sum_b c_{rb} B_b`, with the few columns B that the shapes of all
-points need up to `TOLERANCE`, and coefficients c between -1 and 1. Drawn are the nodes of lines and
-faces, of solids those of the surface. Q and C are an orthonormal basis, and the coefficients in it.
+Results hold those of all points in a common basis B of the few columns that these need up to
+`TOLERANCE`, with coefficients c between -1 and 1. Q and C are an orthonormal basis, and the
+coefficients in it.
 """
 
 import contextlib
@@ -15,6 +14,7 @@ import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -72,8 +72,7 @@ def paired_shapes(row: Dataset, problem: UpdatingProblem) -> PairedShapes:
         raise ModelError(f"{row['label'].values!s} has no modes: its model cannot be solved")
     index = paired.astype(int) - 1
     _, phi, Phi = shapes_at(full_of(problem.model), row["theta"].values, int(index.max()) + 1)
-    Phi = None if Phi is None else Phi[:, index]
-    computed, displacement = _scaled(problem, Phi, phi[:, index])
+    computed, displacement = _scaled(problem, Phi, phi, index)
     product = np.nansum(data.shape * computed, axis=2)
     square = np.nansum(data.shape**2, axis=2)
     factor = np.divide(product, square, out=np.zeros(square.shape), where=square > 0)
@@ -83,20 +82,19 @@ def paired_shapes(row: Dataset, problem: UpdatingProblem) -> PairedShapes:
 
 
 def _scaled(
-    problem: UpdatingProblem, Phi: Floats | None, phi: Floats, nodes: Ints | None = None
+    problem: UpdatingProblem, Phi: Floats | None, phi: Floats, index: Ints, nodes: Any = slice(None)
 ) -> tuple[Floats, Floats | None]:
     """Return modes at the sensors (modes, sensors) and at nodes (modes, nodes, 3) in one scale.
 
-    ``Phi`` (N, modes) and ``phi`` (sensors, modes) are the modes of the model. The greatest length
-    at the nodes is 1, with the sign of the first measured shape. A model without geometry has
-    nothing at nodes, and a greatest component of 1.
+    ``index`` (modes,) are positions in ``Phi`` (N, all) and ``phi`` (sensors, all), the modes of
+    the model. The greatest length at the nodes is 1, with the sign of the first measured shape. A
+    model without geometry has nothing at nodes, and a greatest component of 1.
     """
     geometry, measured = geometry_of(problem.model), problem.data.shape
-    computed, displacement = phi.T, None
+    computed, displacement = phi[:, index].T, None
     size = np.abs(computed).max(axis=1)
     if geometry is not None and Phi is not None:
-        displacement = geometry.displacement(Phi)
-        displacement = displacement if nodes is None else displacement[:, nodes]
+        displacement = geometry.displacement(Phi[:, index])[:, nodes]
         size = np.sqrt((displacement**2).sum(axis=2)).max(axis=1)
     product = np.nansum(measured * computed, axis=2)
     first = product[np.argmax(product != 0, axis=0), np.arange(len(size))]
@@ -116,17 +114,12 @@ def write_vtu(path: Path, shapes: PairedShapes) -> None:
             "mode shapes at nodes: expected a model with geometry (a chain or finite elements), "
             "found matrices alone"
         )
-    vectors = {
-        f"mode {mode} ({frequency:.5g} Hz)": displacement[r]
-        for r, (mode, frequency) in enumerate(zip(shapes.modes, shapes.frequency, strict=True))
-    }
-    for r, mode in enumerate(shapes.modes):
-        known = np.isfinite(shapes.measured[:, r])
-        total = np.where(known, shapes.measured[:, r], 0.0).sum(axis=0)  # over the data sets
-        mean = total / np.maximum(known.sum(axis=0), 1)
-        vectors[f"mode {mode} measured"] = np.zeros(geometry.nodes.shape)
-        moved = mean[:, None] * geometry.sensor_directions
-        np.add.at(vectors[f"mode {mode} measured"], geometry.sensor_nodes, moved)
+    named = [f"mode {r} ({f:.5g} Hz)" for r, f in zip(shapes.modes, shapes.frequency, strict=True)]
+    vectors = dict(zip(named, displacement, strict=True))
+    total, count = np.nansum(shapes.measured, axis=0), np.isfinite(shapes.measured).sum(axis=0)
+    for mode, mean in zip(shapes.modes, total / np.maximum(count, 1), strict=True):
+        vectors[f"mode {mode} measured"] = at_nodes = np.zeros(geometry.nodes.shape)
+        np.add.at(at_nodes, geometry.sensor_nodes, mean[:, None] * geometry.sensor_directions)
     write_grid(path, geometry.nodes, geometry.cells, vectors)
 
 
@@ -143,12 +136,9 @@ def write_grid(
         expected = "meshio, which `pip install modefront[mesh]` brings"
         raise InputError(Fault(str(path), "VTU", expected, "no such package")) from None
     groups = sorted({part.group for part in cells})
-    mesh = meshio.Mesh(
-        nodes,
-        [(part.type, part.nodes) for part in cells],
-        point_data=dict(point_data),
-        cell_data={"group": [np.full(len(x.nodes), groups.index(x.group)) for x in cells]},
-    )
+    numbers = [np.full(len(part.nodes), groups.index(part.group)) for part in cells]
+    blocks = [(part.type, part.nodes) for part in cells]
+    mesh = meshio.Mesh(nodes, blocks, dict(point_data), {"group": numbers})
     with (
         writing(path, "file"),
         contextlib.redirect_stdout(io.StringIO()),  # meshio prints warnings of its own
@@ -212,8 +202,7 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> dic
             continue
         frequency[i] = np.sqrt(np.maximum(lam[:count], 0)) / (2 * np.pi)
         mac[i] = mean_mac(data, phi[:, :count])
-        Phi = Phi[:, index] if drawn.size and Phi is not None else None
-        sensed[i], u = _scaled(problem, Phi, phi[:, index], drawn)
+        sensed[i], u = _scaled(problem, Phi, phi, index, drawn)
         U = np.zeros((0, modes)) if u is None else u.reshape(modes, -1).T
         Q = _extended(Q, U)
         rows[i] = Q.T @ U
@@ -259,7 +248,7 @@ def with_mode_shapes(
         "measured_shape": measured.shape,
         **shapes,
     }
-    coordinates: dict[str, object] = {"set": list(measured.sets), "sensor": list(measured.sensors)}
+    coordinates: dict[str, object] = {"set": measured.sets, "sensor": measured.sensors}
     geometry, attributes = geometry_of(problem.model), {}
     if geometry is not None and "shape_basis" in shapes:
         nodes, lines, faces = drawing(geometry)
@@ -272,7 +261,7 @@ def with_mode_shapes(
             "shape_basis": shapes["shape_basis"].astype(np.float32),
         }
         coordinates["axis"] = list("xyz")
-        groups = [cells.group for cells in geometry.cells]
-        attributes["geometry"] = "chain" if groups == ["chain"] else "mesh"
+        is_chain = [cells.group for cells in geometry.cells] == ["chain"]
+        attributes["geometry"] = "chain" if is_chain else "mesh"
     out = data.assign(described(values)).assign_coords(coordinates)
     return out.assign_attrs(attributes)

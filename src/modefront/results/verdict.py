@@ -12,8 +12,8 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.datasets import Dataset
-from modefront.findings.catalogue import VERDICT
 from modefront.findings.knowledge import SHOWN, bound, enumeration, held
+from modefront.findings.record import VERDICT
 from modefront.front.point import Kind, front_points, preferred
 from modefront.predictions.base import predictions_in
 from modefront.results.assemble import TRUST
@@ -42,12 +42,13 @@ def with_verdict(data: Dataset, spare: Sequence[str] = ()) -> Dataset:
     if "misfit" not in data:
         return data.assign_attrs({"verdict": "\n".join(_unjudged(data))})
     groups, misfit = data["group"].values, data["misfit"].values
-    far, worse = map(np.flatnonzero, refused(misfit, data["nominal_misfit"].values))
-    why = [_say("far", group=groups[i], misfit=misfit[i]) for i in far.tolist()]
-    why += [_say("worse", group=groups[i]) for i in worse.tolist()]
-    assumed = data.attrs.get("assumed")
+    far, worse = refused(misfit, data["nominal_misfit"].values)
+    of_far = zip(groups[far], misfit[far], strict=True)
+    why = [_say("far", group=group, misfit=value) for group, value in of_far]
+    why += [_say("worse", group=group) for group in groups[worse]]
     said = [*_at_bounds(data), *_fixed(data)]
-    said += [_say("assumed", assumed=assumed)] if assumed else []
+    if assumed := data.attrs.get("assumed"):
+        said.append(_say("assumed", assumed=assumed))
     said += _pairs(data)
     if why:
         said.insert(0, _say("do-not-use", why=enumeration(why, SHOWN)))
@@ -81,7 +82,7 @@ def _say(kind: str, **values: Any) -> str:
 
 def _use(data: Dataset) -> str:
     misfit, groups = data["misfit"].values, data["group"].values
-    worst = np.argsort(-misfit) if misfit.size > SHOWN else np.arange(misfit.size)
+    worst = np.argsort(-misfit) if misfit.size > SHOWN else range(misfit.size)
     size = enumeration([f"{misfit[i]:.2g} ({groups[i]})" for i in worst], SHOWN)
     use = _say("use", reference=data.attrs["reference"], errors=size)
     lacks = (misfit > LARGE) | (data["lack_of_fit"].values < CHANCE)
@@ -111,14 +112,9 @@ def _fixed(data: Dataset) -> Iterator[str]:
         return
     before, after = data["misfit"].values, data["unfixed_misfit"].values
     i = int(np.argmax(before - after))
-    yield _say(
-        "wrong-fixed",
-        name=data.attrs["fixed_parameter"],
-        value=data.attrs["fixed_value"],
-        group=data["group"].values[i],
-        after=after[i],
-        before=before[i],
-    )
+    of_group = {"group": data["group"].values[i], "after": after[i], "before": before[i]}
+    name, value = (data.attrs[f"fixed_{x}"] for x in ("parameter", "value"))
+    yield _say("wrong-fixed", name=name, value=value, **of_group)
 
 
 def _pairs(data: Dataset) -> Iterator[str]:
@@ -132,13 +128,12 @@ def _parameters(data: Dataset) -> Iterator[str]:
     """Yield values and 90 % intervals of the parameters, of which the data determine most first."""
     theta = _row(data, Kind.MOST_PROBABLE)["theta"].values
     low, _, high = data["interval"].values.T
+    of = zip(data["parameter"].values, map(_interval, theta, low, high), strict=True)
+    parts = np.array([f"{name} {interval}" for name, interval in of])
     for trust in TRUST:
-        own = np.flatnonzero(data["trust"].values == trust).tolist()
-        parts = [
-            f"{data['parameter'].values[j]} {_interval(theta[j], low[j], high[j])}" for j in own
-        ]
+        own = parts[data["trust"].values == trust].tolist()
         if own:
-            yield _say(trust, parameters=enumeration(parts, SHOWN))
+            yield _say(trust, parameters=enumeration(own, SHOWN))
 
 
 def _interval(value: float, low: float, high: float) -> str:
@@ -172,9 +167,8 @@ def _predictions(data: Dataset) -> Iterator[str]:
     """Yield the posterior and the range of the first quantity of the first predictions."""
     for each in list(predictions_in(data))[:2]:
         for x in [x for x in each.quantities if x.variable.ranged and x.drawn][:1]:
-            least, greatest, _ = x.extent
-            if np.isfinite([least, greatest]).all():
-                ends = {"least": least, "greatest": greatest}
+            if np.isfinite(x.extent[:2]).all():
+                ends = dict(zip(("least", "greatest"), x.extent[:2], strict=True))
                 ends |= {"low": x.drawn["5 %"], "high": x.drawn["95 %"]}
                 names = {"name": each.name, "place": x.place, "quantity": x.variable.key}
                 yield _say("prediction", **names, **ends)

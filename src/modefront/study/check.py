@@ -25,7 +25,7 @@ from modefront.diagnosis.comparison import COMPARED, Comparison, compare
 from modefront.diagnosis.search import diagnose
 from modefront.errors import Fault, ModelError, refuse
 from modefront.findings import knowledge
-from modefront.findings.record import Finding, found
+from modefront.findings.record import Finding, Severity, found
 from modefront.identifiability.combinations import NONE, WEAK, determination, unchanged_groups
 from modefront.identifiability.sensitivity import Sensitivities, sensitivities
 from modefront.inputs import available_memory
@@ -126,7 +126,8 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
         nominal, beside = problem.evaluate(problem.start), compare(problem)
         mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
         spoilt = any(each.kind not in HARMLESS for each in mistakes)
-        mistakes += () if spoilt else excluding_bounds(study)
+        bounds = () if spoilt else excluding_bounds(study)
+        mistakes += tuple(each for each in bounds if each.severity is Severity.MISTAKE)
         agreement = compared(problem)
         agrees = agreement.error <= AGREEMENT
         known, left_open = determined(problem, nominal)
@@ -143,7 +144,7 @@ def check(study: Study | UpdatingProblem | Path | str) -> Findings:
             None if agrees else cause_of(problem, agreement),
             tuple(known),
             mistakes,
-            (*left_open, *_of_model(beside, nominal)),
+            (*(x for x in bounds if x not in mistakes), *left_open, *_of_model(beside, nominal)),
             beside,
             sensitivities(problem),
             spoilt,

@@ -12,8 +12,8 @@ from modefront._typing import Ints
 from modefront.diagnosis.evidence import FREQUENCY, RIGID, log_frequencies, mac_values
 from modefront.diagnosis.mistakes.record import MANY, Explanation, Mistake, changed
 from modefront.diagnosis.state import NOTHING, State, median, stacked
-from modefront.findings.catalogue import UNITS
 from modefront.findings.knowledge import enumeration
+from modefront.findings.record import UNITS
 from modefront.pairing.match import assigned
 
 RAD = 2 * np.pi
