@@ -24,7 +24,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -37,7 +37,6 @@ from modefront.models.base import Model
 from modefront.predictions import system as modal
 from modefront.predictions.base import PredictionKind, ResultVariable, Setting
 from modefront.residuals.problem import UpdatingProblem
-from modefront.text import Shown
 
 ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2, "absolute accelerance": 2}
 """The power s of iω, by the response that is set against the load."""
@@ -206,7 +205,7 @@ BAND = options.numbers(
 
 
 @dataclass(frozen=True)
-class PeakResponse(Shown):
+class PeakResponse(modal.ModalPrediction):
     """Peaks of the frequency response of several outputs to one input.
 
     Raises InputError for values that are not possible, alone or together.
@@ -235,7 +234,6 @@ class PeakResponse(Shown):
     modes: modal.ModeCount | None = None
     damping: modal.Damping = modal.MEASURED
 
-    either: ClassVar = modal.EITHER
     kind: ClassVar = PredictionKind(
         "frf",
         "frf",
@@ -254,19 +252,11 @@ class PeakResponse(Shown):
         undefined="have no such peak",
     )
 
-    def __post_init__(self) -> None:
-        options.check_fields(self)
-        faults = list(self.loads.contradictions())
+    def contradictions(self) -> Iterator[Fault]:
+        """Yield options that contradict one another."""
+        yield from super().contradictions()
         if self.quantity == "absolute accelerance" and self.base is None:
-            expected = "another one where forces act"
-            faults.append(Fault("", "quantity", expected, f"'{self.quantity}'"))
-        refuse(faults)
-
-    @property
-    def loads(self) -> modal.ModalLoadModel:
-        """Load case, outputs, modes and damping."""
-        forces: Any = () if self.force is None else (self.force,)
-        return modal.ModalLoadModel.of(self, forces, static=self.static)
+            yield Fault("", "quantity", "another one where forces act", f"'{self.quantity}'")
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -276,21 +266,21 @@ class PeakResponse(Shown):
     @property
     def heading(self) -> str:
         """Name, load case and options in a sentence."""
-        loads, (low, high) = self.loads, modal.filled(self.band, "band")
+        low, high = modal.filled(self.band, "band")
         return (
-            f"{self.name}: {loads.load}; {self.quantity}, greatest peak from {low:g} to {high:g} "
-            f"Hz, {self.modes} modes, damping {loads.damped}"
+            f"{self.name}: {self.load}; {self.quantity}, greatest peak from {low:g} to {high:g} "
+            f"Hz, {self.modes} modes, damping {self.damped}"
         )
 
     @property
     def settings(self) -> Mapping[str, Sequence[object]]:
         """Values of the kind's settings, one a place, by the name of the variable."""
         own = {"quantity": self.quantity, "band": self.band}
-        return self.loads.settings("frf", len(self.response), own)
+        return self.settings_of(len(self.response), own)
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""
-        yield from self.loads.faults(model, data)
+        yield from super().faults(model, data)
         if self.band is None and modal.highest_frequency(data) is None:
             yield Fault("", "band", BAND.expected, "nothing")
 
@@ -302,8 +292,8 @@ class PeakResponse(Shown):
         refuse(self.faults(problem.model, problem.data))
         highest = modal.highest_frequency(problem.data)
         low, top = self.band or (0.0, modal.ABOVE * modal.filled(highest, "band"))
-        out = replace(self, band=(low, top), modes=self.loads.complete_modes(problem, top))
-        omega, faults = out.loads.nominal(problem).omega, []
+        out = replace(self, band=(low, top), modes=self.complete_modes(problem, top))
+        omega, faults = out.nominal(problem).omega, []
         last, count = float(omega[-1]) / (2 * math.pi), omega.size
         reached = problem.model, problem.start, top, count
         more = modal.modes_reaching(*reached) if last < top else count
@@ -327,7 +317,7 @@ class PeakResponse(Shown):
         NaN where there is no local maximum within the band. Raises ModelError where the model
         cannot be evaluated at ``theta``.
         """
-        system = self.loads.system(problem, theta)
+        system = self.system(problem, theta)
         low, high = (2 * np.pi * f for f in modal.filled(self.band, "band"))
         out = np.full((2, len(self.response)), np.nan)
         for o in range(len(self.response)):
