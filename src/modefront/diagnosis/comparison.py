@@ -15,8 +15,7 @@ from modefront.residuals.problem import UpdatingProblem
 
 MORE = 8  # model modes that are looked at beyond those among which measured modes are paired
 
-COMPARED = 60
-"""Data sets in which mistakes are sought, at most: each is compared with every other one."""
+COMPARED = 60  # data sets in which mistakes are sought, at most: each is compared with all others
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,21 +35,13 @@ from modefront.pairing.match import assigned
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import ACCUMULATED, TINY
 
-RIGID = 1e-6
-"""Share of the greatest frequency below which a mode is a rigid body's: rounding leaves 3e-7."""
-
-KAPPA, FARTHEST = 0.4, 2.5
-"""Cost of a factor e between frequencies, in units of a MAC value, up to the logarithm d."""
-
-OF_PARAMETERS, OF_MODEL = 8.0, 4.0
-"""Degrees of freedom nu of parameters, and of what no parameter describes."""
-
+RIGID = 1e-6  # frequency of a rigid body over the greatest, at most: rounding leaves 3e-7
+KAPPA, FARTHEST = 0.4, 2.5  # kappa, and the logarithm d up to which frequencies differ; see above
+OF_PARAMETERS, OF_MODEL = 8.0, 4.0  # nu of parameters, and of what no parameter describes
 FREQUENCY, SHAPE = 0.03, 0.08  # scales that are expected of what no parameter describes
 OFF = 0.4  # scale of the parameters: of their logarithms, or over their unit
 
-WIDER = 4.0
-"""Factor beyond positive bounds up to which fits go, so that no mistake stands for a bound."""
-
+WIDER = 4.0  # factor beyond positive bounds up to which fits go: no mistake stands for a bound
 FACTOR = 2.0  # factor on a member, or its inverse, up to which fits go from where they begin
 ALL = -1  # number that stands for all parts of the model, each with a factor
 
@@ -57,10 +49,7 @@ STEPS, LONGEST, ENOUGH, DAMPING = 10, 0.7, 0.05, 1e-3
 """Steps of a fit, their longest component, the decrease of the cost that ends them, and the share
 of the diagonal of H that is added to it in the first."""
 
-LARGE, SAMPLES = 80, 4
-"""Degrees of freedom from which on a model is reduced, and models of its basis beside the nominal
-one."""
-
+LARGE, SAMPLES = 80, 4  # size of models that are reduced, and models of a basis beside the nominal
 KEPT, NUMBERS = 2**25, 2**18
 """Numbers of the models that are kept, as many explanations are compared at the same parameters,
 and of an array of those that are compared at once: both bound the memory."""

@@ -14,9 +14,7 @@ from modefront.linalg.affine import DenseAffine, Members, Monomials
 from modefront.models.matrices import MatrixModel
 from modefront.rounding import COMPUTED
 
-MEMBERS = 200
-"""Members that are looked at one by one, at most; of more, groups are looked at."""
-
+MEMBERS = 200  # members that are looked at one by one, at most; of more, groups are looked at
 MATRICES = ("stiffness", "mass")
 
 

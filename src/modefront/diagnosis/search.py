@@ -19,17 +19,12 @@ from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found
 from modefront.pairing.match import POOR, match
 
-CLEAR = float(np.log(100.0))
-"""Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
-
+CLEAR = float(np.log(100.0))  # difference of costs that is clear: odds of 100 to 1
 PROMISING, FITTED = defaultdict(lambda: 100, {"wrong-unit": 2}), 30
 """Mistakes of each kind of which costs are looked at, and those of all kinds that are fitted. Each
 unit has modes of its own, which other mistakes share."""
 
-BEAM, MOST = 3, 6
-"""Single claims to which others are added, before they are to the best explanation, and most
-mistakes."""
-
+BEAM, MOST = 3, 6  # single claims to which others are added at first, and mistakes, at most
 EITHER = 3  # explanations that the data cannot tell apart and that are named nevertheless, at most
 WINDOW = 1.5  # window of frequencies that is advised
 LEFT = 1.0  # difference of costs that fits leave

@@ -30,8 +30,7 @@ ROUNDS = 8  # rounds of the iterations for the shape that data sets have in comm
 SETTLED = 1e-7  # change of the logarithm of a scale after which the next one is rounding
 SPREAD = 0.5  # spread s of logarithms of scales
 
-NOTHING = 0.5
-"""Cost of a value of which nothing is known: of one from a normal distribution of size 1."""
+NOTHING = 0.5  # cost of an unknown value: of one from a normal distribution of size 1
 
 
 def ratio(a: Floats, b: Floats) -> Floats:

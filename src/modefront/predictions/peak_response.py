@@ -114,16 +114,11 @@ class Slope:
 
 DEGREE = 24  # degree of the series; twice as many intervals with half of it cost about the same
 
-RESOLVED = 1e-12
-"""The series is done when its last coefficients are below this, relative to its largest."""
-
-SETTLED = 1e-8
-"""Relative length of the last step of Newton's method at a zero; elsewhere steps stay long."""
-
+RESOLVED = 1e-12  # last coefficients of a series that is done, over its largest one
+SETTLED = 1e-8  # last step of Newton's method at a zero, over it; elsewhere steps stay long
 TWICE = 1e-10  # relative distance of two zeros up to which they are the same, found twice
 
-NEWTON_STEPS = 6
-"""From the accuracy of the series, two or three do; more than enough even for merging peaks."""
+NEWTON_STEPS = 6  # two or three do; more than enough even for merging peaks
 
 
 def peaks(

@@ -40,12 +40,8 @@ SAME = 1e-4
 """Growth of an objective, over itself, up to which models are equivalent: that of its root is far
 below any error of measurement."""
 
-FACTORS = (1e1, 1e2, 1e3, 1e4)
-"""Penalties on violations of the slack, over the size of the prediction."""
-
-_ENOUGH = Options(step=1e-5, reduction=1e-8, iterations=40)
-"""A range needs a thousandth of itself, and no more."""
-
+FACTORS = (1e1, 1e2, 1e3, 1e4)  # penalties on violations, over the size of the prediction
+_ENOUGH = Options(step=1e-5, reduction=1e-8, iterations=40)  # a range needs a thousandth of itself
 SLACK = number("a share of 0 or more", least=0)
 
 Values = Callable[[Floats], float]  # returns the prediction of a model (p,); NaN where it has none

@@ -1,49 +1,32 @@
-"""The first-passage problem; docs/methods/first-passage.md states it.
+"""The first-passage problem; docs/methods/first-passage.md states it, and has the sources.
 
 Densities are per rad/s. The noise may be modulated, q(t_k + Δt/2) w_k, and may then pass the filter
 (ω_g² + 2iζ_g ω_g ω) / (ω_g² - ω² + 2iζ_g ω_g ω) of a soil, the absolute acceleration of a damped
 oscillator on a base accelerated by it (H. Tajimi, Proc. 2nd World Conf. Earthquake Eng. (1960)
 781-797).
 
-**The responses** at the times t_j are a linear map of independent standard normal numbers.
+The response o at t_j is a convolution with the pulse response h scaled by sqrt(2πS/Δt), done for
+many samples at once by the fast Fourier transform,
 
-With h the pulse response scaled by sqrt(2πS/Δt), the response o at t_j is
+    x_oj = Σ_i Σ_{k<j} h_oi[j-1-k] q_k z_ik  =  a_oj · z,        z ~ N(0, I).
 
-    x_oj = Σ_i Σ_{k<j} h_oi[j-1-k] q_k z_ik  =  a_oj · z,        z ~ N(0, I),
+The pulse response is exact for a load held constant over a step: with ṡ = A s + B w for s = (q, q̇[,
+f, ḟ]) of a mode and the filter, s(t + Δt) = Φ s(t) + Θ w, where exp([A B; 0 0] Δt) = [Φ Θ; 0 1].
 
-a convolution, done for many samples at once by the fast Fourier transform. The pulse response is
-exact for a load held constant over a step: with ṡ = A s + B w for s = (q, q̇[, f, ḟ]) of a mode and
-the filter, s(t + Δt) = Φ s(t) + Θ w, where exp([A B; 0 0] Δt) = [Φ Θ; 0 1].
-
-======  ==========================================  ==========================
-symbol  meaning                                     shape
-======  ==========================================  ==========================
-z       normal numbers of one sample                (n_inputs, n)
-x       responses                                   (n_outputs, n), at t_1 …
-h       pulse response for unit normal numbers      (n_outputs, n_inputs, n)
-q       modulation                                  (n,)
-σ       standard deviation of x                     (n_outputs, n)
-======  ==========================================  ==========================
-
-**The methods** say how samples are drawn, and the weight of each, of which the mean is P.
-docs/methods/first-passage.md names the elementary failures E_oj and the sources. A standard normal
-z is made a sample given E_oj by putting its component u along the design excitation right (Au &
-Beck 2001, sec. 4):
+The methods say how samples are drawn, and the weight of each, of which the mean is P. A z is made a
+sample given the elementary failure E_oj, drawn with probability P_oj/ΣP, by putting its component u
+along the design excitation right (Au & Beck 2001, sec. 4):
 
     z* = z + (r - u) a_oj/σ_oj,      r = -Φ⁻¹(v Φ(-β_oj)),   v uniform in (0, 1].
 
-E_oj is drawn with probability P_oj/ΣP. Weights are ΣP / N(z) of importance sampling; ΣP · 1[E_oj
-is the first in time of those that z contains] of the additive rules, of mean 1/N over the failures
-of a sample; ΣP · Q(min ρ_oj) / Σ Q(ρ_oj) with Q(ρ) = Γ(ν/2, ρ²/2)/Γ(ν/2) and ρ_oj =
-b/|x_oj(e)| of directional importance sampling, z = R e with R integrated out; and 1[any |x_oj| > b]
-of Monte Carlo.
+Weights are ΣP / N(z) of importance sampling; ΣP · 1[E_oj is the first in time of those that z
+contains] of the additive rules, of mean 1/N over the failures of a sample; ΣP · Q(min ρ_oj) /
+Σ Q(ρ_oj) with Q(ρ) = Γ(ν/2, ρ²/2)/Γ(ν/2) and ρ_oj = b/|x_oj(e)| of directional importance sampling,
+z = R e with R integrated out; and 1[any |x_oj| > b] of Monte Carlo. Nothing that is computed from
+z* changes with its sign, so x_oj > b stands for both sides. z is the same for all levels.
 
-Nothing that is computed from z* changes with its sign, so x_oj > b stands for both sides. z is the
-same for all levels.
-
-Samples are drawn in chunks; each chunk has a generator of its own, spawned from the seed by the
-chunk's number, and the chunk's size follows from the problem alone, so who computes it changes
-nothing.
+Samples are drawn in chunks; each has a generator of its own, spawned from the seed by its number,
+and its size follows from the problem alone, so who computes it changes nothing.
 """
 
 import os
@@ -62,17 +45,15 @@ from scipy.special import gammaincc, gammainccinv, log_ndtr, ndtr, ndtri_exp
 from modefront._typing import Floats, Ints
 from modefront.predictions.system import ModalSystem
 
-LARGEST_ANGLE = np.pi / 2
-"""Largest ω Δt: a quarter of a period. Beyond it the times t_j miss the peaks of the response."""
+LARGEST_ANGLE = np.pi / 2  # largest ω Δt: beyond a quarter of a period, times miss the peaks
 
 
 @dataclass(frozen=True)
 class FirstPassage:
     """A linear structure at rest, its Gaussian load, and the times at which it is looked at.
 
-    The responses are displacements at the outputs of `system`, of its modes alone: white noise
-    has no quasi-static response, so `system.static` is not used. Responses with barriers of their
-    own are brought to a common one by scaling the rows of the system's `output`.
+    The responses are displacements at the outputs of the system, of its modes alone: white noise
+    has no quasi-static response. Rows of the ``output`` bring other barriers to a common one.
     """
 
     system: ModalSystem  # the structure, with n_inputs loads and n_outputs responses
@@ -94,7 +75,7 @@ class FirstPassage:
 
 @dataclass(frozen=True, eq=False)
 class GaussianResponse:
-    """The map from z to x, made by `gaussian_response`."""
+    """The map from z (n_inputs, n) to the responses x (n_outputs, n) at t_1 … t_n."""
 
     modulation: Floats  # (n,) q
     # (n_outputs, n_inputs, n_frequencies) transform of h, padded so that nothing wraps round
@@ -168,7 +149,18 @@ def pulse_response(problem: FirstPassage) -> Floats:
 
     The array is (n_outputs, n_inputs, n), in units of output per unit load.
     """
-    generator = _generator(problem.system, problem.soil)
+    shapes, size = problem.system, 3 if problem.soil is None else 5
+    generator = np.zeros((shapes.omega.size, size, size))  # [A B; 0 0] of each mode
+    generator[:, 0, 1] = 1
+    generator[:, 1, 0] = -(shapes.omega**2)
+    generator[:, 1, 1] = -2 * shapes.zeta * shapes.omega
+    if problem.soil is None:
+        generator[:, 1, 2] = 1
+    else:
+        omega, zeta = problem.soil
+        generator[:, 1, 2:4] = omega**2, 2 * zeta * omega
+        generator[:, 2, 3] = 1
+        generator[:, 3, 2:] = -(omega**2), -2 * zeta * omega, 1
     step = np.asarray(expm(generator * problem.time_step))
     power, states = step[:, :-1, :-1], step[:, :-1, -1:]
     while states.shape[-1] < problem.steps:
@@ -176,25 +168,7 @@ def pulse_response(problem: FirstPassage) -> Floats:
         states = np.concatenate([states, np.einsum("mij,mjk->mik", power, states)], axis=-1)
         power = np.einsum("mij,mjk->mik", power, power)
     modal = states[:, 0, : problem.steps]
-    shapes = problem.system
     return np.einsum("om,mi,mk->oik", shapes.output, shapes.input, modal)
-
-
-def _generator(system: ModalSystem, soil: tuple[float, float] | None) -> Floats:
-    """Return [A B; 0 0] of each mode, (m, 3, 3), or (m, 5, 5) with a filter."""
-    size = 3 if soil is None else 5
-    generator = np.zeros((system.omega.size, size, size))
-    generator[:, 0, 1] = 1
-    generator[:, 1, 0] = -(system.omega**2)
-    generator[:, 1, 1] = -2 * system.zeta * system.omega
-    if soil is None:
-        generator[:, 1, 2] = 1
-    else:
-        omega, zeta = soil
-        generator[:, 1, 2:4] = omega**2, 2 * zeta * omega
-        generator[:, 2, 3] = 1
-        generator[:, 3, 2:] = -(omega**2), -2 * zeta * omega, 1
-    return generator
 
 
 def gaussian_response(problem: FirstPassage) -> GaussianResponse:
@@ -219,8 +193,7 @@ def _fft_size(n: int) -> int:
     return int(scipy.fft.next_fast_len(2 * n - 1, real=True))
 
 
-NEGLIGIBLE = 1e-22
-"""The Q(ρ_oj) left out, relative to the largest: even millions of them are below rounding."""
+NEGLIGIBLE = 1e-22  # Q(ρ_oj) over the largest that is left out: millions are below rounding
 
 
 def elementary_failures(response: GaussianResponse, level: float) -> Floats:
@@ -323,11 +296,8 @@ METHODS: Final[Mapping[str, Share | None]] = {
 
 LARGEST_CHUNK = 32  # samples in a chunk: enough for the loops in C, few enough for the cache
 
-MOST_WORKERS = 8
-"""Threads at most; each takes some 100 MB. How many there are changes no digit."""
-
-LARGEST_BLOCK = 2**20
-"""Normal numbers in a chunk, 8 MB: bounds the memory of a worker to some 100 MB."""
+MOST_WORKERS = 8  # threads at most, of some 100 MB each; how many there are changes no digit
+LARGEST_BLOCK = 2**20  # normal numbers in a chunk, 8 MB: keeps a worker to some 100 MB
 
 
 def spawn(seed: np.random.SeedSequence, number: int) -> np.random.SeedSequence:

@@ -71,12 +71,8 @@ T = TypeVar("T")
 
 MEASURED = "measured"  # damping ratios of the measured modes
 
-BEYOND = 1.5
-"""Frequency that the superposed modes reach unless their number is given, over that of the band."""
-
-ABOVE = 1.1
-"""Upper end of the band that is taken where none is given, over the highest measured frequency."""
-
+BEYOND = 1.5  # end of the modes superposed, if their number is not given, over that of the band
+ABOVE = 1.1  # end of the band where none is given, over the highest measured frequency
 NAMED = "the name of a sensor or output, or a table of them with weights that are not zero"
 
 

@@ -29,20 +29,15 @@ from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task
 
-CHANCE = 0.01
-"""Probability that a fixed parameter, a bound or the model is blamed where all are right."""
-
+CHANCE = 0.01  # probability that a fixed parameter, bound or model is blamed wrongly
 LARGE, FAR = 2.0, 10.0
 """Errors over those expected, from which they are said to be larger, and from which no model is
 advised: far above what is called noise."""
 
-WORSE = 1.1
-"""Error of a group over that of the nominal model, from which the nominal one is better there."""
-
+WORSE = 1.1  # error of a group over the nominal model's, from which that one is better there
 TRIED = 3  # fixed parameters that are tried at most
 
-GAIN = 0.1
-"""Share of its errors that a group loses without bounds, from which these are worth widening."""
+GAIN = 0.1  # share of its errors that a group loses without bounds that are worth widening
 
 
 STARTS = 12  # searches at most, from the most probable of the known models

@@ -32,8 +32,7 @@ a limit. At this weight its scatter differs from that of the limit by about as m
 """
 
 
-ATTEMPTS = 1000
-"""Drawings of data sets after which it is given up to have everything measured in one."""
+ATTEMPTS = 1000  # drawings of data sets until all that is measured is in one, at most
 
 
 @dataclass(frozen=True)

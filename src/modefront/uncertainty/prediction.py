@@ -13,16 +13,13 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.optim.problem import room
 
-SUMMARY = ("mean", "standard deviation", "5 %", "50 %", "95 %")
-"""Statistics of a sample: two moments and three quantiles."""
-
+SUMMARY = ("mean", "standard deviation", "5 %", "50 %", "95 %")  # statistics of a sample
 STEP = 0.5  # of a difference, in standard deviations
 LEAST = 0.05  # shortest step, where bounds are near
 NEGLIGIBLE = 1e-9  # part of an axis in the standard deviation of a parameter that counts as none
 BATCH = 1000  # draws that are made at a time
 
-TRIALS = 10_000
-"""Draws for one within the bounds, at most: with fewer of these there is no sampling by trial."""
+TRIALS = 10_000  # draws for one within the bounds, at most, where samples are drawn by trial
 
 
 @dataclass(frozen=True)

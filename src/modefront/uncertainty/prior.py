@@ -31,8 +31,7 @@ USUAL = {"frequency": 0.005, "shape": 0.03}
 
 NINETY = 1.6449  # half the 90 % interval of a normal distribution, over its standard deviation
 
-FARTHEST = 7.0
-"""Distance from the median of a prior, in standard deviations, beyond which nobody looks."""
+FARTHEST = 7.0  # distance from the median of a prior, in standard deviations, at most
 
 
 @dataclass(frozen=True)

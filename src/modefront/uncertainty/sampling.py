@@ -36,17 +36,13 @@ from modefront.work.task import Executor, Task, seed_sequence
 
 DRAWS = 200  # effective draws for intervals: the 5 % quantile is known to 0.15 standard deviations
 
-CHAINS, ROUND, LONGEST = 4, 50, 12
-"""Chains, steps of a round of them, and steps at most of all chains over the draws."""
-
+CHAINS, ROUND, LONGEST = 4, 50, 12  # chains, steps of a round, and of all chains over the draws
 AGREE = 1.05  # deviation of all chains over that within them, from which they do not agree
 ACCEPTED = 0.35  # share of steps nearby that are taken, below which they become shorter
 APART = 1.0  # distance of two models, in standard deviations, below which one leads to the other
 FAINT = 1e-3  # probability of a peak over that of the greatest one, below which it is left out
 
-SMALL, SNAPSHOTS = 100, 40
-"""Columns of a basis from which steps are taken in a smaller one; models whose modes span that."""
-
+SMALL, SNAPSHOTS = 100, 40  # columns of a basis that is made smaller, and models that span that
 NEAR = 3e-3
 """Length of a direction that the smaller space may lack, root mean square over these models: a
 tenth of a usual error of shapes."""

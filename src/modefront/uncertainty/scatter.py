@@ -43,11 +43,8 @@ BENT = 1e-5
 """Second derivative over the greatest one below which it is none: a distance of the solution of
 1e-7 leaves less, and so do differences."""
 
-DEPENDENT = 1e-14
-"""Singular value of equations of size one, over the greatest, that is their rounding."""
-
-PRESSED = 1e-6
-"""Slope of the Lagrangian at a bound, over the slopes of its terms, from which the bound holds."""
+DEPENDENT = 1e-14  # singular value, over the greatest, of scaled equations that is rounding
+PRESSED = 1e-6  # least slope of the Lagrangian at a bound that holds, over those of its terms
 
 
 class LinearisationWarning(Enum):

@@ -23,8 +23,7 @@ FACTORS = (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 9.81, 1 / 9.81, 2.0, 0.5)
 
 NEAREST = 4  # places of each sensor that are tried: those where the model moves most as measured
 
-OFTEN_SHARED = 2.0
-"""Logarithm of how much likelier a sensor is at a wrong place where it shares it with another."""
+OFTEN_SHARED = 2.0  # logarithm of how much likelier a wrong place is that another sensor is at
 
 
 def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:

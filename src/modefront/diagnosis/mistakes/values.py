@@ -18,9 +18,7 @@ from modefront.pairing.match import assigned
 
 RAD = 2 * np.pi
 
-REACH = 0.25
-"""Logarithm of a factor beside a known one that parameters make up for, as in a poor model."""
-
+REACH = 0.25  # logarithm of a factor beside a known one that parameters make up for
 POWERS = (1, -1, 2, -2, 3, -3, 6, -6, 9, -9)  # powers of ten by which a value is off
 
 
@@ -182,8 +180,7 @@ def exchanged_shapes(old: Explanation) -> Iterator[Mistake]:
         yield Mistake("exchanged-shapes", names, change, numbers, moves=True)
 
 
-WRONG = {"frequency": 0.2, "shape": 1.0}
-"""Scale of values that are wrong: of logarithms of frequencies, and of shapes."""
+WRONG = {"frequency": 0.2, "shape": 1.0}  # scale of wrong values: of ln f, and of shapes
 
 
 def odd_value(old: Explanation) -> Iterator[Mistake]:
