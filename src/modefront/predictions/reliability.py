@@ -29,6 +29,7 @@ Samples are drawn in chunks; each has a generator of its own, spawned from the s
 and its size follows from the problem alone, so who computes it changes nothing.
 """
 
+import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -37,8 +38,8 @@ from queue import SimpleQueue
 from typing import Final, final
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len
 from scipy.linalg import expm
 from scipy.special import gammaincc, gammainccinv, log_ndtr, ndtr, ndtri_exp
 
@@ -67,11 +68,6 @@ class FirstPassage:
     # q, mapping an (n,) array of times in s to (n,) factors; None for a constant 1
     modulation: Callable[[Floats], Floats] | None = None
 
-    @property
-    def steps(self) -> int:
-        """The number n of time steps."""
-        return round(self.duration / self.time_step)
-
 
 @dataclass(frozen=True, eq=False)
 class GaussianResponse:
@@ -86,19 +82,13 @@ class GaussianResponse:
     deviation: Floats  # (n_outputs, n) σ
 
     @property
-    def n_inputs(self) -> int:
-        """Number of loads."""
-        return int(self.backwards.shape[1])
-
-    @property
-    def n_steps(self) -> int:
-        """Number n of times."""
-        return int(self.deviation.shape[1])
+    def load(self) -> tuple[int, int]:
+        """Numbers (n_inputs, n) of loads and times."""
+        return self.backwards.shape[1], self.deviation.shape[1]
 
     def design_excitation(self, output: Ints, step: Ints) -> Floats:
         """Return a_oj, (samples, n_inputs, n), for (samples,) pairs; step j counts from 0."""
-        n = self.n_steps
-        direction = np.empty((output.size, self.n_inputs, n))
+        direction, n = np.empty((output.size, *self.load)), self.load[1]
         for row, o, start in zip(direction, output, n - 1 - step, strict=True):
             np.multiply(self.backwards[o, :, start : start + n], self.modulation, out=row)
         return direction
@@ -117,9 +107,8 @@ class Convolution:
     """
 
     def __init__(self, response: GaussianResponse, samples: int) -> None:
-        size = _fft_size(response.n_steps)
-        load = (samples, response.n_inputs)
-        self.response = response
+        self.response, (inputs, n) = response, response.load
+        size, load = next_fast_len(2 * n - 1, real=True), (samples, inputs)
         self._padded = np.zeros((*load, size))
         self._spectrum = np.empty((*load, size // 2 + 1), dtype=np.complex128)
         self._product = np.empty((2, samples, size // 2 + 1), dtype=np.complex128)
@@ -131,14 +120,14 @@ class Convolution:
         One output at a time, so that memory does not grow with their number; each is overwritten
         by the next.
         """
-        count, n = z.shape[0], self.response.n_steps
+        count, inputs, n = z.shape
         padded, load, x = self._padded[:count], self._spectrum[:count], self._x[:count]
         product, term = self._product[:, :count]
         np.multiply(z, self.response.modulation, out=padded[..., :n])
         np.fft.rfft(padded, out=load)
         for spectrum in self.response.spectrum:
             np.multiply(load[:, 0], spectrum[0], out=product)
-            for i in range(1, self.response.n_inputs):
+            for i in range(1, inputs):
                 product += np.multiply(load[:, i], spectrum[i], out=term)
             np.fft.irfft(product, x.shape[-1], out=x)
             yield np.abs(x[:, :n], out=x[:, :n])
@@ -163,11 +152,12 @@ def pulse_response(problem: FirstPassage) -> Floats:
         generator[:, 3, 2:] = -(omega**2), -2 * zeta * omega, 1
     step = np.asarray(expm(generator * problem.time_step))
     power, states = step[:, :-1, :-1], step[:, :-1, -1:]
-    while states.shape[-1] < problem.steps:
+    steps = round(problem.duration / problem.time_step)
+    while states.shape[-1] < steps:
         # Not `@`: sums of two to four terms need no BLAS, whose threads may change the last digit.
         states = np.concatenate([states, np.einsum("mij,mjk->mik", power, states)], axis=-1)
         power = np.einsum("mij,mjk->mik", power, power)
-    modal = states[:, 0, : problem.steps]
+    modal = states[:, 0, :steps]
     return np.einsum("om,mi,mk->oik", shapes.output, shapes.input, modal)
 
 
@@ -177,7 +167,7 @@ def gaussian_response(problem: FirstPassage) -> GaussianResponse:
     n = h.shape[-1]
     middle = np.asarray((np.arange(n) + 0.5) * problem.time_step)
     q = np.ones(n) if problem.modulation is None else problem.modulation(middle)
-    size = _fft_size(n)
+    size = next_fast_len(2 * n - 1, real=True)
     squares = (np.fft.rfft(h**2, size) * np.fft.rfft(q**2, size)).sum(axis=1)
     variance = np.fft.irfft(squares, size)[:, :n]
     return GaussianResponse(
@@ -187,10 +177,6 @@ def gaussian_response(problem: FirstPassage) -> GaussianResponse:
         # Rounding may leave a variance of zero, before the load sets in, just below it.
         deviation=np.sqrt(np.maximum(variance, 0)),
     )
-
-
-def _fft_size(n: int) -> int:
-    return int(scipy.fft.next_fast_len(2 * n - 1, real=True))
 
 
 NEGLIGIBLE = 1e-22  # Q(ρ_oj) over the largest that is left out: millions are below rounding
@@ -275,8 +261,7 @@ def _any_radius(
     # are so small beside the largest that their Q is nothing; they are not worth computing.
     least = NEGLIGIBLE * gammaincc(half_nu, energy)
     floor = level * np.sqrt(energy / gammainccinv(half_nu, least))
-    largest = np.zeros(count)
-    total = np.zeros(count)
+    largest, total = np.zeros((2, count))
     for x in magnitudes:
         np.maximum(largest, x.max(axis=1), out=largest)
         # Flat: NumPy finds the few that are true of a row many times faster than of a table.
@@ -321,7 +306,7 @@ def estimate(
     """
     response = gaussian_response(problem)
     sums = [elementary_failures(response, level) for level in levels.tolist()]
-    largest = LARGEST_BLOCK // (response.n_inputs * response.n_steps)
+    largest = LARGEST_BLOCK // math.prod(response.load)
     chunk = min(max(largest, 1), LARGEST_CHUNK)
     workers = workers or min(os.cpu_count() or 1, MOST_WORKERS)
     free: SimpleQueue[Convolution] = SimpleQueue()
@@ -331,7 +316,7 @@ def estimate(
     def weights_of(number: int) -> Floats:
         count = min(chunk, samples - number * chunk)
         rng, convolution = np.random.default_rng(spawn(seed, number)), free.get()
-        z = rng.standard_normal((count, response.n_inputs, response.n_steps))
+        z = rng.standard_normal((count, *response.load))
         try:
             if method is not None:
                 return _given_failures(method, levels, sums, convolution, z, rng)
@@ -344,8 +329,8 @@ def estimate(
         chunks = pool.map(weights_of, range(-(-samples // chunk)))
         weights = np.concatenate(list(chunks), axis=1)
     P = weights.mean(axis=1)
-    unit = np.full(P.size, np.inf)
-    np.divide(weights.std(axis=1, ddof=1), P, out=unit, where=P > 0)
+    std = weights.std(axis=1, ddof=1)
+    unit = np.divide(std, P, out=np.full(P.size, np.inf), where=P > 0)
     return P, unit / np.sqrt(samples)
 
 

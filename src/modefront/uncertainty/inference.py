@@ -1,7 +1,5 @@
 """The most probable model, and what the posterior says of it: draws, misfit, bounds, measurements.
 
-It is the greatest maximum of the posterior that the known models lead to.
-
 A bound that excludes the truth also drives other parameters to theirs. All bounds that hold the
 model are widened at once, and only those beyond which it then lies are to blame. Of the fixed
 parameters, each promises to lower -2 ln p by what its slope and the Gauss-Newton matrix say where
@@ -62,20 +60,15 @@ def most_probable(
         apart = [np.abs((thetas[k] - x) / span).max() > APART for x in starts]
         if np.isfinite(values[k]) and all(apart) and len(starts) < STARTS:
             starts.append(thetas[k])
-    tasks = [
-        Task(("most-probable", k + 1), maximum, (noise, theta)) for k, theta in enumerate(starts)
-    ]
-    found = sorted(work.run(tasks), key=lambda x: noise.programme.value(x.J))
+    tasks = [Task(("most-probable", k + 1), maximum, (noise, x)) for k, x in enumerate(starts)]
+    models: list[Task[Solution]] = []
     out: list[Solution] = []
-    for x in found:
+    for x in sorted(work.run(tasks), key=lambda x: noise.programme.value(x.J)):
         if all(np.abs((x.theta - y.theta) / span).max() > DISTINCT for y in out):
             out.append(x)
-    return work.run(
-        [
-            Task(("most-probable", "model", k + 1), _in_problem, (problem, noise, x))
-            for k, x in enumerate(out)
-        ]
-    )
+            key = ("most-probable", "model", len(out))
+            models.append(Task(key, _in_problem, (problem, noise, x)))
+    return work.run(models)
 
 
 def log_values(noise: NoiseModel, thetas: Floats) -> Floats:
@@ -99,8 +92,8 @@ def _in_problem(problem: UpdatingProblem, noise: NoiseModel, found: Solution) ->
     effects = np.vstack([each.dr for each in found.evaluation.residuals[:-1]])
     theta = np.where(effects.any(axis=0), found.theta, problem.start)
     evaluation = problem.evaluate(theta, second=True)
-    J = found.J[:-1]
-    unit = np.divide(J, evaluation.J, out=np.ones(J.size), where=evaluation.J > 0)
+    J, own = found.J[:-1], evaluation.J
+    unit = np.divide(J, own, out=np.ones(J.size), where=own > 0)
     w = noise.programme.gradient(found.J)[:-1] * unit
     return replace(found, evaluation=evaluation, weights=w)
 
@@ -157,12 +150,8 @@ def infer(
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
     (free,) = work.run([Task(("most-probable", "freed"), freed, (noise, theta))])
     rounds = 1 if np.any(refused(fit["misfit"], fit["nominal_misfit"])) else None
-    return Inference(
-        draw_models(noise, maxima, count, seed, work, rounds),
-        fit,
-        free,
-        unfixed(noise, theta, fit["misfit"], work),
-    )
+    draws = draw_models(noise, maxima, count, seed, work, rounds)
+    return Inference(draws, fit, free, unfixed(noise, theta, fit["misfit"], work))
 
 
 def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
@@ -200,12 +189,9 @@ def freed(noise: NoiseModel, theta: Floats) -> Freed | None:
     sides = at_bounds(theta, lower, upper)
     if not sides.any():
         return None
-    wider_lower, wider_upper = wider(lower, upper)
-    problem = replace(
-        noise.problem,
-        lower=np.where(sides < 0, wider_lower, lower),
-        upper=np.where(sides > 0, wider_upper, upper),
-    )
+    below, above = wider(lower, upper)
+    lower, upper = np.where(sides < 0, below, lower), np.where(sides > 0, above, upper)
+    problem = replace(noise.problem, lower=lower, upper=upper)
     return _lower(replace(noise, problem=problem), theta)
 
 

@@ -14,8 +14,6 @@ by what the whole one says of them (Liu 2001, *Monte Carlo Strategies in Scienti
 section 2.5): a poor one leaves fewer of them, and these no less exact.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -49,6 +47,56 @@ tenth of a usual error of shapes."""
 
 SOLVED, STEPS = 1e-2, 12  # error of the normal variables behind a model, and models to it at most
 BENT = 0.5  # length of differences for second derivatives, in standard deviations
+
+
+def _definite(squares: Floats) -> Floats:
+    """Return 1 plus a sum of squares (p, p), with as much more as rounding may have taken of it.
+
+    Where modes nearly meet, derivatives of shapes are beyond all bounds.
+    """
+    return np.asarray(squares + (1 + ACCUMULATED * np.trace(squares)) * np.eye(len(squares)))
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model, evaluated in the standardised problem, with variances s (n,) of its errors."""
+
+    found: Evaluation
+    s: Floats
+
+    @property
+    def z(self) -> Floats:
+        """Standardised parameters (p,)."""
+        return self.found.theta
+
+    @cached_property
+    def over(self) -> Floats:
+        """One over the variance of each residual, (rows,)."""
+        return np.repeat(1 / self.s, [x.r.size for x in self.found.residuals[:-1]])
+
+    @cached_property
+    def r(self) -> Floats:
+        """Residuals (rows,)."""
+        return np.concatenate([x.r for x in self.found.residuals[:-1]])
+
+    @cached_property
+    def dr(self) -> Floats:
+        """Their derivatives (rows, p)."""
+        return np.vstack([x.dr for x in self.found.residuals[:-1]])
+
+    def log_posterior(self, logs: LogSum) -> float:
+        """Return ln p of the model and its variances."""
+        of_s = (logs.a / 2 + 1) * np.log(self.s) + (self.found.J[:-1] + logs.floor) / (2 * self.s)
+        return float(-of_s.sum() - self.found.J[-1] / 2)
+
+    def newton(self, b: float) -> tuple[Floats, Floats]:
+        """Return mean (p,) and precision (p, p) of proposals nearby: the stochastic Newton method.
+
+        Of a Gaussian they leave it as it is, whatever b.
+        """
+        A = _definite(self.dr.T @ (self.over[:, None] * self.dr))
+        slope = self.z + self.dr.T @ (self.over * self.r)
+        return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
 
 
 @dataclass(frozen=True)
@@ -158,57 +206,6 @@ class Peak:
         return None
 
 
-def _definite(squares: Floats) -> Floats:
-    """Return 1 plus a sum of squares (p, p), with as much more as rounding may have taken of it.
-
-    Where modes nearly meet, derivatives of shapes are beyond all bounds.
-    """
-    out: Floats = squares + (1 + ACCUMULATED * np.trace(squares)) * np.eye(len(squares))
-    return out
-
-
-@dataclass(frozen=True)
-class Model:
-    """A model, evaluated in the standardised problem, with variances s (n,) of its errors."""
-
-    found: Evaluation
-    s: Floats
-
-    @property
-    def z(self) -> Floats:
-        """Standardised parameters (p,)."""
-        return self.found.theta
-
-    @cached_property
-    def over(self) -> Floats:
-        """One over the variance of each residual, (rows,)."""
-        return np.repeat(1 / self.s, [x.r.size for x in self.found.residuals[:-1]])
-
-    @cached_property
-    def r(self) -> Floats:
-        """Residuals (rows,)."""
-        return np.concatenate([x.r for x in self.found.residuals[:-1]])
-
-    @cached_property
-    def dr(self) -> Floats:
-        """Their derivatives (rows, p)."""
-        return np.vstack([x.dr for x in self.found.residuals[:-1]])
-
-    def log_posterior(self, logs: LogSum) -> float:
-        """Return ln p of the model and its variances."""
-        of_s = (logs.a / 2 + 1) * np.log(self.s) + (self.found.J[:-1] + logs.floor) / (2 * self.s)
-        return float(-of_s.sum() - self.found.J[-1] / 2)
-
-    def newton(self, b: float) -> tuple[Floats, Floats]:
-        """Return mean (p,) and precision (p, p) of proposals nearby: the stochastic Newton method.
-
-        Of a Gaussian they leave it as it is, whatever b.
-        """
-        A = _definite(self.dr.T @ (self.over[:, None] * self.dr))
-        slope = self.z + self.dr.T @ (self.over * self.r)
-        return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
-
-
 @dataclass(frozen=True)
 class Draws:
     """Models drawn from the posterior, with what they predict."""
@@ -252,7 +249,7 @@ def draw_models(
     stage = "sample-posterior"
     tasks = [Task(("peaks", k + 1), find_peak, (noise, x)) for k, x in enumerate(maxima)]
     peaks = _mixture(noise, work.run(tasks))
-    chains: list[Chain | None] = [None] * CHAINS
+    chains: Sequence[Chain | None] = [None] * CHAINS
     kept: list[Floats] = []
     rng = np.random.default_rng(seed_sequence(seed, stage, "near"))
     around = [peaks[k].top.newton(1.0) for k in rng.choice(len(peaks), SNAPSHOTS)]
@@ -265,8 +262,7 @@ def draw_models(
         for k, chain in enumerate(chains):
             key, of = (stage, k + 1, turn + 1), (near, peaks, chain)
             steps.append(Task(key, _advanced, of, seed_sequence(seed, *key)))
-        found = work.run(steps)
-        chains = [*found]
+        chains = found = work.run(steps)
         if turn == 0:  # the warm-up
             if near is not noise:
                 some = np.vstack([x.z[:: CHAINS * ROUND // SNAPSHOTS] for x in found])
@@ -291,16 +287,13 @@ def draw_models(
 
 
 def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> tuple[Draws, float]:
-    """Return draws from the posterior ``near`` this one, each as often as its weight says.
+    """Return draws z (n, p) from the posterior ``near`` this one, and the share that counts.
 
-    z (n, p) are their standardised parameters. Returned is also what share of them counts.
+    Each is there as often as its weight says.
     """
-    tasks = [
-        Task(("draws", k + 1), _weighed, (noise, near, part))
-        for k, part in enumerate(np.array_split(z, CHAINS))
-    ]
-    parts = zip(*work.run(tasks), strict=True)
-    theta, frequency, mac, weight = (np.concatenate(x) for x in parts)
+    some = enumerate(np.array_split(z, CHAINS))
+    parts = work.run([Task(("draws", k + 1), _weighed, (noise, near, x)) for k, x in some])
+    theta, frequency, mac, weight = (np.concatenate(x) for x in zip(*parts, strict=True))
     w = softmax(weight)
     # of equal weights, each draw once
     chosen = np.searchsorted(np.cumsum(w), (np.arange(len(z)) + 0.5) / len(z))
@@ -309,16 +302,14 @@ def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> 
 
 
 def _weighed(noise: NoiseModel, near: NoiseModel, z: Floats) -> tuple[Floats, ...]:
-    """Return parameters (n, p), paired frequencies and MAC values, and weights (n,) of draws.
+    """Return parameters (n, p), paired frequencies and MAC values, and weights (n,) of draws z.
 
-    z (n, p) are standardised parameters from the posterior ``near`` this one. A weight is the
-    logarithm of this one over it.
+    A weight is the logarithm of this posterior over the one ``near`` it.
     """
     theta = np.array([Standardised(noise.problem).theta(x)[0] for x in z])
     there = [near.problem.evaluate(x, derivatives=False) for x in theta]
-    here = there
-    if near is not noise:
-        here = [noise.problem.evaluate(x, derivatives=False) for x in theta]
+    same = near is noise
+    here = there if same else [noise.problem.evaluate(x, derivatives=False) for x in theta]
     pairs = list(zip(there, here, strict=True))
     frequency, mac = (
         np.array([(y.quantities or x.quantities).get(name, ()) for x, y in pairs])
@@ -399,7 +390,10 @@ def _advanced(
         z, s, length = chain.z[-1], chain.s, chain.length
     here = Model(target.evaluate(z), s)
     for t in range(ROUND):
-        here, chance = of.after(here, length, rng)
+        here = of.across(here, rng)
+        # The variances are drawn between both kinds of steps.
+        s = (here.found.J[:-1] + noise.logs.floor) / rng.chisquare(noise.logs.a)
+        here, chance = of.nearby(Model(here.found, s), length, rng)
         out.append(here.z)
         if chain is None:
             length = min(length * float(np.exp((chance - ACCEPTED) / np.sqrt(1 + t / 4))), 1.0)
@@ -413,15 +407,6 @@ class Sampler:
     target: Standardised
     logs: LogSum
     peaks: Sequence[Peak]
-
-    def after(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
-        """Return the model after both kinds of steps, and the probability of the one nearby.
-
-        The variances are drawn between them.
-        """
-        here = self.across(here, rng)
-        scale = here.found.J[:-1] + self.logs.floor
-        return self.nearby(Model(here.found, scale / rng.chisquare(self.logs.a)), b, rng)
 
     def across(self, here: Model, rng: np.random.Generator) -> Model:
         """Return the model after a step to one that is independent of it."""
@@ -451,7 +436,7 @@ class Sampler:
         return float(out)
 
     def nearby(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
-        """Return the model after a step of the stochastic Newton method."""
+        """Return the model after a step of the stochastic Newton method, and its probability."""
         mean, precision = here.newton(b)
         z = _drawn(mean, precision, rng)
         new = Model(self.target.evaluate(np.clip(z, -FARTHEST, FARTHEST)), here.s)
