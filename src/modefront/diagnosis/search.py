@@ -12,7 +12,7 @@ import numpy as np
 
 from modefront.diagnosis.comparison import Comparison, of_few_sets
 from modefront.diagnosis.evidence import ENOUGH, Fits
-from modefront.diagnosis.mistakes import model, sensors, values
+from modefront.diagnosis.mistakes import sensors, values
 from modefront.diagnosis.mistakes.record import IMPRECISE, Explanation, Mistake
 from modefront.diagnosis.state import State, stacked
 from modefront.findings.knowledge import enumeration
@@ -41,11 +41,11 @@ MISTAKES: Kinds = (
     *(sensors.wrong_place, sensors.reversed_value, sensors.odd_sensor),
     *(values.wrong_nominal_value, values.odd_value, values.wrong_frequency),
     *(values.damping_in_percent, values.foreign_mode, values.later_mode),
-    *(model.wrong_unit, model.wrong_member),
+    *(values.wrong_unit, values.wrong_member),
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
 
-SOUGHT: tuple[Kinds, Kinds] = MISTAKES, (partial(model.wrong_member, usual=True),)
+SOUGHT: tuple[Kinds, Kinds] = MISTAKES, (partial(values.wrong_member, usual=True),)
 """Mistakes, and what is none and is looked for once these are found."""
 
 USUAL, OFTEN = 0.02, 0.05

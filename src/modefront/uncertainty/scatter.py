@@ -1,19 +1,15 @@
 r"""Scatter of the solution of a programme by errors of the data: the implicit function theorem.
 
 docs/uncertainty.md derives it from the conditions of Karush, Kuhn and Tucker (Fiacco 1983,
-*Introduction to Sensitivity and Stability Analysis in Nonlinear Programming*, section 2.4):
-
-.. math:: W \delta\theta + \partial J^T \delta w = - \delta \partial J^T w, \qquad
-    W = \sum_i w_i H_i ,
-
-with the conditions of each programme on w (`modefront.uncertainty.scatter`). Of a point of NBI,
+*Introduction to Sensitivity and Stability Analysis in Nonlinear Programming*, section 2.4). There
+are conditions of each programme on w besides. Of a point of NBI,
 :math:`J_A = (J^* + P (\beta + \tau e))_A` on the active bounds A, with :math:`n = P e` and
 :math:`w_A^T n_A = 1`, and :math:`w_i = \rho / n_i` elsewhere; with the edges E as columns,
 :math:`J^* = \operatorname{diag} E` and :math:`P = E - J^* e^T`.
 
 A parameter at an active bound is fixed. Directions in which no residual changes are left out and
-named. The linearisation is valid as long as no active set changes and the solution remains the same
-minimum; reasons to doubt it, where one of these is within a standard deviation, are returned.
+named. Reasons to doubt the linearisation are returned: an active set that changes, or another
+minimum that becomes the better one, within a standard deviation.
 
 The optimally weighted model is the peak of the posterior with Jeffreys' prior of the variances of
 the errors (compare Christodoulou & Papadimitriou 2007, Mechanical Systems and Signal Processing 21,
@@ -202,10 +198,8 @@ def scatter(
     B = span[:, None] * Q  # parameters for unit changes of what is determined
     dJ = evaluation.dJ @ B
     second = np.tensordot(w, evaluation.H, axes=1)
-    W = B.T @ second @ B
-    c = conditions
-    n, k = c.e.shape
-    q = Q.shape[1]
+    W, c = B.T @ second @ B, conditions
+    (n, k), q = c.e.shape, Q.shape[1]
     system = np.block(
         [
             [W, dJ.T, np.zeros((q, k))],
@@ -227,8 +221,7 @@ def scatter(
         LinearisationWarning.LEAVES: leaves[held].any(),
         LinearisationWarning.SWITCHES: c.switch(dw, theta @ evaluation.dJ.T, dtau),
     }
-    why = tuple(warning for warning in holds if holds[warning])
-    return Scatter(theta, J, span[:, None] * free, why)
+    return Scatter(theta, J, span[:, None] * free, tuple(x for x in holds if holds[x]))
 
 
 def _is_minimum(W: Floats, C: Floats, dJ: Floats, c: Conditions) -> bool:
@@ -252,12 +245,11 @@ def _is_minimum(W: Floats, C: Floats, dJ: Floats, c: Conditions) -> bool:
 
 def _solve_scaled(A: Floats, b: Floats) -> Floats:
     """Solve A x = b with the rows and columns of A brought to size one."""
-    rows = np.abs(A).max(axis=1, initial=0.0)
+    rows = np.abs(A).max(axis=1, initial=0.0, keepdims=True)
     rows = np.where(rows > 0, rows, 1.0)
-    scaled = A / rows[:, None]
-    columns = np.abs(scaled).max(axis=0, initial=0.0)
+    columns = np.abs(A / rows).max(axis=0, initial=0.0)
     columns = np.where(columns > 0, columns, 1.0)
-    x = scipy.linalg.lstsq(scaled / columns, b / rows[:, None], cond=DEPENDENT)[0]
+    x = scipy.linalg.lstsq(A / rows / columns, b / rows, cond=DEPENDENT)[0]
     return np.asarray(x / columns[:, None])
 
 
@@ -367,11 +359,10 @@ def laplace(problem: Problem, evaluation: Evaluation, a: Floats) -> Posterior | 
     The evaluation has second derivatives. None where the point is no regular minimum: an objective
     vanishes, or the curvature is not positive in all directions that residuals determine.
     """
-    J = evaluation.J
+    J, span = evaluation.J, problem.upper - problem.lower
     if not (J > 0).all():
         return None
     w = a / J
-    span = problem.upper - problem.lower
     held = held_at_bounds(problem, evaluation, w)
     Q, free = spaces(problem, evaluation, w, held)
     B = span[:, None] * Q
