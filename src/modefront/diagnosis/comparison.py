@@ -52,10 +52,7 @@ class Comparison:
 
 
 def compare(problem: UpdatingProblem) -> Comparison:
-    """Return the comparison of the nominal model with the measured modes.
-
-    Raises ModelError where the model has no modes at its nominal parameters.
-    """
+    """Return the nominal model beside the data; raise ModelError where it has no modes."""
     least = modes_needed(problem.pairing, problem.data, problem.model.size)
     matrices = matrices_at(problem.model, problem.start)
     model = matrices or full_of(problem.model)

@@ -83,10 +83,7 @@ def pairs(matrices: MatrixModel) -> Iterator[Members]:
 
 
 def with_factors(model: MatrixModel, parts: Sequence[Part]) -> MatrixModel:
-    """Return a model in a basis with further parameters, the factors on parts of it.
-
-    Without any, there is one further parameter, that changes nothing.
-    """
+    """Return a model in a basis with factors on parts of it as parameters, or with an idle one."""
     new, count = dict[str, Any](), max(1, len(parts))
     for of in MATRICES:
         A = getattr(model, of)

@@ -20,9 +20,9 @@ from modefront.findings.record import Finding, found
 from modefront.pairing.match import POOR, match
 
 CLEAR = float(np.log(100.0))  # difference of costs that is clear: odds of 100 to 1
-PROMISING, FITTED = defaultdict(lambda: 100, {"wrong-unit": 2}), 30
-"""Mistakes of each kind of which costs are looked at, and those of all kinds that are fitted. Each
-unit has modes of its own, which other mistakes share."""
+# Mistakes of each kind of which costs are looked at: each unit has modes of its own, others do not.
+PROMISING = defaultdict(lambda: 100, {"wrong-unit": 2})
+FITTED = 30  # mistakes of all kinds that are fitted
 
 BEAM, MOST = 3, 6  # single claims to which others are added at first, and mistakes, at most
 EITHER = 3  # explanations that the data cannot tell apart and that are named nevertheless, at most
@@ -63,10 +63,7 @@ COST = attrgetter("cost")
 
 
 def mixed(mistakes: Sequence[Mistake]) -> float:
-    """Return the price of moving values after mistakes were said of them.
-
-    Where both orders fit alike, the one that moves them first is said first.
-    """
+    """Return the price of moving values after mistakes were said of them: they are moved first."""
     return LEFT * any(b.moves > a.moves for a, b in pairwise(mistakes))
 
 
@@ -182,8 +179,8 @@ class Search:
     def named(self, best: Explanation) -> dict[Mistake, Finding]:
         """Return the mistakes of the best explanation without which no other one comes near it.
 
-        Another one is no rival that has more mistakes and fits no better: all sensors but one
-        reversed are the same as that one, as a mode shape has no sign.
+        One with more mistakes that fits no better is no rival: all sensors but one reversed are the
+        same as that one, as a mode shape has no sign.
         """
         out, count, most = dict[Mistake, Finding](), len(best.blamed), best.point.cost - LEFT
         known = sorted(self.known.values(), key=COST)

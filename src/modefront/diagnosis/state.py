@@ -21,9 +21,8 @@ import numpy as np
 from modefront._typing import Bools, Floats, Ints
 from modefront.models.geometry import Geometry
 
-NU, FREQUENCY, SHAPE = 100.0, 0.005, 0.03
-"""Degrees of freedom nu of noise, and its scales in frequencies and shapes where not known."""
-
+NU = 100.0  # degrees of freedom of noise
+FREQUENCY, SHAPE = 0.005, 0.03  # its scales where they are not known
 OF_MODEL = 0.08  # scale that is expected of what no parameter describes, in shapes of mean square 1
 DAMPING = float(np.log(0.01))  # logarithm of the damping ratio that is expected, with a scale of 1
 ROUNDS = 8  # rounds of the iterations for the shape that data sets have in common and for a scale
@@ -126,10 +125,7 @@ class State:
 
     @cached_property
     def mean(self) -> Floats:
-        """Shapes that the data sets have in common, (..., modes, sensors), of mean square 1, or 0.
-
-        The best product of a factor a set and a shape, by alternating least squares.
-        """
+        """Shapes that sets have in common, of mean square 1, or 0, by alternating least squares."""
         first = self.seen.sum(axis=-1).argmax(axis=-2)[..., None, :, None]
         c = np.take_along_axis(self.psi, first, axis=-3)[..., 0, :, :]
         for _ in range(ROUNDS if self.psi.shape[-3] > 1 else 0):
@@ -140,10 +136,7 @@ class State:
         return np.asarray(c)
 
     def factors(self, c: Floats) -> Floats:
-        """Return by which factors shapes c (..., modes, sensors) become those measured.
-
-        They are least squares at the measured components, (..., sets, modes, 1).
-        """
+        """Return factors (..., sets, modes, 1) from c (..., modes, sensors) to measured shapes."""
         c = c[..., None, :, :]
         square = (self.seen * c**2).sum(axis=-1, keepdims=True)
         return ratio((self.psi * c).sum(axis=-1, keepdims=True), square)

@@ -29,10 +29,7 @@ Contents = Literal["number", "count", "truth", "text"]  # types of values of a v
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of the results.
-
-    The unit is empty where there is none, or where it is that of the model.
-    """
+    """A variable of the results; its unit is empty for none, or for that of the model."""
 
     name: str
     dimensions: tuple[str, ...]
@@ -363,10 +360,9 @@ class Quantity:
 def quantity(
     data: Dataset, variable: ResultVariable, i: int, of: str = "", log_std: str = ""
 ) -> Quantity:
-    """Return the quantity that is the i-th column of a variable of results.
+    """Return the i-th column of a variable of results, ``of`` a prediction.
 
-    ``of`` is the name of its prediction, ``log_std`` names the variable with the standard deviation
-    of its logarithm.
+    ``log_std`` names the variable with the standard deviation of its logarithm.
     """
     name, values = variable.name, data[variable.name]
     label = str(data[values.dims[1]].values[i])

@@ -204,10 +204,7 @@ class Passage(modal.ModalPrediction):
         return replace(out, step=out._step(out.nominal(problem)))
 
     def _step(self, system: modal.ModalSystem) -> float:
-        """Return the time step.
-
-        Raises InputError where it is too long for a structure, or there are too many.
-        """
+        """Return the time step; raise InputError where it is too long, or there are too many."""
         soil = 0.0 if self.filter is None else self.filter.omega
         highest = max(float(system.omega.max()), soil, np.finfo(float).tiny)
         if self.step is not None:
@@ -223,10 +220,7 @@ class Passage(modal.ModalPrediction):
         return self.duration / steps
 
     def problem(self, problem: UpdatingProblem, theta: Floats) -> reliability.FirstPassage:
-        """Return the first-passage problem at ``theta``.
-
-        Raises InputError where the time step is too long for the highest mode there.
-        """
+        """Return the problem at ``theta``; raise InputError where the step is too long there."""
         modal.filled(self.step, "step")
         system, soil = self.system(problem, theta), self.filter
         times, factors = zip(*self.modulation or [(0.0, 1.0)], strict=True)

@@ -45,10 +45,9 @@ ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2, "absolute acceleranc
 def derivatives(
     system: modal.ModalSystem, omega: Complexes, quantity: str
 ) -> tuple[Complexes, Complexes, Complexes]:
-    """Return T, dT/dω and d²T/dω², each (n, n_outputs, n_inputs), at (n,) frequencies.
+    """Return T, dT/dω and d²T/dω², each (n, n_outputs, n_inputs), at (n,) frequencies in rad/s.
 
-    These are in rad/s, and the response in units of output per unit load. Raises InputError at the
-    frequency of an undamped mode.
+    Raises InputError at the frequency of an undamped mode.
     """
     w = omega[:, None]
     # ω_r² - ω² as a product: exact to rounding next to the mode, where the difference is small.
@@ -93,10 +92,7 @@ class Slope:
         return 2 * (t.conj() * t1).real, 2 * (abs(t1) ** 2 + (t.conj() * t2).real)
 
     def rounding(self, omega: Floats, g1: Floats) -> Floats:
-        """Return the bound of the error of g by rounding of the terms of T and of ω.
-
-        Modes that cancel leave a small T that is no more accurate than they are.
-        """
+        """Return the bound of g's error by rounding of ω and of T's terms, which may cancel."""
         pair = self.pair
         load = np.concatenate([abs(pair.input), abs(pair.residual_flexibility())])[:, 0]
         shape = np.append(abs(pair.output[0]), 1.0)
@@ -126,15 +122,9 @@ def peaks(
 ) -> tuple[Floats, Floats]:
     """Return where |T| has its local maxima, by rising frequency, and |T| there.
 
-    Parameters
-    ----------
-    system : the structure, with one input; every mode in the band damped and above 0 Hz
-    quantity : what is set against the load, one of `ORDERS`
-    output : which response, counted from 0
-    band : lowest and highest circular frequency, rad/s. The ends are no peaks, however large |T| is
-        there.
-
-    Raises InputError for undamped modes in the band, as their peaks are infinite.
+    The structure has one input, ``quantity`` is one of `ORDERS`, ``output`` is counted from 0, and
+    the band is in rad/s; its ends are no peaks, however large |T| is there. Raises InputError for
+    undamped modes in the band, as their peaks are infinite.
     """
     one, (low, high) = slice(output, output + 1), band
     pair = replace(

@@ -138,9 +138,9 @@ class Equivalent:
         return np.asarray((grown + np.sqrt(EXACT) * np.array(self._lengths)) ** 2)
 
     def _solve(self, q: Values, size: float, sign: float, start: Floats) -> Solution | None:
-        """Return the extreme to which a start leads; None where that is no equivalent model.
+        """Return the extreme, with q over ``size`` as last objective, to which a start leads.
 
-        The solution has q over ``size`` as its last objective.
+        None where that is no equivalent model.
         """
         if self.slack == 0:  # the corners of a simplex about the middle: all are 0 there alone
             n = len(self.equations[0])
@@ -290,8 +290,7 @@ def extreme(
 ) -> float:
     """Return the least (sign 1) or greatest (-1) prediction over a front; NaN without any.
 
-    ``values`` (m,) are those of its models, and ``step`` that of differences, over the ranges of
-    the parameters.
+    ``values`` (m,) are those of its models, ``step`` is that of `Equivalent`.
     """
 
     def value(theta: Floats) -> float:

@@ -96,15 +96,7 @@ class GaussianResponse:
 
 @final
 class Convolution:
-    """Turns samples of z into |x|, in memory of its own: one for each worker.
-
-    Fresh arrays for every chunk would cost more time than the transforms.
-
-    Parameters
-    ----------
-    response : the map from z to x
-    samples : the largest number of samples at once
-    """
+    """Turns so many samples of z into |x|, in memory of its own: fresh arrays cost more time."""
 
     def __init__(self, response: GaussianResponse, samples: int) -> None:
         self.response, (inputs, n) = response, response.load
@@ -117,8 +109,7 @@ class Convolution:
     def magnitudes(self, z: Floats) -> Iterator[Floats]:
         """Yield |x| of one output after another, each (samples, n), for z (samples, n_inputs, n).
 
-        One output at a time, so that memory does not grow with their number; each is overwritten
-        by the next.
+        Each is overwritten by the next, so that memory does not grow with their number.
         """
         count, inputs, n = z.shape
         padded, load, x = self._padded[:count], self._spectrum[:count], self._x[:count]
@@ -134,10 +125,7 @@ class Convolution:
 
 
 def pulse_response(problem: FirstPassage) -> Floats:
-    """Return the outputs at t_1 … t_n after a unit pulse on [0, Δt) at one input.
-
-    The array is (n_outputs, n_inputs, n), in units of output per unit load.
-    """
+    """Return the outputs (n_outputs, n_inputs, n) after a unit pulse on [0, Δt) at one input."""
     shapes, size = problem.system, 3 if problem.soil is None else 5
     generator = np.zeros((shapes.omega.size, size, size))  # [A B; 0 0] of each mode
     generator[:, 0, 1] = 1
@@ -183,10 +171,7 @@ NEGLIGIBLE = 1e-22  # Q(ρ_oj) over the largest that is left out: millions are b
 
 
 def elementary_failures(response: GaussianResponse, level: float) -> Floats:
-    """Return the sums of P_oj over the steps of one output after another, (n_outputs · n,).
-
-    The last one, ΣP, may exceed 1.
-    """
+    """Return sums (n_outputs · n,) of P_oj, output after output; the last, ΣP, may exceed 1."""
     # Before the load sets in there is no response, and β is infinite.
     with np.errstate(divide="ignore"):
         beta = level / response.deviation.ravel()

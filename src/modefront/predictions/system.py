@@ -27,30 +27,24 @@ from modefront.text import Shown
 
 @dataclass(frozen=True, eq=False)
 class ModalSystem:
-    """A linear structure by its modes, between m modes, n_inputs loads and n_outputs responses.
-
-    Attributes
-    ----------
-    omega : (m,) natural circular frequencies ω_r in rad/s; zero for a rigid-body mode
-    zeta : (m,) damping ratios ζ_r, none negative
-    input : (m, n_inputs) modal loads Γ: φᵀf for forces f, -φᵀM r for the acceleration of the base,
-        r its rigid-body motion
-    output : (n_outputs, m) mode shapes Y at the outputs: a sensor, or any weighted sum of degrees
-        of freedom, such as a story drift
-    static : (n_outputs, n_inputs) full static response Y_s = output · K⁻¹ · load, load = f or
-        -M r; None where the modes are all there is. Its excess over the static response of the
-        modes given is the correction for those cut off. With rigid-body modes there is none.
-    rigid : (n_outputs, n_inputs) motion Y_b = output · r of the outputs with the base, or None
-        where the load is a force; needed for absolute acceleration only
+    """A linear structure by its m modes, between n_inputs loads and n_outputs responses.
 
     Raises InputError for a static response of a structure with a rigid-body mode.
     """
 
-    omega: Floats
-    zeta: Floats
+    omega: Floats  # (m,) natural circular frequencies ω_r in rad/s; zero for a rigid-body mode
+    zeta: Floats  # (m,) damping ratios ζ_r, none negative
+    # (m, n_inputs) modal loads Γ: φᵀf for forces f, -φᵀM r for the acceleration of the base, r its
+    # rigid-body motion
     input: Floats
+    # (n_outputs, m) mode shapes Y at the outputs: a sensor, or any weighted sum of degrees of
+    # freedom, such as a story drift
     output: Floats
+    # (n_outputs, n_inputs) full static response Y_s = output · K⁻¹ · load, load = f or -M r: what
+    # it exceeds that of the modes by corrects for those cut off; None where these are all
     static: Floats | None = None
+    # (n_outputs, n_inputs) motion Y_b = output · r of the outputs with the base, for absolute
+    # acceleration; None where the load is a force
     rigid: Floats | None = None
 
     def __post_init__(self) -> None:
@@ -271,10 +265,7 @@ class ModalPrediction(Shown):
         return modes_reaching(model, problem.start, BEYOND * top, needed)
 
     def nominal(self, problem: UpdatingProblem) -> ModalSystem:
-        """Return the nominal model in modal coordinates.
-
-        Raises InputError where it has no such modes or the load moves none of the responses.
-        """
+        """Return the nominal model; raise InputError without such modes, or response that moves."""
         try:
             system = self.system(problem, problem.start)
         except ModelError as error:
@@ -285,10 +276,7 @@ class ModalPrediction(Shown):
 
 
 def filled(value: T | None, name: str) -> T:
-    """Return an option of a prediction.
-
-    Raises InputError where it still has to be found from the nominal model.
-    """
+    """Return an option; raise InputError where it is still to be found from the nominal model."""
     if value is None:
         raise wrong(name, "a value, which complete(problem) finds", "none")
     return value
@@ -303,7 +291,7 @@ def highest_frequency(data: ModalData) -> float | None:
 def modes_reaching(model: Model, theta: Floats, frequency: float, count: int) -> int:
     """Return how many modes at ``theta`` are below a frequency in Hz, and one more if there is.
 
-    ``count`` is a number of modes that the model is known to have.
+    The model is known to have ``count`` of them.
     """
     f = model.modes(theta, count, derivatives=False).frequency
     while not (f >= frequency).any():

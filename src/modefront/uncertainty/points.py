@@ -25,11 +25,8 @@ Kind = Literal["edge", "level", "weights", "optimal", "end", "boundary"]
 """Kinds of programmes of points; each kind depends only on those before it."""
 
 SMALL = 1e-4
-"""Weight of the other objectives, over that of an edge's own, that keeps an edge regular.
-
-A linearisation needs second derivatives that are not singular, while an edge in a flat valley is
-a limit. At this weight its scatter differs from that of the limit by about as much.
-"""
+"""Weight of the other objectives, over that of an edge's own, that keeps second derivatives of an
+edge in a flat valley regular. Its scatter differs from that of the limit by about as much."""
 
 
 ATTEMPTS = 1000  # drawings of data sets until all that is measured is in one, at most
@@ -44,8 +41,7 @@ class Role:
     kind: Kind
     # labels of the ends between which a point of NBI lies, one an objective; or the end
     ends: tuple[str, ...] = ()
-    # models up to which the ranges of the objectives reach, which stay where they are, where the
-    # simplex is that of the ranges
+    # models, which stay, up to which ranges of objectives reach where these span the simplex
     worst: Sequence[Solution] = ()
     equations: bool = False  # whether a point of NBI solves the equations of Das & Dennis
     objective: int = -1  # of an edge or a level
@@ -83,8 +79,7 @@ def solve_again(
 ) -> Mapping[str, Solution]:
     """Return the points with data drawn again, by label, each solved from where it was.
 
-    ``sizes`` (n,) are typical ones of the objectives. A point of which the ends do not span a
-    simplex any more is infeasible.
+    ``sizes`` (n,) are typical ones of the objectives. A point without a simplex is infeasible.
     """
     again = replace(problem, data=redraw(problem.data, source, rng))
     solved: dict[str, Solution] = {}

@@ -36,10 +36,7 @@ class Stencil:
 
 
 def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stencil | None:
-    """Return differences around ``theta`` (p,) along ``axes`` (p, m) within the bounds.
-
-    None where an axis has no room between them.
-    """
+    """Return differences about theta (p,) along axes (p, m) within bounds; None without room."""
     m = axes.shape[1]
     std = np.linalg.norm(axes, axis=1)
     directions = np.where(np.abs(axes) > NEGLIGIBLE * std[:, None], axes, 0.0).T
@@ -92,10 +89,7 @@ def draw(
 
 
 def summary(values: Floats) -> Floats:
-    """Return mean, standard deviation and quantiles (`SUMMARY`) of columns, (5, columns).
-
-    Rows that are NaN are left out of a column; fewer than two others give NaN.
-    """
+    """Return the `SUMMARY` (5, columns) of columns without what is NaN; NaN for fewer than two."""
     out = np.full((len(SUMMARY), values.shape[1]), np.nan)
     for i, column in enumerate(values.T):
         known = column[np.isfinite(column)]

@@ -124,13 +124,10 @@ class NoiseModel:
 
 @dataclass(frozen=True)
 class Distance:
-    """Distance of parameters from the nominal ones, in the units of their priors.
-
-    ``weight`` is that of a distance of one range, for parameters of uniform prior.
-    """
+    """Distance of parameters from the nominal ones, in the units of their priors."""
 
     problem: UpdatingProblem
-    weight: float
+    weight: float  # of a distance of one range, for parameters of uniform prior
 
     def residuals(self, theta: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the distances (p,) and their first and second derivatives."""
@@ -163,10 +160,7 @@ class Distance:
 
 @dataclass(eq=False)
 class Standardised:
-    """The residuals of a problem as functions of independent standard normal variables z.
-
-    The prior of the parameters makes them such. The last objective is the square of z.
-    """
+    """Residuals, and last the square of z, as functions of standard normal z, by the priors."""
 
     problem: UpdatingProblem
 
@@ -208,10 +202,7 @@ class Standardised:
         return out
 
     def _units(self, theta: Floats) -> Floats:
-        """Return the distances of those with a prior from the nominal values, over its deviation.
-
-        These are of logarithms for a lognormal prior.
-        """
+        """Return distances from nominal values, or of their logarithms, over deviations."""
         theta, nominal = theta[self.known], self.problem.start[self.known]
         ratio = np.divide(theta, nominal, out=np.ones(theta.size), where=self.log)
         with np.errstate(divide="ignore"):
@@ -244,7 +235,7 @@ def prior_widths(problem: UpdatingProblem) -> Floats:
 def expected(
     data: ModalData, sizes: Mapping[str, float], source: Source | None
 ) -> tuple[ModalData, tuple[str, ...]]:
-    """Return data with expected standard deviations, and the kinds of which some are of ``sizes``.
+    """Return data with expected deviations, and the kinds of which some are of ``sizes``.
 
     They are such that means over the data sets become sums.
     """

@@ -90,10 +90,7 @@ class Model:
         return float(-of_s.sum() - self.found.J[-1] / 2)
 
     def newton(self, b: float) -> tuple[Floats, Floats]:
-        """Return mean (p,) and precision (p, p) of proposals nearby: the stochastic Newton method.
-
-        Of a Gaussian they leave it as it is, whatever b.
-        """
+        """Return mean (p,) and precision (p, p) of proposals nearby, which leave a Gaussian be."""
         A = _definite(self.dr.T @ (self.over[:, None] * self.dr))
         slope = self.z + self.dr.T @ (self.over * self.r)
         return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
@@ -158,12 +155,10 @@ class Peak:
         return float(size + (of_s - self.scale / (2 * s)).sum())
 
     def reaches(self, target: Standardised, model: Model) -> bool:
-        """Return whether the normal variables behind a model lead to it, and to no other one.
-
-        Newton's method is only asked where its first step does not end near the model.
-        """
+        """Return whether the normal variables behind a model lead to it, and to no other one."""
         here = Model(self.at, model.s)
         _, step, bend = self.first(here, self.forward(model)[0] - self.forward(here)[0])
+        # Newton's method is only asked where its first step does not end near the model.
         away = here.z + step + bend - model.z
         if np.abs(step).max() <= 1 and away @ self.precision(model.s) @ away < APART**2:
             return True
@@ -426,8 +421,7 @@ class Sampler:
     def log_density(self, model: Model, each: Floats, by: int = -1) -> float:
         """Return the logarithm of the sum of what peaks propose, ``by`` one of them or not.
 
-        ``each`` (peaks,) is what each of them says. It is minus infinity for a model to which they
-        do not lead.
+        ``each`` (peaks,) is what each says. It is minus infinity where none leads to the model.
         """
         out, least = -np.inf, each.max() + np.log(FAINT)
         for k, (q, peak) in enumerate(zip(each.tolist(), self.peaks, strict=True)):

@@ -57,19 +57,15 @@ class LinearisationWarning(Enum):
 
 @dataclass(frozen=True)
 class Conditions:
-    r"""Conditions of a programme on the changes: C dtheta + D dw - e dtau = f, e^T dw = h.
+    """Conditions of a programme on the changes: C dtheta + D dw - e dtau = f, e^T dw = h."""
 
-    Arrays are C (n, p), D (n,), a diagonal of ones and zeros, f (sources, n), and e (n, k), h
-    (sources, k) with k either 0 or 1. D is 0 for equations. ``switch`` tells of dw, of the changes
-    of J at this solution's data and of dtau, whether errors of one standard deviation change the
-    active set.
-    """
-
-    C: Floats
-    D: Floats
-    e: Floats
-    f: Floats
-    h: Floats
+    C: Floats  # (n, p)
+    D: Floats  # (n,) a diagonal of ones, and zeros for equations
+    e: Floats  # (n, k) with k either 0 or 1
+    f: Floats  # (sources, n)
+    h: Floats  # (sources, k)
+    # whether errors of one standard deviation change the active set; of dw, of the changes of J at
+    # this solution's data, and of dtau
     switch: Callable[[Floats, Floats, Floats], bool] = lambda _, __, ___: False
 
 
@@ -110,9 +106,9 @@ def boundary(
 ) -> tuple[Floats, Conditions]:
     """Return the weights in their right size and the conditions of a point of NBI.
 
-    ``E`` (n, n) has a column an edge, which changes by ``dE`` (sources, n, n). ``beta`` (n,) is the
-    point of their simplex, or of that of the ranges up to ``top`` (n,), which stay, that it was
-    projected from, by the ``equations`` of Das & Dennis or with bounds.
+    ``E`` (n, n) has a column an edge, which changes by ``dE`` (sources, n, n). The point was
+    projected from ``beta`` (n,) in their simplex, or that of the ranges up to ``top`` (n,), which
+    stay, by the ``equations`` of Das & Dennis or with bounds.
     """
     utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
     P, dP = E - utopia[:, None], dE - dutopia[:, :, None]
@@ -188,10 +184,7 @@ def spaces(
 def scatter(
     problem: Problem, evaluation: Evaluation, w: Floats, conditions: Conditions, noise: Noise
 ) -> Scatter:
-    """Return how a solution with weights w (n,) moves with the errors of the data.
-
-    The evaluation has second derivatives.
-    """
+    """Return how a solution with weights w (n,), and second derivatives, moves with the data."""
     span = problem.upper - problem.lower
     held = held_at_bounds(problem, evaluation, w)
     Q, free = spaces(problem, evaluation, w, held)
@@ -227,8 +220,7 @@ def scatter(
 def _is_minimum(W: Floats, C: Floats, dJ: Floats, c: Conditions) -> bool:
     """Return whether second derivatives are positive along all that equations leave open.
 
-    Weights that follow the solution, dw = f - C dtheta, bring the second derivatives of f with
-    them.
+    Weights that follow the solution, dw = f - C dtheta, bring those of f with them.
     """
     if len(W) == 0:
         return True
@@ -274,8 +266,7 @@ def front_scatter(
 ) -> dict[str, Scatter]:
     """Return the scatter of the points for which it is defined, by label.
 
-    A point of which the solver knows no weights has none, as where the objectives jump, or where a
-    search ended before it was solved.
+    It is not where the solver knows no weights: objectives jump there, or a search ended before.
     """
     level_of: dict[int, Floats] = {}  # changes of the least value of each objective
     ends: dict[str, tuple[Floats, Floats]] = {}

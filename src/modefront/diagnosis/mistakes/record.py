@@ -95,8 +95,7 @@ class Explanation:
 def changed(part: str, place: Any, new: Any, cost: float = 0.0) -> Change:
     """Return the change of some values of a part of the state, for a cost.
 
-    They become what a function makes of them, or are divided by a factor, of which NaN leaves out.
-    Of values that are left out nothing is known.
+    They become what a function makes of them, or are divided by a factor; NaN leaves them out.
     """
 
     def change(state: State) -> State:

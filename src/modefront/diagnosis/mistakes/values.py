@@ -43,8 +43,8 @@ def frequency_factor(old: Explanation) -> Iterator[Mistake]:
         yield Mistake("frequency-factor", ("frequencies",), change, numbers, price)
 
 
+# Quantities g that are no frequencies, with a and b of f = a g^b.
 QUANTITIES = {"periods in s": (1.0, -1.0), "eigenvalues in (rad/s)²": (1 / RAD, 0.5)}
-"""Quantities that are no frequencies, with the factor a and the power b of f = a g^b of each."""
 
 
 def other_quantity(old: Explanation) -> Iterator[Mistake]:
@@ -69,16 +69,14 @@ def damping_in_percent(old: Explanation) -> Iterator[Mistake]:
         yield Mistake("damping", ("damping",), change, numbers)
 
 
-SLIPS, FAR = (10.0, 0.1, 100.0, 0.01, 2.0, 0.5), 4.0
-"""Factors on the frequency of a mode by a lost decimal point or aliasing, and the logarithm of the
-range in which others are."""
+SLIPS = (10.0, 0.1, 100.0, 0.01, 2.0, 0.5)  # factors by a lost decimal point or aliasing
+FAR = 4.0  # logarithm of the range in which others are
 
 
 def wrong_frequency(old: Explanation) -> Iterator[Mistake]:
     """Yield known factors on the frequency of each mode, and others that the model has.
 
-    Of the latter nothing is known: each is as many as the widths of normal distributions in the
-    range that it may be in.
+    Each of the latter is as many as the widths of normal distributions in their range.
     """
     modes, logs, f = old.data.modes, old.state.logs, old.modes.frequency
     unknown = float(np.log(FAR / (FREQUENCY * np.sqrt(2 * np.pi)) / len(SLIPS)))
@@ -135,10 +133,7 @@ PARTS = ("frequency", "damping", "shape", "std")
 
 
 def other_numbers(old: Explanation) -> Iterator[Mistake]:
-    """Yield the numbering of the modes of each set that makes it most like the others.
-
-    Modes without anything in common keep their numbers.
-    """
+    """Yield numbers for the modes of each set most like the others'; of unlike ones, their own."""
     state, sets, modes = old.state, old.data.sets, old.data.modes
     for k, name in enumerate(sets if len(sets) > 1 else ()):
         rest = replace(state, **{x: np.delete(getattr(state, x), k, axis=0) for x in PARTS})
