@@ -402,11 +402,6 @@ def predictions_in(data: Dataset) -> Iterator[RecordedPrediction]:
                 for i in positions
                 for x in kind.variables
             )
-            yield RecordedPrediction(
-                kind,
-                str(name),
-                str(data[f"{start}_heading"].values[positions[0]]),
-                "" if load is None else str(load.values[positions[0]]),
-                positions,
-                quantities,
-            )
+            heading = str(data[f"{start}_heading"].values[positions[0]])
+            loaded = "" if load is None else str(load.values[positions[0]])
+            yield RecordedPrediction(kind, str(name), heading, loaded, positions, quantities)

@@ -78,34 +78,26 @@ def derivatives(
     return response, first, second
 
 
-@dataclass(frozen=True, eq=False)
-class Slope:
-    """g between the one output and the one input of `pair`, and the error by rounding."""
+def slope(pair: modal.ModalSystem, quantity: str, omega: Floats) -> tuple[Floats, Floats]:
+    """Return g and g' between the one output and the one input of a structure."""
+    s = omega.astype(np.complex128)
+    t, t1, t2 = (value[:, 0, 0] for value in derivatives(pair, s, quantity))
+    return 2 * (t.conj() * t1).real, 2 * (abs(t1) ** 2 + (t.conj() * t2).real)
 
-    pair: modal.ModalSystem
-    quantity: str
 
-    def both(self, omega: Floats) -> tuple[Floats, Floats]:
-        """Return g and g'."""
-        s = omega.astype(np.complex128)
-        t, t1, t2 = (value[:, 0, 0] for value in derivatives(self.pair, s, self.quantity))
-        return 2 * (t.conj() * t1).real, 2 * (abs(t1) ** 2 + (t.conj() * t2).real)
-
-    def rounding(self, omega: Floats, g1: Floats) -> Floats:
-        """Return the bound of g's error by rounding of ω and of T's terms, which may cancel."""
-        pair = self.pair
-        load = np.concatenate([abs(pair.input), abs(pair.residual_flexibility())])[:, 0]
-        shape = np.append(abs(pair.output[0]), 1.0)
-        w = omega[:, None]
-        d = (pair.omega - w) * (pair.omega + w) + 2j * pair.zeta * pair.omega * w
-        inverse = np.hstack([1 / abs(d), np.ones_like(w)])
-        inverse1 = np.hstack([2 * (w + pair.zeta * pair.omega) / abs(d) ** 2, np.zeros_like(w)])
-        alpha, alpha1 = inverse @ (shape * load), inverse1 @ (shape * load)
-        s = ORDERS[self.quantity]
-        rigid = 0.0 if pair.rigid is None else abs(pair.rigid[0, 0])
-        t = omega**s * alpha + rigid
-        t1 = omega**s * alpha1 + s * omega ** max(s - 1, 0) * alpha
-        return 8 * np.finfo(float).eps * (t * t1 + omega * abs(g1))
+def rounding(pair: modal.ModalSystem, quantity: str, omega: Floats, g1: Floats) -> Floats:
+    """Return the bound of the error of g by rounding of ω and of T's terms, which may cancel."""
+    load = np.concatenate([abs(pair.input), abs(pair.residual_flexibility())])[:, 0]
+    shape = np.append(abs(pair.output[0]), 1.0)
+    w = omega[:, None]
+    d = (pair.omega - w) * (pair.omega + w) + 2j * pair.zeta * pair.omega * w
+    inverse = np.hstack([1 / abs(d), np.ones_like(w)])
+    inverse1 = np.hstack([2 * (w + pair.zeta * pair.omega) / abs(d) ** 2, np.zeros_like(w)])
+    alpha, alpha1 = inverse @ (shape * load), inverse1 @ (shape * load)
+    s, rigid = ORDERS[quantity], 0.0 if pair.rigid is None else abs(pair.rigid[0, 0])
+    t = omega**s * alpha + rigid
+    t1 = omega**s * alpha1 + s * omega ** max(s - 1, 0) * alpha
+    return 8 * np.finfo(float).eps * (t * t1 + omega * abs(g1))
 
 
 DEGREE = 24  # degree of the series; twice as many intervals with half of it cost about the same
@@ -126,51 +118,48 @@ def peaks(
     the band is in rad/s; its ends are no peaks, however large |T| is there. Raises InputError for
     undamped modes in the band, as their peaks are infinite.
     """
-    one, (low, high) = slice(output, output + 1), band
-    pair = replace(
-        system,
-        output=system.output[one],
-        static=None if system.static is None else system.static[one],
-        rigid=None if system.rigid is None else system.rigid[one],
-    )
+    (low, high), one = band, slice(output, output + 1)
+    whole = {name: getattr(system, name) for name in ("output", "static", "rigid")}
+    pair = replace(system, **{k: None if x is None else x[one] for k, x in whole.items()})
     infinite = (pair.zeta * pair.omega == 0) & (pair.omega >= low) & (pair.omega <= high)
     if np.any(infinite):
         mode = int(np.argmax(infinite))
         expected = "damped modes above 0 Hz in the band, as others have infinite peaks"
         undamped = f"omega[{mode}] = {pair.omega[mode]}, zeta[{mode}] = {pair.zeta[mode]}"
         raise wrong("zeta", expected, undamped)
-    slope = Slope(pair, quantity)
     # The modes are natural breaks: with one at the end of an interval, its width is soon found.
     inside = pair.omega[(pair.omega > low) & (pair.omega < high)]
     breaks = np.unique(np.concatenate([[low], inside, [high]]))
-    roots = np.concatenate([_zeros(slope, a, b) for a, b in pairwise(breaks.tolist())])
+    roots = np.concatenate([_zeros(pair, quantity, *x) for x in pairwise(breaks.tolist())])
     # A pair of complex zeros next to the axis passes for real ones until here. Newton's method
     # finds no rest there, or at another zero, which is found a second time.
     zeros, step = roots, np.zeros_like(roots)
     for _ in range(NEWTON_STEPS):
-        g, g1 = slope.both(zeros)
+        g, g1 = slope(pair, quantity, zeros)
         with np.errstate(divide="ignore", invalid="ignore"):
             moved = np.clip(zeros - g / g1, low, high)
         zeros, step = moved, moved - zeros
     settled = (zeros > low) & (zeros < high) & (abs(step) < SETTLED * zeros)
     zeros = np.sort(zeros[settled])
     zeros = zeros[np.diff(zeros, prepend=-np.inf) > TWICE * zeros]
-    at_peak = zeros[slope.both(zeros)[1] < 0]
+    at_peak = zeros[slope(pair, quantity, zeros)[1] < 0]
     values = derivatives(pair, at_peak.astype(np.complex128), quantity)[0][:, 0, 0]
     return at_peak, np.abs(values)
 
 
-def _zeros(slope: Slope, a: float, b: float) -> Floats:
+def _zeros(pair: modal.ModalSystem, quantity: str, a: float, b: float) -> Floats:
     """Return the zeros of g in [a, b], to about the accuracy of the series."""
     middle, half = (a + b) / 2, (b - a) / 2
     x = chebyshev.chebpts1(DEGREE + 1)
-    g, g1 = slope.both(middle + half * x)
+    omega = middle + half * x
+    g, g1 = slope(pair, quantity, omega)
     # Interpolation at the Chebyshev points of the first kind is a discrete orthogonal sum.
     series = (2 / (DEGREE + 1)) * chebyshev.chebvander(x, DEGREE).T @ g
     series[0] /= 2
-    enough = max(RESOLVED * abs(g).max(), slope.rounding(middle + half * x, g1).max())
+    enough = max(RESOLVED * abs(g).max(), rounding(pair, quantity, omega, g1).max())
     if abs(series[-2:]).max() > enough:
-        return np.concatenate([_zeros(slope, a, middle), _zeros(slope, middle, b)])
+        halves = (a, middle), (middle, b)
+        return np.concatenate([_zeros(pair, quantity, *x) for x in halves])
     trimmed = chebyshev.chebtrim(series, enough)
     if trimmed.size == 1:
         return np.empty(0)

@@ -57,8 +57,7 @@ class ModalSystem:
         """Return static - Σ_r Y_r Γ_r / ω_r², (n_outputs, n_inputs); zero without `static`."""
         if self.static is None:
             return np.zeros((self.output.shape[0], self.input.shape[1]))
-        retained: Floats = (self.output / self.omega**2) @ self.input
-        return self.static - retained
+        return self.static - (self.output / self.omega**2) @ self.input
 
 
 T = TypeVar("T")
@@ -68,7 +67,6 @@ MEASURED = "measured"  # damping ratios of the measured modes
 BEYOND = 1.5  # end of the modes superposed, if their number is not given, over that of the band
 ABOVE = 1.1  # end of the band where none is given, over the highest measured frequency
 NAMED = "the name of a sensor or output, or a table of them with weights that are not zero"
-
 
 WEIGHTS = options.any_of(
     options.NAME, options.table_of(options.any_of(options.ABOVE_ZERO, options.BELOW_ZERO), 1)
@@ -260,9 +258,8 @@ class ModalPrediction(Shown):
             return self.modes
         if isinstance(self.damping, tuple):
             return len(self.damping)
-        model = problem.model
-        needed = modes_needed(problem.pairing, problem.data, model.size)
-        return modes_reaching(model, problem.start, BEYOND * top, needed)
+        needed = modes_needed(problem.pairing, problem.data, problem.model.size)
+        return modes_reaching(problem.model, problem.start, BEYOND * top, needed)
 
     def nominal(self, problem: UpdatingProblem) -> ModalSystem:
         """Return the nominal model; raise InputError without such modes, or response that moves."""

@@ -16,7 +16,7 @@ from modefront.errors import UnfinishedError
 from modefront.front.simplex import payoff
 from modefront.front.subproblems import Point, near_best
 from modefront.optim.problem import Problem
-from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
+from modefront.optim.scalarisation import LogSum, weighted
 from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.noise import Source
@@ -89,36 +89,28 @@ def solve_again(
 
 
 def _again(
-    problem: Problem,
-    point: SolvedPoint,
-    solved: Mapping[str, Solution],
-    a: Floats,
-    sizes: Floats,
+    problem: Problem, point: SolvedPoint, solved: Mapping[str, Solution], a: Floats, sizes: Floats
 ) -> Solution:
     role = point.role
     if role.kind == "end":
         return solved[role.ends[0]]
     start = begin(problem.evaluate(point.solution.theta))
-    programme: Scalarisation
     if role.kind == "optimal":
-        programme = LogSum(a)
-    elif role.kind == "weights":
-        programme = weighted(point.solution.weights)
-    elif role.kind in ("edge", "level"):
+        return solve(problem, LogSum(a), start)
+    if role.kind == "weights":
+        return solve(problem, weighted(point.solution.weights), start)
+    if role.kind in ("edge", "level"):
         best = solve(problem, weighted(edge_weights(role.objective, sizes)), start)
         if role.kind != "level" or not best.feasible:
             return best
         is_own = np.arange(sizes.size) == role.objective
         sizes = np.where(is_own, sizes, 1 / point.solution.weights)  # as it was solved with
         return near_best(problem, best, role.objective, role.tolerance, sizes, [start])
-    else:
-        ends = [solved[label] for label in role.ends]
-        target = payoff(ends, sizes, role.worst)
-        beta = point.solution.beta
-        if target is None or beta is None:
-            return start
-        return Point(beta, (), target, role.equations).solve(problem, start)
-    return solve(problem, programme, start)
+    target = payoff([solved[label] for label in role.ends], sizes, role.worst)
+    beta = point.solution.beta
+    if target is None or beta is None:
+        return start
+    return Point(beta, (), target, role.equations).solve(problem, start)
 
 
 def redraw(data: ModalData, source: Source, rng: np.random.Generator) -> ModalData:

@@ -61,16 +61,11 @@ def lognormal_std(median: Floats, s: Floats) -> Floats:
     """Return the standard deviation of what has this median and, of its logarithm, the std s."""
     with np.errstate(over="ignore"):
         grown = np.expm1(s**2)
-        out: Floats = median * np.sqrt(grown * (grown + 1))
-    return out
+        return np.asarray(median * np.sqrt(grown * (grown + 1)))
 
 
 def draw(
-    theta: Floats,
-    axes: Floats,
-    rng: np.random.Generator,
-    count: int,
-    bounds: tuple[Floats, Floats],
+    theta: Floats, axes: Floats, rng: np.random.Generator, count: int, bounds: tuple[Floats, Floats]
 ) -> Floats:
     """Return a sample (count, p) of theta + axes z, z standard normal, axes (p, m).
 

@@ -71,9 +71,7 @@ class NoisePrior(Checked):
         scaled = replace(problem, data=data, groups=groups)
         parts = [[member.independent() for member in row] for row in scaled.members]
         a, S, d = np.array([np.sum(row, axis=0) for row in parts]).T
-        level = np.ones(a.size)
-        if source == "sets":
-            level = (self.weight + S) / (self.weight + d)
+        level = (self.weight + S) / (self.weight + d) if source == "sets" else np.ones(a.size)
         plural = {"frequency": "frequencies", "shape": "shapes"}
         said = [f"{plural[kind]} to {100 * unsaid[kind]:g} %" for kind in assumed if kind in unsaid]
         words = ", ".join(said).replace(" to", " known to", 1)
@@ -114,8 +112,7 @@ class NoiseModel:
         """Return Gauss-Newton's matrix (p, p) of -ln p; a uniform prior has its variance."""
         w = self.logs.gradient(evaluation.J)
         dr = Distance(self.problem, 12.0).residuals(evaluation.theta)[1]
-        out: Floats = np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
-        return out
+        return np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
 
     def over_expected(self, J: Floats) -> Floats:
         """Return the root mean square errors (n,) of J' (n,) over those expected."""
@@ -198,8 +195,7 @@ class Standardised:
         left, right = ((y / (upper - lower)) for y in (theta - lower, upper - theta))
         left[self.known] = (ndtr(x) - ndtr(self.below)) / self.share
         right[self.known] = (ndtr(-x) - ndtr(-self.above)) / self.share
-        out: Floats = np.where(left < right, ndtri(left), -ndtri(right))
-        return out
+        return np.where(left < right, ndtri(left), -ndtri(right))
 
     def _units(self, theta: Floats) -> Floats:
         """Return distances from nominal values, or of their logarithms, over deviations."""
@@ -228,8 +224,7 @@ class Standardised:
 def prior_widths(problem: UpdatingProblem) -> Floats:
     """Return the widths (p,) of the 90 % intervals of the priors."""
     of, z = Standardised(problem), np.full(problem.start.size, NINETY)
-    out: Floats = of.theta(z)[0] - of.theta(-z)[0]
-    return out
+    return of.theta(z)[0] - of.theta(-z)[0]
 
 
 def expected(

@@ -157,8 +157,7 @@ def held_at_bounds(problem: Problem, evaluation: Evaluation, w: Floats) -> Bools
     slope = w @ evaluation.dJ * span
     curved = np.abs(np.tensordot(np.abs(w), evaluation.H, axes=1) * np.outer(span, span)).max()
     pressed = np.abs(slope) > PRESSED * (parts.sum(axis=0).max() + curved)
-    held: Bools = pressed & np.where(slope > 0, u <= AT_BOUND, u >= 1 - AT_BOUND)
-    return held
+    return pressed & np.where(slope > 0, u <= AT_BOUND, u >= 1 - AT_BOUND)
 
 
 def spaces(

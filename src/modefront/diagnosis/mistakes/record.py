@@ -88,8 +88,7 @@ class Explanation:
     def measured(self) -> list[int]:
         """Sensors with data, as they are given or in the state."""
         known = self.state.known.any(axis=0) | np.isfinite(self.data.shape).any(axis=(0, 1))
-        sensors: list[int] = np.flatnonzero(known).tolist()
-        return sensors
+        return np.flatnonzero(known).tolist()
 
 
 def changed(part: str, place: Any, new: Any, cost: float = 0.0) -> Change:
