@@ -182,9 +182,9 @@ class Passage(modal.ModalPrediction):
     @property
     def settings(self) -> Mapping[str, Sequence[object]]:
         """Values of the kind's settings, one a place, by the name of the variable."""
-        keys = "samples", "method", "duration", "step", "density"
-        own = {key: getattr(self, key) for key in keys} | {"sided": f"{self.sided}-sided"}
-        return self.settings_of(len(self.levels), own) | {"failure_level": list(self.levels)}
+        sided = [f"{self.sided}-sided"] * len(self.levels)
+        own = {"failure_level": list(self.levels), "failure_sided": sided}
+        return {**super().settings, **own}
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""

@@ -21,7 +21,7 @@ taken by its absolute value.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Annotated, ClassVar, Self
@@ -233,11 +233,6 @@ class PeakResponse(modal.ModalPrediction):
             yield Fault("", "quantity", "another one where forces act", f"'{self.quantity}'")
 
     @property
-    def places(self) -> tuple[str, ...]:
-        """Name of the prediction and of the response, for each of these."""
-        return tuple(f"{self.name}: {response}" for response in self.response)
-
-    @property
     def heading(self) -> str:
         """Name, load case and options in a sentence."""
         low, high = modal.filled(self.band, "band")
@@ -245,12 +240,6 @@ class PeakResponse(modal.ModalPrediction):
             f"{self.name}: {self.load}; {self.quantity}, greatest peak from {low:g} to {high:g} "
             f"Hz, {self.modes} modes, damping {self.damped}"
         )
-
-    @property
-    def settings(self) -> Mapping[str, Sequence[object]]:
-        """Values of the kind's settings, one a place, by the name of the variable."""
-        own = {"quantity": self.quantity, "band": self.band}
-        return self.settings_of(len(self.response), own)
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""

@@ -186,11 +186,17 @@ class ModalPrediction(Shown):
             return "as measured"
         return ", ".join(f"{ratio:g}" for ratio in np.atleast_1d(self.damping))
 
-    def settings_of(self, count: int, values: Mapping[str, object]) -> dict[str, list[object]]:
-        """Return values of settings, and of those of the loads, at each of so many places."""
-        own = {"load": self.load, "damping": self.damped, "modes": self.modes}
-        start = self.kind.dimension
-        return {f"{start}_{key}": [value] * count for key, value in {**values, **own}.items()}
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Name of the prediction and of the response, for each of these."""
+        return tuple(f"{self.name}: {response}" for response in self.response)
+
+    @property
+    def settings(self) -> Mapping[str, Sequence[object]]:
+        """Values of the kind's settings, one a place, by the name of the variable."""
+        keys = {x.name: x.name.removeprefix(f"{self.kind.dimension}_") for x in self.kind.settings}
+        own = {key: getattr(self, key, None) for key in keys.values()} | {"damping": self.damped}
+        return {name: [own[key]] * len(self.places) for name, key in keys.items()}
 
     def system(self, problem: UpdatingProblem, theta: Floats) -> ModalSystem:
         """Return the structure in modal coordinates at ``theta``.
