@@ -20,7 +20,7 @@ from modefront.findings.record import Finding, found
 from modefront.pairing.match import POOR, match
 
 CLEAR = float(np.log(100.0))  # difference of costs that is clear: odds of 100 to 1
-# Mistakes of each kind of which costs are looked at: each unit has modes of its own, others do not.
+# Mistakes of each kind of which costs are looked at; each unit needs modes of its own.
 PROMISING = defaultdict(lambda: 100, {"wrong-unit": 2})
 FITTED = 30  # mistakes of all kinds that are fitted
 

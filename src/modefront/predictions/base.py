@@ -49,11 +49,7 @@ IDENTIFIER = Requirement(
     {"type": "string", "pattern": "^[a-z][a-z0-9_]*$"},
 )
 WORDS = text("words in one line")
-ANY_WORDS = Requirement(
-    "words in one line, or none",
-    {"type": "string"},
-    further=lambda value: not value or value.isprintable(),
-)
+ANY_WORDS = Requirement("words in one line, or none", {"type": "string"}, further=str.isprintable)
 
 
 def _all_of(record: type, words: str) -> Requirement:
@@ -174,14 +170,11 @@ class PredictionKind(Shown):
 
     def __post_init__(self) -> None:
         check_fields(self)
-        variables = list(self.variables)
-        if self.check:
-            variables += [*self.check.variables, self.check.label]
-        names = [*(x.name for x in variables), *(x.name for x in self.settings)]
+        checked = (*self.check.variables, self.check.label) if self.check else ()
+        names = [x.name for x in (*self.variables, *checked, *self.settings)]
         start = f"{self.dimension}_"
         faults = each_once("variables", [*names, f"{start}name", f"{start}heading"])
-        if not self.variables:
-            faults.append(Fault("", "variables", "at least one", "none"))
+        faults += [Fault("", "variables", "at least one", "none")] * (not self.variables)
         strange = [name for name in names if not name.startswith(start)]
         refuse([*faults, *(Fault("", "name", f"one that begins with {start}", x) for x in strange)])
 

@@ -263,7 +263,6 @@ METHODS: Final[Mapping[str, Share | None]] = {
 }
 """The methods by the names that a user gives them."""
 
-
 LARGEST_CHUNK = 32  # samples in a chunk: enough for the loops in C, few enough for the cache
 
 MOST_WORKERS = 8  # threads at most, of some 100 MB each; how many there are changes no digit

@@ -63,9 +63,7 @@ class NoisePrior(Checked):
         unsaid = {kind: size for kind, size in USUAL.items() if getattr(self, kind) is None}
         sizes = {kind: unsaid.get(kind) or getattr(self, kind) for kind in USUAL}
         data, assumed = expected(problem.data, sizes, source)
-        groups = tuple(
-            Group(each.name, scale="std", **dict(each.chosen)) for each in problem.groups
-        )
+        groups = tuple(Group(x.name, scale="std", **dict(x.chosen)) for x in problem.groups)
         if any(True for group in groups for _ in faults(group, data)):
             return None
         scaled = replace(problem, data=data, groups=groups)
