@@ -149,26 +149,18 @@ class Scatter:
         return self.theta.T @ self.theta
 
 
-def held_at_bounds(problem: Problem, evaluation: Evaluation, w: Floats) -> Bools:
-    """Return which parameters the slope of w^T J presses against a bound."""
-    span = problem.upper - problem.lower
-    u = (evaluation.theta - problem.lower) / span
-    parts = np.abs(w[:, None] * evaluation.dJ) * span
-    slope = w @ evaluation.dJ * span
-    curved = np.abs(np.tensordot(np.abs(w), evaluation.H, axes=1) * np.outer(span, span)).max()
-    pressed = np.abs(slope) > PRESSED * (parts.sum(axis=0).max() + curved)
-    return pressed & np.where(slope > 0, u <= AT_BOUND, u >= 1 - AT_BOUND)
+def spaces(problem: Problem, evaluation: Evaluation, w: Floats) -> tuple[Bools, Floats, Floats]:
+    """Return which parameters the slope of w^T J presses against a bound, and bases (p, .).
 
-
-def spaces(
-    problem: Problem, evaluation: Evaluation, w: Floats, held: Bools
-) -> tuple[Floats, Floats]:
-    """Return bases (p, .) over the ranges: of what residuals determine, and of what is free.
-
-    Free is where no residual changes to first order and their squares do not to second order.
+    The bases are over the ranges: of what residuals determine, and of what is free. Free is where
+    no residual changes to first order and their squares do not to second order.
     """
     area = np.multiply.outer(span := problem.upper - problem.lower, span)
     G, B = evaluation.gauss_newton, np.tensordot(np.abs(w), evaluation.H, axes=1) * area
+    u = (evaluation.theta - problem.lower) / span
+    parts, slope = np.abs(w[:, None] * evaluation.dJ) * span, w @ evaluation.dJ * span
+    pressed = np.abs(slope) > PRESSED * (parts.sum(axis=0).max() + np.abs(B).max())
+    held = pressed & np.where(slope > 0, u <= AT_BOUND, u >= 1 - AT_BOUND)
     top = np.abs(G).max(axis=(1, 2))
     G = np.tensordot(1 / np.where(top > 0, top, 1.0), G, axes=1) * area
     basis = np.eye(held.size)[:, ~held]
@@ -177,7 +169,7 @@ def spaces(
     N = basis[:, flat]
     mu, U = np.linalg.eigh(N.T @ B @ N)
     bent = np.abs(mu) > BENT * np.abs(B).max()
-    return np.hstack([basis[:, ~flat], N @ U[:, bent]]), N @ U[:, ~bent]
+    return held, np.hstack([basis[:, ~flat], N @ U[:, bent]]), N @ U[:, ~bent]
 
 
 def scatter(
@@ -185,8 +177,7 @@ def scatter(
 ) -> Scatter:
     """Return how a solution with weights w (n,), and second derivatives, moves with the data."""
     span = problem.upper - problem.lower
-    held = held_at_bounds(problem, evaluation, w)
-    Q, free = spaces(problem, evaluation, w, held)
+    held, Q, free = spaces(problem, evaluation, w)
     B = span[:, None] * Q  # parameters for unit changes of what is determined
     dJ = evaluation.dJ @ B
     second = np.tensordot(w, evaluation.H, axes=1)
@@ -353,8 +344,7 @@ def laplace(problem: Problem, evaluation: Evaluation, a: Floats) -> Posterior | 
     if not (J > 0).all():
         return None
     w = a / J
-    held = held_at_bounds(problem, evaluation, w)
-    Q, free = spaces(problem, evaluation, w, held)
+    held, Q, free = spaces(problem, evaluation, w)
     B = span[:, None] * Q
     of_weights = evaluation.dJ.T @ ((a / J**2)[:, None] * evaluation.dJ)
     half = B.T @ (np.tensordot(w, evaluation.H, axes=1) - of_weights) @ B / 2
