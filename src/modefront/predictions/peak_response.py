@@ -1,23 +1,16 @@
 """The greatest peak of a frequency response function within a band.
 
-The functions are found by modal superposition with a static correction.
-
-docs/methods/first-passage.md has the receptance (Ewins, *Modal Testing*, 2nd ed., eq. 2.65),
-
-    α(ω) = Σ_r A_r / d_r(ω) + R,    A_r = Y_r Γ_r,    d_r(ω) = ω_r² - ω² + 2iζ_r ω_r ω,
-                                    R = Y_s - Σ_r A_r / ω_r².
-
-All quantities are T(ω) = (iω)^s α(ω) + D: receptance, mobility and accelerance have s = 0, 1, 2 and
-D = 0; of base motion, the absolute accelerance has s = 2 and D = Y_b.
-
-T is analytic in ω, so its derivatives are exact as well. The peaks of |T(ω)| are the zeros of
+docs/methods/first-passage.md has the receptance by modal superposition with a static correction,
+α(ω) = Σ_r A_r / d_r(ω) + R with A_r = Y_r Γ_r and d_r(ω) = ω_r² - ω² + 2iζ_r ω_r ω (Ewins, *Modal
+Testing*, 2nd ed., eq. 2.65). All quantities are T(ω) = (iω)^s α(ω) + D: receptance, mobility and
+accelerance have s = 0, 1, 2 and D = 0; of base motion, the absolute accelerance has s = 2 and
+D = Y_b. T is analytic in ω, so its derivatives are exact as well. The peaks of |T(ω)| are zeros of
 
     g(ω) = d|T|²/dω = 2 Re(T* T'),   where   g'(ω) = 2 (|T'|² + Re(T* T'')) < 0,
 
-eigenvalues of the colleague matrices of Chebyshev series (J. P. Boyd, SIAM J. Numer. Anal. 40
-(2002) 1666-1682, doi:10.1137/S0036142901398325): the band is halved until the last coefficients
-vanish. Newton's method brings each to rounding, which is bounded by the same sums with every term
-taken by its absolute value.
+eigenvalues of the colleague matrices of Chebyshev series: the band is halved until the last
+coefficients vanish. Newton's method brings each to rounding, which is bounded by the same sums with
+every term taken by its absolute value.
 """
 
 import math

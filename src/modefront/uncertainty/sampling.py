@@ -1,17 +1,15 @@
 r"""Models drawn from the posterior: randomise then optimise, made exact by Metropolis' rule.
 
-docs/uncertainty.md has the equations. The parameters are functions of standard normal variables z.
-About a peak a model of normal variables :math:`\xi` and of variances s of the errors solves
-:math:`F(z) = L \xi` (Bardsley, Solonen, Haario & Laine 2014, doi:10.1137/140964023). Such models
-are proposals, independent of where a chain is. F jumps where measured modes are paired with other
-modes of the model, and is as invertible there. Steps of the stochastic Newton method go between
-(Martin et al. 2012, doi:10.1137/110845598), of a length that the warm-up finds. Chains go on until
-they agree and the effective sample is large enough (Vehtari et al. 2021, doi:10.1214/20-BA1221).
-They end at half of their length at most where none of their halves is worth more than one draw.
+docs/uncertainty.md has the equations and the sources. The parameters are functions of standard
+normal variables z. About a peak a model of normal variables :math:`\xi` and of variances s of the
+errors solves :math:`F(z) = L \xi`. Such models are proposals, independent of where a chain is. F
+jumps where measured modes are paired with other modes of the model, and is as invertible there.
+Steps of the stochastic Newton method go between, of a length that the warm-up finds. Chains go on
+until they agree and the effective sample is large enough. They end at half of their length at most
+where none of their halves is worth more than one draw.
 
 Where modes are those of a reduced basis, chains are those of a smaller one, and draws are weighted
-by what the whole one says of them (Liu 2001, *Monte Carlo Strategies in Scientific Computing*,
-section 2.5): a poor one leaves fewer of them, and these no less exact.
+by what the whole one says of them: a poor one leaves fewer of them, and these no less exact.
 """
 
 from collections.abc import Sequence
