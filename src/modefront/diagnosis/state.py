@@ -77,19 +77,15 @@ class State:
     frequency: Floats  # frequency, damping: (..., sets, modes) frequencies in Hz and damping ratios
     damping: Floats
     shape: Floats  # (..., sets, modes, sensors) components
-    # (..., sets, modes) relative standard deviations of frequencies; NaN where not known
-    std: Floats
+    std: Floats  # (..., sets, modes) relative deviations of frequencies; NaN where not known
     left_out: Floats  # (...) cost of the values that are left out
     candidates: Ints  # (...) number of the lowest model modes among which pairs are sought
     rows: Floats  # (..., sensors, n) weights of the coordinates of the model's modes at each sensor
     part: Ints  # (...) number of the part of the model that is scaled, from 1; 0 for none
-    # (..., parameters) nominal values; in a model that has parts, the last is the factor on one
-    start: Floats
-    # (parameters,) units of what is added to parameters; 0 where they are changed by factors
-    unit: Floats
+    start: Floats  # (..., parameters) nominal values; the last is the factor on a part, if any
+    unit: Floats  # (parameters,) units of what is added to them; 0 where factors change them
     moves: Floats  # (nodes, 3, n) displacement of the nodes with these coordinates
-    # places and directions of the sensors; None for a model without matrices
-    geometry: Geometry | None
+    geometry: Geometry | None  # of nodes and sensors; None for a model without matrices
 
     def theta(self, x: Floats) -> Floats:
         """Return parameters with logarithms x of the factors, or x units more, than nominal."""

@@ -346,8 +346,7 @@ class Quantity:
     # standard deviation by the posterior, of the logarithm where that is linearised, as a factor
     # then; None where it is not known to the results
     std: float | None
-    # statistics over the models drawn from the posterior, by name; none without draws
-    drawn: Mapping[str, float]
+    drawn: Mapping[str, float]  # statistics over draws from the posterior, by name; none without
 
 
 def quantity(

@@ -203,10 +203,8 @@ class _Along:
     problem: Problem  # the problem
     front: Sampled  # some of its models, and what is known between them
     value: Callable[[Floats], float]  # returns the value of a model of the front
-    # parameters, objectives and value of each model
-    known: list[tuple[Floats, Floats, float]] = field(default_factory=list)
-    # pairs of models between which the front has been solved for
-    halved: set[tuple[int, int]] = field(default_factory=set)
+    known: list[tuple[Floats, Floats, float]] = field(default_factory=list)  # theta, J and value
+    halved: set[tuple[int, int]] = field(default_factory=set)  # pairs that were solved between
 
     def least(self) -> float:
         """Return the least value; NaN without any."""

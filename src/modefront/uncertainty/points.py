@@ -39,8 +39,7 @@ class Role:
     # an edge; the best of the others at a level of an objective; weights that are given or optimal;
     # one of the ends; a point of NBI
     kind: Kind
-    # labels of the ends between which a point of NBI lies, one an objective; or the end
-    ends: tuple[str, ...] = ()
+    ends: tuple[str, ...] = ()  # labels of the ends of a point of NBI, one an objective; or the end
     # models, which stay, up to which ranges of objectives reach where these span the simplex
     worst: Sequence[Solution] = ()
     equations: bool = False  # whether a point of NBI solves the equations of Das & Dennis

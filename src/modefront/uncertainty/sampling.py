@@ -204,8 +204,7 @@ class Draws:
     """Models drawn from the posterior, with what they predict."""
 
     theta: Floats  # (draws, p) parameters
-    # frequency, mac: (draws, modes) of the pairs of measured modes that are most likely
-    frequency: Floats
+    frequency: Floats  # frequency, mac: (draws, modes) of the most likely pairs of measured modes
     mac: Floats
     settled: bool = True  # whether the chains agree, and are long enough for intervals
 

@@ -322,11 +322,9 @@ def doubts(
 class Posterior:
     """A Gaussian approximation around the most probable model."""
 
-    # (p, m) principal axes over the ranges of the parameters, one standard deviation long
-    axes: Floats
+    axes: Floats  # (p, m) principal axes, one standard deviation long
     held: Bools  # (p,) parameters that a bound holds
-    # (p, d) directions that keep their prior, orthonormal over the ranges of the parameters
-    free: Floats
+    free: Floats  # (p, d) directions that keep their prior, orthonormal over the ranges
 
     @property
     def covariance(self) -> Floats:
