@@ -171,7 +171,7 @@ class PredictionKind(Shown):
     def __post_init__(self) -> None:
         check_fields(self)
         checked = (*self.check.variables, self.check.label) if self.check else ()
-        names = [x.name for x in (*self.variables, *checked, *self.settings)]
+        names = [*(x.name for x in (*self.variables, *checked)), *(x.name for x in self.settings)]
         start = f"{self.dimension}_"
         faults = each_once("variables", [*names, f"{start}name", f"{start}heading"])
         faults += [Fault("", "variables", "at least one", "none")] * (not self.variables)

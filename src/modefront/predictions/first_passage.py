@@ -183,8 +183,7 @@ class Passage(modal.ModalPrediction):
     def settings(self) -> Mapping[str, Sequence[object]]:
         """Values of the kind's settings, one a place, by the name of the variable."""
         sided = [f"{self.sided}-sided"] * len(self.levels)
-        own = {"failure_level": list(self.levels), "failure_sided": sided}
-        return {**super().settings, **own}
+        return {**super().settings, "failure_level": list(self.levels), "failure_sided": sided}
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""

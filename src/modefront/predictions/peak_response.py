@@ -17,7 +17,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Annotated, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -113,7 +113,8 @@ def peaks(
     """
     (low, high), one = band, slice(output, output + 1)
     whole = {name: getattr(system, name) for name in ("output", "static", "rigid")}
-    pair = replace(system, **{k: None if x is None else x[one] for k, x in whole.items()})
+    parts: Any = {name: None if x is None else x[one] for name, x in whole.items()}
+    pair = replace(system, **parts)
     infinite = (pair.zeta * pair.omega == 0) & (pair.omega >= low) & (pair.omega <= high)
     if np.any(infinite):
         mode = int(np.argmax(infinite))
