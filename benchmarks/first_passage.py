@@ -61,7 +61,7 @@ def subset_simulation(problem: FirstPassage, runs: int) -> tuple[np.ndarray, flo
     """Return the estimates of repeated subset simulations and their mean evaluations."""
     response = gaussian_response(problem)
     convolution = Convolution(response, BLOCK)
-    n = response.n_steps
+    n = response.load[1]
 
     evaluations = 0
 

@@ -5,7 +5,7 @@ import pytest
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.uncertainty.planning import candidates
+from modefront.uncertainty.inference import candidates
 from modefront.uncertainty.prior import NoiseModel, NoisePrior
 
 NAMES = ("k1", "k2", "k3")

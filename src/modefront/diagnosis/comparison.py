@@ -15,8 +15,7 @@ from modefront.residuals.problem import UpdatingProblem
 
 MORE = 8  # model modes that are looked at beyond those among which measured modes are paired
 
-COMPARED = 60
-"""Data sets in which mistakes are sought, at most: each is compared with every other one."""
+COMPARED = 60  # data sets in which mistakes are sought, at most: each is compared with all others
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,10 +52,7 @@ class Comparison:
 
 
 def compare(problem: UpdatingProblem) -> Comparison:
-    """Return the comparison of the nominal model with the measured modes.
-
-    Raises ModelError where the model has no modes at its nominal parameters.
-    """
+    """Return the nominal model beside the data; raise ModelError where it has no modes."""
     least = modes_needed(problem.pairing, problem.data, problem.model.size)
     matrices = matrices_at(problem.model, problem.start)
     model = matrices or full_of(problem.model)

@@ -35,57 +35,36 @@ from modefront.pairing.match import assigned
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import ACCUMULATED, TINY
 
-RIGID = 1e-6
-"""Share of the greatest frequency below which a mode is a rigid body's: rounding leaves 3e-7."""
-
-KAPPA, FARTHEST = 0.4, 2.5
-"""Cost of a factor e between frequencies, in units of a MAC value, up to the logarithm d."""
-
-OF_PARAMETERS, OF_MODEL = 8.0, 4.0
-"""Degrees of freedom nu of parameters, and of what no parameter describes."""
-
+RIGID = 1e-6  # frequency of a rigid body over the greatest, at most: rounding leaves 3e-7
+KAPPA, FARTHEST = 0.4, 2.5  # kappa, and the logarithm d up to which frequencies differ; see above
+OF_PARAMETERS, OF_MODEL = 8.0, 4.0  # nu of parameters, and of what no parameter describes
 FREQUENCY, SHAPE = 0.03, 0.08  # scales that are expected of what no parameter describes
 OFF = 0.4  # scale of the parameters: of their logarithms, or over their unit
 
-WIDER = 4.0
-"""Factor beyond positive bounds up to which fits go, so that no mistake stands for a bound."""
-
+WIDER = 4.0  # factor beyond positive bounds up to which fits go: no mistake stands for a bound
 FACTOR = 2.0  # factor on a member, or its inverse, up to which fits go from where they begin
 ALL = -1  # number that stands for all parts of the model, each with a factor
 
-STEPS, LONGEST, ENOUGH, DAMPING = 10, 0.7, 0.05, 1e-3
-"""Steps of a fit, their longest component, the decrease of the cost that ends them, and the share
-of the diagonal of H that is added to it in the first."""
+STEPS, LONGEST = 10, 0.7  # steps of a fit, and their longest component
+ENOUGH, DAMPING = 0.05, 1e-3  # decrease of C that ends them, and share of H's diagonal in the first
 
-LARGE, SAMPLES = 80, 4
-"""Degrees of freedom from which on a model is reduced, and models of its basis beside the nominal
-one."""
-
-KEPT, NUMBERS = 2**25, 2**18
-"""Numbers of the models that are kept, as many explanations are compared at the same parameters,
-and of an array of those that are compared at once: both bound the memory."""
-
+LARGE, SAMPLES = 80, 4  # size of models that are reduced, and models of a basis beside the nominal
+KEPT, NUMBERS = 2**25, 2**18  # numbers of models that are kept, and of arrays: bound the memory
 
 Near: TypeAlias = tuple[State, Floats] | None  # another state, and x of its parameters
 
 
 class Points(NamedTuple):
-    """States at parameters, or one without the axis in front.
+    """States at parameters, or one without the axis in front."""
 
-    These are x of the parameters, cost C without the price of the explanation, this cost ahead,
-    after a step of a fit with residuals to first order, model mode of each measured one, the MAC of
-    these pairs (NaN without a shape), factors that make model shapes of the measured ones (modes,),
-    scale of the residuals of shapes, gradient (p,) and Gauss-Newton matrix (p, p) of the cost in x.
-    """
-
-    x: Floats
-    cost: Floats
-    ahead: Floats
-    pairs: Ints
-    mac: Floats
-    beta: Floats
-    sigma: Floats
-    g: Floats
+    x: Floats  # of the parameters
+    cost: Floats  # C without the price of the explanation
+    ahead: Floats  # this cost after a step of a fit with residuals to first order
+    pairs: Ints  # model mode of each measured one
+    mac: Floats  # of these pairs; NaN without a shape
+    beta: Floats  # (modes,) factors that make model shapes of the measured ones
+    sigma: Floats  # scale of the residuals of shapes
+    g: Floats  # g, H: gradient (p,) and Gauss-Newton matrix (p, p) of the cost in x
     H: Floats
 
     def of(self, k: Any) -> "Points":
@@ -106,10 +85,7 @@ def step(g: Floats, H: Floats, damping: Any) -> Floats:
 
 
 def mac_values(psi: Floats, known: Any, phi: Floats) -> Floats:
-    """Return the MAC of shapes (..., modes, sensors) and a model's, (..., modes, model modes).
-
-    ``phi`` is (..., sensors, model modes). It is NaN with fewer than two known components.
-    """
+    """Return the MAC (..., modes, model modes); NaN of shapes with fewer than two components."""
     psi = psi * known
     norm = (psi**2).sum(axis=-1, keepdims=True) * (known @ phi**2)
     values = ratio((psi @ phi) ** 2, norm)
@@ -131,8 +107,7 @@ def log_frequencies(frequency: Floats) -> Floats:
 class Fits:
     """Costs and fits of explanations of a comparison, of which ``plain`` is without mistakes.
 
-    A model with matrices is solved at all degrees of freedom, a large one in the space of its modes
-    at some parameters.
+    A model is solved at all degrees of freedom, a large one in the space of some of its modes.
     """
 
     def __init__(self, comparison: Comparison) -> None:
@@ -189,10 +164,7 @@ class Fits:
         return self.modes(int(state.part), state.theta(x).tobytes())
 
     def by_parts(self, state: State, x: Floats) -> tuple[Floats, Floats]:
-        """Return the cost ahead with a factor on each part of the model, and the step of its log.
-
-        The sensitivities to all factors are those of one model, that of a state without factors.
-        """
+        """Return the cost ahead with a factor on each part, and its log's step, by one model."""
         p, q = x.size - 1, len(self.parts)
         start, unit = np.append(state.start[:p], np.ones(q)), np.append(state.unit[:p], np.zeros(q))
         wide = replace(state, start=start, unit=unit, part=np.array(ALL))
@@ -204,10 +176,9 @@ class Fits:
         return ahead, dx[:, -1]
 
     def unlike(self, states: Sequence[State], x: Floats, start: Floats) -> Floats:
-        """Return how unlike a model the modes of all data sets are in each of several states.
+        """Return how far by c all modes of all sets are from the nearest of a model, by states.
 
-        Each is compared with the model mode that is nearest to it by c, whatever it was before: at
-        parameters x beside nominal values ``start``, and at other nominal values where these are.
+        The model is at parameters x beside nominal values ``start``, else at those of the state.
         """
         state = stacked(states)
         x = x * (state.start == start).all(axis=1, keepdims=True)
@@ -230,10 +201,7 @@ class Fits:
 
     # More than 60 lines: the cost and its slopes share all residuals.
     def at(self, state: State, x: Floats, pairs: Any = None) -> Points:
-        """Return several states at parameters x, with the best or given pairs.
-
-        Costs are infinite where the model has no modes.
-        """
+        """Return states at parameters x, with best or given pairs; no modes cost infinity."""
         modes, exists, frequency, phi = self._solved(self.modes, state, x)
         logs, (n, s, _) = log_frequencies(frequency), state.rows.shape
         known, c, scale = state.known, state.mean, state.motion[:, None]
@@ -282,10 +250,7 @@ class Fits:
         return Points(x, total, ahead, pairs, mac, beta[..., 0], sigma, g, H)
 
     def begun(self, states: Sequence[State], near: Near = None) -> Iterator[tuple[State, Points]]:
-        """Yield some states after others, at their nominal parameters or those of another state.
-
-        They are where the cost is less ahead.
-        """
+        """Yield states after states, from nominal or another state's parameters, the better."""
         for first in range(0, len(states), self.together):
             state = stacked(states[first : first + self.together])
             best = self.at(state, 0 * state.start)

@@ -14,9 +14,7 @@ from modefront.linalg.affine import DenseAffine, Members, Monomials
 from modefront.models.matrices import MatrixModel
 from modefront.rounding import COMPUTED
 
-MEMBERS = 200
-"""Members that are looked at one by one, at most; of more, groups are looked at."""
-
+MEMBERS = 200  # members that are looked at one by one, at most; of more, groups are looked at
 MATRICES = ("stiffness", "mass")
 
 
@@ -85,10 +83,7 @@ def pairs(matrices: MatrixModel) -> Iterator[Members]:
 
 
 def with_factors(model: MatrixModel, parts: Sequence[Part]) -> MatrixModel:
-    """Return a model in a basis with further parameters, the factors on parts of it.
-
-    Without any, there is one further parameter, that changes nothing.
-    """
+    """Return a model in a basis with factors on parts of it as parameters, or with an idle one."""
     new, count = dict[str, Any](), max(1, len(parts))
     for of in MATRICES:
         A = getattr(model, of)

@@ -12,24 +12,19 @@ import numpy as np
 
 from modefront.diagnosis.comparison import Comparison, of_few_sets
 from modefront.diagnosis.evidence import ENOUGH, Fits
-from modefront.diagnosis.mistakes import model, sensors, values
+from modefront.diagnosis.mistakes import sensors, values
 from modefront.diagnosis.mistakes.record import IMPRECISE, Explanation, Mistake
 from modefront.diagnosis.state import State, stacked
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found
 from modefront.pairing.match import POOR, match
 
-CLEAR = float(np.log(100.0))
-"""Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
+CLEAR = float(np.log(100.0))  # difference of costs that is clear: odds of 100 to 1
+# Mistakes of each kind of which costs are looked at; each unit needs modes of its own.
+PROMISING = defaultdict(lambda: 100, {"wrong-unit": 2})
+FITTED = 30  # mistakes of all kinds that are fitted
 
-PROMISING, FITTED = defaultdict(lambda: 100, {"wrong-unit": 2}), 30
-"""Mistakes of each kind of which costs are looked at, and those of all kinds that are fitted. Each
-unit has modes of its own, which other mistakes share."""
-
-BEAM, MOST = 3, 6
-"""Single claims to which others are added, before they are to the best explanation, and most
-mistakes."""
-
+BEAM, MOST = 3, 6  # single claims to which others are added at first, and mistakes, at most
 EITHER = 3  # explanations that the data cannot tell apart and that are named nevertheless, at most
 WINDOW = 1.5  # window of frequencies that is advised
 LEFT = 1.0  # difference of costs that fits leave
@@ -46,11 +41,11 @@ MISTAKES: Kinds = (
     *(sensors.wrong_place, sensors.reversed_value, sensors.odd_sensor),
     *(values.wrong_nominal_value, values.odd_value, values.wrong_frequency),
     *(values.damping_in_percent, values.foreign_mode, values.later_mode),
-    *(model.wrong_unit, model.wrong_member),
+    *(values.wrong_unit, values.wrong_member),
 )
 """What is looked for; where two explain the data equally well, the first one is tried first."""
 
-SOUGHT: tuple[Kinds, Kinds] = MISTAKES, (partial(model.wrong_member, usual=True),)
+SOUGHT: tuple[Kinds, Kinds] = MISTAKES, (partial(values.wrong_member, usual=True),)
 """Mistakes, and what is none and is looked for once these are found."""
 
 USUAL, OFTEN = 0.02, 0.05
@@ -68,10 +63,7 @@ COST = attrgetter("cost")
 
 
 def mixed(mistakes: Sequence[Mistake]) -> float:
-    """Return the price of moving values after mistakes were said of them.
-
-    Where both orders fit alike, the one that moves them first is said first.
-    """
+    """Return the price of moving values after mistakes were said of them: they are moved first."""
     return LEFT * any(b.moves > a.moves for a, b in pairwise(mistakes))
 
 
@@ -187,8 +179,8 @@ class Search:
     def named(self, best: Explanation) -> dict[Mistake, Finding]:
         """Return the mistakes of the best explanation without which no other one comes near it.
 
-        Another one is no rival that has more mistakes and fits no better: all sensors but one
-        reversed are the same as that one, as a mode shape has no sign.
+        One with more mistakes that fits no better is no rival: all sensors but one reversed are the
+        same as that one, as a mode shape has no sign.
         """
         out, count, most = dict[Mistake, Finding](), len(best.blamed), best.point.cost - LEFT
         known = sorted(self.known.values(), key=COST)

@@ -21,17 +21,15 @@ import numpy as np
 from modefront._typing import Bools, Floats, Ints
 from modefront.models.geometry import Geometry
 
-NU, FREQUENCY, SHAPE = 100.0, 0.005, 0.03
-"""Degrees of freedom nu of noise, and its scales in frequencies and shapes where not known."""
-
+NU = 100.0  # degrees of freedom of noise
+FREQUENCY, SHAPE = 0.005, 0.03  # its scales where they are not known
 OF_MODEL = 0.08  # scale that is expected of what no parameter describes, in shapes of mean square 1
 DAMPING = float(np.log(0.01))  # logarithm of the damping ratio that is expected, with a scale of 1
 ROUNDS = 8  # rounds of the iterations for the shape that data sets have in common and for a scale
 SETTLED = 1e-7  # change of the logarithm of a scale after which the next one is rounding
 SPREAD = 0.5  # spread s of logarithms of scales
 
-NOTHING = 0.5
-"""Cost of a value of which nothing is known: of one from a normal distribution of size 1."""
+NOTHING = 0.5  # cost of an unknown value: of one from a normal distribution of size 1
 
 
 def ratio(a: Floats, b: Floats) -> Floats:
@@ -79,19 +77,15 @@ class State:
     frequency: Floats  # frequency, damping: (..., sets, modes) frequencies in Hz and damping ratios
     damping: Floats
     shape: Floats  # (..., sets, modes, sensors) components
-    # (..., sets, modes) relative standard deviations of frequencies; NaN where not known
-    std: Floats
+    std: Floats  # (..., sets, modes) relative deviations of frequencies; NaN where not known
     left_out: Floats  # (...) cost of the values that are left out
     candidates: Ints  # (...) number of the lowest model modes among which pairs are sought
     rows: Floats  # (..., sensors, n) weights of the coordinates of the model's modes at each sensor
     part: Ints  # (...) number of the part of the model that is scaled, from 1; 0 for none
-    # (..., parameters) nominal values; in a model that has parts, the last is the factor on one
-    start: Floats
-    # (parameters,) units of what is added to parameters; 0 where they are changed by factors
-    unit: Floats
+    start: Floats  # (..., parameters) nominal values; the last is the factor on a part, if any
+    unit: Floats  # (parameters,) units of what is added to them; 0 where factors change them
     moves: Floats  # (nodes, 3, n) displacement of the nodes with these coordinates
-    # places and directions of the sensors; None for a model without matrices
-    geometry: Geometry | None
+    geometry: Geometry | None  # of nodes and sensors; None for a model without matrices
 
     def theta(self, x: Floats) -> Floats:
         """Return parameters with logarithms x of the factors, or x units more, than nominal."""
@@ -127,10 +121,7 @@ class State:
 
     @cached_property
     def mean(self) -> Floats:
-        """Shapes that the data sets have in common, (..., modes, sensors), of mean square 1, or 0.
-
-        The best product of a factor a set and a shape, by alternating least squares.
-        """
+        """Shapes that sets have in common, of mean square 1, or 0, by alternating least squares."""
         first = self.seen.sum(axis=-1).argmax(axis=-2)[..., None, :, None]
         c = np.take_along_axis(self.psi, first, axis=-3)[..., 0, :, :]
         for _ in range(ROUNDS if self.psi.shape[-3] > 1 else 0):
@@ -141,10 +132,7 @@ class State:
         return np.asarray(c)
 
     def factors(self, c: Floats) -> Floats:
-        """Return by which factors shapes c (..., modes, sensors) become those measured.
-
-        They are least squares at the measured components, (..., sets, modes, 1).
-        """
+        """Return factors (..., sets, modes, 1) from c (..., modes, sensors) to measured shapes."""
         c = c[..., None, :, :]
         square = (self.seen * c**2).sum(axis=-1, keepdims=True)
         return ratio((self.psi * c).sum(axis=-1, keepdims=True), square)

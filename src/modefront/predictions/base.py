@@ -29,10 +29,7 @@ Contents = Literal["number", "count", "truth", "text"]  # types of values of a v
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of the results.
-
-    The unit is empty where there is none, or where it is that of the model.
-    """
+    """A variable of the results; its unit is empty for none, or for that of the model."""
 
     name: str
     dimensions: tuple[str, ...]
@@ -52,11 +49,7 @@ IDENTIFIER = Requirement(
     {"type": "string", "pattern": "^[a-z][a-z0-9_]*$"},
 )
 WORDS = text("words in one line")
-ANY_WORDS = Requirement(
-    "words in one line, or none",
-    {"type": "string"},
-    further=lambda value: not value or value.isprintable(),
-)
+ANY_WORDS = Requirement("words in one line, or none", {"type": "string"}, further=str.isprintable)
 
 
 def _all_of(record: type, words: str) -> Requirement:
@@ -122,7 +115,7 @@ class Setting(Checked):
 
     name: Annotated[str, IDENTIFIER]
     meaning: Annotated[str, WORDS]
-    values: Literal["number", "count", "truth", "text"] = "number"
+    values: Contents = "number"
     unit: Annotated[str, ANY_WORDS] = ""
     dimensions: Annotated[tuple[str, ...], _all_of(str, "names of dimensions")] = ()
 
@@ -177,14 +170,11 @@ class PredictionKind(Shown):
 
     def __post_init__(self) -> None:
         check_fields(self)
-        variables = list(self.variables)
-        if self.check:
-            variables += [*self.check.variables, self.check.label]
-        names = [*(x.name for x in variables), *(x.name for x in self.settings)]
+        checked = (*self.check.variables, self.check.label) if self.check else ()
+        names = [*(x.name for x in (*self.variables, *checked)), *(x.name for x in self.settings)]
         start = f"{self.dimension}_"
         faults = each_once("variables", [*names, f"{start}name", f"{start}heading"])
-        if not self.variables:
-            faults.append(Fault("", "variables", "at least one", "none"))
+        faults += [Fault("", "variables", "at least one", "none")] * (not self.variables)
         strange = [name for name in names if not name.startswith(start)]
         refuse([*faults, *(Fault("", "name", f"one that begins with {start}", x) for x in strange)])
 
@@ -213,24 +203,24 @@ class PredictionKind(Shown):
             yield Variable(self.check.label.name, own, self.check.label.meaning, "text")
         by, start = "by the posterior, to first order", f"posterior_{self.dimension}_log"
         for x in self.ranged:
-            name, of, squared = f"posterior_{x.name}", x.name, f"{x.unit}2" if x.unit else ""
-            if P := x.symbol:
-                yield Variable(f"{start}_std", own, f"standard deviation of ln {P} {by}")
-                yield Variable(f"{start}_covariance", both, f"covariance of ln {P} {by}")
+            name, P, unit = f"posterior_{x.name}", x.symbol, "" if x.symbol else x.unit
+            first, of, squared = (
+                start if P else name,
+                f"ln {P}" if P else x.name,
+                unit and unit + "2",
+            )
+            yield Variable(f"{first}_std", own, f"standard deviation of {of} {by}", unit=unit)
+            yield Variable(f"{first}_covariance", both, f"covariance of {of} {by}", unit=squared)
+            if P:
                 meaning = (
-                    f"standard deviation of {of} that follows where ln {P} is Gaussian, of "
+                    f"standard deviation of {x.name} that follows where ln {P} is Gaussian, of "
                     f"standard deviation s: {P} sqrt(e^(s^2) (e^(s^2) - 1)), {P} that of the "
                     "reference"
                 )
                 yield Variable(f"{name}_std", own, meaning)
-            else:
-                meaning = f"standard deviation of {of} {by}"
-                yield Variable(f"{name}_std", own, meaning, unit=x.unit)
-                meaning = f"covariance of {of} {by}"
-                yield Variable(f"{name}_covariance", both, meaning, unit=squared)
-            drawn = f"{of} of each model drawn from the posterior; NaN where there is none"
-            yield Variable(f"draw_{of}", ("draw", *own), drawn, unit=x.unit)
-            over = f"{of} over the models drawn from the posterior"
+            drawn = f"{x.name} of each model drawn from the posterior; NaN where there is none"
+            yield Variable(f"draw_{x.name}", ("draw", *own), drawn, unit=x.unit)
+            over = f"{x.name} over the models drawn from the posterior"
             over += f"; its mean is {x.mean}" if x.mean else ""
             yield Variable(name, ("statistic", *own), over, unit=x.unit)
 
@@ -287,8 +277,7 @@ class Prediction(Protocol):
         """Return the result of the kind's check at a model, (places,) each; empty without one."""
 
 
-ATTRIBUTE = "prediction_kinds"
-"""Attribute of results that holds the kinds of their predictions, in JSON."""
+ATTRIBUTE = "prediction_kinds"  # of results, with the kinds of their predictions in JSON
 
 
 def _faults(prediction: Any) -> Iterator[Fault]:
@@ -302,8 +291,7 @@ def _faults(prediction: Any) -> Iterator[Fault]:
         return
     methods = ("places", "heading", "settings", "faults", "complete", "evaluate", "check")
     missing = [name for name in methods if not hasattr(prediction, name)]
-    if "name" not in prediction.__dataclass_fields__:
-        missing.append("name")
+    missing += ["name"] * ("name" not in prediction.__dataclass_fields__)
     if missing:
         yield Fault("", place, "what modefront.Prediction has", f"no {', '.join(missing)}")
     other: Any = CLASSES.added.get(kind.table)
@@ -337,12 +325,12 @@ def _kinds(text: str) -> tuple[PredictionKind, ...]:
     """Return kinds from JSON, as `as_text` makes it."""
     kinds = json.loads(text)
     for values in kinds:
-        checks = [values, *filter(None, [values["check"]])]
-        for each in checks:
-            each["variables"] = tuple(ResultVariable(**x) for x in each["variables"])
+        values["variables"] = tuple(ResultVariable(**x) for x in values["variables"])
         values["settings"] = tuple(Setting(**x) for x in values["settings"])
-        for check in checks[1:]:
-            values["check"] = NumericalCheck(**check | {"label": ResultVariable(**check["label"])})
+        if check := values["check"]:
+            variables = tuple(ResultVariable(**x) for x in check["variables"])
+            label = ResultVariable(**check["label"])
+            values["check"] = NumericalCheck(check["name"], variables, label)
     return tuple(PredictionKind(**values) for values in kinds)
 
 
@@ -358,17 +346,15 @@ class Quantity:
     # standard deviation by the posterior, of the logarithm where that is linearised, as a factor
     # then; None where it is not known to the results
     std: float | None
-    # statistics over the models drawn from the posterior, by name; none without draws
-    drawn: Mapping[str, float]
+    drawn: Mapping[str, float]  # statistics over draws from the posterior, by name; none without
 
 
 def quantity(
     data: Dataset, variable: ResultVariable, i: int, of: str = "", log_std: str = ""
 ) -> Quantity:
-    """Return the quantity that is the i-th column of a variable of results.
+    """Return the i-th column of a variable of results, ``of`` a prediction.
 
-    ``of`` is the name of its prediction, ``log_std`` names the variable with the standard deviation
-    of its logarithm.
+    ``log_std`` names the variable with the standard deviation of its logarithm.
     """
     name, values = variable.name, data[variable.name]
     label = str(data[values.dims[1]].values[i])
@@ -408,11 +394,6 @@ def predictions_in(data: Dataset) -> Iterator[RecordedPrediction]:
                 for i in positions
                 for x in kind.variables
             )
-            yield RecordedPrediction(
-                kind,
-                str(name),
-                str(data[f"{start}_heading"].values[positions[0]]),
-                "" if load is None else str(load.values[positions[0]]),
-                positions,
-                quantities,
-            )
+            heading = str(data[f"{start}_heading"].values[positions[0]])
+            loaded = "" if load is None else str(load.values[positions[0]])
+            yield RecordedPrediction(kind, str(name), heading, loaded, positions, quantities)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from modefront.predictions import system as modal
 from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVariable, Setting
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import ACCUMULATED, WRITTEN
-from modefront.text import Shown
 
 STEPS_A_PERIOD = 20  # time steps in the shortest period, where the step is not given
 MOST_STEPS = 10**6  # time steps at most: convolutions of more fill the memory
@@ -63,7 +62,7 @@ FILTER = options.nested("a table { frequency, damping }, a Kanai-Tajimi filter",
 
 # 15 fields: the keys of a table of a study file.
 @dataclass(frozen=True)
-class Passage(Shown):
+class Passage(modal.ModalPrediction):
     """First-passage probabilities at several levels.
 
     Raises InputError for values that are not possible, alone or together.
@@ -105,7 +104,6 @@ class Passage(Shown):
     modes: modal.ModeCount | None = None
     damping: modal.Damping = modal.MEASURED
 
-    either: ClassVar = modal.EITHER
     kind: ClassVar = PredictionKind(
         "first_passage",
         "failure",
@@ -155,22 +153,15 @@ class Passage(Shown):
         ),
     )
 
-    def __post_init__(self) -> None:
-        options.check_fields(self)
-        faults = list(self.loads.contradictions())
+    def contradictions(self) -> Iterator[Fault]:
+        """Yield options that contradict one another."""
+        yield from super().contradictions()
         steps = 1.0 if self.step is None else self.duration / self.step
         if steps > MOST_STEPS:
-            faults.append(Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}"))
+            yield Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}")
         elif steps < 0.5 or abs(steps - round(steps)) > WRITTEN:
             expected = f"a whole number of steps of {self.step:g} s in {self.duration:g} s"
-            faults.append(Fault("", "step", expected, f"{steps:.6g} of them"))
-        refuse(faults)
-
-    @property
-    def loads(self) -> modal.ModalLoadModel:
-        """Load case, outputs, modes and damping."""
-        forces: Any = self.force or ()
-        return modal.ModalLoadModel.of(self, forces, static=False)
+            yield Fault("", "step", expected, f"{steps:.6g} of them")
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -180,26 +171,23 @@ class Passage(Shown):
     @property
     def heading(self) -> str:
         """Name, load case and options in a sentence."""
-        loads = self.loads
         return (
-            f"{self.name}: {loads.load}; probability that any response leaves [-level, level] "
+            f"{self.name}: {self.load}; probability that any response leaves [-level, level] "
             f"(two-sided barrier) within {self.duration:g} s, at rest at first; "
             f"{self.sided}-sided spectral density {self.density:g}, time step "
             f"{modal.filled(self.step, 'step'):g} s, {self.samples} samples ({self.method}), "
-            f"{self.modes} modes, damping {loads.damped}"
+            f"{self.modes} modes, damping {self.damped}"
         )
 
     @property
     def settings(self) -> Mapping[str, Sequence[object]]:
         """Values of the kind's settings, one a place, by the name of the variable."""
-        keys = "samples", "method", "duration", "step", "density"
-        own = {key: getattr(self, key) for key in keys} | {"sided": f"{self.sided}-sided"}
-        repeated = self.loads.settings("failure", len(self.levels), own)
-        return {**repeated, "failure_level": list(self.levels)}
+        sided = [f"{self.sided}-sided"] * len(self.levels)
+        return {**super().settings, "failure_level": list(self.levels), "failure_sided": sided}
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""
-        yield from self.loads.faults(model, data)
+        yield from super().faults(model, data)
         number_known = self.modes is not None or isinstance(self.damping, tuple)
         if modal.highest_frequency(data) is None and not number_known:
             yield Fault("", "modes", "how many modes, as no frequency was measured", "nothing")
@@ -211,14 +199,11 @@ class Passage(Shown):
         """
         refuse(self.faults(problem.model, problem.data))
         top = modal.ABOVE * (modal.highest_frequency(problem.data) or 0.0)
-        out = replace(self, modes=self.loads.complete_modes(problem, top))
-        return replace(out, step=out._step(out.loads.nominal(problem)))
+        out = replace(self, modes=self.complete_modes(problem, top))
+        return replace(out, step=out._step(out.nominal(problem)))
 
     def _step(self, system: modal.ModalSystem) -> float:
-        """Return the time step.
-
-        Raises InputError where it is too long for a structure, or there are too many.
-        """
+        """Return the time step; raise InputError where it is too long, or there are too many."""
         soil = 0.0 if self.filter is None else self.filter.omega
         highest = max(float(system.omega.max()), soil, np.finfo(float).tiny)
         if self.step is not None:
@@ -234,12 +219,9 @@ class Passage(Shown):
         return self.duration / steps
 
     def problem(self, problem: UpdatingProblem, theta: Floats) -> reliability.FirstPassage:
-        """Return the first-passage problem at ``theta``.
-
-        Raises InputError where the time step is too long for the highest mode there.
-        """
+        """Return the problem at ``theta``; raise InputError where the step is too long there."""
         modal.filled(self.step, "step")
-        system, soil = self.loads.system(problem, theta), self.filter
+        system, soil = self.system(problem, theta), self.filter
         times, factors = zip(*self.modulation or [(0.0, 1.0)], strict=True)
         return reliability.FirstPassage(
             system,

@@ -1,27 +1,20 @@
 """The greatest peak of a frequency response function within a band.
 
-The functions are found by modal superposition with a static correction.
-
-docs/methods/first-passage.md has the receptance (Ewins, *Modal Testing*, 2nd ed., eq. 2.65),
-
-    α(ω) = Σ_r A_r / d_r(ω) + R,    A_r = Y_r Γ_r,    d_r(ω) = ω_r² - ω² + 2iζ_r ω_r ω,
-                                    R = Y_s - Σ_r A_r / ω_r².
-
-All quantities are T(ω) = (iω)^s α(ω) + D: receptance, mobility and accelerance have s = 0, 1, 2 and
-D = 0; of base motion, the absolute accelerance has s = 2 and D = Y_b.
-
-T is analytic in ω, so its derivatives are exact as well. The peaks of |T(ω)| are the zeros of
+docs/methods/first-passage.md has the receptance by modal superposition with a static correction,
+α(ω) = Σ_r A_r / d_r(ω) + R with A_r = Y_r Γ_r and d_r(ω) = ω_r² - ω² + 2iζ_r ω_r ω (Ewins, *Modal
+Testing*, 2nd ed., eq. 2.65). All quantities are T(ω) = (iω)^s α(ω) + D: receptance, mobility and
+accelerance have s = 0, 1, 2 and D = 0; of base motion, the absolute accelerance has s = 2 and
+D = Y_b. T is analytic in ω, so its derivatives are exact as well. The peaks of |T(ω)| are zeros of
 
     g(ω) = d|T|²/dω = 2 Re(T* T'),   where   g'(ω) = 2 (|T'|² + Re(T* T'')) < 0,
 
-eigenvalues of the colleague matrices of Chebyshev series (J. P. Boyd, SIAM J. Numer. Anal. 40
-(2002) 1666-1682, doi:10.1137/S0036142901398325): the band is halved until the last coefficients
-vanish. Newton's method brings each to rounding, which is bounded by the same sums with every term
-taken by its absolute value.
+eigenvalues of the colleague matrices of Chebyshev series: the band is halved until the last
+coefficients vanish. Newton's method brings each to rounding, which is bounded by the same sums with
+every term taken by its absolute value.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Self
@@ -37,7 +30,6 @@ from modefront.models.base import Model
 from modefront.predictions import system as modal
 from modefront.predictions.base import PredictionKind, ResultVariable, Setting
 from modefront.residuals.problem import UpdatingProblem
-from modefront.text import Shown
 
 ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2, "absolute accelerance": 2}
 """The power s of iω, by the response that is set against the load."""
@@ -46,10 +38,9 @@ ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2, "absolute acceleranc
 def derivatives(
     system: modal.ModalSystem, omega: Complexes, quantity: str
 ) -> tuple[Complexes, Complexes, Complexes]:
-    """Return T, dT/dω and d²T/dω², each (n, n_outputs, n_inputs), at (n,) frequencies.
+    """Return T, dT/dω and d²T/dω², each (n, n_outputs, n_inputs), at (n,) frequencies in rad/s.
 
-    These are in rad/s, and the response in units of output per unit load. Raises InputError at the
-    frequency of an undamped mode.
+    Raises InputError at the frequency of an undamped mode.
     """
     w = omega[:, None]
     # ω_r² - ω² as a product: exact to rounding next to the mode, where the difference is small.
@@ -80,51 +71,35 @@ def derivatives(
     return response, first, second
 
 
-@dataclass(frozen=True, eq=False)
-class Slope:
-    """g between the one output and the one input of `pair`, and the error by rounding."""
+def slope(pair: modal.ModalSystem, quantity: str, omega: Floats) -> tuple[Floats, Floats]:
+    """Return g and g' between the one output and the one input of a structure."""
+    s = omega.astype(np.complex128)
+    t, t1, t2 = (value[:, 0, 0] for value in derivatives(pair, s, quantity))
+    return 2 * (t.conj() * t1).real, 2 * (abs(t1) ** 2 + (t.conj() * t2).real)
 
-    pair: modal.ModalSystem
-    quantity: str
 
-    def both(self, omega: Floats) -> tuple[Floats, Floats]:
-        """Return g and g'."""
-        s = omega.astype(np.complex128)
-        t, t1, t2 = (value[:, 0, 0] for value in derivatives(self.pair, s, self.quantity))
-        return 2 * (t.conj() * t1).real, 2 * (abs(t1) ** 2 + (t.conj() * t2).real)
-
-    def rounding(self, omega: Floats, g1: Floats) -> Floats:
-        """Return the bound of the error of g by rounding of the terms of T and of ω.
-
-        Modes that cancel leave a small T that is no more accurate than they are.
-        """
-        pair = self.pair
-        load = np.concatenate([abs(pair.input), abs(pair.residual_flexibility())])[:, 0]
-        shape = np.append(abs(pair.output[0]), 1.0)
-        w = omega[:, None]
-        d = (pair.omega - w) * (pair.omega + w) + 2j * pair.zeta * pair.omega * w
-        inverse = np.hstack([1 / abs(d), np.ones_like(w)])
-        inverse1 = np.hstack([2 * (w + pair.zeta * pair.omega) / abs(d) ** 2, np.zeros_like(w)])
-        alpha, alpha1 = inverse @ (shape * load), inverse1 @ (shape * load)
-        s = ORDERS[self.quantity]
-        rigid = 0.0 if pair.rigid is None else abs(pair.rigid[0, 0])
-        t = omega**s * alpha + rigid
-        t1 = omega**s * alpha1 + s * omega ** max(s - 1, 0) * alpha
-        return 8 * np.finfo(float).eps * (t * t1 + omega * abs(g1))
+def rounding(pair: modal.ModalSystem, quantity: str, omega: Floats, g1: Floats) -> Floats:
+    """Return the bound of the error of g by rounding of ω and of T's terms, which may cancel."""
+    load = np.concatenate([abs(pair.input), abs(pair.residual_flexibility())])[:, 0]
+    shape = np.append(abs(pair.output[0]), 1.0)
+    w = omega[:, None]
+    d = (pair.omega - w) * (pair.omega + w) + 2j * pair.zeta * pair.omega * w
+    inverse = np.hstack([1 / abs(d), np.ones_like(w)])
+    inverse1 = np.hstack([2 * (w + pair.zeta * pair.omega) / abs(d) ** 2, np.zeros_like(w)])
+    alpha, alpha1 = inverse @ (shape * load), inverse1 @ (shape * load)
+    s, rigid = ORDERS[quantity], 0.0 if pair.rigid is None else abs(pair.rigid[0, 0])
+    t = omega**s * alpha + rigid
+    t1 = omega**s * alpha1 + s * omega ** max(s - 1, 0) * alpha
+    return 8 * np.finfo(float).eps * (t * t1 + omega * abs(g1))
 
 
 DEGREE = 24  # degree of the series; twice as many intervals with half of it cost about the same
 
-RESOLVED = 1e-12
-"""The series is done when its last coefficients are below this, relative to its largest."""
-
-SETTLED = 1e-8
-"""Relative length of the last step of Newton's method at a zero; elsewhere steps stay long."""
-
+RESOLVED = 1e-12  # last coefficients of a series that is done, over its largest one
+SETTLED = 1e-8  # last step of Newton's method at a zero, over it; elsewhere steps stay long
 TWICE = 1e-10  # relative distance of two zeros up to which they are the same, found twice
 
-NEWTON_STEPS = 6
-"""From the accuracy of the series, two or three do; more than enough even for merging peaks."""
+NEWTON_STEPS = 6  # two or three do; more than enough even for merging peaks
 
 
 def peaks(
@@ -132,61 +107,53 @@ def peaks(
 ) -> tuple[Floats, Floats]:
     """Return where |T| has its local maxima, by rising frequency, and |T| there.
 
-    Parameters
-    ----------
-    system : the structure, with one input; every mode in the band damped and above 0 Hz
-    quantity : what is set against the load, one of `ORDERS`
-    output : which response, counted from 0
-    band : lowest and highest circular frequency, rad/s. The ends are no peaks, however large |T| is
-        there.
-
-    Raises InputError for undamped modes in the band, as their peaks are infinite.
+    The structure has one input, ``quantity`` is one of `ORDERS`, ``output`` is counted from 0, and
+    the band is in rad/s; its ends are no peaks, however large |T| is there. Raises InputError for
+    undamped modes in the band, as their peaks are infinite.
     """
-    one, (low, high) = slice(output, output + 1), band
-    pair = replace(
-        system,
-        output=system.output[one],
-        static=None if system.static is None else system.static[one],
-        rigid=None if system.rigid is None else system.rigid[one],
-    )
+    (low, high), one = band, slice(output, output + 1)
+    whole = {name: getattr(system, name) for name in ("output", "static", "rigid")}
+    parts: Any = {name: None if x is None else x[one] for name, x in whole.items()}
+    pair = replace(system, **parts)
     infinite = (pair.zeta * pair.omega == 0) & (pair.omega >= low) & (pair.omega <= high)
     if np.any(infinite):
         mode = int(np.argmax(infinite))
         expected = "damped modes above 0 Hz in the band, as others have infinite peaks"
         undamped = f"omega[{mode}] = {pair.omega[mode]}, zeta[{mode}] = {pair.zeta[mode]}"
         raise wrong("zeta", expected, undamped)
-    slope = Slope(pair, quantity)
     # The modes are natural breaks: with one at the end of an interval, its width is soon found.
     inside = pair.omega[(pair.omega > low) & (pair.omega < high)]
     breaks = np.unique(np.concatenate([[low], inside, [high]]))
-    roots = np.concatenate([_zeros(slope, a, b) for a, b in pairwise(breaks.tolist())])
+    roots = np.concatenate([_zeros(pair, quantity, *x) for x in pairwise(breaks.tolist())])
     # A pair of complex zeros next to the axis passes for real ones until here. Newton's method
     # finds no rest there, or at another zero, which is found a second time.
     zeros, step = roots, np.zeros_like(roots)
     for _ in range(NEWTON_STEPS):
-        g, g1 = slope.both(zeros)
+        g, g1 = slope(pair, quantity, zeros)
         with np.errstate(divide="ignore", invalid="ignore"):
             moved = np.clip(zeros - g / g1, low, high)
         zeros, step = moved, moved - zeros
     settled = (zeros > low) & (zeros < high) & (abs(step) < SETTLED * zeros)
     zeros = np.sort(zeros[settled])
     zeros = zeros[np.diff(zeros, prepend=-np.inf) > TWICE * zeros]
-    at_peak = zeros[slope.both(zeros)[1] < 0]
+    at_peak = zeros[slope(pair, quantity, zeros)[1] < 0]
     values = derivatives(pair, at_peak.astype(np.complex128), quantity)[0][:, 0, 0]
     return at_peak, np.abs(values)
 
 
-def _zeros(slope: Slope, a: float, b: float) -> Floats:
+def _zeros(pair: modal.ModalSystem, quantity: str, a: float, b: float) -> Floats:
     """Return the zeros of g in [a, b], to about the accuracy of the series."""
     middle, half = (a + b) / 2, (b - a) / 2
     x = chebyshev.chebpts1(DEGREE + 1)
-    g, g1 = slope.both(middle + half * x)
+    omega = middle + half * x
+    g, g1 = slope(pair, quantity, omega)
     # Interpolation at the Chebyshev points of the first kind is a discrete orthogonal sum.
     series = (2 / (DEGREE + 1)) * chebyshev.chebvander(x, DEGREE).T @ g
     series[0] /= 2
-    enough = max(RESOLVED * abs(g).max(), slope.rounding(middle + half * x, g1).max())
+    enough = max(RESOLVED * abs(g).max(), rounding(pair, quantity, omega, g1).max())
     if abs(series[-2:]).max() > enough:
-        return np.concatenate([_zeros(slope, a, middle), _zeros(slope, middle, b)])
+        halves = (a, middle), (middle, b)
+        return np.concatenate([_zeros(pair, quantity, *x) for x in halves])
     trimmed = chebyshev.chebtrim(series, enough)
     if trimmed.size == 1:
         return np.empty(0)
@@ -206,7 +173,7 @@ BAND = options.numbers(
 
 
 @dataclass(frozen=True)
-class PeakResponse(Shown):
+class PeakResponse(modal.ModalPrediction):
     """Peaks of the frequency response of several outputs to one input.
 
     Raises InputError for values that are not possible, alone or together.
@@ -235,7 +202,6 @@ class PeakResponse(Shown):
     modes: modal.ModeCount | None = None
     damping: modal.Damping = modal.MEASURED
 
-    either: ClassVar = modal.EITHER
     kind: ClassVar = PredictionKind(
         "frf",
         "frf",
@@ -254,43 +220,24 @@ class PeakResponse(Shown):
         undefined="have no such peak",
     )
 
-    def __post_init__(self) -> None:
-        options.check_fields(self)
-        faults = list(self.loads.contradictions())
+    def contradictions(self) -> Iterator[Fault]:
+        """Yield options that contradict one another."""
+        yield from super().contradictions()
         if self.quantity == "absolute accelerance" and self.base is None:
-            expected = "another one where forces act"
-            faults.append(Fault("", "quantity", expected, f"'{self.quantity}'"))
-        refuse(faults)
-
-    @property
-    def loads(self) -> modal.ModalLoadModel:
-        """Load case, outputs, modes and damping."""
-        forces: Any = () if self.force is None else (self.force,)
-        return modal.ModalLoadModel.of(self, forces, static=self.static)
-
-    @property
-    def places(self) -> tuple[str, ...]:
-        """Name of the prediction and of the response, for each of these."""
-        return tuple(f"{self.name}: {response}" for response in self.response)
+            yield Fault("", "quantity", "another one where forces act", f"'{self.quantity}'")
 
     @property
     def heading(self) -> str:
         """Name, load case and options in a sentence."""
-        loads, (low, high) = self.loads, modal.filled(self.band, "band")
+        low, high = modal.filled(self.band, "band")
         return (
-            f"{self.name}: {loads.load}; {self.quantity}, greatest peak from {low:g} to {high:g} "
-            f"Hz, {self.modes} modes, damping {loads.damped}"
+            f"{self.name}: {self.load}; {self.quantity}, greatest peak from {low:g} to {high:g} "
+            f"Hz, {self.modes} modes, damping {self.damped}"
         )
-
-    @property
-    def settings(self) -> Mapping[str, Sequence[object]]:
-        """Values of the kind's settings, one a place, by the name of the variable."""
-        own = {"quantity": self.quantity, "band": self.band}
-        return self.loads.settings("frf", len(self.response), own)
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the requirements that the model or the data do not meet."""
-        yield from self.loads.faults(model, data)
+        yield from super().faults(model, data)
         if self.band is None and modal.highest_frequency(data) is None:
             yield Fault("", "band", BAND.expected, "nothing")
 
@@ -302,8 +249,8 @@ class PeakResponse(Shown):
         refuse(self.faults(problem.model, problem.data))
         highest = modal.highest_frequency(problem.data)
         low, top = self.band or (0.0, modal.ABOVE * modal.filled(highest, "band"))
-        out = replace(self, band=(low, top), modes=self.loads.complete_modes(problem, top))
-        omega, faults = out.loads.nominal(problem).omega, []
+        out = replace(self, band=(low, top), modes=self.complete_modes(problem, top))
+        omega, faults = out.nominal(problem).omega, []
         last, count = float(omega[-1]) / (2 * math.pi), omega.size
         reached = problem.model, problem.start, top, count
         more = modal.modes_reaching(*reached) if last < top else count
@@ -327,7 +274,7 @@ class PeakResponse(Shown):
         NaN where there is no local maximum within the band. Raises ModelError where the model
         cannot be evaluated at ``theta``.
         """
-        system = self.loads.system(problem, theta)
+        system = self.system(problem, theta)
         low, high = (2 * np.pi * f for f in modal.filled(self.band, "band"))
         out = np.full((2, len(self.response)), np.nan)
         for o in range(len(self.response)):

@@ -40,12 +40,8 @@ SAME = 1e-4
 """Growth of an objective, over itself, up to which models are equivalent: that of its root is far
 below any error of measurement."""
 
-FACTORS = (1e1, 1e2, 1e3, 1e4)
-"""Penalties on violations of the slack, over the size of the prediction."""
-
-_ENOUGH = Options(step=1e-5, reduction=1e-8, iterations=40)
-"""A range needs a thousandth of itself, and no more."""
-
+FACTORS = (1e1, 1e2, 1e3, 1e4)  # penalties on violations, over the size of the prediction
+_ENOUGH = Options(step=1e-5, reduction=1e-8, iterations=40)  # a range needs a thousandth of itself
 SLACK = number("a share of 0 or more", least=0)
 
 Values = Callable[[Floats], float]  # returns the prediction of a model (p,); NaN where it has none
@@ -142,9 +138,9 @@ class Equivalent:
         return np.asarray((grown + np.sqrt(EXACT) * np.array(self._lengths)) ** 2)
 
     def _solve(self, q: Values, size: float, sign: float, start: Floats) -> Solution | None:
-        """Return the extreme to which a start leads; None where that is no equivalent model.
+        """Return the extreme, with q over ``size`` as last objective, to which a start leads.
 
-        The solution has q over ``size`` as its last objective.
+        None where that is no equivalent model.
         """
         if self.slack == 0:  # the corners of a simplex about the middle: all are 0 there alone
             n = len(self.equations[0])
@@ -207,10 +203,8 @@ class _Along:
     problem: Problem  # the problem
     front: Sampled  # some of its models, and what is known between them
     value: Callable[[Floats], float]  # returns the value of a model of the front
-    # parameters, objectives and value of each model
-    known: list[tuple[Floats, Floats, float]] = field(default_factory=list)
-    # pairs of models between which the front has been solved for
-    halved: set[tuple[int, int]] = field(default_factory=set)
+    known: list[tuple[Floats, Floats, float]] = field(default_factory=list)  # theta, J and value
+    halved: set[tuple[int, int]] = field(default_factory=set)  # pairs that were solved between
 
     def least(self) -> float:
         """Return the least value; NaN without any."""
@@ -294,8 +288,7 @@ def extreme(
 ) -> float:
     """Return the least (sign 1) or greatest (-1) prediction over a front; NaN without any.
 
-    ``values`` (m,) are those of its models, and ``step`` that of differences, over the ranges of
-    the parameters.
+    ``values`` (m,) are those of its models, ``step`` is that of `Equivalent`.
     """
 
     def value(theta: Floats) -> float:

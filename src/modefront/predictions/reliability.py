@@ -1,51 +1,35 @@
-"""The first-passage problem; docs/methods/first-passage.md states it.
+"""The first-passage problem; docs/methods/first-passage.md states it, and has the sources.
 
 Densities are per rad/s. The noise may be modulated, q(t_k + Δt/2) w_k, and may then pass the filter
 (ω_g² + 2iζ_g ω_g ω) / (ω_g² - ω² + 2iζ_g ω_g ω) of a soil, the absolute acceleration of a damped
 oscillator on a base accelerated by it (H. Tajimi, Proc. 2nd World Conf. Earthquake Eng. (1960)
 781-797).
 
-**The responses** at the times t_j are a linear map of independent standard normal numbers.
+The response o at t_j is a convolution with the pulse response h scaled by sqrt(2πS/Δt), done for
+many samples at once by the fast Fourier transform,
 
-With h the pulse response scaled by sqrt(2πS/Δt), the response o at t_j is
+    x_oj = Σ_i Σ_{k<j} h_oi[j-1-k] q_k z_ik  =  a_oj · z,        z ~ N(0, I).
 
-    x_oj = Σ_i Σ_{k<j} h_oi[j-1-k] q_k z_ik  =  a_oj · z,        z ~ N(0, I),
+The pulse response is exact for a load held constant over a step: with ṡ = A s + B w for s = (q, q̇[,
+f, ḟ]) of a mode and the filter, s(t + Δt) = Φ s(t) + Θ w, where exp([A B; 0 0] Δt) = [Φ Θ; 0 1].
 
-a convolution, done for many samples at once by the fast Fourier transform. The pulse response is
-exact for a load held constant over a step: with ṡ = A s + B w for s = (q, q̇[, f, ḟ]) of a mode and
-the filter, s(t + Δt) = Φ s(t) + Θ w, where exp([A B; 0 0] Δt) = [Φ Θ; 0 1].
-
-======  ==========================================  ==========================
-symbol  meaning                                     shape
-======  ==========================================  ==========================
-z       normal numbers of one sample                (n_inputs, n)
-x       responses                                   (n_outputs, n), at t_1 …
-h       pulse response for unit normal numbers      (n_outputs, n_inputs, n)
-q       modulation                                  (n,)
-σ       standard deviation of x                     (n_outputs, n)
-======  ==========================================  ==========================
-
-**The methods** say how samples are drawn, and the weight of each, of which the mean is P.
-docs/methods/first-passage.md names the elementary failures E_oj and the sources. A standard normal
-z is made a sample given E_oj by putting its component u along the design excitation right (Au &
-Beck 2001, sec. 4):
+The methods say how samples are drawn, and the weight of each, of which the mean is P. A z is made a
+sample given the elementary failure E_oj, drawn with probability P_oj/ΣP, by putting its component u
+along the design excitation right (Au & Beck 2001, sec. 4):
 
     z* = z + (r - u) a_oj/σ_oj,      r = -Φ⁻¹(v Φ(-β_oj)),   v uniform in (0, 1].
 
-E_oj is drawn with probability P_oj/ΣP. Weights are ΣP / N(z) of importance sampling; ΣP · 1[E_oj
-is the first in time of those that z contains] of the additive rules, of mean 1/N over the failures
-of a sample; ΣP · Q(min ρ_oj) / Σ Q(ρ_oj) with Q(ρ) = Γ(ν/2, ρ²/2)/Γ(ν/2) and ρ_oj =
-b/|x_oj(e)| of directional importance sampling, z = R e with R integrated out; and 1[any |x_oj| > b]
-of Monte Carlo.
+Weights are ΣP / N(z) of importance sampling; ΣP · 1[E_oj is the first in time of those that z
+contains] of the additive rules, of mean 1/N over the failures of a sample; ΣP · Q(min ρ_oj) /
+Σ Q(ρ_oj) with Q(ρ) = Γ(ν/2, ρ²/2)/Γ(ν/2) and ρ_oj = b/|x_oj(e)| of directional importance sampling,
+z = R e with R integrated out; and 1[any |x_oj| > b] of Monte Carlo. Nothing that is computed from
+z* changes with its sign, so x_oj > b stands for both sides. z is the same for all levels.
 
-Nothing that is computed from z* changes with its sign, so x_oj > b stands for both sides. z is the
-same for all levels.
-
-Samples are drawn in chunks; each chunk has a generator of its own, spawned from the seed by the
-chunk's number, and the chunk's size follows from the problem alone, so who computes it changes
-nothing.
+Samples are drawn in chunks; each has a generator of its own, spawned from the seed by its number,
+and its size follows from the problem alone, so who computes it changes nothing.
 """
 
+import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -54,25 +38,23 @@ from queue import SimpleQueue
 from typing import Final, final
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len
 from scipy.linalg import expm
 from scipy.special import gammaincc, gammainccinv, log_ndtr, ndtr, ndtri_exp
 
 from modefront._typing import Floats, Ints
 from modefront.predictions.system import ModalSystem
 
-LARGEST_ANGLE = np.pi / 2
-"""Largest ω Δt: a quarter of a period. Beyond it the times t_j miss the peaks of the response."""
+LARGEST_ANGLE = np.pi / 2  # largest ω Δt: beyond a quarter of a period, times miss the peaks
 
 
 @dataclass(frozen=True)
 class FirstPassage:
     """A linear structure at rest, its Gaussian load, and the times at which it is looked at.
 
-    The responses are displacements at the outputs of `system`, of its modes alone: white noise
-    has no quasi-static response, so `system.static` is not used. Responses with barriers of their
-    own are brought to a common one by scaling the rows of the system's `output`.
+    The responses are displacements at the outputs of the system, of its modes alone: white noise
+    has no quasi-static response. Rows of the ``output`` bring other barriers to a common one.
     """
 
     system: ModalSystem  # the structure, with n_inputs loads and n_outputs responses
@@ -86,15 +68,10 @@ class FirstPassage:
     # q, mapping an (n,) array of times in s to (n,) factors; None for a constant 1
     modulation: Callable[[Floats], Floats] | None = None
 
-    @property
-    def steps(self) -> int:
-        """The number n of time steps."""
-        return round(self.duration / self.time_step)
-
 
 @dataclass(frozen=True, eq=False)
 class GaussianResponse:
-    """The map from z to x, made by `gaussian_response`."""
+    """The map from z (n_inputs, n) to the responses x (n_outputs, n) at t_1 … t_n."""
 
     modulation: Floats  # (n,) q
     # (n_outputs, n_inputs, n_frequencies) transform of h, padded so that nothing wraps round
@@ -105,19 +82,13 @@ class GaussianResponse:
     deviation: Floats  # (n_outputs, n) σ
 
     @property
-    def n_inputs(self) -> int:
-        """Number of loads."""
-        return int(self.backwards.shape[1])
-
-    @property
-    def n_steps(self) -> int:
-        """Number n of times."""
-        return int(self.deviation.shape[1])
+    def load(self) -> tuple[int, int]:
+        """Numbers (n_inputs, n) of loads and times."""
+        return self.backwards.shape[1], self.deviation.shape[1]
 
     def design_excitation(self, output: Ints, step: Ints) -> Floats:
         """Return a_oj, (samples, n_inputs, n), for (samples,) pairs; step j counts from 0."""
-        n = self.n_steps
-        direction = np.empty((output.size, self.n_inputs, n))
+        direction, n = np.empty((output.size, *self.load)), self.load[1]
         for row, o, start in zip(direction, output, n - 1 - step, strict=True):
             np.multiply(self.backwards[o, :, start : start + n], self.modulation, out=row)
         return direction
@@ -125,20 +96,11 @@ class GaussianResponse:
 
 @final
 class Convolution:
-    """Turns samples of z into |x|, in memory of its own: one for each worker.
-
-    Fresh arrays for every chunk would cost more time than the transforms.
-
-    Parameters
-    ----------
-    response : the map from z to x
-    samples : the largest number of samples at once
-    """
+    """Turns so many samples of z into |x|, in memory of its own: fresh arrays cost more time."""
 
     def __init__(self, response: GaussianResponse, samples: int) -> None:
-        size = _fft_size(response.n_steps)
-        load = (samples, response.n_inputs)
-        self.response = response
+        self.response, (inputs, n) = response, response.load
+        size, load = next_fast_len(2 * n - 1, real=True), (samples, inputs)
         self._padded = np.zeros((*load, size))
         self._spectrum = np.empty((*load, size // 2 + 1), dtype=np.complex128)
         self._product = np.empty((2, samples, size // 2 + 1), dtype=np.complex128)
@@ -147,54 +109,44 @@ class Convolution:
     def magnitudes(self, z: Floats) -> Iterator[Floats]:
         """Yield |x| of one output after another, each (samples, n), for z (samples, n_inputs, n).
 
-        One output at a time, so that memory does not grow with their number; each is overwritten
-        by the next.
+        Each is overwritten by the next, so that memory does not grow with their number.
         """
-        count, n = z.shape[0], self.response.n_steps
+        count, inputs, n = z.shape
         padded, load, x = self._padded[:count], self._spectrum[:count], self._x[:count]
         product, term = self._product[:, :count]
         np.multiply(z, self.response.modulation, out=padded[..., :n])
         np.fft.rfft(padded, out=load)
         for spectrum in self.response.spectrum:
             np.multiply(load[:, 0], spectrum[0], out=product)
-            for i in range(1, self.response.n_inputs):
+            for i in range(1, inputs):
                 product += np.multiply(load[:, i], spectrum[i], out=term)
             np.fft.irfft(product, x.shape[-1], out=x)
             yield np.abs(x[:, :n], out=x[:, :n])
 
 
 def pulse_response(problem: FirstPassage) -> Floats:
-    """Return the outputs at t_1 … t_n after a unit pulse on [0, Δt) at one input.
-
-    The array is (n_outputs, n_inputs, n), in units of output per unit load.
-    """
-    generator = _generator(problem.system, problem.soil)
-    step = np.asarray(expm(generator * problem.time_step))
-    power, states = step[:, :-1, :-1], step[:, :-1, -1:]
-    while states.shape[-1] < problem.steps:
-        # Not `@`: sums of two to four terms need no BLAS, whose threads may change the last digit.
-        states = np.concatenate([states, np.einsum("mij,mjk->mik", power, states)], axis=-1)
-        power = np.einsum("mij,mjk->mik", power, power)
-    modal = states[:, 0, : problem.steps]
-    shapes = problem.system
-    return np.einsum("om,mi,mk->oik", shapes.output, shapes.input, modal)
-
-
-def _generator(system: ModalSystem, soil: tuple[float, float] | None) -> Floats:
-    """Return [A B; 0 0] of each mode, (m, 3, 3), or (m, 5, 5) with a filter."""
-    size = 3 if soil is None else 5
-    generator = np.zeros((system.omega.size, size, size))
+    """Return the outputs (n_outputs, n_inputs, n) after a unit pulse on [0, Δt) at one input."""
+    shapes, size = problem.system, 3 if problem.soil is None else 5
+    generator = np.zeros((shapes.omega.size, size, size))  # [A B; 0 0] of each mode
     generator[:, 0, 1] = 1
-    generator[:, 1, 0] = -(system.omega**2)
-    generator[:, 1, 1] = -2 * system.zeta * system.omega
-    if soil is None:
+    generator[:, 1, 0] = -(shapes.omega**2)
+    generator[:, 1, 1] = -2 * shapes.zeta * shapes.omega
+    if problem.soil is None:
         generator[:, 1, 2] = 1
     else:
-        omega, zeta = soil
+        omega, zeta = problem.soil
         generator[:, 1, 2:4] = omega**2, 2 * zeta * omega
         generator[:, 2, 3] = 1
         generator[:, 3, 2:] = -(omega**2), -2 * zeta * omega, 1
-    return generator
+    step = np.asarray(expm(generator * problem.time_step))
+    power, states = step[:, :-1, :-1], step[:, :-1, -1:]
+    steps = round(problem.duration / problem.time_step)
+    while states.shape[-1] < steps:
+        # Not `@`: sums of two to four terms need no BLAS, whose threads may change the last digit.
+        states = np.concatenate([states, np.einsum("mij,mjk->mik", power, states)], axis=-1)
+        power = np.einsum("mij,mjk->mik", power, power)
+    modal = states[:, 0, :steps]
+    return np.einsum("om,mi,mk->oik", shapes.output, shapes.input, modal)
 
 
 def gaussian_response(problem: FirstPassage) -> GaussianResponse:
@@ -203,7 +155,7 @@ def gaussian_response(problem: FirstPassage) -> GaussianResponse:
     n = h.shape[-1]
     middle = np.asarray((np.arange(n) + 0.5) * problem.time_step)
     q = np.ones(n) if problem.modulation is None else problem.modulation(middle)
-    size = _fft_size(n)
+    size = next_fast_len(2 * n - 1, real=True)
     squares = (np.fft.rfft(h**2, size) * np.fft.rfft(q**2, size)).sum(axis=1)
     variance = np.fft.irfft(squares, size)[:, :n]
     return GaussianResponse(
@@ -215,19 +167,11 @@ def gaussian_response(problem: FirstPassage) -> GaussianResponse:
     )
 
 
-def _fft_size(n: int) -> int:
-    return int(scipy.fft.next_fast_len(2 * n - 1, real=True))
-
-
-NEGLIGIBLE = 1e-22
-"""The Q(ρ_oj) left out, relative to the largest: even millions of them are below rounding."""
+NEGLIGIBLE = 1e-22  # Q(ρ_oj) over the largest that is left out: millions are below rounding
 
 
 def elementary_failures(response: GaussianResponse, level: float) -> Floats:
-    """Return the sums of P_oj over the steps of one output after another, (n_outputs · n,).
-
-    The last one, ΣP, may exceed 1.
-    """
+    """Return sums (n_outputs · n,) of P_oj, output after output; the last, ΣP, may exceed 1."""
     # Before the load sets in there is no response, and β is infinite.
     with np.errstate(divide="ignore"):
         beta = level / response.deviation.ravel()
@@ -302,8 +246,7 @@ def _any_radius(
     # are so small beside the largest that their Q is nothing; they are not worth computing.
     least = NEGLIGIBLE * gammaincc(half_nu, energy)
     floor = level * np.sqrt(energy / gammainccinv(half_nu, least))
-    largest = np.zeros(count)
-    total = np.zeros(count)
+    largest, total = np.zeros((2, count))
     for x in magnitudes:
         np.maximum(largest, x.max(axis=1), out=largest)
         # Flat: NumPy finds the few that are true of a row many times faster than of a table.
@@ -320,14 +263,10 @@ METHODS: Final[Mapping[str, Share | None]] = {
 }
 """The methods by the names that a user gives them."""
 
-
 LARGEST_CHUNK = 32  # samples in a chunk: enough for the loops in C, few enough for the cache
 
-MOST_WORKERS = 8
-"""Threads at most; each takes some 100 MB. How many there are changes no digit."""
-
-LARGEST_BLOCK = 2**20
-"""Normal numbers in a chunk, 8 MB: bounds the memory of a worker to some 100 MB."""
+MOST_WORKERS = 8  # threads at most, of some 100 MB each; how many there are changes no digit
+LARGEST_BLOCK = 2**20  # normal numbers in a chunk, 8 MB: keeps a worker to some 100 MB
 
 
 def spawn(seed: np.random.SeedSequence, number: int) -> np.random.SeedSequence:
@@ -351,7 +290,7 @@ def estimate(
     """
     response = gaussian_response(problem)
     sums = [elementary_failures(response, level) for level in levels.tolist()]
-    largest = LARGEST_BLOCK // (response.n_inputs * response.n_steps)
+    largest = LARGEST_BLOCK // math.prod(response.load)
     chunk = min(max(largest, 1), LARGEST_CHUNK)
     workers = workers or min(os.cpu_count() or 1, MOST_WORKERS)
     free: SimpleQueue[Convolution] = SimpleQueue()
@@ -361,7 +300,7 @@ def estimate(
     def weights_of(number: int) -> Floats:
         count = min(chunk, samples - number * chunk)
         rng, convolution = np.random.default_rng(spawn(seed, number)), free.get()
-        z = rng.standard_normal((count, response.n_inputs, response.n_steps))
+        z = rng.standard_normal((count, *response.load))
         try:
             if method is not None:
                 return _given_failures(method, levels, sums, convolution, z, rng)
@@ -374,8 +313,8 @@ def estimate(
         chunks = pool.map(weights_of, range(-(-samples // chunk)))
         weights = np.concatenate(list(chunks), axis=1)
     P = weights.mean(axis=1)
-    unit = np.full(P.size, np.inf)
-    np.divide(weights.std(axis=1, ddof=1), P, out=unit, where=P > 0)
+    std = weights.std(axis=1, ddof=1)
+    unit = np.divide(std, P, out=np.full(P.size, np.inf), where=P > 0)
     return P, unit / np.sqrt(samples)
 
 

@@ -1,22 +1,7 @@
 """A model in its lowest modes between loads and responses, with classical damping.
 
-The modal equations are in docs/methods/first-passage.md.
-
-==========  =================================================  ===========
-symbol      meaning                                            field
-==========  =================================================  ===========
-ω_r         natural circular frequency, rad/s                  ``omega``
-ζ_r         damping ratio                                      ``zeta``
-Γ           φᵀf for a force pattern f;  -φᵀM r for the         ``input``
-            acceleration of the base, r its rigid-body motion
-Y           mode shapes at the outputs: a sensor, or any       ``output``
-            weighted sum of DOFs, such as a story drift
-Y_s         full static response, output · K⁻¹ · load,         ``static``
-            load = f or -M r
-Y_b         motion of the outputs with the base, output · r    ``rigid``
-==========  =================================================  ===========
-
-Loads and responses are sums of sensors and other outputs of the model, by their names.
+The modal equations are in docs/methods/first-passage.md. Loads and responses are sums of sensors
+and other outputs of the model, by their names.
 
 Where damping is that of the measurements, a model mode has the mean damping ratio, over the data
 sets, of the measured mode that is paired with it; modes without a partner, or whose partner's
@@ -25,43 +10,41 @@ damping was not measured, have the mean of all that was.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
 
 from modefront import options
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, ModelError, suggestion, wrong
-from modefront.models.base import LoadCase, Model, NamedWeights
+from modefront.errors import Fault, ModelError, refuse, suggestion, wrong
+from modefront.models.base import LoadCase, Model
 from modefront.pairing.match import match, modes_needed
+from modefront.predictions.base import PredictionKind
 from modefront.residuals.problem import UpdatingProblem
+from modefront.text import Shown
 
 
 @dataclass(frozen=True, eq=False)
 class ModalSystem:
-    """A linear structure by its modes, between m modes, n_inputs loads and n_outputs responses.
-
-    Attributes
-    ----------
-    omega : (m,) natural circular frequencies in rad/s; zero for a rigid-body mode
-    zeta : (m,) damping ratios, none negative
-    input : (m, n_inputs) modal loads: φᵀf for forces, -φᵀM r for base acceleration
-    output : (n_outputs, m) mode shapes at the outputs
-    static : (n_outputs, n_inputs) full static response to the loads, or None where the modes are
-        all there is: its excess over the static response of the modes given is the correction for
-        those cut off. With rigid-body modes there is no static response.
-    rigid : (n_outputs, n_inputs) displacement of the outputs for a unit displacement of the base,
-        or None where the load is a force; needed for absolute acceleration only
+    """A linear structure by its m modes, between n_inputs loads and n_outputs responses.
 
     Raises InputError for a static response of a structure with a rigid-body mode.
     """
 
-    omega: Floats
-    zeta: Floats
+    omega: Floats  # (m,) natural circular frequencies ω_r in rad/s; zero for a rigid-body mode
+    zeta: Floats  # (m,) damping ratios ζ_r, none negative
+    # (m, n_inputs) modal loads Γ: φᵀf for forces f, -φᵀM r for the acceleration of the base, r its
+    # rigid-body motion
     input: Floats
+    # (n_outputs, m) mode shapes Y at the outputs: a sensor, or any weighted sum of degrees of
+    # freedom, such as a story drift
     output: Floats
+    # (n_outputs, n_inputs) full static response Y_s = output · K⁻¹ · load, load = f or -M r: what
+    # it exceeds that of the modes by corrects for those cut off; None where these are all
     static: Floats | None = None
+    # (n_outputs, n_inputs) motion Y_b = output · r of the outputs with the base, for absolute
+    # acceleration; None where the load is a force
     rigid: Floats | None = None
 
     def __post_init__(self) -> None:
@@ -74,29 +57,20 @@ class ModalSystem:
         """Return static - Σ_r Y_r Γ_r / ω_r², (n_outputs, n_inputs); zero without `static`."""
         if self.static is None:
             return np.zeros((self.output.shape[0], self.input.shape[1]))
-        retained: Floats = (self.output / self.omega**2) @ self.input
-        return self.static - retained
+        return self.static - (self.output / self.omega**2) @ self.input
 
 
 T = TypeVar("T")
 
 MEASURED = "measured"  # damping ratios of the measured modes
 
-BEYOND = 1.5
-"""Frequency that the superposed modes reach unless their number is given, over that of the band."""
-
-ABOVE = 1.1
-"""Upper end of the band that is taken where none is given, over the highest measured frequency."""
-
+BEYOND = 1.5  # end of the modes superposed, if their number is not given, over that of the band
+ABOVE = 1.1  # end of the band where none is given, over the highest measured frequency
 NAMED = "the name of a sensor or output, or a table of them with weights that are not zero"
-
 
 WEIGHTS = options.any_of(
     options.NAME, options.table_of(options.any_of(options.ABOVE_ZERO, options.BELOW_ZERO), 1)
 )
-EITHER: options.Schema = {"oneOf": [{"required": [key]} for key in ("force", "base")]}
-"""What the schema of a prediction says of its loads."""
-
 RATIO: options.Schema = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
 
 
@@ -170,28 +144,35 @@ Damping = Annotated[
 ]
 
 
-@dataclass(frozen=True)
-class ModalLoadModel:
-    """Load case, outputs, modes and damping of a prediction."""
+class ModalPrediction(Shown):
+    """What predictions share that superpose modes between loads and responses, by their options."""
 
-    load_case: LoadCase  # where it is loaded, and its responses
+    name: str
+    response: Any  # kept as weights by the name of each response
+    force: Any = None  # kept as the weights of one force, or a tuple of those of several
+    base: str | None
     modes: int | None  # number of the lowest modes superposed; None where it is not known yet
-    damping: str | float | Sequence[float]  # ratio of all modes, or of each, or `MEASURED`
-    static: bool  # whether the static response of the modes left out is added
+    damping: Any  # ratio of all modes, or of each, or `MEASURED`
+    static: bool = False  # whether the static response of the modes left out is added
+    either: ClassVar = {"oneOf": [{"required": [key]} for key in ("force", "base")]}
+    kind: ClassVar[PredictionKind]
 
-    @classmethod
-    def of(
-        cls, prediction: Any, forces: Sequence[NamedWeights], *, static: bool
-    ) -> "ModalLoadModel":
-        """Return that of a prediction with forces, by its response, base, modes and damping."""
-        load_case = LoadCase(tuple(prediction.response.values()), tuple(forces), prediction.base)
-        return cls(load_case, prediction.modes, prediction.damping, static)
+    def __post_init__(self) -> None:
+        """Bring the fields into plain Python, and refuse what contradicts itself."""
+        options.check_fields(self)
+        refuse(self.contradictions())
+
+    @property
+    def load_case(self) -> LoadCase:
+        """Where the model is loaded, and its responses."""
+        forces = self.force if isinstance(self.force, tuple) else (self.force,) * bool(self.force)
+        return LoadCase(tuple(self.response.values()), forces, self.base)
 
     @property
     def load(self) -> str:
         """Load case in words."""
-        if self.load_case.base is not None:
-            return f"base along {self.load_case.base}"
+        if self.base is not None:
+            return f"base along {self.base}"
         forces = (
             " + ".join(name if w == 1 else f"{w:g} {name}" for name, w in weights.items())
             for weights in self.load_case.forces
@@ -203,15 +184,19 @@ class ModalLoadModel:
         """The damping ratios, in words."""
         if isinstance(self.damping, str):
             return "as measured"
-        ratios = (self.damping,) if isinstance(self.damping, float) else self.damping
-        return ", ".join(f"{ratio:g}" for ratio in ratios)
+        return ", ".join(f"{ratio:g}" for ratio in np.atleast_1d(self.damping))
 
-    def settings(
-        self, prefix: str, count: int, values: Mapping[str, object]
-    ) -> dict[str, list[object]]:
-        """Return values of settings, and of those of the loads, at each of so many places."""
-        own = {"load": self.load, "damping": self.damped, "modes": self.modes}
-        return {f"{prefix}_{key}": [value] * count for key, value in {**values, **own}.items()}
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Name of the prediction and of the response, for each of these."""
+        return tuple(f"{self.name}: {response}" for response in self.response)
+
+    @property
+    def settings(self) -> Mapping[str, Sequence[object]]:
+        """Values of the kind's settings, one a place, by the name of the variable."""
+        keys = {x.name: x.name.removeprefix(f"{self.kind.dimension}_") for x in self.kind.settings}
+        own = {key: getattr(self, key, None) for key in keys.values()} | {"damping": self.damped}
+        return {name: [own[key]] * len(self.places) for name, key in keys.items()}
 
     def system(self, problem: UpdatingProblem, theta: Floats) -> ModalSystem:
         """Return the structure in modal coordinates at ``theta``.
@@ -219,25 +204,22 @@ class ModalLoadModel:
         Raises ModelError where the model has no such modes there, InputError where their number is
         not known.
         """
-        m = count = filled(self.modes, "modes")
+        m, n = filled(self.modes, "modes"), 0
         if self.damping == MEASURED:
-            count = max(count, modes_needed(problem.pairing, problem.data, problem.model.size))
-        transfer = problem.model.transfer(theta, count, self.load_case)
-        count = transfer.modes.lam.size
-        if self.damping != MEASURED:
-            zeta = np.broadcast_to(np.asarray(self.damping, dtype=float), count)
-        else:
+            # The same candidates as in updating, or other modes might be paired.
+            n = modes_needed(problem.pairing, problem.data, problem.model.size)
+        transfer = problem.model.transfer(theta, max(m, n), self.load_case)
+        zeta, count = self.damping, transfer.modes.lam.size
+        if n:
             measured = problem.data.mean_damping
             is_known = np.isfinite(measured)
             zeta = np.full(count, measured[is_known].mean())
-            # The same candidates as in updating, or other modes might be paired.
-            n = modes_needed(problem.pairing, problem.data, problem.model.size)
             frequency, phi = transfer.modes.frequency[:n], transfer.modes.phi[:, :n]
             pairs = match(problem.pairing, problem.data, frequency, phi)
             zeta[pairs.index[is_known]] = measured[is_known]
         return ModalSystem(
             omega=np.sqrt(transfer.modes.lam[:m]),
-            zeta=zeta[:m],
+            zeta=np.broadcast_to(np.asarray(zeta, dtype=float), count)[:m],
             input=transfer.input[:m],
             output=transfer.output[:, :m],
             static=transfer.static if self.static else None,
@@ -246,25 +228,24 @@ class ModalLoadModel:
 
     def contradictions(self) -> Iterator[Fault]:
         """Yield options that contradict one another."""
-        forces = self.load_case.forces
-        if bool(forces) == (self.load_case.base is not None):
-            yield Fault("", "", "either force or base", "both" if forces else "neither")
+        if bool(self.force) == (self.base is not None):
+            yield Fault("", "", "either force or base", "both" if self.force else "neither")
         if isinstance(self.damping, tuple) and self.modes not in (None, len(self.damping)):
             expected = f"a list of {self.modes}, one a mode"
             yield Fault("", "damping", expected, f"{len(self.damping)} of them")
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
         """Yield the names and damping that the model or the data do not have."""
-        load_case, damping = self.load_case, self.damping
-        for name, sums in (("force", load_case.forces), ("response", load_case.outputs)):
+        case, damping = self.load_case, self.damping
+        for name, sums in (("force", case.forces), ("response", case.outputs)):
             for place in (place for weights in sums for place in weights):
                 if place not in model.places:
                     expected = "the name of a sensor or output of the model"
                     yield Fault("", name, expected, suggestion(place, model.places))
-        if load_case.base is not None and load_case.base not in model.directions:
+        if self.base is not None and self.base not in model.directions:
             names = ", ".join(f"'{x}'" for x in model.directions) or "none: the model names no base"
             expected = f"one of the directions of the base, {names}"
-            yield Fault("", "base", expected, f"'{load_case.base}'")
+            yield Fault("", "base", expected, f"'{self.base}'")
         if self.modes is not None and self.modes > model.size:
             yield Fault("", "modes", f"a whole number from 1 to {model.size}", str(self.modes))
         if isinstance(damping, tuple) and len(damping) > model.size:
@@ -283,15 +264,11 @@ class ModalLoadModel:
             return self.modes
         if isinstance(self.damping, tuple):
             return len(self.damping)
-        model = problem.model
-        needed = modes_needed(problem.pairing, problem.data, model.size)
-        return modes_reaching(model, problem.start, BEYOND * top, needed)
+        needed = modes_needed(problem.pairing, problem.data, problem.model.size)
+        return modes_reaching(problem.model, problem.start, BEYOND * top, needed)
 
     def nominal(self, problem: UpdatingProblem) -> ModalSystem:
-        """Return the nominal model in modal coordinates.
-
-        Raises InputError where it has no such modes or the load moves none of the responses.
-        """
+        """Return the nominal model; raise InputError without such modes, or response that moves."""
         try:
             system = self.system(problem, problem.start)
         except ModelError as error:
@@ -302,10 +279,7 @@ class ModalLoadModel:
 
 
 def filled(value: T | None, name: str) -> T:
-    """Return an option of a prediction.
-
-    Raises InputError where it still has to be found from the nominal model.
-    """
+    """Return an option; raise InputError where it is still to be found from the nominal model."""
     if value is None:
         raise wrong(name, "a value, which complete(problem) finds", "none")
     return value
@@ -320,7 +294,7 @@ def highest_frequency(data: ModalData) -> float | None:
 def modes_reaching(model: Model, theta: Floats, frequency: float, count: int) -> int:
     """Return how many modes at ``theta`` are below a frequency in Hz, and one more if there is.
 
-    ``count`` is a number of modes that the model is known to have.
+    The model is known to have ``count`` of them.
     """
     f = model.modes(theta, count, derivatives=False).frequency
     while not (f >= frequency).any():

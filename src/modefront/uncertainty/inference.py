@@ -1,14 +1,16 @@
-"""The most probable model, and what the posterior says of it: draws, misfit, bounds, measurements.
-
-It is the greatest maximum of the posterior that the known models lead to.
+r"""The most probable model, and what the posterior says of it: draws, misfit, bounds, measurements.
 
 A bound that excludes the truth also drives other parameters to theirs. All bounds that hold the
 model are widened at once, and only those beyond which it then lies are to blame. Of the fixed
 parameters, each promises to lower -2 ln p by what its slope and the Gauss-Newton matrix say where
 all others follow (Rao's score); those that promise most are freed and tried, one at a time.
+
+docs/uncertainty.md has the covariance with the rows R (rows, p) of further residuals. New
+measurements are as exact as those that there are, :math:`\tau` by median, with the variance of the
+group of their kind; the factor of a shape is fitted.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
@@ -22,27 +24,21 @@ from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.optim.problem import DISTINCT, Evaluation, at_bounds
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
-from modefront.uncertainty.planning import candidates
 from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.sampling import Draws, draw_models
 from modefront.uncertainty.scatter import Posterior
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task
 
-CHANCE = 0.01
-"""Probability that a fixed parameter, a bound or the model is blamed where all are right."""
-
+CHANCE = 0.01  # probability that a fixed parameter, bound or model is blamed wrongly
 LARGE, FAR = 2.0, 10.0
 """Errors over those expected, from which they are said to be larger, and from which no model is
 advised: far above what is called noise."""
 
-WORSE = 1.1
-"""Error of a group over that of the nominal model, from which the nominal one is better there."""
-
+WORSE = 1.1  # error of a group over the nominal model's, from which that one is better there
 TRIED = 3  # fixed parameters that are tried at most
 
-GAIN = 0.1
-"""Share of its errors that a group loses without bounds, from which these are worth widening."""
+GAIN = 0.1  # share of its errors that a group loses without bounds that are worth widening
 
 
 STARTS = 12  # searches at most, from the most probable of the known models
@@ -67,20 +63,15 @@ def most_probable(
         apart = [np.abs((thetas[k] - x) / span).max() > APART for x in starts]
         if np.isfinite(values[k]) and all(apart) and len(starts) < STARTS:
             starts.append(thetas[k])
-    tasks = [
-        Task(("most-probable", k + 1), maximum, (noise, theta)) for k, theta in enumerate(starts)
-    ]
-    found = sorted(work.run(tasks), key=lambda x: noise.programme.value(x.J))
+    tasks = [Task(("most-probable", k + 1), maximum, (noise, x)) for k, x in enumerate(starts)]
+    models: list[Task[Solution]] = []
     out: list[Solution] = []
-    for x in found:
+    for x in sorted(work.run(tasks), key=lambda x: noise.programme.value(x.J)):
         if all(np.abs((x.theta - y.theta) / span).max() > DISTINCT for y in out):
             out.append(x)
-    return work.run(
-        [
-            Task(("most-probable", "model", k + 1), _in_problem, (problem, noise, x))
-            for k, x in enumerate(out)
-        ]
-    )
+            key = ("most-probable", "model", len(out))
+            models.append(Task(key, _in_problem, (problem, noise, x)))
+    return work.run(models)
 
 
 def log_values(noise: NoiseModel, thetas: Floats) -> Floats:
@@ -97,15 +88,12 @@ def maximum(noise: NoiseModel, start: Floats) -> Solution:
 
 
 def _in_problem(problem: UpdatingProblem, noise: NoiseModel, found: Solution) -> Solution:
-    """Return a maximum as a solution of the problem, which has other units.
-
-    Parameters without any effect are nominal.
-    """
+    """Return a maximum as a solution of the problem, in its units; idle parameters are nominal."""
     effects = np.vstack([each.dr for each in found.evaluation.residuals[:-1]])
     theta = np.where(effects.any(axis=0), found.theta, problem.start)
     evaluation = problem.evaluate(theta, second=True)
-    J = found.J[:-1]
-    unit = np.divide(J, evaluation.J, out=np.ones(J.size), where=evaluation.J > 0)
+    J, own = found.J[:-1], evaluation.J
+    unit = np.divide(J, own, out=np.ones(J.size), where=own > 0)
     w = noise.programme.gradient(found.J)[:-1] * unit
     return replace(found, evaluation=evaluation, weights=w)
 
@@ -113,8 +101,7 @@ def _in_problem(problem: UpdatingProblem, noise: NoiseModel, found: Solution) ->
 def refused(misfit: Floats, nominal: Floats) -> tuple[Bools, Bools]:
     """Return the groups (n,) that forbid a model: far from the data, or worse than the nominal one.
 
-    ``misfit`` and ``nominal`` (n,) are their errors and those of the nominal model, over those
-    expected.
+    Errors of both, ``misfit`` and ``nominal`` (n,), are over those expected.
     """
     far = misfit > FAR
     return far, (misfit > WORSE * nominal) & (misfit > LARGE) & ~far
@@ -154,20 +141,14 @@ class Inference:
 def infer(
     noise: NoiseModel, maxima: Sequence[Floats], count: int, seed: int, work: Executor
 ) -> Inference:
-    """Return what follows from the posterior with maxima (p,), the greatest first, by draws.
-
-    Chains have one round where the model cannot be used.
-    """
+    """Return what follows from the posterior with maxima (p,), the greatest first, by draws."""
     theta = maxima[0]
     (fit,) = work.run([Task(("most-probable", "fit"), _fit, (noise, theta))])
     (free,) = work.run([Task(("most-probable", "freed"), freed, (noise, theta))])
+    # One round where the model cannot be used.
     rounds = 1 if np.any(refused(fit["misfit"], fit["nominal_misfit"])) else None
-    return Inference(
-        draw_models(noise, maxima, count, seed, work, rounds),
-        fit,
-        free,
-        unfixed(noise, theta, fit["misfit"], work),
-    )
+    draws = draw_models(noise, maxima, count, seed, work, rounds)
+    return Inference(draws, fit, free, unfixed(noise, theta, fit["misfit"], work))
 
 
 def _fit(noise: NoiseModel, theta: Floats) -> dict[str, Any]:
@@ -205,12 +186,9 @@ def freed(noise: NoiseModel, theta: Floats) -> Freed | None:
     sides = at_bounds(theta, lower, upper)
     if not sides.any():
         return None
-    wider_lower, wider_upper = wider(lower, upper)
-    problem = replace(
-        noise.problem,
-        lower=np.where(sides < 0, wider_lower, lower),
-        upper=np.where(sides > 0, wider_upper, upper),
-    )
+    below, above = wider(lower, upper)
+    lower, upper = np.where(sides < 0, below, lower), np.where(sides > 0, above, upper)
+    problem = replace(noise.problem, lower=lower, upper=upper)
     return _lower(replace(noise, problem=problem), theta)
 
 
@@ -229,12 +207,11 @@ def excluding(sides: Ints, theta: Floats, misfit: Floats, free: Freed) -> list[i
 def unfixed(
     noise: NoiseModel, theta: Floats, misfit: Floats, work: Executor
 ) -> tuple[str, float, Floats] | None:
-    """Return the fixed parameter with which, if free, a model is most probable.
+    """Return name and value of the fixed parameter with which, if free, a model is most probable.
 
-    Returned are its name and value, and the errors (n,) over those expected. None where none is
-    fixed, and where -2 ln p becomes less by no more than right ones may.
-    ``misfit`` (n,) are the errors over those expected: where they are large, the promises, which
-    are linearised, only say which parameters are tried first.
+    Beside them are the errors (n,) over those expected, as ``misfit`` is. None where none is fixed,
+    and where -2 ln p becomes less by no more than right ones may. Where errors are large, the
+    promises, which are linearised, only say which parameters are tried first.
     """
     problem = noise.problem
     fixed = [x for x in problem.whole[1] if x.fixed] if problem.whole else []
@@ -260,10 +237,7 @@ def unfixed(
 
 
 def _placed(noise: NoiseModel, known: Sequence[str], theta: Floats) -> Floats:
-    """Return all parameters of a problem, of which those known are theta, others nominal.
-
-    There a reduced model begins its basis.
-    """
+    """Return all parameters, those known theta, others nominal: there a reduced basis begins."""
     model, out = noise.problem.model, noise.problem.start.copy()
     out[[model.parameters.index(x) for x in known]] = theta
     if isinstance(model, ReducedModel):
@@ -311,3 +285,71 @@ def _lower(noise: NoiseModel, theta: Floats) -> Freed | None:
         return None
     less = noise.programme.value(start.J) - noise.programme.value(found.J)
     return Freed(found.theta, noise.over_expected(found.J[:-1]), less)
+
+
+def candidates(noise: NoiseModel, evaluation: Evaluation) -> dict[str, Any]:
+    """Return what could be measured besides the data, as values of results.
+
+    That are a model mode at all sensors, by its frequency, or all measured modes at a further
+    sensor, and the shares (candidates, p) by which the standard deviation of a parameter becomes
+    less. ``evaluation`` is most probable.
+    """
+    span = noise.problem.upper - noise.problem.lower
+    C = np.linalg.inv(noise.precision(evaluation) * np.outer(span, span))
+    found = list(_further(noise, evaluation))
+    gain = np.zeros((len(found), span.size))
+    for k, (_, _, rows) in enumerate(found):
+        R = rows * span
+        X = C @ R.T
+        less = np.einsum("jr,jr->j", np.linalg.solve(np.eye(len(R)) + R @ X, X.T).T, X)
+        gain[k] = 1 - np.sqrt(np.maximum(1 - less / np.diag(C), 0.0))
+    return {
+        "candidate_frequency": np.array([f for f, *_ in found]),
+        "candidate_sensor": [name for _, name, _ in found],
+        "candidate_gain": gain,
+    }
+
+
+def _further(noise: NoiseModel, evaluation: Evaluation) -> Iterator[tuple[float, str, Floats]]:
+    """Yield the frequency of a mode or the name of a sensor, and the residuals' rows (., p)."""
+    problem, data = noise.problem, noise.problem.data
+    modes, pairs = problem.modes(evaluation.theta)
+    w = noise.logs.gradient(evaluation.J)
+
+    def size(kind: str, std: Floats, values: Floats) -> float:
+        """Return the root of the weight of a group of this kind over the expected error."""
+        known = np.isfinite(values) & (values != 0)
+        tau = float(np.median((std / np.where(known, values, 1.0))[known])) if known.any() else 1.0
+        own = [v for v, x in zip(w, problem.groups, strict=True) if x.modes_of(kind)]
+        return float(np.sqrt(np.mean(own or [1.0]))) / tau
+
+    top = np.nanmax(np.abs(data.shape), axis=2, initial=0.0, keepdims=True)
+    of_shape = size("shape", data.shape_std, np.where(np.isfinite(data.shape), top, 0.0))
+    of_frequency = size("frequency", data.frequency_std, data.frequency)
+
+    def shape(q: int, sensors: Bools) -> tuple[Floats, Floats]:
+        """Return a shape over expected errors, and its derivatives, at some sensors."""
+        unit = of_shape / np.abs(modes.phi[:, q]).max()
+        return unit * modes.phi[sensors, q], unit * modes.dphi[sensors, q]
+
+    measured: Bools = np.asarray(np.isfinite(data.shape).any(axis=0))
+    seen: Bools = np.asarray(measured.any(axis=0))
+    for q in sorted(set(range(modes.lam.size)) - set(pairs.index.tolist())):
+        parts, f = [], modes.frequency[q]
+        if np.isfinite(data.frequency).any() and f > 0:
+            parts.append(of_frequency * modes.dfrequency[q][None] / f)
+        if modes.phi[seen, q].any():
+            chi, dchi = shape(q, seen)
+            parts.append(dchi - np.outer(chi, chi @ dchi / (chi @ chi)))
+        if parts:
+            yield float(f), "", np.vstack(parts)
+    for s in np.flatnonzero(~seen).tolist():
+        rows = []
+        for others, q in zip(measured, pairs.index.tolist(), strict=True):
+            if modes.phi[others, q].any():
+                (x,), (dx,) = shape(q, np.arange(seen.size) == s)
+                chi, dchi = shape(q, others)
+                b = chi @ chi
+                rows.append((dx - x * (chi @ dchi) / b) / np.sqrt(1 + x**2 / b))
+        if rows:
+            yield 0.0, data.sensors[s], np.array(rows)

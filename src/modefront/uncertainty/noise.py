@@ -85,34 +85,23 @@ class Uncertainty(Shown):
         Raises InputError where the data do not meet its requirements.
         """
         refuse(self.faults(data))
-        if self.source == "none":
-            return None
         if self.source == "auto":
             return next(iter(available(data)), None)
-        return self.source
+        return None if self.source == "none" else self.source
 
 
 def noise(problem: UpdatingProblem, modes: Modes, pairs: Pairs, source: Source) -> Noise:
     """Return the effects of errors of the data at paired modes with derivatives."""
-    return (_from_std if source == "std" else _from_sets)(problem, modes, pairs)
-
-
-def _from_std(problem: UpdatingProblem, modes: Modes, pairs: Pairs) -> Noise:
     K, R, S = problem.data.shape.shape
-    n, p = len(problem.groups), len(problem.model.parameters)
-    J, dJ = np.zeros((K * R * (1 + S), n)), np.zeros((K * R * (1 + S), n, p))
-    for i, row in enumerate(problem.members):
-        for member in row:
-            for change in member.sensitivities(modes, pairs):
+    n, sources = len(problem.groups), K if source == "sets" else K * R * (1 + S)
+    J, dJ = np.zeros((sources, n)), np.zeros((sources, n, len(problem.model.parameters)))
+    if source == "std":
+        for i, row in enumerate(problem.members):
+            for change in (x for member in row for x in member.sensitivities(modes, pairs)):
                 J[change.values, i] += change.J
                 dJ[change.values, i] += change.dJ
-    used = J.any(axis=1) | dJ.any(axis=(1, 2))
-    return Noise(J[used], dJ[used])
-
-
-def _from_sets(problem: UpdatingProblem, modes: Modes, pairs: Pairs) -> Noise:
-    n, p = len(problem.groups), len(problem.model.parameters)
-    J, dJ = np.zeros((len(problem.data.sets), n)), np.zeros((len(problem.data.sets), n, p))
+        used = J.any(axis=1) | dJ.any(axis=(1, 2))
+        return Noise(J[used], dJ[used])
     for i, residual in enumerate(problem.residuals_at(modes, pairs)):
         end = 0
         for member in problem.members[i]:

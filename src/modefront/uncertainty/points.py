@@ -16,7 +16,7 @@ from modefront.errors import UnfinishedError
 from modefront.front.simplex import payoff
 from modefront.front.subproblems import LatticePoint, near_best
 from modefront.optim.problem import Problem
-from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
+from modefront.optim.scalarisation import LogSum, weighted
 from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.noise import Source
@@ -25,15 +25,11 @@ Kind = Literal["edge", "level", "weights", "optimal", "end", "boundary"]
 """Kinds of programmes of points; each kind depends only on those before it."""
 
 SMALL = 1e-4
-"""Weight of the other objectives, over that of an edge's own, that keeps an edge regular.
-
-A linearisation needs second derivatives that are not singular, while an edge in a flat valley is
-a limit. At this weight its scatter differs from that of the limit by about as much.
-"""
+"""Weight of the other objectives, over that of an edge's own, that keeps second derivatives of an
+edge in a flat valley regular. Its scatter differs from that of the limit by about as much."""
 
 
-ATTEMPTS = 1000
-"""Drawings of data sets after which it is given up to have everything measured in one."""
+ATTEMPTS = 1000  # drawings of data sets until all that is measured is in one, at most
 
 
 @dataclass(frozen=True)
@@ -43,10 +39,8 @@ class Role:
     # an edge; the best of the others at a level of an objective; weights that are given or optimal;
     # one of the ends; a point of NBI
     kind: Kind
-    # labels of the ends between which a point of NBI lies, one an objective; or the end
-    ends: tuple[str, ...] = ()
-    # models up to which the ranges of the objectives reach, which stay where they are, where the
-    # simplex is that of the ranges
+    ends: tuple[str, ...] = ()  # labels of the ends of a point of NBI, one an objective; or the end
+    # models, which stay, up to which ranges of objectives reach where these span the simplex
     worst: Sequence[Solution] = ()
     equations: bool = False  # whether a point of NBI solves the equations of Das & Dennis
     objective: int = -1  # of an edge or a level
@@ -84,8 +78,7 @@ def solve_again(
 ) -> Mapping[str, Solution]:
     """Return the points with data drawn again, by label, each solved from where it was.
 
-    ``sizes`` (n,) are typical ones of the objectives. A point of which the ends do not span a
-    simplex any more is infeasible.
+    ``sizes`` (n,) are typical ones of the objectives. A point without a simplex is infeasible.
     """
     again = replace(problem, data=redraw(problem.data, source, rng))
     solved: dict[str, Solution] = {}
@@ -95,36 +88,28 @@ def solve_again(
 
 
 def _again(
-    problem: Problem,
-    point: SolvedPoint,
-    solved: Mapping[str, Solution],
-    a: Floats,
-    sizes: Floats,
+    problem: Problem, point: SolvedPoint, solved: Mapping[str, Solution], a: Floats, sizes: Floats
 ) -> Solution:
     role = point.role
     if role.kind == "end":
         return solved[role.ends[0]]
     start = begin(problem.evaluate(point.solution.theta))
-    programme: Scalarisation
     if role.kind == "optimal":
-        programme = LogSum(a)
-    elif role.kind == "weights":
-        programme = weighted(point.solution.weights)
-    elif role.kind in ("edge", "level"):
+        return solve(problem, LogSum(a), start)
+    if role.kind == "weights":
+        return solve(problem, weighted(point.solution.weights), start)
+    if role.kind in ("edge", "level"):
         best = solve(problem, weighted(edge_weights(role.objective, sizes)), start)
         if role.kind != "level" or not best.feasible:
             return best
         is_own = np.arange(sizes.size) == role.objective
         sizes = np.where(is_own, sizes, 1 / point.solution.weights)  # as it was solved with
         return near_best(problem, best, role.objective, role.tolerance, sizes, [start])
-    else:
-        ends = [solved[label] for label in role.ends]
-        target = payoff(ends, sizes, role.worst)
-        beta = point.solution.beta
-        if target is None or beta is None:
-            return start
-        return LatticePoint(beta, (), target, role.equations).solve(problem, start)
-    return solve(problem, programme, start)
+    target = payoff([solved[label] for label in role.ends], sizes, role.worst)
+    beta = point.solution.beta
+    if target is None or beta is None:
+        return start
+    return LatticePoint(beta, (), target, role.equations).solve(problem, start)
 
 
 def redraw(data: ModalData, source: Source, rng: np.random.Generator) -> ModalData:

@@ -13,16 +13,13 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.optim.problem import room
 
-SUMMARY = ("mean", "standard deviation", "5 %", "50 %", "95 %")
-"""Statistics of a sample: two moments and three quantiles."""
-
+SUMMARY = ("mean", "standard deviation", "5 %", "50 %", "95 %")  # statistics of a sample
 STEP = 0.5  # of a difference, in standard deviations
 LEAST = 0.05  # shortest step, where bounds are near
 NEGLIGIBLE = 1e-9  # part of an axis in the standard deviation of a parameter that counts as none
 BATCH = 1000  # draws that are made at a time
 
-TRIALS = 10_000
-"""Draws for one within the bounds, at most: with fewer of these there is no sampling by trial."""
+TRIALS = 10_000  # draws for one within the bounds, at most, where samples are drawn by trial
 
 
 @dataclass(frozen=True)
@@ -39,10 +36,7 @@ class Stencil:
 
 
 def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stencil | None:
-    """Return differences around ``theta`` (p,) along ``axes`` (p, m) within the bounds.
-
-    None where an axis has no room between them.
-    """
+    """Return differences about theta (p,) along axes (p, m) within bounds; None without room."""
     m = axes.shape[1]
     std = np.linalg.norm(axes, axis=1)
     directions = np.where(np.abs(axes) > NEGLIGIBLE * std[:, None], axes, 0.0).T
@@ -67,16 +61,11 @@ def lognormal_std(median: Floats, s: Floats) -> Floats:
     """Return the standard deviation of what has this median and, of its logarithm, the std s."""
     with np.errstate(over="ignore"):
         grown = np.expm1(s**2)
-        out: Floats = median * np.sqrt(grown * (grown + 1))
-    return out
+        return np.asarray(median * np.sqrt(grown * (grown + 1)))
 
 
 def draw(
-    theta: Floats,
-    axes: Floats,
-    rng: np.random.Generator,
-    count: int,
-    bounds: tuple[Floats, Floats],
+    theta: Floats, axes: Floats, rng: np.random.Generator, count: int, bounds: tuple[Floats, Floats]
 ) -> Floats:
     """Return a sample (count, p) of theta + axes z, z standard normal, axes (p, m).
 
@@ -95,10 +84,7 @@ def draw(
 
 
 def summary(values: Floats) -> Floats:
-    """Return mean, standard deviation and quantiles (`SUMMARY`) of columns, (5, columns).
-
-    Rows that are NaN are left out of a column; fewer than two others give NaN.
-    """
+    """Return the `SUMMARY` (5, columns) of columns without what is NaN; NaN for fewer than two."""
     out = np.full((len(SUMMARY), values.shape[1]), np.nan)
     for i, column in enumerate(values.T):
         known = column[np.isfinite(column)]

@@ -31,8 +31,7 @@ USUAL = {"frequency": 0.005, "shape": 0.03}
 
 NINETY = 1.6449  # half the 90 % interval of a normal distribution, over its standard deviation
 
-FARTHEST = 7.0
-"""Distance from the median of a prior, in standard deviations, beyond which nobody looks."""
+FARTHEST = 7.0  # distance from the median of a prior, in standard deviations, at most
 
 
 @dataclass(frozen=True)
@@ -64,17 +63,13 @@ class NoisePrior(Checked):
         unsaid = {kind: size for kind, size in USUAL.items() if getattr(self, kind) is None}
         sizes = {kind: unsaid.get(kind) or getattr(self, kind) for kind in USUAL}
         data, assumed = expected(problem.data, sizes, source)
-        groups = tuple(
-            Group(each.name, scale="std", **dict(each.chosen)) for each in problem.groups
-        )
+        groups = tuple(Group(x.name, scale="std", **dict(x.chosen)) for x in problem.groups)
         if any(True for group in groups for _ in faults(group, data)):
             return None
         scaled = replace(problem, data=data, groups=groups)
         parts = [[member.independent() for member in row] for row in scaled.members]
         a, S, d = np.array([np.sum(row, axis=0) for row in parts]).T
-        level = np.ones(a.size)
-        if source == "sets":
-            level = (self.weight + S) / (self.weight + d)
+        level = (self.weight + S) / (self.weight + d) if source == "sets" else np.ones(a.size)
         plural = {"frequency": "frequencies", "shape": "shapes"}
         said = [f"{plural[kind]} to {100 * unsaid[kind]:g} %" for kind in assumed if kind in unsaid]
         words = ", ".join(said).replace(" to", " known to", 1)
@@ -115,8 +110,7 @@ class NoiseModel:
         """Return Gauss-Newton's matrix (p, p) of -ln p; a uniform prior has its variance."""
         w = self.logs.gradient(evaluation.J)
         dr = Distance(self.problem, 12.0).residuals(evaluation.theta)[1]
-        out: Floats = np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
-        return out
+        return np.tensordot(w, evaluation.gauss_newton, axes=1) / 2 + np.diag(dr**2)
 
     def over_expected(self, J: Floats) -> Floats:
         """Return the root mean square errors (n,) of J' (n,) over those expected."""
@@ -125,13 +119,10 @@ class NoiseModel:
 
 @dataclass(frozen=True)
 class Distance:
-    """Distance of parameters from the nominal ones, in the units of their priors.
-
-    ``weight`` is that of a distance of one range, for parameters of uniform prior.
-    """
+    """Distance of parameters from the nominal ones, in the units of their priors."""
 
     problem: UpdatingProblem
-    weight: float
+    weight: float  # of a distance of one range, for parameters of uniform prior
 
     def residuals(self, theta: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the distances (p,) and their first and second derivatives."""
@@ -164,10 +155,7 @@ class Distance:
 
 @dataclass(eq=False)
 class Standardised:
-    """The residuals of a problem as functions of independent standard normal variables z.
-
-    The prior of the parameters makes them such. The last objective is the square of z.
-    """
+    """Residuals, and last the square of z, as functions of standard normal z, by the priors."""
 
     problem: UpdatingProblem
 
@@ -205,14 +193,10 @@ class Standardised:
         left, right = ((y / (upper - lower)) for y in (theta - lower, upper - theta))
         left[self.known] = (ndtr(x) - ndtr(self.below)) / self.share
         right[self.known] = (ndtr(-x) - ndtr(-self.above)) / self.share
-        out: Floats = np.where(left < right, ndtri(left), -ndtri(right))
-        return out
+        return np.where(left < right, ndtri(left), -ndtri(right))
 
     def _units(self, theta: Floats) -> Floats:
-        """Return the distances of those with a prior from the nominal values, over its deviation.
-
-        These are of logarithms for a lognormal prior.
-        """
+        """Return distances from nominal values, or of their logarithms, over deviations."""
         theta, nominal = theta[self.known], self.problem.start[self.known]
         ratio = np.divide(theta, nominal, out=np.ones(theta.size), where=self.log)
         with np.errstate(divide="ignore"):
@@ -238,14 +222,13 @@ class Standardised:
 def prior_widths(problem: UpdatingProblem) -> Floats:
     """Return the widths (p,) of the 90 % intervals of the priors."""
     of, z = Standardised(problem), np.full(problem.start.size, NINETY)
-    out: Floats = of.theta(z)[0] - of.theta(-z)[0]
-    return out
+    return of.theta(z)[0] - of.theta(-z)[0]
 
 
 def expected(
     data: ModalData, sizes: Mapping[str, float], source: Source | None
 ) -> tuple[ModalData, tuple[str, ...]]:
-    """Return data with expected standard deviations, and the kinds of which some are of ``sizes``.
+    """Return data with expected deviations, and the kinds of which some are of ``sizes``.
 
     They are such that means over the data sets become sums.
     """

@@ -1,20 +1,16 @@
 r"""Models drawn from the posterior: randomise then optimise, made exact by Metropolis' rule.
 
-docs/uncertainty.md has the equations. The parameters are functions of standard normal variables z.
-About a peak a model of normal variables :math:`\xi` and of variances s of the errors solves
-:math:`F(z) = L \xi` (Bardsley, Solonen, Haario & Laine 2014, doi:10.1137/140964023). Such models
-are proposals, independent of where a chain is. F jumps where measured modes are paired with other
-modes of the model, and is as invertible there. Steps of the stochastic Newton method go between
-(Martin et al. 2012, doi:10.1137/110845598), of a length that the warm-up finds. Chains go on until
-they agree and the effective sample is large enough (Vehtari et al. 2021, doi:10.1214/20-BA1221).
-They end at half of their length at most where none of their halves is worth more than one draw.
+docs/uncertainty.md has the equations and the sources. The parameters are functions of standard
+normal variables z. About a peak a model of normal variables :math:`\xi` and of variances s of the
+errors solves :math:`F(z) = L \xi`. Such models are proposals, independent of where a chain is. F
+jumps where measured modes are paired with other modes of the model, and is as invertible there.
+Steps of the stochastic Newton method go between, of a length that the warm-up finds. Chains go on
+until they agree and the effective sample is large enough. They end at half of their length at most
+where none of their halves is worth more than one draw.
 
 Where modes are those of a reduced basis, chains are those of a smaller one, and draws are weighted
-by what the whole one says of them (Liu 2001, *Monte Carlo Strategies in Scientific Computing*,
-section 2.5): a poor one leaves fewer of them, and these no less exact.
+by what the whole one says of them: a poor one leaves fewer of them, and these no less exact.
 """
-
-from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -36,23 +32,66 @@ from modefront.work.task import Executor, Task, seed_sequence
 
 DRAWS = 200  # effective draws for intervals: the 5 % quantile is known to 0.15 standard deviations
 
-CHAINS, ROUND, LONGEST = 4, 50, 12
-"""Chains, steps of a round of them, and steps at most of all chains over the draws."""
-
+CHAINS, ROUND, LONGEST = 4, 50, 12  # chains, steps of a round, and of all chains over the draws
 AGREE = 1.05  # deviation of all chains over that within them, from which they do not agree
 ACCEPTED = 0.35  # share of steps nearby that are taken, below which they become shorter
 APART = 1.0  # distance of two models, in standard deviations, below which one leads to the other
 FAINT = 1e-3  # probability of a peak over that of the greatest one, below which it is left out
 
-SMALL, SNAPSHOTS = 100, 40
-"""Columns of a basis from which steps are taken in a smaller one; models whose modes span that."""
-
+SMALL, SNAPSHOTS = 100, 40  # columns of a basis that is made smaller, and models that span that
 NEAR = 3e-3
 """Length of a direction that the smaller space may lack, root mean square over these models: a
 tenth of a usual error of shapes."""
 
 SOLVED, STEPS = 1e-2, 12  # error of the normal variables behind a model, and models to it at most
 BENT = 0.5  # length of differences for second derivatives, in standard deviations
+
+
+def _definite(squares: Floats) -> Floats:
+    """Return 1 plus a sum of squares (p, p), with as much more as rounding may have taken of it.
+
+    Where modes nearly meet, derivatives of shapes are beyond all bounds.
+    """
+    return np.asarray(squares + (1 + ACCUMULATED * np.trace(squares)) * np.eye(len(squares)))
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model, evaluated in the standardised problem, with variances s (n,) of its errors."""
+
+    found: Evaluation
+    s: Floats
+
+    @property
+    def z(self) -> Floats:
+        """Standardised parameters (p,)."""
+        return self.found.theta
+
+    @cached_property
+    def over(self) -> Floats:
+        """One over the variance of each residual, (rows,)."""
+        return np.repeat(1 / self.s, [x.r.size for x in self.found.residuals[:-1]])
+
+    @cached_property
+    def r(self) -> Floats:
+        """Residuals (rows,)."""
+        return np.concatenate([x.r for x in self.found.residuals[:-1]])
+
+    @cached_property
+    def dr(self) -> Floats:
+        """Their derivatives (rows, p)."""
+        return np.vstack([x.dr for x in self.found.residuals[:-1]])
+
+    def log_posterior(self, logs: LogSum) -> float:
+        """Return ln p of the model and its variances."""
+        of_s = (logs.a / 2 + 1) * np.log(self.s) + (self.found.J[:-1] + logs.floor) / (2 * self.s)
+        return float(-of_s.sum() - self.found.J[-1] / 2)
+
+    def newton(self, b: float) -> tuple[Floats, Floats]:
+        """Return mean (p,) and precision (p, p) of proposals nearby, which leave a Gaussian be."""
+        A = _definite(self.dr.T @ (self.over[:, None] * self.dr))
+        slope = self.z + self.dr.T @ (self.over * self.r)
+        return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
 
 
 @dataclass(frozen=True)
@@ -114,12 +153,10 @@ class Peak:
         return float(size + (of_s - self.scale / (2 * s)).sum())
 
     def reaches(self, target: Standardised, model: Model) -> bool:
-        """Return whether the normal variables behind a model lead to it, and to no other one.
-
-        Newton's method is only asked where its first step does not end near the model.
-        """
+        """Return whether the normal variables behind a model lead to it, and to no other one."""
         here = Model(self.at, model.s)
         _, step, bend = self.first(here, self.forward(model)[0] - self.forward(here)[0])
+        # Newton's method is only asked where its first step does not end near the model.
         away = here.z + step + bend - model.z
         if np.abs(step).max() <= 1 and away @ self.precision(model.s) @ away < APART**2:
             return True
@@ -162,64 +199,12 @@ class Peak:
         return None
 
 
-def _definite(squares: Floats) -> Floats:
-    """Return 1 plus a sum of squares (p, p), with as much more as rounding may have taken of it.
-
-    Where modes nearly meet, derivatives of shapes are beyond all bounds.
-    """
-    out: Floats = squares + (1 + ACCUMULATED * np.trace(squares)) * np.eye(len(squares))
-    return out
-
-
-@dataclass(frozen=True)
-class Model:
-    """A model, evaluated in the standardised problem, with variances s (n,) of its errors."""
-
-    found: Evaluation
-    s: Floats
-
-    @property
-    def z(self) -> Floats:
-        """Standardised parameters (p,)."""
-        return self.found.theta
-
-    @cached_property
-    def over(self) -> Floats:
-        """One over the variance of each residual, (rows,)."""
-        return np.repeat(1 / self.s, [x.r.size for x in self.found.residuals[:-1]])
-
-    @cached_property
-    def r(self) -> Floats:
-        """Residuals (rows,)."""
-        return np.concatenate([x.r for x in self.found.residuals[:-1]])
-
-    @cached_property
-    def dr(self) -> Floats:
-        """Their derivatives (rows, p)."""
-        return np.vstack([x.dr for x in self.found.residuals[:-1]])
-
-    def log_posterior(self, logs: LogSum) -> float:
-        """Return ln p of the model and its variances."""
-        of_s = (logs.a / 2 + 1) * np.log(self.s) + (self.found.J[:-1] + logs.floor) / (2 * self.s)
-        return float(-of_s.sum() - self.found.J[-1] / 2)
-
-    def newton(self, b: float) -> tuple[Floats, Floats]:
-        """Return mean (p,) and precision (p, p) of proposals nearby: the stochastic Newton method.
-
-        Of a Gaussian they leave it as it is, whatever b.
-        """
-        A = _definite(self.dr.T @ (self.over[:, None] * self.dr))
-        slope = self.z + self.dr.T @ (self.over * self.r)
-        return self.z - (1 - np.sqrt(1 - b**2)) * np.linalg.solve(A, slope), A / b**2
-
-
 @dataclass(frozen=True)
 class Draws:
     """Models drawn from the posterior, with what they predict."""
 
     theta: Floats  # (draws, p) parameters
-    # frequency, mac: (draws, modes) of the pairs of measured modes that are most likely
-    frequency: Floats
+    frequency: Floats  # frequency, mac: (draws, modes) of the most likely pairs of measured modes
     mac: Floats
     settled: bool = True  # whether the chains agree, and are long enough for intervals
 
@@ -256,7 +241,7 @@ def draw_models(
     stage = "sample-posterior"
     tasks = [Task(("peaks", k + 1), find_peak, (noise, x)) for k, x in enumerate(maxima)]
     peaks = _mixture(noise, work.run(tasks))
-    chains: list[Chain | None] = [None] * CHAINS
+    chains: Sequence[Chain | None] = [None] * CHAINS
     kept: list[Floats] = []
     rng = np.random.default_rng(seed_sequence(seed, stage, "near"))
     around = [peaks[k].top.newton(1.0) for k in rng.choice(len(peaks), SNAPSHOTS)]
@@ -269,8 +254,7 @@ def draw_models(
         for k, chain in enumerate(chains):
             key, of = (stage, k + 1, turn + 1), (near, peaks, chain)
             steps.append(Task(key, _advanced, of, seed_sequence(seed, *key)))
-        found = work.run(steps)
-        chains = [*found]
+        chains = found = work.run(steps)
         if turn == 0:  # the warm-up
             if near is not noise:
                 some = np.vstack([x.z[:: CHAINS * ROUND // SNAPSHOTS] for x in found])
@@ -295,16 +279,13 @@ def draw_models(
 
 
 def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> tuple[Draws, float]:
-    """Return draws from the posterior ``near`` this one, each as often as its weight says.
+    """Return draws z (n, p) from the posterior ``near`` this one, and the share that counts.
 
-    z (n, p) are their standardised parameters. Returned is also what share of them counts.
+    Each is there as often as its weight says.
     """
-    tasks = [
-        Task(("draws", k + 1), _weighed, (noise, near, part))
-        for k, part in enumerate(np.array_split(z, CHAINS))
-    ]
-    parts = zip(*work.run(tasks), strict=True)
-    theta, frequency, mac, weight = (np.concatenate(x) for x in parts)
+    some = enumerate(np.array_split(z, CHAINS))
+    parts = work.run([Task(("draws", k + 1), _weighed, (noise, near, x)) for k, x in some])
+    theta, frequency, mac, weight = (np.concatenate(x) for x in zip(*parts, strict=True))
     w = softmax(weight)
     # of equal weights, each draw once
     chosen = np.searchsorted(np.cumsum(w), (np.arange(len(z)) + 0.5) / len(z))
@@ -313,16 +294,14 @@ def _counted(noise: NoiseModel, near: NoiseModel, z: Floats, work: Executor) -> 
 
 
 def _weighed(noise: NoiseModel, near: NoiseModel, z: Floats) -> tuple[Floats, ...]:
-    """Return parameters (n, p), paired frequencies and MAC values, and weights (n,) of draws.
+    """Return parameters (n, p), paired frequencies and MAC values, and weights (n,) of draws z.
 
-    z (n, p) are standardised parameters from the posterior ``near`` this one. A weight is the
-    logarithm of this one over it.
+    A weight is the logarithm of this posterior over the one ``near`` it.
     """
     theta = np.array([Standardised(noise.problem).theta(x)[0] for x in z])
     there = [near.problem.evaluate(x, derivatives=False) for x in theta]
-    here = there
-    if near is not noise:
-        here = [noise.problem.evaluate(x, derivatives=False) for x in theta]
+    same = near is noise
+    here = there if same else [noise.problem.evaluate(x, derivatives=False) for x in theta]
     pairs = list(zip(there, here, strict=True))
     frequency, mac = (
         np.array([(y.quantities or x.quantities).get(name, ()) for x, y in pairs])
@@ -403,7 +382,10 @@ def _advanced(
         z, s, length = chain.z[-1], chain.s, chain.length
     here = Model(target.evaluate(z), s)
     for t in range(ROUND):
-        here, chance = of.after(here, length, rng)
+        here = of.across(here, rng)
+        # The variances are drawn between both kinds of steps.
+        s = (here.found.J[:-1] + noise.logs.floor) / rng.chisquare(noise.logs.a)
+        here, chance = of.nearby(Model(here.found, s), length, rng)
         out.append(here.z)
         if chain is None:
             length = min(length * float(np.exp((chance - ACCEPTED) / np.sqrt(1 + t / 4))), 1.0)
@@ -417,15 +399,6 @@ class Sampler:
     target: Standardised
     logs: LogSum
     peaks: Sequence[Peak]
-
-    def after(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
-        """Return the model after both kinds of steps, and the probability of the one nearby.
-
-        The variances are drawn between them.
-        """
-        here = self.across(here, rng)
-        scale = here.found.J[:-1] + self.logs.floor
-        return self.nearby(Model(here.found, scale / rng.chisquare(self.logs.a)), b, rng)
 
     def across(self, here: Model, rng: np.random.Generator) -> Model:
         """Return the model after a step to one that is independent of it."""
@@ -445,8 +418,7 @@ class Sampler:
     def log_density(self, model: Model, each: Floats, by: int = -1) -> float:
         """Return the logarithm of the sum of what peaks propose, ``by`` one of them or not.
 
-        ``each`` (peaks,) is what each of them says. It is minus infinity for a model to which they
-        do not lead.
+        ``each`` (peaks,) is what each says. It is minus infinity where none leads to the model.
         """
         out, least = -np.inf, each.max() + np.log(FAINT)
         for k, (q, peak) in enumerate(zip(each.tolist(), self.peaks, strict=True)):
@@ -455,7 +427,7 @@ class Sampler:
         return float(out)
 
     def nearby(self, here: Model, b: float, rng: np.random.Generator) -> tuple[Model, float]:
-        """Return the model after a step of the stochastic Newton method."""
+        """Return the model after a step of the stochastic Newton method, and its probability."""
         mean, precision = here.newton(b)
         z = _drawn(mean, precision, rng)
         new = Model(self.target.evaluate(np.clip(z, -FARTHEST, FARTHEST)), here.s)

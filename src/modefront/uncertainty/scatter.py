@@ -1,19 +1,15 @@
 r"""Scatter of the solution of a programme by errors of the data: the implicit function theorem.
 
 docs/uncertainty.md derives it from the conditions of Karush, Kuhn and Tucker (Fiacco 1983,
-*Introduction to Sensitivity and Stability Analysis in Nonlinear Programming*, section 2.4):
-
-.. math:: W \delta\theta + \partial J^T \delta w = - \delta \partial J^T w, \qquad
-    W = \sum_i w_i H_i ,
-
-with the conditions of each programme on w (`modefront.uncertainty.scatter`). Of a point of NBI,
+*Introduction to Sensitivity and Stability Analysis in Nonlinear Programming*, section 2.4). There
+are conditions of each programme on w besides. Of a point of NBI,
 :math:`J_A = (J^* + P (\beta + \tau e))_A` on the active bounds A, with :math:`n = P e` and
 :math:`w_A^T n_A = 1`, and :math:`w_i = \rho / n_i` elsewhere; with the edges E as columns,
 :math:`J^* = \operatorname{diag} E` and :math:`P = E - J^* e^T`.
 
 A parameter at an active bound is fixed. Directions in which no residual changes are left out and
-named. The linearisation is valid as long as no active set changes and the solution remains the same
-minimum; reasons to doubt it, where one of these is within a standard deviation, are returned.
+named. Reasons to doubt the linearisation are returned: an active set that changes, or another
+minimum that becomes the better one, within a standard deviation.
 
 The optimally weighted model is the peak of the posterior with Jeffreys' prior of the variances of
 the errors (compare Christodoulou & Papadimitriou 2007, Mechanical Systems and Signal Processing 21,
@@ -43,11 +39,8 @@ BENT = 1e-5
 """Second derivative over the greatest one below which it is none: a distance of the solution of
 1e-7 leaves less, and so do differences."""
 
-DEPENDENT = 1e-14
-"""Singular value of equations of size one, over the greatest, that is their rounding."""
-
-PRESSED = 1e-6
-"""Slope of the Lagrangian at a bound, over the slopes of its terms, from which the bound holds."""
+DEPENDENT = 1e-14  # singular value, over the greatest, of scaled equations that is rounding
+PRESSED = 1e-6  # least slope of the Lagrangian at a bound that holds, over those of its terms
 
 
 class LinearisationWarning(Enum):
@@ -64,19 +57,15 @@ class LinearisationWarning(Enum):
 
 @dataclass(frozen=True)
 class Conditions:
-    r"""Conditions of a programme on the changes: C dtheta + D dw - e dtau = f, e^T dw = h.
+    """Conditions of a programme on the changes: C dtheta + D dw - e dtau = f, e^T dw = h."""
 
-    Arrays are C (n, p), D (n,), a diagonal of ones and zeros, f (sources, n), and e (n, k), h
-    (sources, k) with k either 0 or 1. D is 0 for equations. ``switch`` tells of dw, of the changes
-    of J at this solution's data and of dtau, whether errors of one standard deviation change the
-    active set.
-    """
-
-    C: Floats
-    D: Floats
-    e: Floats
-    f: Floats
-    h: Floats
+    C: Floats  # (n, p)
+    D: Floats  # (n,) a diagonal of ones, and zeros for equations
+    e: Floats  # (n, k) with k either 0 or 1
+    f: Floats  # (sources, n)
+    h: Floats  # (sources, k)
+    # whether errors of one standard deviation change the active set; of dw, of the changes of J at
+    # this solution's data, and of dtau
     switch: Callable[[Floats, Floats, Floats], bool] = lambda _, __, ___: False
 
 
@@ -117,9 +106,9 @@ def boundary(
 ) -> tuple[Floats, Conditions]:
     """Return the weights in their right size and the conditions of a point of NBI.
 
-    ``E`` (n, n) has a column an edge, which changes by ``dE`` (sources, n, n). ``beta`` (n,) is the
-    point of their simplex, or of that of the ranges up to ``top`` (n,), which stay, that it was
-    projected from, by the ``equations`` of Das & Dennis or with bounds.
+    ``E`` (n, n) has a column an edge, which changes by ``dE`` (sources, n, n). The point was
+    projected from ``beta`` (n,) in their simplex, or that of the ranges up to ``top`` (n,), which
+    stay, by the ``equations`` of Das & Dennis or with bounds.
     """
     utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
     P, dP = E - utopia[:, None], dE - dutopia[:, :, None]
@@ -160,27 +149,18 @@ class Scatter:
         return self.theta.T @ self.theta
 
 
-def held_at_bounds(problem: Problem, evaluation: Evaluation, w: Floats) -> Bools:
-    """Return which parameters the slope of w^T J presses against a bound."""
-    span = problem.upper - problem.lower
-    u = (evaluation.theta - problem.lower) / span
-    parts = np.abs(w[:, None] * evaluation.dJ) * span
-    slope = w @ evaluation.dJ * span
-    curved = np.abs(np.tensordot(np.abs(w), evaluation.H, axes=1) * np.outer(span, span)).max()
-    pressed = np.abs(slope) > PRESSED * (parts.sum(axis=0).max() + curved)
-    held: Bools = pressed & np.where(slope > 0, u <= AT_BOUND, u >= 1 - AT_BOUND)
-    return held
+def spaces(problem: Problem, evaluation: Evaluation, w: Floats) -> tuple[Bools, Floats, Floats]:
+    """Return which parameters the slope of w^T J presses against a bound, and bases (p, .).
 
-
-def spaces(
-    problem: Problem, evaluation: Evaluation, w: Floats, held: Bools
-) -> tuple[Floats, Floats]:
-    """Return bases (p, .) over the ranges: of what residuals determine, and of what is free.
-
-    Free is where no residual changes to first order and their squares do not to second order.
+    The bases are over the ranges: of what residuals determine, and of what is free. Free is where
+    no residual changes to first order and their squares do not to second order.
     """
     area = np.multiply.outer(span := problem.upper - problem.lower, span)
     G, B = evaluation.gauss_newton, np.tensordot(np.abs(w), evaluation.H, axes=1) * area
+    u = (evaluation.theta - problem.lower) / span
+    parts, slope = np.abs(w[:, None] * evaluation.dJ) * span, w @ evaluation.dJ * span
+    pressed = np.abs(slope) > PRESSED * (parts.sum(axis=0).max() + np.abs(B).max())
+    held = pressed & np.where(slope > 0, u <= AT_BOUND, u >= 1 - AT_BOUND)
     top = np.abs(G).max(axis=(1, 2))
     G = np.tensordot(1 / np.where(top > 0, top, 1.0), G, axes=1) * area
     basis = np.eye(held.size)[:, ~held]
@@ -189,26 +169,20 @@ def spaces(
     N = basis[:, flat]
     mu, U = np.linalg.eigh(N.T @ B @ N)
     bent = np.abs(mu) > BENT * np.abs(B).max()
-    return np.hstack([basis[:, ~flat], N @ U[:, bent]]), N @ U[:, ~bent]
+    return held, np.hstack([basis[:, ~flat], N @ U[:, bent]]), N @ U[:, ~bent]
 
 
 def scatter(
     problem: Problem, evaluation: Evaluation, w: Floats, conditions: Conditions, noise: Noise
 ) -> Scatter:
-    """Return how a solution with weights w (n,) moves with the errors of the data.
-
-    The evaluation has second derivatives.
-    """
+    """Return how a solution with weights w (n,), and second derivatives, moves with the data."""
     span = problem.upper - problem.lower
-    held = held_at_bounds(problem, evaluation, w)
-    Q, free = spaces(problem, evaluation, w, held)
+    held, Q, free = spaces(problem, evaluation, w)
     B = span[:, None] * Q  # parameters for unit changes of what is determined
     dJ = evaluation.dJ @ B
     second = np.tensordot(w, evaluation.H, axes=1)
-    W = B.T @ second @ B
-    c = conditions
-    n, k = c.e.shape
-    q = Q.shape[1]
+    W, c = B.T @ second @ B, conditions
+    (n, k), q = c.e.shape, Q.shape[1]
     system = np.block(
         [
             [W, dJ.T, np.zeros((q, k))],
@@ -230,15 +204,13 @@ def scatter(
         LinearisationWarning.LEAVES: leaves[held].any(),
         LinearisationWarning.SWITCHES: c.switch(dw, theta @ evaluation.dJ.T, dtau),
     }
-    why = tuple(warning for warning in holds if holds[warning])
-    return Scatter(theta, J, span[:, None] * free, why)
+    return Scatter(theta, J, span[:, None] * free, tuple(x for x in holds if holds[x]))
 
 
 def _is_minimum(W: Floats, C: Floats, dJ: Floats, c: Conditions) -> bool:
     """Return whether second derivatives are positive along all that equations leave open.
 
-    Weights that follow the solution, dw = f - C dtheta, bring the second derivatives of f with
-    them.
+    Weights that follow the solution, dw = f - C dtheta, bring those of f with them.
     """
     if len(W) == 0:
         return True
@@ -255,12 +227,11 @@ def _is_minimum(W: Floats, C: Floats, dJ: Floats, c: Conditions) -> bool:
 
 def _solve_scaled(A: Floats, b: Floats) -> Floats:
     """Solve A x = b with the rows and columns of A brought to size one."""
-    rows = np.abs(A).max(axis=1, initial=0.0)
+    rows = np.abs(A).max(axis=1, initial=0.0, keepdims=True)
     rows = np.where(rows > 0, rows, 1.0)
-    scaled = A / rows[:, None]
-    columns = np.abs(scaled).max(axis=0, initial=0.0)
+    columns = np.abs(A / rows).max(axis=0, initial=0.0)
     columns = np.where(columns > 0, columns, 1.0)
-    x = scipy.linalg.lstsq(scaled / columns, b / rows[:, None], cond=DEPENDENT)[0]
+    x = scipy.linalg.lstsq(A / rows / columns, b / rows, cond=DEPENDENT)[0]
     return np.asarray(x / columns[:, None])
 
 
@@ -285,8 +256,7 @@ def front_scatter(
 ) -> dict[str, Scatter]:
     """Return the scatter of the points for which it is defined, by label.
 
-    A point of which the solver knows no weights has none, as where the objectives jump, or where a
-    search ended before it was solved.
+    It is not where the solver knows no weights: objectives jump there, or a search ended before.
     """
     level_of: dict[int, Floats] = {}  # changes of the least value of each objective
     ends: dict[str, tuple[Floats, Floats]] = {}
@@ -352,11 +322,9 @@ def doubts(
 class Posterior:
     """A Gaussian approximation around the most probable model."""
 
-    # (p, m) principal axes over the ranges of the parameters, one standard deviation long
-    axes: Floats
+    axes: Floats  # (p, m) principal axes, one standard deviation long
     held: Bools  # (p,) parameters that a bound holds
-    # (p, d) directions that keep their prior, orthonormal over the ranges of the parameters
-    free: Floats
+    free: Floats  # (p, d) directions that keep their prior, orthonormal over the ranges
 
     @property
     def covariance(self) -> Floats:
@@ -370,13 +338,11 @@ def laplace(problem: Problem, evaluation: Evaluation, a: Floats) -> Posterior | 
     The evaluation has second derivatives. None where the point is no regular minimum: an objective
     vanishes, or the curvature is not positive in all directions that residuals determine.
     """
-    J = evaluation.J
+    J, span = evaluation.J, problem.upper - problem.lower
     if not (J > 0).all():
         return None
     w = a / J
-    span = problem.upper - problem.lower
-    held = held_at_bounds(problem, evaluation, w)
-    Q, free = spaces(problem, evaluation, w, held)
+    held, Q, free = spaces(problem, evaluation, w)
     B = span[:, None] * Q
     of_weights = evaluation.dJ.T @ ((a / J**2)[:, None] * evaluation.dJ)
     half = B.T @ (np.tensordot(w, evaluation.H, axes=1) - of_weights) @ B / 2

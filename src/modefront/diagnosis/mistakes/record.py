@@ -88,15 +88,13 @@ class Explanation:
     def measured(self) -> list[int]:
         """Sensors with data, as they are given or in the state."""
         known = self.state.known.any(axis=0) | np.isfinite(self.data.shape).any(axis=(0, 1))
-        sensors: list[int] = np.flatnonzero(known).tolist()
-        return sensors
+        return np.flatnonzero(known).tolist()
 
 
 def changed(part: str, place: Any, new: Any, cost: float = 0.0) -> Change:
     """Return the change of some values of a part of the state, for a cost.
 
-    They become what a function makes of them, or are divided by a factor, of which NaN leaves out.
-    Of values that are left out nothing is known.
+    They become what a function makes of them, or are divided by a factor; NaN leaves them out.
     """
 
     def change(state: State) -> State:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Floats, Ints
 from modefront.diagnosis.evidence import OF_MODEL, SHAPE, log_frequencies, mac_values, pair_costs
 from modefront.diagnosis.mistakes.record import MANY, Explanation, Mistake, changed
 from modefront.diagnosis.state import SHAPE as NOISE
@@ -23,8 +23,7 @@ FACTORS = (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 9.81, 1 / 9.81, 2.0, 0.5)
 
 NEAREST = 4  # places of each sensor that are tried: those where the model moves most as measured
 
-OFTEN_SHARED = 2.0
-"""Logarithm of how much likelier a sensor is at a wrong place where it shares it with another."""
+OFTEN_SHARED = 2.0  # logarithm of how much likelier a wrong place is that another sensor is at
 
 
 def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
@@ -109,12 +108,6 @@ def unsigned_shapes(old: Explanation) -> Iterator[Mistake]:
         yield Mistake("unsigned-shapes", ("shapes",), change)
 
 
-def _odd_signs(state: State) -> Bools:
-    """Return which components have a sign that no more of their shape have than another one."""
-    signs = np.sign(np.nan_to_num(state.shape))
-    return np.asarray((signs != 0) & (signs * signs.sum(axis=2, keepdims=True) <= 0))
-
-
 def odd_sensor(old: Explanation) -> Iterator[Mistake]:
     """Yield sensors without signal, where the model has nothing either, or with noise alone."""
     for s in old.measured:
@@ -130,12 +123,13 @@ def odd_sensor(old: Explanation) -> Iterator[Mistake]:
 def reversed_value(old: Explanation) -> Iterator[Mistake]:
     """Yield single components, of shapes that one data set alone has, with the other sign.
 
-    Of magnitudes, only one that has a sign.
+    Of magnitudes, only one that has a sign which no more of its shape have than another one.
     """
     state, names = old.state, old.data
     once = state.seen & (state.seen.any(axis=2).sum(axis=0) == 1)[:, None]
     if any(each.kind == "unsigned-shapes" for each in old.mistakes):
-        once &= _odd_signs(old.fits.plain)
+        signs = np.sign(np.nan_to_num(old.fits.plain.shape))
+        once &= (signs != 0) & (signs * signs.sum(axis=2, keepdims=True) <= 0)
     for k, r, s in np.argwhere(once).tolist():
         numbers = {"mode": names.modes[r], "sensor": names.sensors[s]}
         change = changed("shape", np.s_[k, r, s], -1.0)

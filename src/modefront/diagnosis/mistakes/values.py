@@ -1,4 +1,4 @@
-"""Units and values of frequencies, damping and parameters; sets that disagree; foreign modes."""
+"""Units and values of data and parameters; sets that disagree; foreign modes; wrong members."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -10,7 +10,7 @@ import numpy as np
 
 from modefront._typing import Ints
 from modefront.diagnosis.evidence import FREQUENCY, RIGID, log_frequencies, mac_values
-from modefront.diagnosis.mistakes.record import MANY, Explanation, Mistake, changed
+from modefront.diagnosis.mistakes.record import IMPRECISE, MANY, Explanation, Mistake, changed
 from modefront.diagnosis.state import NOTHING, State, median, stacked
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import UNITS
@@ -18,9 +18,7 @@ from modefront.pairing.match import assigned
 
 RAD = 2 * np.pi
 
-REACH = 0.25
-"""Logarithm of a factor beside a known one that parameters make up for, as in a poor model."""
-
+REACH = 0.25  # logarithm of a factor beside a known one that parameters make up for
 POWERS = (1, -1, 2, -2, 3, -3, 6, -6, 9, -9)  # powers of ten by which a value is off
 
 
@@ -45,8 +43,8 @@ def frequency_factor(old: Explanation) -> Iterator[Mistake]:
         yield Mistake("frequency-factor", ("frequencies",), change, numbers, price)
 
 
+# Quantities g that are no frequencies, with a and b of f = a g^b.
 QUANTITIES = {"periods in s": (1.0, -1.0), "eigenvalues in (rad/s)²": (1 / RAD, 0.5)}
-"""Quantities that are no frequencies, with the factor a and the power b of f = a g^b of each."""
 
 
 def other_quantity(old: Explanation) -> Iterator[Mistake]:
@@ -65,23 +63,20 @@ def other_quantity(old: Explanation) -> Iterator[Mistake]:
 
 def damping_in_percent(old: Explanation) -> Iterator[Mistake]:
     """Yield damping over 100."""
-    known = old.state.damping[np.isfinite(old.state.damping)]
-    if known.size:
+    if (known := old.state.damping[np.isfinite(old.state.damping)]).size:
         numbers = {"least": float(known.min()), "greatest": float(known.max())}
         change = changed("damping", ..., 100.0)
         yield Mistake("damping", ("damping",), change, numbers)
 
 
-SLIPS, FAR = (10.0, 0.1, 100.0, 0.01, 2.0, 0.5), 4.0
-"""Factors on the frequency of a mode by a lost decimal point or aliasing, and the logarithm of the
-range in which others are."""
+SLIPS = (10.0, 0.1, 100.0, 0.01, 2.0, 0.5)  # factors by a lost decimal point or aliasing
+FAR = 4.0  # logarithm of the range in which others are
 
 
 def wrong_frequency(old: Explanation) -> Iterator[Mistake]:
     """Yield known factors on the frequency of each mode, and others that the model has.
 
-    Of the latter nothing is known: each is as many as the widths of normal distributions in the
-    range that it may be in.
+    Each of the latter is as many as the widths of normal distributions in their range.
     """
     modes, logs, f = old.data.modes, old.state.logs, old.modes.frequency
     unknown = float(np.log(FAR / (FREQUENCY * np.sqrt(2 * np.pi)) / len(SLIPS)))
@@ -125,17 +120,12 @@ def set_factor(old: Explanation) -> Iterator[Mistake]:
         if np.isfinite(ratios).sum() < 2:
             continue
         factor = float(np.exp(np.nanmedian(ratios)))
-        numbers = {"set": name, "other": enumeration([*sets[:k], *sets[k + 1 :]], 2)}
+        size, looks, mend = f"{100 * (factor - 1):+.1f} % off", "", DIFFERED
         if abs(factor - 1) > 0.4:
             looks = next((x for y, x in LOOKS.items() if abs(np.log(factor / y)) < 0.1), "")
-            numbers |= {
-                "size": f"{factor:.3g} times",
-                "looks": looks,
-                "mend": "give all data sets in Hz",
-            }
-        else:
-            size = f"{100 * (factor - 1):+.1f} % off"
-            numbers |= {"size": size, "looks": "", "mend": DIFFERED}
+            size, mend = f"{factor:.3g} times", "give all data sets in Hz"
+        numbers = {"set": name, "other": enumeration([*sets[:k], *sets[k + 1 :]], 2)}
+        numbers |= {"size": size, "looks": looks, "mend": mend}
         yield Mistake("set-factor", (name,), changed("frequency", k, factor), numbers)
 
 
@@ -143,10 +133,7 @@ PARTS = ("frequency", "damping", "shape", "std")
 
 
 def other_numbers(old: Explanation) -> Iterator[Mistake]:
-    """Yield the numbering of the modes of each set that makes it most like the others.
-
-    Modes without anything in common keep their numbers.
-    """
+    """Yield numbers for the modes of each set most like the others'; of unlike ones, their own."""
     state, sets, modes = old.state, old.data.sets, old.data.modes
     for k, name in enumerate(sets if len(sets) > 1 else ()):
         rest = replace(state, **{x: np.delete(getattr(state, x), k, axis=0) for x in PARTS})
@@ -182,8 +169,7 @@ def exchanged_shapes(old: Explanation) -> Iterator[Mistake]:
         yield Mistake("exchanged-shapes", names, change, numbers, moves=True)
 
 
-WRONG = {"frequency": 0.2, "shape": 1.0}
-"""Scale of values that are wrong: of logarithms of frequencies, and of shapes."""
+WRONG = {"frequency": 0.2, "shape": 1.0}  # scale of wrong values: of ln f, and of shapes
 
 
 def odd_value(old: Explanation) -> Iterator[Mistake]:
@@ -241,3 +227,43 @@ def later_mode(old: Explanation) -> Iterator[Mistake]:
         numbers |= {"mac": free.mac[r], "best": own.mac[r], "spare": later - len(modes)}
         change, price = partial(replace, candidates=np.array(later)), f.size - int(state.candidates)
         yield Mistake("beyond-candidates", (str(modes[r]),), change, numbers, float(np.log(price)))
+
+
+NEAREST = 2  # members that are tried: those of which the cost is less ahead of a step
+
+THOUSANDS = (3, -3, 6, -6, 9, -9)  # powers of ten by which units differ
+
+
+def _scaled(state: State, part: int, factor: float) -> State:
+    """Return the state with a factor on a part of the model as its last parameter."""
+    start = state.start.copy()
+    start[-1] = factor
+    return replace(state, start=start, part=np.array(part + 1))
+
+
+def wrong_member(old: Explanation, *, usual: bool = False) -> Iterator[Mistake]:
+    """Yield the members that promise most, several times as stiff or heavy as in the model.
+
+    What is ``usual`` is a factor of up to 2, or its inverse: many members differ so.
+    """
+    parts = old.fits.parts
+    single = np.flatnonzero([not x.whole for x in parts])
+    if old.state.part or not single.size:
+        return
+    ahead, dx = old.fits.by_parts(old.state, old.point.x)
+    first = single[np.argsort(ahead[single], kind="stable")[:NEAREST]]
+    price = float(np.log(single.size / first.size))
+    for k in first.tolist():
+        size, factor = ("greater", 4.0) if dx[k] > 0 else ("smaller", 0.25)
+        kind, size, factor = (IMPRECISE, "", 1.0) if usual else ("wrong-member", size, factor)
+        numbers = {"what": parts[k].of, "place": parts[k].place, "better": size}
+        yield Mistake(kind, ("model",), partial(_scaled, part=k, factor=factor), numbers, price)
+
+
+def wrong_unit(old: Explanation) -> Iterator[Mistake]:
+    """Yield powers of ten on the stiffness or mass of groups that no parameter scales."""
+    parts = enumerate(old.fits.parts if not old.state.part else ())
+    for (k, part), power in product([x for x in parts if x[1].whole], THOUSANDS):
+        numbers = {"what": part.of, "place": part.place, "factor": 10.0**-power}
+        change = partial(_scaled, part=k, factor=10.0**power)
+        yield Mistake("wrong-unit", (f"{part.of} {part.place}",), change, numbers)
