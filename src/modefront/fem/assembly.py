@@ -179,11 +179,8 @@ class _Terms:
         """
         moved = self.T[block.dofs().ravel()]
         for power, matrices in parts.items():
-            exponents = _exponents(self.parameters, name, power, linear)
-            count, size = matrices.shape[:2]
-            columns = np.repeat(np.arange(count * size).reshape(count, size), size, axis=0)
-            starts = np.arange(count * size + 1) * size
-            each = sparse.csr_array((matrices.ravel(), columns.ravel(), starts))
+            exponents, places = _exponents(self.parameters, name, power, linear), len(matrices)
+            each = sparse.bsr_array((matrices, np.arange(places), np.arange(places + 1))).tocsr()
             term = moved.T @ (each @ moved)
             known = self.terms.get(exponents)
             self.terms[exponents] = term if known is None else known + term
@@ -260,9 +257,7 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools) -> Floats:
         raise wrong("", "nodes and a force on them", "one without the other")
     if load.nodes is not None:
         f[node_list(load.nodes, len(f)), : len(force)] = force
-    nowhere = np.argwhere((f != 0) & ~exists)
-    if len(nowhere):
-        node, direction = nowhere[0]
+    for node, direction in np.argwhere((f != 0) & ~exists):
         raise wrong("", f"what resists {DIRECTIONS[direction]} of node {node}", "nothing")
     out = f.ravel()
     known = {block.name for block in blocks if block.internal is not None}

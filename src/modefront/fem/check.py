@@ -12,19 +12,11 @@ import numpy.typing as npt
 
 from modefront._typing import Floats, Ints
 from modefront.errors import Fault, refuse, suggestion, wrong
+from modefront.fem import structure as members
 from modefront.fem.elements.shapes import jacobian
 from modefront.fem.elements.shell import FOLD, corner_normals
 from modefront.fem.elements.solid import SOLIDS
-from modefront.fem.structure import (
-    DIRECTIONS,
-    Axes,
-    Beams,
-    Direction,
-    Shells,
-    Solids,
-    Structure,
-    Trusses,
-)
+from modefront.fem.structure import DIRECTIONS, Axes, Direction, Structure
 from modefront.options import repeated
 
 FLAT = 1e-8
@@ -41,20 +33,15 @@ def check_points(nodes: npt.ArrayLike) -> Floats:
     return X
 
 
-def _within(nodes: npt.NDArray[np.integer], count: int) -> Ints:
-    """Return nodes, which have to be those of a model of `count`."""
-    beyond = nodes[(nodes < 0) | (nodes >= count)]
-    if beyond.size:
-        raise wrong("", f"nodes from 0 to {count - 1}", beyond[0])
-    return nodes.astype(np.int64)
-
-
 def node_list(nodes: npt.ArrayLike, count: int) -> Ints:
-    """One node or a list of nodes as an array."""
+    """One node or a list of nodes of a model of `count` as an array."""
     array = np.atleast_1d(np.asarray(nodes))
     if array.ndim != 1 or array.size == 0 or not np.issubdtype(array.dtype, np.integer):
         raise wrong("", "a list of nodes", repr(nodes))
-    return _within(array, count)
+    beyond = array[(array < 0) | (array >= count)]
+    if beyond.size:
+        raise wrong("", f"nodes from 0 to {count - 1}", beyond[0])
+    return array.astype(np.int64)
 
 
 def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int) -> Ints:
@@ -64,7 +51,7 @@ def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int) -> Ints
     if array.ndim != 2 or array.shape[1] not in sizes or len(array) == 0 or not integer:
         expected = f"cells, integers (elements, {' or '.join(map(str, sizes))})"
         raise wrong("", expected, f"{array.dtype} of shape {array.shape}")
-    return _within(array, count)
+    return node_list(array.ravel(), count).reshape(array.shape)
 
 
 def unit_vector(direction: Direction) -> Floats:
@@ -128,21 +115,22 @@ def check_names(structure: Structure) -> None:
     has: dict[str, set[str]] = {
         "E": {g.name for g in structure.groups},
         "density": {g.name for g in structure.groups},
-        "thickness": {g.name for g in structure.groups if isinstance(g, Shells)},
+        "thickness": {g.name for g in structure.groups if isinstance(g, members.Shells)},
         "spring": {s.name for s in structure.springs},
         "mass": {m.name for m in structure.masses},
         "prestress": {x.name for x in structure.loads}
-        | {g.name for g in structure.groups if isinstance(g, Beams | Trusses) and g.force},
+        | {g.name for g in structure.groups if getattr(g, "force", 0)},
     }
-    members = [s.name for s in structure.springs] + [m.name for m in structure.masses]
-    faults = []
-    for what, names in (
-        ("member", [*has["E"], *members, *(x.name for x in structure.loads)]),
-        ("sensor", [s.name for s in structure.sensors]),
-        ("parameter", [p.name for p in structure.parameters]),
-    ):
-        expected = "a name used once"
-        faults += [Fault("", f"{what} {x!r}", expected, "it twice") for x in repeated(names)]
+    named = (*structure.springs, *structure.masses, *structure.loads)
+    faults = [
+        Fault("", f"{what} {x!r}", "a name used once", "it twice")
+        for what, names in (
+            ("member", [*has["E"], *(x.name for x in named)]),
+            ("sensor", [s.name for s in structure.sensors]),
+            ("parameter", [p.name for p in structure.parameters]),
+        )
+        for x in repeated(names)
+    ]
     for name in sorted(has["E"]):
         classes = sorted({type(g).__name__ for g in structure.groups if g.name == name})
         if len(classes) > 1:
@@ -180,7 +168,7 @@ def limits_of(structure: Structure, nodes: Floats) -> Iterator[str]:
     """Yield warnings on the elements of a structure; its nodes (nodes, 3) are checked."""
     for group in structure.groups:
         cells = np.asarray(group.cells)
-        if isinstance(group, Shells):
+        if isinstance(group, members.Shells):
             normal = corner_normals(nodes[cells]).mean(axis=1)
             area = np.linalg.norm(normal, axis=1)
             size = np.sqrt(area if cells.shape[1] == 4 else area / 2)
@@ -194,11 +182,11 @@ def limits_of(structure: Structure, nodes: Floats) -> Iterator[str]:
                     "thickness, which is a parameter: at twice the nominal one, frequencies differ "
                     "by up to 11 % from those of a model with that thickness; begin near it"
                 )
-        elif isinstance(group, Solids) and cells.shape[1] == 8:
+        elif isinstance(group, members.Solids) and cells.shape[1] == 8:
             yield from _distorted(group, nodes[cells])
 
 
-def _obtuse(group: Shells, X: Floats) -> Iterator[str]:
+def _obtuse(group: members.Shells, X: Floats) -> Iterator[str]:
     """Yield a warning where triangles X (elements, 3, 3) have great angles."""
     sides = np.roll(X, -1, axis=1) - X
     sides /= np.linalg.norm(sides, axis=2, keepdims=True)
@@ -212,7 +200,7 @@ def _obtuse(group: Shells, X: Floats) -> Iterator[str]:
         )
 
 
-def _distorted(group: Solids, X: Floats) -> Iterator[str]:
+def _distorted(group: members.Solids, X: Floats) -> Iterator[str]:
     """Yield a warning where bricks X (elements, 8, 3) are distorted."""
     edges = X[:, CORNERS] - X[:, :, None]
     volume = np.abs(np.linalg.det(edges))
@@ -227,7 +215,7 @@ def _distorted(group: Solids, X: Floats) -> Iterator[str]:
         )
 
 
-def _curved(group: Shells, cells: Ints, normal: Floats, size: Floats) -> Iterator[str]:
+def _curved(group: members.Shells, cells: Ints, normal: Floats, size: Floats) -> Iterator[str]:
     """Yield a warning where elements are large beside radius and thickness of the shell."""
     edges = np.sort(np.stack([cells, np.roll(cells, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     owner = np.repeat(np.arange(len(cells)), cells.shape[1])

@@ -68,7 +68,6 @@ OFFSETS = Requirement("a vector of 3 numbers for either end", array(VECTOR, 2, 2
 RELEASES = Requirement(f"a list for either end, of {NAMES}", array(OF_NAMES, 2, 2))
 FORCE = number("an axial force")
 
-
 SIX, THREE = array(NOT_NEGATIVE, 6, 6), array(NOT_NEGATIVE, 3, 3)
 STIFFNESS = Requirement("a stiffness above 0, or 6 of 0 or more", any_of(ABOVE_ZERO, SIX))
 MASS = Requirement("a mass of 0 or more, or 3 for x, y and z", any_of(NOT_NEGATIVE, THREE))
@@ -79,7 +78,6 @@ WEIGHTS = Requirement("numbers above 0, or one for all", any_of(ABOVE_ZERO, arra
 LOADED = numbers("3 components, or 6 with moments", any_of(VECTOR, array(NUMBER, 6, 6)))
 STRAINS = mapping("a table, group = free strain", number("a strain"))
 SCALED = Requirement("a list of groups, springs, masses or loads", array({"type": "string"}, 1))
-
 
 FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
     "triangle": ((0, 1, 2),),

@@ -20,7 +20,7 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.data.csv import NUMBER
 from modefront.errors import reason
 from modefront.fem.structure import FACES
-from modefront.inputs import ended, file_size, first_repeated, fortran, wrong
+from modefront.inputs import ended, file_size, first_repeated, wrong
 from modefront.isolated import Read, isolated
 from modefront.models.dofs import DofTable, read_dofs
 from modefront.models.matrices import symmetrised
@@ -235,11 +235,10 @@ def parts_of_job(path: Path, program: str, *given: str) -> Read:
         K, M = K[free][:, free].tocsr(), M[free][:, free].tocsr()
     if not (table.node > 0).any():
         notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
-    arrays = {name: getattr(table, name)[free] for name in ("node", "direction", "weight")}
+    arrays = {} if listed.mesh is None else arrays_of(listed.mesh)
+    arrays |= {name: getattr(table, name)[free] for name in ("node", "direction", "weight")}
     for letter, A in (("K", K), ("M", M)):
         arrays |= {f"{letter}{k}": x for k, x in enumerate((A.data, A.indices, A.indptr))}
-    if listed.mesh is not None:
-        arrays |= arrays_of(listed.mesh)
     return arrays, [str(listed.files[0]), listed.precision, notes]
 
 
@@ -296,16 +295,3 @@ def columns(path: Path, separator: str | None, kinds: str, *, comment: str) -> l
             found = next(bad, (reason(error), "file"))
         raise wrong(path, f"{len(kinds)} numbers in every line", *found) from None
     return [table[name] for name, _ in form]
-
-
-def fixed_width(text: bytes, width: int) -> Floats:
-    """Return numbers of a fixed width that follow each other without separators.
-
-    A ``D`` stands for the ``E`` of an exponent, which Fortran leaves out before three digits.
-    Raises ValueError where one is no number.
-    """
-    array = np.frombuffer(text.replace(b"D", b"E").replace(b"d", b"e"), dtype=f"S{width}")
-    try:
-        return np.asarray(array.astype(float))
-    except ValueError:
-        return np.array([fortran(field.decode("latin-1")) for field in array.tolist()])

@@ -29,8 +29,7 @@ class Change:
     file: str  # the nominal deck
     line: int  # number from 1
     text: str  # the line
-    # beginning and end of each number that the factor multiplies
-    spans: tuple[tuple[int, int], ...]
+    spans: tuple[tuple[int, int], ...]  # ends of each number that the factor multiplies
 
     def updated(self, factor: float) -> str:
         """Return the line with its numbers times a factor."""
@@ -50,7 +49,7 @@ def _multiplied(text: str, factors: Mapping[tuple[int, int], float]) -> str:
 def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Change]:
     """Return the lines in which a run multiplies numbers of the nominal deck by a factor.
 
-    None are returned where there are no decks, or these have different numbers of lines.
+    There are none where there are no decks, or these have different numbers of lines.
     """
     return [
         Change(parameter, name, number, old, tuple(span for span, _, _ in pairs))
@@ -89,8 +88,7 @@ def _different_lines(nominal: Path, run: Path) -> "Iterator[tuple[str, int, str,
 
 def deck_text(job: Path) -> str:
     """Return the deck of a job; empty where there is none."""
-    deck = _deck(job)
-    return text_of(deck) if deck else ""
+    return text_of(deck) if (deck := _deck(job)) else ""
 
 
 def text_of(deck: Path) -> str:
@@ -119,10 +117,8 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
     factors: dict[int, dict[tuple[int, int], float]] = {}
     for each in changes:
         line = factors.setdefault(each.line, {})
-        for span in each.spans:
-            line[span] = line.get(span, 1.0) * theta[each.parameter]
-    for k, of_line in factors.items():
-        lines[k] = _multiplied(lines[k], of_line)
+        line |= {span: line.get(span, 1.0) * theta[each.parameter] for span in each.spans}
+    lines |= {k: _multiplied(lines[k], of_line) for k, of_line in factors.items()}
     write_text(folder / changes[0].file, "".join(lines.values()))
     return ""
 
@@ -159,8 +155,8 @@ def read_changes(path: Path) -> list[Change]:
     file_size(path, "changes of a deck")
     try:
         listed = json.loads(path.read_text(encoding="utf-8"))
-        spans = [tuple((int(a), int(b)) for a, b in each["spans"]) for each in listed]
-        pairs = zip(listed, spans, strict=True)
-        return [Change(**{**each, "spans": of_line}) for each, of_line in pairs]
+        for each in listed:
+            each["spans"] = tuple((int(a), int(b)) for a, b in each["spans"])
+        return [Change(**each) for each in listed]
     except (OSError, ValueError, TypeError, KeyError) as error:
         raise wrong(path, "changes of a deck", reason(error)) from None

@@ -88,11 +88,7 @@ def _from_op4(path: Path, options: base.JobOptions) -> base.Listed:
 def _labelled(listed: base.Listed, deck: "Bulk", notes: list[str]) -> base.Listed:
     """Return a job with nodes and components of the deck, of which some may be held."""
     path, size = listed.files[0], listed.dofs.size
-    choices = {
-        "all nodes": deck.dofs(reduced=False, singular=True),
-        "its free degrees of freedom": deck.dofs(reduced=True, singular=True),
-        "its free degrees of freedom that are stiff": deck.dofs(reduced=True, singular=False),
-    }
+    choices = deck.dofs()
     fitting = [dofs for dofs in choices.values() if len(dofs) == size]
     if not fitting:
         counts = ", ".join(f"{len(dofs)} for {name}" for name, dofs in choices.items())
@@ -185,24 +181,19 @@ Dof = tuple[int, int]
 class Bulk:
     """Nodes, elements and constraints of a deck, as they are collected while it is read."""
 
-    # coordinates by number; NaN for those in another than the basic system
-    nodes: dict[int, Floats] = field(default_factory=dict)
+    nodes: dict[int, Floats] = field(default_factory=dict)  # coordinates; NaN in other systems
     scalar: set[int] = field(default_factory=set)  # scalar points
-    # name and nodes by number
-    elements: dict[int, tuple[str, list[int]]] = field(default_factory=dict)
+    elements: dict[int, tuple[str, list[int]]] = field(default_factory=dict)  # name and nodes
     springs: list[Dof] = field(default_factory=list)  # nodes and components that springs hold
-    # nodes that a spring or a constraint joins
-    links: list[tuple[int, ...]] = field(default_factory=list)
-    # supports that the case control chooses, node and component
-    held: set[Dof] = field(default_factory=set)
+    links: list[tuple[int, ...]] = field(default_factory=list)  # what springs, constraints join
+    held: set[Dof] = field(default_factory=set)  # supports that the case control chooses
     # sets, added: sets of SPC and MPC by kind and number, and the sets of which others are
     sets: dict[tuple[str, int], set[Dof]] = field(default_factory=dict)
     added: dict[tuple[str, int], list[int]] = field(default_factory=dict)
     followers: set[Dof] = field(default_factory=set)  # dependent degrees of freedom
     omitted: set[Dof] = field(default_factory=set)  # OMIT; kept : ASET, empty for all
     kept: set[Dof] = field(default_factory=set)
-    # nodes whose directions are those of a system of their own
-    turned: set[int] = field(default_factory=set)
+    turned: set[int] = field(default_factory=set)  # nodes with directions of their own
 
     @cached_property
     def mesh(self) -> base.ProgramMesh:
@@ -210,18 +201,18 @@ class Bulk:
         elements = self.elements.values()
         return base.mesh_of(self.nodes, ((_ELEMENTS[name][2], nodes) for name, nodes in elements))
 
-    def dofs(self, *, reduced: bool, singular: bool) -> list[Dof]:
-        """Return nodes and components in the order of matrices: of the a-set, or of all nodes.
-
-        ``singular`` says whether components that nothing makes stiff are among them.
-        """
+    def dofs(self) -> dict[str, list[Dof]]:
+        """Return nodes and components in the order of matrices, by what these may be of."""
         points = [(n, c) for n in self.nodes for c in range(1, 7)]
         every = sorted([*points, *((n, 0) for n in self.scalar)])
-        if not reduced:
-            return every
         gone = self.held | self.followers | self.omitted
-        gone |= set() if singular else self._singular()
-        return [dof for dof in every if dof not in gone and (not self.kept or dof in self.kept)]
+        left = [dof for dof in every if dof not in gone and (not self.kept or dof in self.kept)]
+        singular = self._singular()
+        return {
+            "all nodes": every,
+            "its free degrees of freedom": left,
+            "its free degrees of freedom that are stiff": [x for x in left if x not in singular],
+        }
 
     def chosen(self, kind: str, control: str) -> set[Dof]:
         """Return the set of a kind that the case control chooses; else the only one, if any."""
@@ -238,10 +229,9 @@ class Bulk:
             added = self._stiffness(name, nodes)
             for n in stiff.keys() & set(nodes):
                 stiff[n] += added
-        for n, component in self.springs:
-            if n in stiff:
-                part, axis = divmod(component - 1, 3)
-                stiff[n][part, axis, axis] += 1.0
+        for n, component in (each for each in self.springs if each[0] in stiff):
+            part, axis = divmod(component - 1, 3)
+            stiff[n][part, axis, axis] += 1.0
         out: set[Dof] = set()
         for n, blocks in stiff.items():
             for part, block in enumerate(blocks):

@@ -30,7 +30,6 @@ from scipy.io import FortranEOFError, FortranFile
 from modefront._typing import Floats, Ints
 from modefront.errors import reason
 from modefront.inputs import ended, fortran, wrong
-from modefront.programs.base import fixed_width
 
 STRING = 65536  # unit of the length in the header of a string
 
@@ -191,7 +190,13 @@ def _text(lines: Iterator[bytes]) -> Iterator[tuple[str, Op4Matrix]]:
             (total == strings + k * headers).all() for k in (0, 1)
         ):
             raise ValueError(f"other numbers of values in '{matrix.name}' than its headers say")
-        yield matrix.matrix(fixed_width(b"".join(texts), width), given, 10.0 ** -int(form[2]))
+        content = b"".join(texts).replace(b"D", b"E").replace(b"d", b"e")
+        fixed = np.frombuffer(content, f"S{width}")
+        try:
+            values = fixed.astype(float)
+        except ValueError:  # Fortran leaves out the E before three digits
+            values = np.array([fortran(field.decode("latin-1")) for field in fixed.tolist()])
+        yield matrix.matrix(values, given, 10.0 ** -int(form[2]))
 
 
 DmigMatrix: TypeAlias = tuple[Ints, Floats, float]
