@@ -1,8 +1,8 @@
 """Finite-element programs: their options and jobs, meshes for pictures, and how jobs are read.
 
-A program has a module with a function ``read``, which returns what the files of a job list. It runs
-in a process of its own, with limits on time and memory, in which the matrices are checked too: they
-are whole, finite and symmetric, and without what is held.
+A program has a module with a function ``read``, which takes a path and options and returns what
+the files of a job list. It runs in a process of its own, with limits on time and memory, in which
+the matrices are checked too: they are whole, finite and symmetric, and without what is held.
 """
 
 import importlib
@@ -55,15 +55,15 @@ def mesh_of(nodes: Mapping[int, Floats], elements: Iterable[tuple[str, list[int]
 
     Elements with unknown nodes, or fewer than corners, are left out.
     """
-    number = np.array(sorted(nodes), dtype=np.intp)
-    coordinates = np.array([nodes[n] for n in number.tolist()], dtype=float).reshape(-1, 3)
+    number = sorted(nodes)
+    coordinates = np.array([nodes[n] for n in number], dtype=float).reshape(-1, 3)
     cells: dict[str, list[list[int]]] = {}
     for kind, members in elements:
         corners = members[: CORNERS[kind]]
         if len(corners) == CORNERS[kind] and nodes.keys() >= set(corners):
             cells.setdefault(kind, []).append(corners)
     tables = {kind: np.array(x, np.intp) for kind, x in cells.items()}
-    return ProgramMesh(number, coordinates, tables)
+    return ProgramMesh(np.array(number, np.intp), coordinates, tables)
 
 
 def refuse_unknown_nodes(path: Path, known: Collection[int], nodes: Iterable[int]) -> None:
@@ -160,18 +160,12 @@ class JobOptions:
     # stiffness, mass: names of the matrices in files that hold several; None for the usual ones
     stiffness: str | None = None
     mass: str | None = None
-    # a table of degrees of freedom, for files that do not tell nodes; None where they do
-    dofs: Path | None = None
-    # the input file, for coordinates and elements; None for one beside the matrices
-    deck: Path | None = None
+    dofs: Path | None = None  # a table of degrees of freedom, for files that do not tell nodes
+    deck: Path | None = None  # the input file; None for one beside the matrices
 
 
 def read_job(program: str, path: Path, options: JobOptions) -> Job:
-    """Return a job of a program; raises InputError where its files cannot be read, for any cause.
-
-    A program is a module beside this one, whose function ``read`` takes a path and options, and
-    returns `Listed`.
-    """
+    """Return a job of a program; raises InputError where its files cannot be read, for any cause."""
     given = (program, *(str(text or "") for text in astuple(options)))
     reader, expected = f"{__name__}:parts_of_job", f"a job of {program}"
     arrays, texts = isolated(reader, path, expected, arguments=given)
@@ -189,10 +183,9 @@ class Listed:
     files: tuple[Path, Path]  # that of the stiffness, and that of the mass
     # stiffness and mass as they are listed, one triangle or both
     matrices: Sequence[scipy.sparse.coo_array]
-    # node and direction of each row; those of `given_table` where no file tells them
-    dofs: DofTable
+    dofs: DofTable  # node and direction of each row; `given_table` where no file tells them
     precision: float = 1e-15  # relative error of the numbers, that of binary doubles unless given
-    # returns which rows are not held, (N,), given both matrices
+    # which rows are not held, (N,), given both matrices
     free: Callable[[Matrix, Matrix], Bools] = lambda K, _: np.ones(K.shape[0], bool)
     # whether files say how many entries they have; else those that are cut off at a line show by
     # mass without stiffness, which is refused
@@ -245,9 +238,8 @@ def parts_of_job(path: Path, program: str, *given: str) -> Read:
 def whole(path: Path, listed: scipy.sparse.coo_array, dofs: DofTable) -> Matrix:
     """Return the symmetric matrix of which one triangle or both are listed.
 
-    Entries on both sides of the diagonal are both triangles, or one of them whose entries are
-    turned here and there; in the latter no pair of places is given twice. Raises InputError where
-    a value is no number, an entry is listed again, or both triangles are listed and differ.
+    In one triangle, entries may be turned here and there. Raises InputError where a value is no
+    number, an entry is listed again, or both triangles are listed and differ.
     """
 
     def label(i: int, j: int) -> str:
@@ -267,10 +259,7 @@ def whole(path: Path, listed: scipy.sparse.coo_array, dofs: DofTable) -> Matrix:
 
 
 def existing(path: Path, expected: str, advice: str) -> Path:
-    """Return a path of a file that is there and not empty.
-
-    Raises InputError, which says what to do, where it is not.
-    """
+    """Return a path of a file; raises InputError, with advice, where it is empty or not there."""
     file_size(path, f"{expected} ({advice})")
     return path
 
@@ -278,8 +267,8 @@ def existing(path: Path, expected: str, advice: str) -> Path:
 def columns(path: Path, separator: str | None, kinds: str, *, comment: str) -> list[np.ndarray]:
     """Return the columns of a table of numbers in a file, between blanks or a separator.
 
-    What follows a ``comment`` is left out. ``kinds`` has a letter for each column, ``i`` for whole
-    numbers and ``f`` for real ones. Raises InputError for other lines.
+    ``kinds`` has a letter for each column, ``i`` for whole numbers and ``f`` for real ones. Raises
+    InputError for other lines.
     """
     ended(path)
     form = [(str(k), np.int32 if kind == "i" else np.float64) for k, kind in enumerate(kinds)]

@@ -44,8 +44,7 @@ class Term:
     name: str  # as `modefront.models.parameters` has it
     matrices: Mapping[Quantity, Matrix]  # symmetric ones by quantity; only those that are not zero
     dofs: int = 0  # number of degrees of freedom on which the term acts
-    # of the stiffness, or of the mass where there is no stiffness; None where not found
-    rank: int | None = None
+    rank: int | None = None  # of the stiffness, or of the mass without one; None if not found
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,10 +106,7 @@ class Differences:
         return ", ".join(f"{name} = {value:g}" for name, value in pairs if value != 1)
 
     def terms(self) -> Terms:
-        """Return base and terms, those that are not zero.
-
-        Raises InputError where the runs do not determine a term, and for a parameter without one.
-        """
+        """Return base and terms, those that are not zero; raises InputError for missing ones."""
         terms: dict[str, dict[Quantity, Matrix]] = {}
         base: dict[Quantity, Matrix] = {}
         for quantity, A in self.nominal.matrices.items():
@@ -127,14 +123,15 @@ class Differences:
                     rest = rest - term
             if (rest := _above(rest.tocsr(), A, noise)).nnz:
                 base[quantity] = rest
-        idle = ~term_exponents([*terms], self.parameters).any(axis=0)
-        for name in np.array(self.parameters)[idle][:1]:
-            raise wrong(str(name), "a term of the stiffness or the mass", "zeros")
+        used = term_exponents([*terms], self.parameters).any(axis=0)
+        for name, acts in zip(self.parameters, used, strict=True):
+            if not acts:
+                raise wrong(name, "a term of the stiffness or the mass", "zeros")
         found = []
         for name, matrices in terms.items():
             first: Quantity = "stiffness" if "stiffness" in matrices else "mass"
-            rank = _reduced(matrices[first], self.nominal.matrices[first], noise)[1]
-            found.append(Term(name, matrices, _support(matrices[first]).size, rank))
+            _, *known = _reduced(matrices[first], self.nominal.matrices[first], noise)
+            found.append(Term(name, matrices, *known))
         return Terms(self.parameters, Term(BASE, base), tuple(found), self.nominal.dofs)
 
     def _weights(self, quantity: Quantity) -> Floats:
@@ -189,28 +186,21 @@ class Differences:
             place = terms.dofs.label(int(entries.row[k]))
             expected = f"only {', '.join(moved)} to differ from '{self.nominal.name}'"
             return wrong(label, expected, f"other changes of the {quantity}, at {place}")
-        names = " and ".join(f"'{name}'" for name in guilty)
-        functions = f"--function {guilty[0]}={guilty[0]},{guilty[0]}^3"
-        if len(guilty) > 1:
-            functions = f"--function {guilty[0]}={'*'.join(guilty)}"
-        greatest = float(np.abs(E.data).max())
-        return wrong(
-            label,
-            f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that are "
-            f"declared, as in {functions}, with as many runs)",
-            f"a {quantity} that differs by {greatest:.2g} of its change at {self._changed(values)}",
-        )
+        names, first = " and ".join(f"'{name}'" for name in guilty), guilty[0]
+        functions = "*".join(guilty) if len(guilty) > 1 else f"{first},{first}^3"
+        expected = f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that are "
+        expected += f"declared, as in --function {first}={functions}, with as many runs)"
+        found = f"a {quantity} that differs by {np.abs(E.data).max():.2g} of its change at "
+        return wrong(label, expected, found + self._changed(values))
 
 
 def _share(E: Matrix, terms: Terms, quantity: Quantity, names: Sequence[str]) -> float:
     """Return the share of the squares of E within the entries of the terms of parameters."""
     columns = [terms.parameters.index(name) for name in names]
-    acting: Bools = np.asarray(terms.coefficients.exponents[:, columns].any(axis=1))
-    pattern = scipy.sparse.csr_array(E.shape)
-    for term, acts in zip(terms.terms, acting, strict=True):
-        if acts and quantity in term.matrices:
-            pattern = pattern + abs(term.matrices[quantity]).sign()
-    inside = E.multiply(pattern.sign()).tocsr()
+    acting = terms.coefficients.exponents[:, columns].any(axis=1)
+    matrices = [x.matrices.get(quantity) for x, acts in zip(terms.terms, acting, strict=True) if acts]
+    patterns = (abs(A).sign() for A in matrices if A is not None)
+    inside = E.multiply(sum(patterns, scipy.sparse.csr_array(E.shape)).sign()).tocsr()
     return float((inside.data**2).sum() / (E.data**2).sum())
 
 
@@ -257,29 +247,25 @@ def _with(entries: scipy.sparse.coo_array, chosen: Bools) -> Matrix:
     return scipy.sparse.coo_array((entries.data[chosen], places), shape=entries.shape).tocsr()
 
 
-def _support(term: Matrix) -> Ints:
-    return np.unique(np.concatenate(term.nonzero()))
-
-
-def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]:
-    """Return a term with the rank that it has above the rounding, and this rank.
+def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int, int | None]:
+    """Return a term with the rank that it has above the rounding, its size, and this rank.
 
     None is returned for the rank of a term of many degrees of freedom, which is left as it is.
     """
-    dofs = _support(term)
+    dofs = np.unique(np.concatenate(term.nonzero()))
     if dofs.size == 0 or dofs.size > 60:  # decomposing many takes long
-        return term, None if dofs.size else 0
+        return term, dofs.size, None if dofs.size else 0
     values, vectors = np.linalg.eigh(term[dofs][:, dofs].toarray())
     limit = max(noise * float(np.abs(A.diagonal()[dofs]).max()), ACCUMULATED * np.abs(values).max())
     strong = np.abs(values) > limit
     rank = int(strong.sum())
     if rank in (0, dofs.size):
-        return term, rank or dofs.size
+        return term, dofs.size, rank or dofs.size
     part = (vectors[:, strong] * values[strong]) @ vectors[:, strong].T
     part[np.abs(part) <= CANCELLED * np.abs(part).max()] = 0.0
     small = scipy.sparse.coo_array((part + part.T) / 2)
-    places = dofs[small.row], dofs[small.col]
-    return scipy.sparse.coo_array((small.data, places), shape=term.shape).tocsr(), rank
+    triplets = small.data, (dofs[small.row], dofs[small.col])
+    return scipy.sparse.coo_array(triplets, shape=term.shape).tocsr(), dofs.size, rank
 
 
 def condensed(terms: Terms) -> tuple[Terms, int, int]:
@@ -319,7 +305,7 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
         rows = {x: A[kept][:, kept].tocsr() for x, A in both.items()}
         return replace(term, matrices={x: A for x, A in rows.items() if A.nnz})
 
-    dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
+    dofs = DofTable(*(x[kept] for x in (terms.dofs.node, terms.dofs.direction, terms.dofs.weight)))
     base, others = restricted(terms.base), tuple(map(restricted, terms.terms))
     return Terms(terms.parameters, base, others, dofs), int(gone.sum()), int((~gone).sum())
 
@@ -329,7 +315,7 @@ def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]
     order = np.argsort(groups, kind="stable")
     _, starts, sizes = np.unique(groups[order], return_index=True, return_counts=True)
     done, inner = np.zeros(internal.size, bool), A[internal][:, internal].tocsr()
-    rows, columns, values = ([np.zeros(0, kind)] for kind in (np.intp, np.intp, float))
+    inverse = scipy.sparse.csr_array(inner.shape)
     for size in np.unique(sizes).tolist():
         members = order[starts[sizes == size][:, None] + np.arange(size)]
         row, column = np.repeat(members, size, axis=1), np.tile(members, (1, size))
@@ -337,11 +323,9 @@ def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]
         singular = np.linalg.svd(blocks, compute_uv=False)
         good = singular[:, -1] > ACCUMULATED * singular[:, 0]
         done[members[good]] = True
-        rows.append(row[good].ravel())
-        columns.append(column[good].ravel())
-        values.append(np.linalg.inv(blocks[good]).ravel())
-    triplets = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
-    inverse = scipy.sparse.csr_array(triplets, shape=(internal.size, internal.size))
+        places = row[good].ravel(), column[good].ravel()
+        triplets = np.linalg.inv(blocks[good]).ravel(), places
+        inverse = inverse + scipy.sparse.csr_array(triplets, shape=inner.shape)
     others = np.ones(A.shape[0])
     others[internal[done]] = 0.0
     coupling = A[internal] @ scipy.sparse.diags_array(others)

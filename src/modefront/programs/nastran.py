@@ -10,7 +10,7 @@ makes stiff, which AUTOSPC holds: the rotation about the normal of a flat shell,
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -79,15 +79,11 @@ def _deck(path: Path, options: base.JobOptions, notes: list[str]) -> "Bulk | Non
 def _from_op4(path: Path, options: base.JobOptions) -> base.Listed:
     matrices = read_op4(path)
     (K, digits), (M, others) = (matrices[name] for name in _pair(path, matrices, options))
-    deck = _deck(path, options, notes := list[str]())
-    dofs, precision = base.given_table(options, K.shape[0]), max(digits, others)
+    deck, size = _deck(path, options, notes := list[str]()), K.shape[0]
+    dofs, precision = base.given_table(options, size), max(digits, others)
     listed = base.Listed((path, path), (K, M), dofs, precision, notes=notes)
-    return listed if deck is None or options.dofs else _labelled(listed, deck, notes)
-
-
-def _labelled(listed: base.Listed, deck: "Bulk", notes: list[str]) -> base.Listed:
-    """Return a job with nodes and components of the deck, of which some may be held."""
-    path, size = listed.files[0], listed.dofs.size
+    if deck is None or options.dofs:
+        return listed
     choices = deck.dofs()
     fitting = [dofs for dofs in choices.values() if len(dofs) == size]
     if not fitting:
@@ -95,8 +91,8 @@ def _labelled(listed: base.Listed, deck: "Bulk", notes: list[str]) -> base.Liste
         expected = f"{size} degrees of freedom, as the matrices have, in the deck (or --dofs FILE)"
         raise wrong(path, expected, counts)
     node, direction = np.array(fitting[0], dtype=np.intp).reshape(-1, 2).T
-    dofs = DofTable(node, direction, np.ones(size))
-    unheld = np.array([dof not in deck.held | deck.followers for dof in fitting[0]])
+    dofs, gone = DofTable(node, direction, np.ones(size)), deck.held | deck.followers
+    unheld = np.array([dof not in gone for dof in fitting[0]])
 
     def free(K: base.Matrix, M: base.Matrix) -> Bools:
         rows: Bools = unheld & (K.diagonal() + M.diagonal() != 0)
@@ -129,13 +125,10 @@ def _check_labels(path: Path, deck: "Bulk", K: base.Matrix, dofs: DofTable, free
         force, size = K @ r, abs(K) @ r
         bad = (np.abs(force) > 1e-6 * size) & (size > 0) & strained  # less is rounding
         if bad.any():
-            k = int(np.argmax(np.abs(force) * bad))
-            raise wrong(
-                path,
-                "a stiffness matrix that fits the nodes of the deck; --dofs FILE says which "
-                "degrees of freedom its rows are",
-                f"a force at {dofs.label(k)} in a translation of the whole",
-            )
+            place = dofs.label(int(np.argmax(np.abs(force) * bad)))
+            expected = "a stiffness matrix that fits the nodes of the deck; --dofs FILE says which "
+            expected += "degrees of freedom its rows are"
+            raise wrong(path, expected, f"a force at {place} in a translation of the whole")
 
 
 def _from_dmig(path: Path, options: base.JobOptions) -> base.Listed:
@@ -261,19 +254,13 @@ class Bulk:
 
 
 def read_bulk(path: Path) -> Bulk:
-    """Return the model of a deck.
-
-    Raises OSError where it cannot be read, and InputError for entries of nodes, elements and
-    supports that cannot be understood.
-    """
+    """Return the model of a deck; raises OSError, and InputError for entries that are wrong."""
     text = path.read_text(encoding="utf-8", errors="replace")
     parted = re.search(r"^\s*BEGIN\s+(BULK|SUPER).*$", text, re.MULTILINE | re.IGNORECASE)
     control, bulk = (text[: parted.start()], text[parted.end() :]) if parted else ("", text)
-    content = Bulk()
-    if bulk != text and not re.search(r"^\s*ENDDATA", bulk, re.MULTILINE | re.IGNORECASE):
+    if parted and not re.search(r"^\s*ENDDATA", bulk, re.MULTILINE | re.IGNORECASE):
         raise wrong(path, "a line ENDDATA at the end", "none: is the file cut off?")
-    first = text.count("\n", 0, len(text) - len(bulk)) + 1
-    cards = list(_cards(bulk, first))
+    content, cards = Bulk(), _cards(bulk, text.count("\n", 0, len(text) - len(bulk)) + 1)
     default = next((card for _, card in cards if card[0] == "GRDSET"), 2 * EMPTY)
     for line, card in cards:
         try:
@@ -292,13 +279,12 @@ def read_bulk(path: Path) -> Bulk:
     return content
 
 
-def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
-    """Yield line and fields of every entry, those of lines that continue it behind them.
+def _cards(text: str, first: int) -> list[tuple[int, list[str]]]:
+    """Return line and fields of every entry, those of lines that continue it behind them.
 
     The text begins in the line ``first``; empty fields follow on the last one.
     """
-    card: list[str] = []
-    begins = first
+    cards: list[tuple[int, list[str]]] = []
     for number, raw in enumerate(text.splitlines(), start=first):
         line = raw.partition("$")[0].rstrip()
         if not line.strip():
@@ -314,14 +300,12 @@ def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
             fields = [line[k : k + width].strip() for k in range(8, 72, width)]
         count = 4 if "*" in name[:1] + name[-1:] else 8  # of large fields, and of others
         fields = (fields + [""] * count)[:count]
-        if name in ("", "+", "*") or name[0] in "+*":
-            card += fields
-            continue
-        if card:
-            yield begins, card + EMPTY
-        begins, card = number, [name.rstrip("*").upper(), *fields]
-    if card:
-        yield begins, card + EMPTY
+        if name[:1] in ("", "+", "*"):
+            if cards:
+                cards[-1][1].extend(fields)
+        else:
+            cards.append((number, [name.rstrip("*").upper(), *fields]))
+    return [(number, card + EMPTY) for number, card in cards]
 
 
 def _components(text: str) -> list[int]:
