@@ -25,10 +25,7 @@ HIDDEN = (
 
 
 def inner(group: h5py.Group, name: str) -> Any:
-    """Return a group or dataset of a group that the file itself holds.
-
-    Raises ValueError for links to other files, soft links, and data that is kept elsewhere.
-    """
+    """Return a group or dataset that the file itself holds; raises ValueError for any other."""
     link = group.get(name, getlink=True)
     if isinstance(link, h5py.ExternalLink):
         raise ValueError(f"'{name}' is a link to another file, '{link.filename}'")

@@ -280,10 +280,7 @@ def table_rows(path: Path, what: str) -> Iterator[tuple[int, list[str]]]:
 
 
 def _lines(path: Path, what: str) -> tuple[list[str], str, int]:
-    """Return the lines of a table, the separator, and the number of lines that are left out.
-
-    Raises InputError for what is no text, or too large.
-    """
+    """Return the lines of a table, the separator, and how many lines are left out before them."""
     file_size(path, what, min(MOST_DATA, available_memory() // 4))
     try:
         with path.open(newline="", encoding="utf-8-sig") as stream:
@@ -489,10 +486,7 @@ def _forms(header: Sequence[str]) -> tuple[dict[str, tuple[str, str]], list[Said
 
 
 def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
-    """Return the header and the rows of a CSV file of numbers; NaN in columns that are empty.
-
-    Raises InputError.
-    """
+    """Return header and rows of a CSV file of numbers, NaN in empty columns; raises InputError."""
     lines, separator, _ = _lines(path, what)
     with suppress(ValueError, csv.Error):
         header = [field.strip() for field in next(csv.reader(lines, delimiter=separator), [])]

@@ -145,10 +145,7 @@ def _variance(H: Complexes, X: Complexes, Y: Complexes) -> Floats:
 
 
 def _force_noise(force: Floats, window: Floats, X: Complexes, t: Floats) -> ForceNoise:
-    """Return the effect of noise of the force channel on the functions, from samples after impacts.
-
-    The second half of the records has no force; its scatter is the noise.
-    """
+    """Return the effect of noise of the force, from the second half of records, on functions."""
     quiet = force[:, force.shape[1] // 2 :]
     level = np.mean((quiet - quiet.mean(axis=1, keepdims=True)) ** 2, axis=1)
     energy = window**2

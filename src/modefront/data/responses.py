@@ -264,10 +264,7 @@ def _quantity(channels: Sequence[Channel], declared: str) -> str:
 
 
 def _units(name: str, data: FrequencyResponses, groups: _Groups, dead: Bools) -> Iterator[str]:
-    """Warn of an axis in rad/s, of dead channels, and of functions far from the others in size.
-
-    Dead (references, responses) are those that are zero, or one number at all lines.
-    """
+    """Warn of an axis in rad/s, dead (references, responses), and functions of other sizes."""
     if looks_like_circular(data.frequency):
         yield (
             f"set {name!r}: the frequency axis looks like rad/s: its lines are "

@@ -356,10 +356,7 @@ class NodalModes:
         return tuple(f"{self.nodes[k]}{NAMES[axis]}" for k, axis in observed)
 
     def along(self, node: int, direction: Floats) -> Floats:
-        """Return the components (sets, modes) of a node, by position, along a vector (6,).
-
-        NaN where a component along it was not measured.
-        """
+        """Return components (sets, modes) of a node along a vector (6,), NaN if not measured."""
         used = np.flatnonzero(direction)
         return np.asarray(self.shape[:, :, node, used] @ direction[used])
 
@@ -373,10 +370,7 @@ class NodalModes:
         )
 
     def place(self, name: str) -> tuple[int, Floats] | None:
-        """Return the node, by position, and the direction (6,) of a name such as ``-3X``.
-
-        None for other names and nodes that there are not.
-        """
+        """Return the node, by position, and direction (6,) of a name, ``-3X``; None for others."""
         matched = re.fullmatch(r"([+-]?)([0-9]{1,9}) ?([+-]?)(R?[XYZ])", name.upper())
         if not matched or int(matched[2]) not in self.nodes:
             return None
@@ -399,10 +393,7 @@ def is_universal(file: Path | str) -> bool:
 
 
 def read_uff55(path: Path) -> NodalModes:
-    """Return the modes of a universal file.
-
-    Raises InputError where the file holds none, is cut off or cannot be decoded.
-    """
+    """Return the modes of a universal file; raises InputError where it holds none or is broken."""
     known: dict[int, Callable[[Block], Sequence[Any]]]
     known = {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode}
     old, new, systems, modes = _decoded(path, "a universal file with modes (dataset 55)", 55, known)

@@ -146,10 +146,7 @@ def _exponents(
 def members_of(
     structure: Structure, T: sparse.csr_array, stiffness: Floats, mass: Floats
 ) -> list[Members]:
-    """Return what members add to the terms of K and M, of which the exponents are given, by blocks.
-
-    ``T`` is that of the degrees of freedom, `Dofs.T`.
-    """
+    """Return what members add to the terms by blocks, given T of `Dofs` and the exponents."""
     out = []
     for block in blocks_of(check_points(structure.nodes), structure, []):
         rows, count = T[block.dofs().ravel()], len(block.cells)
@@ -173,10 +170,8 @@ class _Terms:
         self.terms: dict[tuple[int, ...], sparse.csr_array] = {}
 
     def add(self, block: Block, name: str, parts: ByPower, linear: Sequence[str]) -> None:
-        """Add parts of a block by the parameters of a name; `linear` ones are plain factors.
-
-        T^T A T is summed element by element, in the same order on either side of the diagonal.
-        """
+        """Add parts of a block by the parameters of a name; `linear` ones are plain factors."""
+        # Summed element by element, in the same order on either side of the diagonal.
         moved = self.T[block.dofs().ravel()]
         for power, matrices in parts.items():
             exponents, places = _exponents(self.parameters, name, power, linear), len(matrices)
@@ -203,10 +198,7 @@ class _Terms:
 def sensor_places(
     X: Floats, sensors: Sequence[Sensor], used: Ints, faults: list[Fault]
 ) -> SensorPlaces:
-    """Return nodes and directions of sensors; coordinates are looked for among the nodes `used`.
-
-    What is wrong with them is noted in ``faults``.
-    """
+    """Return nodes and directions of sensors, coordinates among the nodes `used`; note faults."""
     tree = scipy.spatial.KDTree(X[used]) if used.size else None
     rows, nodes = np.zeros((len(sensors), 6)), np.zeros(len(sensors), dtype=np.int64)
     for n, sensor in enumerate(sensors):
@@ -232,12 +224,10 @@ def sensor_places(
 def selection_matrix(
     sensors: Sequence[Sensor], places: SensorPlaces, dofs: Dofs
 ) -> sparse.csr_array:
-    """Return L, CSR (sensors, free DOFs), with y = L q.
+    """Return L, CSR (sensors, free DOFs), with y = L q; refuse sensors of what cannot move.
 
     A sensor at node n along the unit vector a measures a . u_n = a . (T q)_n: one on a slave of a
     rigid link measures what its master moves.
-
-    Raises InputError with all sensors that measure what cannot move.
     """
     nodes, directions = places
     columns = 6 * nodes[:, None] + np.arange(6)

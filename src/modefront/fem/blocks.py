@@ -43,10 +43,7 @@ class Block:
 
 
 def blocks_of(X: Floats, structure: members.Structure, faults: list[Fault]) -> list[Block]:
-    """Return a block for each group, and set of springs or masses, in which nothing is wrong.
-
-    Its faults are noted.
-    """
+    """Return a block for each group, and set of springs or masses; note the faults of others."""
     shells: list[tuple[members.Shells, Ints]] = []
     for group in structure.groups:
         if isinstance(group, members.Shells):

@@ -75,10 +75,7 @@ def axes_of(axes: Axes | None) -> Floats:
 
 
 def check_sizes(relative: Floats, cells: Ints, what: str) -> None:
-    """No element has a relative length, area or volume of zero or less.
-
-    That is (elements,) the smallest det J over the power of the element's extent.
-    """
+    """No element has a relative length, area or volume (elements,) of zero or less."""
     bad = np.flatnonzero(~(relative > FLAT))
     if len(bad):
         e = bad[0]
@@ -108,10 +105,7 @@ def solid_sizes(X: Floats) -> Floats:
 
 
 def check_names(structure: Structure) -> None:
-    """Check that names are used once, and that parameters scale what the named members have.
-
-    Groups of one kind may share a name.
-    """
+    """Names are used once, but for groups of one kind; parameters scale what named members have."""
     has: dict[str, set[str]] = {
         "E": {g.name for g in structure.groups},
         "density": {g.name for g in structure.groups},

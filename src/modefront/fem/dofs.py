@@ -164,9 +164,7 @@ def _solved(C: Floats) -> list[tuple[int, Floats]]:
 
 
 def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> Dofs:
-    """Number the DOFs node by node and build T.
-
-    Raises InputError if a DOF is slave twice, slave and held, or follows itself.
+    """Number the DOFs node by node and build T; refuse those that are slaves twice, or held too.
 
     A DOF ``exists`` (nodes, 6) where an element or link uses it, and a support holds those that are
     ``held`` (nodes, 6). The rows ``following`` of links, couplings and supports may be chains.

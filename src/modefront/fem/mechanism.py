@@ -169,9 +169,7 @@ def check_mechanisms(
     exists: Bools,
     floating: bool,
 ) -> None:
-    """Refuse structures with a motion that nothing resists.
-
-    Raises InputError, which names the nodes of the part that moves, and how.
+    """Refuse structures with a motion that nothing resists; name the nodes that move, and how.
 
     A support holds the DOFs ``held`` (nodes, 6) of those that there are; a ``floating`` structure
     may move as a rigid body as a whole.

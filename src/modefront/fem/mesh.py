@@ -81,10 +81,8 @@ class Mesh:
     def cells_of(self, group: str, kind: Kind) -> tuple[Ints, ...]:
         """Cells of a group, an array for each type, for elements of the given kind.
 
-        Shells of more than 4 nodes are divided into triangles and quadrilaterals.
-
-        Raises InputError if there is no such group, or it has cells of which no such elements can
-        be made.
+        Shells of more than 4 nodes are divided into triangles and quadrilaterals. Raises InputError
+        if there is no such group, or it has cells of which no such elements can be made.
         """
         blocks = [b for b in self.blocks if b.group == group]
         if not blocks:
@@ -102,10 +100,7 @@ class Mesh:
         )
 
     def nodes_of(self, name: str) -> Ints:
-        """Nodes of a set, or of the cells of a group, ascending.
-
-        Raises InputError if there is neither.
-        """
+        """Nodes of a set or cells of a group, ascending; raises InputError if there is neither."""
         blocks = [b.nodes.ravel() for b in self.blocks if b.group == name]
         if name in self.node_sets:
             blocks.append(self.node_sets[name])
@@ -161,10 +156,7 @@ CORNERS = dict(enumerate((2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27), start=1)) | {15
 
 
 def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return nodes, cells and sets as arrays, and the names that belong to them.
-
-    This is called in a process of its own, see `modefront.isolated`.
-    """
+    """Return nodes, cells and sets as arrays, and their names; see `modefront.isolated`."""
     from unittest import mock
 
     import h5py

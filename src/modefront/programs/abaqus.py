@@ -63,10 +63,7 @@ def _files(path: Path) -> tuple[Path, Path]:
 
 
 def _first(path: Path) -> tuple[int, str | None]:
-    """Return how many numbers the first line of a matrix has, five or three, and what is between.
-
-    Raises InputError where there are none, or others.
-    """
+    """Return how many numbers the first line has, five or three, and what is between them."""
     with path.open(encoding="latin-1") as text:
         lines = (line for line in text if line.strip() and line.lstrip()[0] not in "*%")
         if (line := next(lines, None)) is None:

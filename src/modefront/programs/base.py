@@ -98,10 +98,7 @@ def write_mesh(path: Path, mesh: ProgramMesh) -> None:
 
 
 def read_mesh(path: Path) -> ProgramMesh:
-    """Return a mesh that `write_mesh` has written.
-
-    Raises InputError for any other file.
-    """
+    """Return a mesh that `write_mesh` has written; raises InputError for any other file."""
     file_size(path, "nodes and elements (mesh.npz)")
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
@@ -165,7 +162,7 @@ class JobOptions:
 
 
 def read_job(program: str, path: Path, options: JobOptions) -> Job:
-    """Return a job of a program; raises InputError where its files cannot be read, for any cause."""
+    """Return a job of a program; raises InputError where its files cannot be read."""
     given = (program, *(str(text or "") for text in astuple(options)))
     reader, expected = f"{__name__}:parts_of_job", f"a job of {program}"
     arrays, texts = isolated(reader, path, expected, arguments=given)

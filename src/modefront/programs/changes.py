@@ -47,10 +47,7 @@ def _multiplied(text: str, factors: Mapping[tuple[int, int], float]) -> str:
 
 
 def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Change]:
-    """Return the lines in which a run multiplies numbers of the nominal deck by a factor.
-
-    There are none where there are no decks, or these have different numbers of lines.
-    """
+    """Return the lines in which a run multiplies numbers of the nominal deck by a factor."""
     return [
         Change(parameter, name, number, old, tuple(span for span, _, _ in pairs))
         for name, number, old, pairs in _different_lines(nominal, run)

@@ -151,10 +151,7 @@ class Differences:
         return np.asarray(np.linalg.pinv(c))
 
     def check(self, terms: Terms, label: str, job: Job, values: Floats) -> float:
-        """Return the error of the terms at another job, over the greatest entry of the matrices.
-
-        Raises InputError, which names the parameter, where the matrices are not affine.
-        """
+        """Return the relative error of the terms at another job; refuse one that is not affine."""
         order = matching(self.nominal, job, label)
         shifts = terms.coefficients.values(values) - 1.0
         worst = 0.0
@@ -188,7 +185,9 @@ class Differences:
             return wrong(label, expected, f"other changes of the {quantity}, at {place}")
         names, first = " and ".join(f"'{name}'" for name in guilty), guilty[0]
         functions = "*".join(guilty) if len(guilty) > 1 else f"{first},{first}^3"
-        expected = f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that are "
+        expected = (
+            f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that are "
+        )
         expected += f"declared, as in --function {first}={functions}, with as many runs)"
         found = f"a {quantity} that differs by {np.abs(E.data).max():.2g} of its change at "
         return wrong(label, expected, found + self._changed(values))
@@ -198,17 +197,18 @@ def _share(E: Matrix, terms: Terms, quantity: Quantity, names: Sequence[str]) ->
     """Return the share of the squares of E within the entries of the terms of parameters."""
     columns = [terms.parameters.index(name) for name in names]
     acting = terms.coefficients.exponents[:, columns].any(axis=1)
-    matrices = [x.matrices.get(quantity) for x, acts in zip(terms.terms, acting, strict=True) if acts]
+    matrices = [
+        x.matrices.get(quantity) for x, acts in zip(terms.terms, acting, strict=True) if acts
+    ]
     patterns = (abs(A).sign() for A in matrices if A is not None)
     inside = E.multiply(sum(patterns, scipy.sparse.csr_array(E.shape)).sign()).tocsr()
     return float((inside.data**2).sum() / (E.data**2).sum())
 
 
 def matching(nominal: Job, job: Job, label: str) -> Ints | slice:
-    """Return where each nominal degree of freedom is among those of ``job``.
+    """Return where each nominal degree of freedom is among those of ``job``; refuse others.
 
-    They are matched by node and direction, and those of the same label in their order. Raises
-    InputError where there are others.
+    They are matched by node and direction, and those of the same label in their order.
     """
     tables = nominal.dofs, job.dofs
     if not (nominal.labelled and job.labelled):

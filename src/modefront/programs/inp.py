@@ -65,11 +65,7 @@ class Deck:
 
 
 def read_deck(path: Path) -> Deck:
-    """Return the model of a deck.
-
-    Raises OSError where it cannot be read, and InputError for lines of nodes, elements and
-    supports that cannot be understood.
-    """
+    """Return the model of a deck; raises OSError, and InputError for lines that are wrong."""
     deck = Deck()
     if not path.is_file():
         raise FileNotFoundError(f"no file {path.name}")

@@ -41,10 +41,7 @@ Op4Matrix: TypeAlias = tuple[scipy.sparse.coo_array, float]
 
 
 def read_op4(path: Path) -> Mapping[str, Op4Matrix]:
-    """Return all matrices of a file by their names.
-
-    Raises InputError for a file that is none of OUTPUT4, is cut off or holds complex numbers.
-    """
+    """Return all matrices of a file by their names; raises InputError for broken, complex ones."""
     data = path.read_bytes()
     lengths = {order: int(np.frombuffer(data[:4].ljust(4), order + "i4")[0]) for order in "<>"}
     binary = next(((order, x // 6) for order, x in lengths.items() if x in (24, 48)), None)
@@ -205,10 +202,7 @@ relative error of these."""
 
 
 def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
-    """Return all matrices of a punch file by their names.
-
-    Raises InputError for a file without any, with complex numbers, or cut off.
-    """
+    """Return all matrices of a punch file by their names; raises InputError likewise."""
     ended(path)
     entries: dict[str, list[tuple[tuple[int, ...], float, str]]] = {}
     with path.open(encoding="latin-1") as stream:

@@ -42,10 +42,7 @@ class Ply:
         return np.asarray(np.swapaxes(T, 1, 2) @ self.D @ T)
 
     def along(self, c2: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the moduli of bending and twist, and of transverse shear, along a line.
-
-        ``c2`` is the squared cosine of the line and axis 1.
-        """
+        """Return moduli of bending, twist and transverse shear at squared cosines c2 to axis 1."""
         D, s2 = self.D, 1 - c2
         mixed = D[0, 1] + 2 * D[2, 2]
         bend = D[0, 0] * c2**2 + 2 * mixed * c2 * s2 + D[1, 1] * s2**2

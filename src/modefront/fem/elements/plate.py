@@ -86,10 +86,7 @@ class Elements:
         return (self.x[:, 1:, :2] - self.x[:, :1, :2])[:, None]
 
     def integrand(self, B: Floats, D: Floats) -> Rows:
-        """Return B (elements, points, rows, n) and D (elements, points, rows, rows) times weight.
-
-        The weights of the points are equal.
-        """
+        """Return B (elements, points, rows, n), and D times weights, the same at all points."""
         weight = self.share * np.linalg.det(self.J) / 2 / B.shape[1]
         return B, np.repeat(weight, B.shape[1], axis=1)[..., None, None] * D
 

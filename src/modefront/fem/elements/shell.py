@@ -77,10 +77,7 @@ def areas(X: Floats) -> Floats:
 
 
 def narrowness(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
-    """1 / b^2 of each side (elements, corners), by block: the mean over the elements there.
-
-    The breadth b of an element is its area over the length of the side.
-    """
+    """1 / b^2 of each side (elements, corners), by block: the mean over the elements there."""
     ends, own = [], []
     for each in cells:
         following = np.roll(each, -1, axis=1)

@@ -23,10 +23,7 @@ from modefront.fem.structure import FACES
 
 @dataclass(frozen=True)
 class Solid:
-    """Kind of solid: its cell, faces (corners) and quadrature (points, weights).
-
-    The rules are exact for straight edges.
-    """
+    """Kind of solid: cell, faces (corners), and quadratures that are exact for straight edges."""
 
     cell: shapes.Cell
     faces: tuple[tuple[int, ...], ...]
