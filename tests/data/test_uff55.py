@@ -179,7 +179,7 @@ def test_sensors_that_the_file_does_not_have(sensors: str, says: str, tmp_path: 
 
 def test_sensors_of_a_mesh_are_found_by_coordinates_and_names(tmp_path: Path) -> None:
     modes = NodalModes(
-        *("modes.uff", ("1",), (1,), np.array([5, 6]), np.array([[0.0, 0, 0], [1, 0, 0]])),
+        *(("1",), (1,), np.array([5, 6]), np.array([[0.0, 0, 0], [1, 0, 0]])),
         *(np.tile(np.eye(3), (2, 1, 1)), np.ones((1, 1)), np.ones((1, 1)), np.ones((1, 1, 2, 6))),
     )
     assert modes.place("6RZ") is not None

@@ -39,18 +39,12 @@ TAPER = 0.1  # share of the force window over which it falls to zero
 
 @dataclass(frozen=True)
 class Windows(Checked):
-    """Estimator and windows that make functions of records.
-
-    Attributes
-    ----------
-    estimator : H1, H2 or Hv
-    force_window : seconds after the peak beyond which the force is set to zero, or None
-    exponential : time constant tau of the exponential window in seconds, by default a quarter of
-        the record; infinity is no window, for responses that die out by themselves
-    """
+    """Estimator and windows that make functions of records."""
 
     estimator: Estimator = "H1"
+    # seconds after the peak beyond which the force is set to zero
     force_window: Annotated[float, number("a time in s above zero", above=0)] | None = None
+    # time constant in seconds, by default a quarter of the record; infinity is no window
     exponential: Annotated[float, EXPONENTIAL] | None = None
 
 
@@ -58,8 +52,7 @@ class Windows(Checked):
 class ImpactResponses:
     """Functions from impacts."""
 
-    # the functions, with the variance of their mean from the scatter of the blows
-    data: FrequencyResponses
+    data: FrequencyResponses  # with the variance of their mean from the scatter of the blows
     coherence: Floats  # (responses, lines)
     left_out: tuple[str, ...]  # (blows,) why each blow is not in the mean; empty where it is
     remaining: Floats  # (responses,) rms at the end of the windowed records over the greatest
@@ -75,14 +68,8 @@ def impact_responses(
 ) -> ImpactResponses:
     """Return the functions of one reference from several blows.
 
-    Parameters
-    ----------
-    force : (blows, samples)
-    response : (blows, responses, samples)
-    rate : samples per second
-    quantity : what responses over force are
-    windows : estimator and windows
-    responses : names
+    These are a ``force`` (blows, samples) and a ``response`` (blows, responses, samples), with
+    ``rate`` samples per second; ``quantity`` is what responses over force are.
 
     Double hits and overloads are left out and said. What the exponential window adds to all decay
     rates is noted in the data, and `identify` takes it off. Raises ValueError where no blow is
@@ -216,8 +203,7 @@ class Blow:
     time: Floats  # (samples,) in s
     force: Floats  # (samples,)
     responses: Mapping[str, Floats]  # records by name, (samples,) each
-    # of the functions that responses over force make; empty where the file does not say
-    quantity: str = ""
+    quantity: str = ""  # of responses over force; empty where the file does not say
 
 
 @dataclass(frozen=True)

@@ -39,16 +39,6 @@ class Records:
     quantity: str = "acceleration"  # ``"displacement"``, ``"velocity"`` or ``"acceleration"``
     still: tuple[str, ...] = ()  # names of channels that do not move, which are left out
 
-    def __post_init__(self) -> None:
-        """Raise ValueError where the arrays do not fit."""
-        if self.values.ndim != 2 or len(self.values) != len(self.sensors):
-            expected = f"records of {len(self.sensors)} sensors, (sensors, samples)"
-            raise ValueError(f"expected {expected}, found {self.values.shape}")
-        if self.quantity not in RECORDED:
-            raise ValueError(f"expected one of {', '.join(RECORDED)}, found {self.quantity!r}")
-        if not np.isfinite(self.values).all():
-            raise ValueError("expected finite numbers")
-
     @property
     def duration(self) -> float:
         """Length in s."""
@@ -61,10 +51,8 @@ class SetFiles:
 
     name: str  # of the data set
     files: tuple[Path, ...]  # paths
-    # names of columns in CSV files and what they are here
-    columns: Mapping[str, str] = field(default_factory=dict)
-    # names by node and direction in universal files, such as 1Z or 1-Z
-    channels: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str] = field(default_factory=dict)  # names by those in CSV files
+    channels: Mapping[str, str] = field(default_factory=dict)  # names by node and axis, 1Z or 1-Z
     rate: float | None = None  # samples per second, for arrays
     sensors: tuple[str, ...] = ()  # names of the channels of arrays
     references: tuple[str, ...] = ()  # one a file of functions, empty where it says its own
@@ -235,7 +223,7 @@ class ModalTest:
     sets: tuple[DataSet, ...]  # the data sets with functions
     setups: tuple[Records, ...] = ()  # the records of an ambient test, which has no functions
     chosen: ByHand = ByHand()  # what is chosen by hand
-    # (3,) positions of sensors and (3,) directions, by name; of sensors that are placed
+    # (3,) positions and (3,) directions of sensors that are placed, by name
     places: Mapping[str, tuple[Floats, Floats]] = field(default_factory=dict)
 
 

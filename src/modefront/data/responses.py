@@ -48,12 +48,9 @@ class FrequencyResponses:
     references: tuple[str, ...]  # references, responses: names
     responses: tuple[str, ...]
     variance: Floats | None = None  # (references, responses, lines), E|H - E H|², or None
-    # whether ``variance`` is known up to a factor for each function only, as it is from coherence
-    # where the number of blows is not known
-    scaled: bool = False
+    scaled: bool = False  # whether the variance of each function is known up to a factor only
     decay: float = 0.0  # what an exponential window added to the decay rate of every pole, in 1/s
-    # noise of the force at each reference, where it is known for all of them
-    force_noise: tuple[ForceNoise, ...] = ()
+    force_noise: tuple[ForceNoise, ...] = ()  # at each reference, where all are known
 
     def __post_init__(self) -> None:
         """Raise ValueError where the arrays do not fit."""

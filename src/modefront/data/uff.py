@@ -43,8 +43,7 @@ of bytes in the header is wrong in files of some programs, `pyuff` among them.""
 QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 """Quantities of the numerator: displacement, velocity, acceleration."""
 
-AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
-"""Directions by their numbers in universal files."""
+AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}  # directions by their numbers
 
 KNOWN = (15, 55, 58, 2411, 2420)
 """Datasets that are read, whose numbers may have blanks before them as no other line has."""
@@ -65,8 +64,7 @@ class Block:
     number: int
     line: int
     body: bytes  # what it holds, behind its number
-    # the words behind the number of a binary dataset; None for one of text
-    binary: list[str] | None
+    binary: list[str] | None  # words behind the number of a binary dataset; None for one of text
 
     @property
     def place(self) -> str:
@@ -81,25 +79,23 @@ class Block:
 
 def _decoded(
     path: Path, what: str, needed: int, readers: Mapping[int, Callable[[Block], Sequence[Any]]]
-) -> list[list[Any]]:
-    """Return what each reader returns for the datasets of its number.
+) -> dict[int, list[Any]]:
+    """Return what readers return for the datasets of their numbers, of which one is needed.
 
-    Raises InputError where there is none of the number that is needed, and for broken ones, of
-    which a reader raises a ValueError or the like.
+    Raises InputError for broken ones, of which a reader raises a ValueError or the like.
     """
     known = blocks(read_text_bytes(path, what, MOST_DATA), path)
     numbers = list(dict.fromkeys(block.number for block in known))
     if needed not in numbers:
         raise wrong(path, what, f"datasets {', '.join(map(str, numbers))} only", "datasets")
-    out: list[list[Any]] = [[] for _ in readers]
-    for found, (number, read) in zip(out, readers.items(), strict=True):
-        for block in (block for block in known if block.number == number):
-            try:
-                found += read(block)
-            except InputError:
-                raise
-            except (ValueError, IndexError, KeyError, OverflowError) as error:
-                raise wrong(path, f"a dataset {number}", reason(error), block.place) from None
+    out: dict[int, list[Any]] = {number: [] for number in readers}
+    for block in (block for block in known if block.number in readers):
+        try:
+            out[block.number] += readers[block.number](block)
+        except InputError:
+            raise
+        except (ValueError, IndexError, KeyError, OverflowError) as error:
+            raise wrong(path, f"a dataset {block.number}", reason(error), block.place) from None
     return out
 
 
@@ -111,7 +107,7 @@ the signs of the directions: functions that of both, others that of the response
 def read_functions(path: Path) -> list[Function]:
     """Return all datasets 58 of a universal file; raises InputError where it has none."""
     what = "a universal file with frequency response functions or records of blows (dataset 58)"
-    return _decoded(path, what, 58, {58: _function})[0]
+    return _decoded(path, what, 58, {58: _function})[58]
 
 
 def read_uff(path: Path) -> Contents:
@@ -327,13 +323,11 @@ NAMES = tuple(AXES.values())  # directions in the order of the components
 class NodalModes:
     """Modes at the nodes of a test."""
 
-    file: str  # where they were read
     sets: tuple[str, ...]  # sets, modes: names of the data sets, numbers of the modes
     modes: tuple[int, ...]
     nodes: Ints  # (nodes,) their numbers
     position: Floats  # (nodes, 3) coordinates; NaN where the file has none
-    # (nodes, 3, 3) axes of the components, in rows; NaN where the file does not tell them
-    axes: Floats
+    axes: Floats  # (nodes, 3, 3) axes of the components, in rows; NaN where they are not told
     frequency: Floats  # frequency, damping: (sets, modes) in Hz, and ratios; NaN where none
     damping: Floats
     # (sets, modes, nodes, 6) components along X, Y, Z, RX, RY and RZ; NaN if not measured
@@ -394,11 +388,11 @@ def is_universal(file: Path | str) -> bool:
 
 def read_uff55(path: Path) -> NodalModes:
     """Return the modes of a universal file; raises InputError where it holds none or is broken."""
-    known: dict[int, Callable[[Block], Sequence[Any]]]
-    known = {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode}
-    old, new, systems, modes = _decoded(path, "a universal file with modes (dataset 55)", 55, known)
-    once(path, "nodes", "each node", (node for node, *_ in old + new))
-    return _assembled(path, modes, old + new, dict(systems))
+    what = "a universal file with modes (dataset 55)"
+    found = _decoded(path, what, 55, {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode})
+    points: list[Point] = found[15] + found[2411]
+    once(path, "nodes", "each node", (node for node, *_ in points))
+    return _assembled(path, found[55], points, dict(found[2420]))
 
 
 def _integers(line: str, count: int) -> list[int]:
@@ -472,11 +466,8 @@ def _mode(block: Block) -> list[_Mode]:
     return [_Mode(*known, np.array(nodes), shape, place, int(other[1]) if other else 0)]
 
 
-Point = tuple[int, int, Floats]
-"""A node: its number, its displacement system, and its coordinates (3,)."""
-
-System = tuple[int, Floats]
-"""A system of coordinates: its type, its axes in rows and its origin (4, 3)."""
+Point = tuple[int, int, Floats]  # a node: its number, displacement system and coordinates (3,)
+System = tuple[int, Floats]  # of coordinates: its type, its axes in rows and its origin (4, 3)
 
 
 def _nodes(block: Block) -> list[Point]:
@@ -556,7 +547,7 @@ def _assembled(
         _check_nodes(file, row, np.intersect1d(row.nodes, known))
     pairs = {(number, row.other) for (_, number), row in placed.items() if number < row.other}
     return NodalModes(
-        *(str(file), sets, modes, nodes, places, axes, frequency, damping, shape),
+        *(sets, modes, nodes, places, axes, frequency, damping, shape),
         tuple(sorted(pair for pair in pairs if pair[1] in modes)),
     )
 

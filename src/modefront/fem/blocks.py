@@ -31,10 +31,8 @@ class Block:
     stiffness: common.ByPower  # stiffness, mass: matrices of size k d
     mass: common.ByPower
     rigid: bool = False  # whether an element that nothing deforms is one rigid body with its nodes
-    # geometric stiffness of given forces
-    prestress: common.ByPower = field(default_factory=dict)
-    # returns internal forces; None for elements that make no geometric stiffness
-    internal: Callable[[], Axial | common.Stresses] | None = None
+    prestress: common.ByPower = field(default_factory=dict)  # geometric stiffness of given forces
+    internal: Callable[[], Axial | common.Stresses] | None = None  # forces, if they make stiffness
 
     def dofs(self) -> Ints:
         """Return 6 node + direction of each row of the matrices (elements, k d)."""

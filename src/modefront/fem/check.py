@@ -19,8 +19,7 @@ from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.structure import DIRECTIONS, Axes, Direction, Structure
 from modefront.options import repeated
 
-FLAT = 1e-8
-"""Length, area or volume of an element over that of its extent that is rounding of coordinates."""
+FLAT = 1e-8  # length, area or volume over that of the element's extent that is rounding
 
 
 def check_points(nodes: npt.ArrayLike) -> Floats:
@@ -140,17 +139,10 @@ def check_names(structure: Structure) -> None:
     refuse(faults)
 
 
-DISTORTED = 0.3
-"""Difference of the greatest and least volume at the corners of a brick, over the greatest."""
-
-CURVED = 10.0
-"""Square of the size of an element over radius and thickness, from which on it is too coarse."""
-
-SMALL = 4.0
-"""Size of shells over their thickness, below which another thickness has another share of shear."""
-
-OBTUSE = 120.0
-"""Greatest angle in degrees of half of the triangles of a group, from which on they are poor."""
+DISTORTED = 0.3  # difference of greatest and least volume at corners of a brick, over the greatest
+CURVED = 10.0  # square of the size over radius and thickness, from which on elements are too coarse
+SMALL = 4.0  # size of shells over their thickness, below which the share of shear changes with it
+OBTUSE = 120.0  # greatest angle in degrees of half of the triangles, from which on they are poor
 
 CORNERS = np.array(
     [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
@@ -162,13 +154,23 @@ def limits_of(structure: Structure, nodes: Floats) -> Iterator[str]:
     """Yield warnings on the elements of a structure; its nodes (nodes, 3) are checked."""
     for group in structure.groups:
         cells = np.asarray(group.cells)
+        X = nodes[cells]
         if isinstance(group, members.Shells):
-            normal = corner_normals(nodes[cells]).mean(axis=1)
+            normal = corner_normals(X).mean(axis=1)
             area = np.linalg.norm(normal, axis=1)
             size = np.sqrt(area if cells.shape[1] == 4 else area / 2)
             yield from _curved(group, cells, normal / area[:, None], size)
-            if cells.shape[1] == 3:
-                yield from _obtuse(group, nodes[cells])
+            sides = np.roll(X, -1, axis=1) - X
+            sides /= np.linalg.norm(sides, axis=2, keepdims=True)
+            turns = np.arccos((sides * np.roll(sides, 1, axis=1)).sum(2).clip(-1, 1))
+            angle = 180 - float(np.degrees(np.median(turns.min(axis=1))))
+            if cells.shape[1] == 3 and angle >= OBTUSE:
+                yield (
+                    f"half of the triangles of group '{group.name}' have angles of {angle:.0f}° "
+                    "and more: expect bending frequencies off by 3 % at 120° and 13 % at 150° "
+                    "where a span has 16; divide along the shorter diagonals, or take "
+                    "quadrilaterals"
+                )
             if group.name in structure.varied_thickness and size.min() < SMALL * group.thickness:
                 ratio = size.min() / group.thickness
                 yield (
@@ -177,36 +179,16 @@ def limits_of(structure: Structure, nodes: Floats) -> Iterator[str]:
                     "by up to 11 % from those of a model with that thickness; begin near it"
                 )
         elif isinstance(group, members.Solids) and cells.shape[1] == 8:
-            yield from _distorted(group, nodes[cells])
-
-
-def _obtuse(group: members.Shells, X: Floats) -> Iterator[str]:
-    """Yield a warning where triangles X (elements, 3, 3) have great angles."""
-    sides = np.roll(X, -1, axis=1) - X
-    sides /= np.linalg.norm(sides, axis=2, keepdims=True)
-    turns = np.arccos((sides * np.roll(sides, 1, axis=1)).sum(2).clip(-1, 1))
-    angle = 180 - float(np.degrees(np.median(turns.min(axis=1))))
-    if angle >= OBTUSE:
-        yield (
-            f"half of the triangles of group '{group.name}' have angles of {angle:.0f}° and more: "
-            "expect bending frequencies off by 3 % at 120° and 13 % at 150° where a span has 16; "
-            "divide along the shorter diagonals, or take quadrilaterals"
-        )
-
-
-def _distorted(group: members.Solids, X: Floats) -> Iterator[str]:
-    """Yield a warning where bricks X (elements, 8, 3) are distorted."""
-    edges = X[:, CORNERS] - X[:, :, None]
-    volume = np.abs(np.linalg.det(edges))
-    distortion = 1 - volume.min(axis=1) / volume.max(axis=1)
-    if count := int((distortion >= DISTORTED).sum()):
-        yield (
-            f"{count} of {len(distortion)} bricks of group '{group.name}' are distorted, by up to "
-            f"{100 * distortion.max():.0f} % of the volume at their corners (element "
-            f"{int(np.argmax(distortion))}): expect bending frequencies too great by some 20 % at "
-            "a third and 30 % at a half where a span has 5 bricks, by 3 to 6 % where it has 10; "
-            "refine, or take bricks of 20 nodes"
-        )
+            volume = np.abs(np.linalg.det(X[:, CORNERS] - X[:, :, None]))
+            distortion = 1 - volume.min(axis=1) / volume.max(axis=1)
+            if count := int((distortion >= DISTORTED).sum()):
+                yield (
+                    f"{count} of {len(distortion)} bricks of group '{group.name}' are distorted, "
+                    f"by up to {100 * distortion.max():.0f} % of the volume at their corners "
+                    f"(element {int(np.argmax(distortion))}): expect bending frequencies too great "
+                    "by some 20 % at a third and 30 % at a half where a span has 5 bricks, by 3 to "
+                    "6 % where it has 10; refine, or take bricks of 20 nodes"
+                )
 
 
 def _curved(group: members.Shells, cells: Ints, normal: Floats, size: Floats) -> Iterator[str]:

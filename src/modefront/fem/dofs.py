@@ -20,7 +20,7 @@ from scipy.linalg import block_diag
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import Fault, noted, wrong
 from modefront.fem.check import axes_of, node_list
-from modefront.fem.elements.common import cross_matrix
+from modefront.fem.elements.common import attachment
 from modefront.fem.structure import DIRECTIONS, Coupling, Structure, Support
 from modefront.linalg.affine import sparse_rows
 from modefront.rounding import ACCUMULATED, COMPUTED, WRITTEN
@@ -111,9 +111,7 @@ def _followers(
 
 def rigid_motion(arms: Floats) -> Floats:
     """Motions (points, 6, 6) of points at arms (points, 3) from a node, from its motion."""
-    P = np.tile(np.eye(6), (len(arms), 1, 1))
-    P[:, :3, 3:] = -cross_matrix(arms)
-    return P
+    return attachment(arms[:, None])[:, 0]
 
 
 def hold(

@@ -28,9 +28,7 @@ from modefront.linalg.affine import sparse_rows
 from modefront.linalg.factorisation import factorise
 from modefront.rounding import ACCUMULATED, WRITTEN
 
-STEPS = 4
-"""Steps of inverse iteration: each leaves of other motions the ratio of shift and eigenvalue."""
-
+STEPS = 4  # of inverse iteration: each leaves of other motions the ratio of shift and eigenvalue
 NAMED = 0.05  # share of a direction in a motion, over the greatest, from which the message names it
 
 
@@ -74,8 +72,7 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
     to the body of each.
     """
     none, size = np.zeros((0, 2), np.int64), nodes
-    pairs, solid_pairs = [none], [none]
-    faces: dict[int, list[tuple[Ints, Ints]]] = {3: [], 4: []}
+    pairs, solid_pairs, faces = [none], [none], [np.zeros((0, 5), np.int64)]
     for block in elements:
         count, k = block.cells.shape
         vertex, size = size + np.arange(count), size + count
@@ -85,13 +82,13 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
             continue
         solid_pairs.append(to_nodes)
         for corners in SOLIDS[k].faces:
-            faces[len(corners)].append((np.sort(block.cells[:, corners], -1), vertex))
-    for sides in faces.values():
-        if sides:
-            keys = np.concatenate([side[0] for side in sides])
-            _, face = np.unique(keys, axis=0, return_inverse=True)
-            pairs.append(np.stack([size + face, np.concatenate([s[1] for s in sides])], 1))
-            size += int(face.max()) + 1
+            missing = np.full((count, 4 - len(corners)), -1)
+            key = np.sort(block.cells[:, corners], -1)
+            faces.append(np.column_stack([key, missing, vertex]))
+    *sides, element = np.concatenate(faces).T
+    _, face = np.unique(sides, axis=1, return_inverse=True)
+    pairs.append(np.stack([size + face, element], 1))
+    size += int(face.max(initial=-1)) + 1
     edges = np.concatenate(pairs)
     graph = sparse.coo_array((np.ones(len(edges)), edges.T), shape=(size, size))
     _, label = connected_components(graph, directed=False)

@@ -59,8 +59,7 @@ REFERRING = (
 COMMANDS = (".inp", ".bdf", ".nas", ".fem", ".dat", ".key", ".cdb")
 """Endings of formats of commands, one of which may be to read another file."""
 
-INCLUDES = re.compile(rb"\*.*\binput\s*=|\*?\s*include\b", re.IGNORECASE)
-"""A command that reads another file."""
+INCLUDES = re.compile(rb"\*.*\binput\s*=|\*?\s*include\b", re.IGNORECASE)  # of another file
 
 
 @dataclass(frozen=True)
@@ -196,8 +195,7 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     return arrays, {"blocks": list(blocks), "sets": list(sets)}
 
 
-FROM_FILE = np.fromfile
-"""NumPy's function, which returns fewer numbers than are asked for where a file ends."""
+FROM_FILE = np.fromfile  # returns fewer numbers than are asked for where a file ends
 
 
 def _from_file(file: Any, dtype: Any = float, count: int = -1, *others: Any, **named: Any) -> Any:
@@ -208,8 +206,7 @@ def _from_file(file: Any, dtype: Any = float, count: int = -1, *others: Any, **n
     return out
 
 
-SECTION = re.compile(rb"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", re.DOTALL | re.MULTILINE)
-"""A section of a Gmsh file."""
+SECTION = re.compile(rb"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", re.DOTALL | re.MULTILINE)  # of Gmsh
 
 
 def _check_sections(content: bytes) -> None:

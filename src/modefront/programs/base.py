@@ -36,18 +36,11 @@ CORNERS: Mapping[str, int] = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ProgramMesh(Shown):
-    """Nodes by their numbers, and cells between them.
+    """Nodes by their numbers, and cells between them."""
 
-    Attributes
-    ----------
-    number : (nodes,) numbers of the program, ascending
-    coordinates : (nodes, 3)
-    cells : (cells, k) numbers of nodes, by the type of the cell
-    """
-
-    number: Ints
-    coordinates: Floats
-    cells: Mapping[str, Ints]
+    number: Ints  # (nodes,) numbers of the program, ascending
+    coordinates: Floats  # (nodes, 3)
+    cells: Mapping[str, Ints]  # (cells, k) numbers of nodes, by the type of the cell
 
 
 def mesh_of(nodes: Mapping[int, Floats], elements: Iterable[tuple[str, list[int]]]) -> ProgramMesh:
@@ -114,25 +107,15 @@ Quantity = Literal["stiffness", "mass"]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Job(Shown):
-    """Matrices of one job of a program.
+    """Matrices of one job of a program."""
 
-    Attributes
-    ----------
-    name : file or files, for messages
-    stiffness, mass : (N, N), symmetric, rows compressed
-    dofs : node and direction of each degree of freedom
-    precision : relative error of the numbers as they are written
-    mesh : nodes and elements where the deck is at hand; None where it is not
-    notes : what the program did to the model, and what was done about it
-    """
-
-    name: str
-    stiffness: Matrix
+    name: str  # file, for messages
+    stiffness: Matrix  # stiffness, mass: (N, N), symmetric, rows compressed
     mass: Matrix
-    dofs: DofTable
-    precision: float
-    mesh: ProgramMesh | None = None
-    notes: tuple[str, ...] = ()
+    dofs: DofTable  # node and direction of each degree of freedom
+    precision: float  # relative error of the numbers as they are written
+    mesh: ProgramMesh | None = None  # nodes and elements; None where the deck is not at hand
+    notes: tuple[str, ...] = ()  # what the program did to the model, and what was done about it
 
     @property
     def size(self) -> int:

@@ -30,10 +30,7 @@ from modefront.rounding import ACCUMULATED
 
 AFFINE = 1e-10  # greatest error of the terms at other values of the parameters, over the change
 ROUNDING = 20.0  # roundings that may add up in an entry
-
-CANCELLED = 1e-14
-"""Size over the greatest of what has cancelled: some fifty roundings of one operation."""
-
+CANCELLED = 1e-14  # size over the greatest of what has cancelled: some fifty roundings
 COVERED = 0.99  # share of an error within the terms of a parameter, from which it may come from it
 
 

@@ -38,14 +38,11 @@ class Deck:
     # node or set, first and last direction, from 1
     supports: list[tuple[str, int, int]] = field(default_factory=list)
     elements: set[int] = field(default_factory=set)  # numbers
-    # nodes of elements that CalculiX makes solids of
-    expanded: set[int] = field(default_factory=set)
+    expanded: set[int] = field(default_factory=set)  # nodes of what CalculiX makes solids of
     others: set[int] = field(default_factory=set)  # nodes of all other elements
     bodies: list[str] = field(default_factory=list)  # nodes of rigid bodies, or their sets
-    # reference nodes of rigid bodies and couplings, or their sets
-    guides: list[str] = field(default_factory=list)
-    # whether nodes are numbered in parts, so that their numbers are not those of matrices
-    parts: bool = False
+    guides: list[str] = field(default_factory=list)  # reference nodes of bodies and couplings
+    parts: bool = False  # whether nodes are numbered in parts: numbers of matrices are others
 
     @cached_property
     def mesh(self) -> ProgramMesh:
@@ -66,11 +63,10 @@ class Deck:
 
 def read_deck(path: Path) -> Deck:
     """Return the model of a deck; raises OSError, and InputError for lines that are wrong."""
-    deck = Deck()
     if not path.is_file():
         raise FileNotFoundError(f"no file {path.name}")
     ended(path)
-    more = False  # whether other lines make nodes, or these may be in another file
+    deck, more = Deck(), False  # whether other lines make nodes, or these may be in another file
     for keyword, options, rows in _blocks(path):
         more |= "INPUT" in options or keyword in ("NGEN", "NFILL", "NCOPY", "NMAP")
         if take := _TAKEN.get(keyword):
@@ -111,8 +107,6 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
             if text.startswith("**") or not text:
                 continue
             if not text.startswith("*"):
-                if text.endswith(","):
-                    text += " "
                 rows.append([item.strip() for item in text.split(",")])
                 continue
             if keyword:
@@ -131,20 +125,18 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
 def keyword_of(text: str) -> tuple[str, dict[str, str]]:
     """Return the keyword of a line with a star, and its options."""
     name, *parts = text[1:].split(",")
-    options = {}
-    for part in parts:
-        key, _, value = part.partition("=")
-        options[key.strip().upper()] = value.strip().strip('"')
+    pairs = (part.partition("=") for part in parts)
+    options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
     return name.strip().upper(), options
 
 
 def _nodes(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None:
     for row in rows:
         number = int(row[0])
-        point = [float(x) if x else 0.0 for x in row[1:4]]
+        point = [float(x or 0) for x in (*row[1:4], "", "", "")[:3]]
         if not np.isfinite(point).all():
             raise ValueError(f"{', '.join(row)!r}")
-        deck.nodes[number] = np.array(point + [0.0] * (3 - len(point)))
+        deck.nodes[number] = np.array(point)
         if "NSET" in options:
             deck.sets.setdefault(options["NSET"].upper(), []).append(number)
 

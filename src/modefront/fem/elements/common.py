@@ -17,9 +17,7 @@ ByPower = dict[int, Floats]
 """Element matrices (elements, dof, dof), symmetric, in global axes, DOFs node by node, by the power
 of the thickness with which they grow; 0 where there is none, or it does not vary."""
 
-
-Matrices = tuple[ByPower, ByPower]
-"""Stiffness, linear in Young's modulus, and mass, linear in density."""
+Matrices = tuple[ByPower, ByPower]  # stiffness, linear in E, and mass, linear in density
 
 
 def symmetric(K: Floats) -> Floats:
@@ -106,11 +104,9 @@ class Stresses:
     """
 
     x: Floats  # nodes of the mid-surface (elements, nodes, dim) in the axes R
-    # R, D: axes (elements, dim, 3), and stresses of gradients (elements, dim, dim, dim, dim)
-    R: Floats
-    D: Floats
-    # displacements of the nodes by the DOFs (elements, nodes, 3, n); None where they are these
-    P: Floats | None
+    R: Floats  # axes (elements, dim, 3)
+    D: Floats  # stresses of gradients (elements, dim, dim, dim, dim)
+    P: Floats | None  # displacements by the DOFs (elements, nodes, 3, n); None where they are these
     cell: Cell  # cell, rule: shape functions and quadrature
     rule: Rule
 

@@ -51,9 +51,7 @@ from modefront.fem.elements.shapes import TRIANGLE_3, TRIANGLE_6, TRIANGLE_EDGES
 
 KAPPA = 5 / 6  # shear factor of a plate
 
-MIDDLES = TRIANGLE_6.nodes[3:]
-"""Midpoints of the sides: with equal weights, a quadrature rule of degree 2."""
-
+MIDDLES = TRIANGLE_6.nodes[3:]  # of sides: with equal weights, a quadrature rule of degree 2
 
 _POINTS, _WEIGHTS = gauss_simplex(3, 2)
 _N = np.concatenate([TRIANGLE_3.shape(_POINTS)[0], TRIANGLE_6.shape(_POINTS)[0][:, 3:]], 1)

@@ -31,7 +31,6 @@ FOLD = 20.0  # angle in degrees between elements from which on they meet in a fo
 DIVISIONS = {3: ((0, 1, 2),), 4: ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))}
 """Corners of the triangles that make an element; in quadrilaterals, their third side is inside."""
 
-
 SURFACES = {
     3: (TRIANGLE_3, (np.full((1, 2), 1 / 3), np.array([0.5]))),
     4: (SQUARE_4, gauss_box(2, 2)),
@@ -112,20 +111,15 @@ def shell(
 ) -> common.Matrices:
     """Matrices of shells, DOFs (u, r) node by node in global axes.
 
-    Parameters
-    ----------
-    X : nodes (elements, 3 or 4, 3), counter-clockwise about the normal
-    d : `directors` (elements, 3 or 4, 3)
-    narrow : `narrowness` (elements, 3 or 4)
-    m : vectors (elements, 3) in the shell along axis 1 of the material
-    material, thickness : of all elements; thickness in units of length
-    offset : distance of the mid-surface from the nodes along the directors
-    varied : whether the thickness is a parameter
+    Nodes X (elements, 3 or 4, 3) are counter-clockwise about the normal; d and narrow are their
+    `directors` and `narrowness`, along the former the mid-surface is at the offset; m (elements, 3)
+    are vectors in the shell along axis 1 of the material.
     """
     if len(X) > AT_ONCE:
+        same = material, thickness, offset, varied
         pieces = [
-            shell(X[some], d[some], narrow[some], m[some], material, thickness, offset, varied)
-            for some in (slice(k, k + AT_ONCE) for k in range(0, len(X), AT_ONCE))
+            shell(*(x[k : k + AT_ONCE] for x in (X, d, narrow, m)), *same)
+            for k in range(0, len(X), AT_ONCE)
         ]
         K, M = (
             {k: np.concatenate([x[k] for x in each]) for k in each[0]}
