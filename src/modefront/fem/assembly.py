@@ -200,9 +200,8 @@ def sensor_places(
 ) -> SensorPlaces:
     """Return nodes and directions of sensors, coordinates among the nodes `used`; note faults."""
     tree = scipy.spatial.KDTree(X[used]) if used.size else None
-    rows, nodes = np.zeros((len(sensors), 6)), np.zeros(len(sensors), dtype=np.int64)
+    nodes = np.zeros(len(sensors), dtype=np.int64)
     for n, sensor in enumerate(sensors):
-        rows[n] = unit_vector(sensor.direction)
         with noted(faults, f"sensor {sensor.name!r}"):
             if isinstance(sensor.at, int):
                 nodes[n] = node_list(sensor.at, len(X))[0]
@@ -218,7 +217,7 @@ def sensor_places(
                 expected = f"a node within {tolerance:.3g} of {tuple(point.tolist())}"
                 near = f"node {node} at {tuple(X[node].tolist())}, {distance:.3g} away"
                 raise wrong("", expected, f"none; the nearest is {near}")
-    return nodes, rows
+    return nodes, np.reshape([unit_vector(x.direction) for x in sensors], (-1, 6))
 
 
 def selection_matrix(
