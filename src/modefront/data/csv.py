@@ -182,16 +182,13 @@ def number(text: str) -> float:
     return float(text) if NUMBER.fullmatch(text) else math.inf if text else math.nan
 
 
-def read_covariance(
-    path: Path, data: ModalData, columns: Mapping[str, str] | None = None
-) -> ModalData:
+def read_covariance(path: Path, data: ModalData, columns: Mapping[str, str]) -> ModalData:
     """Return modal data with the covariances of shapes of a CSV file.
 
     A row is a component of a shape: columns ``set, mode, sensor``, then one a sensor with the
     covariances. ``columns`` maps sensors of the file to those of the data; ``set`` may be left out
     for one set. Shapes without rows keep their deviations. Raises InputError with what is wrong.
     """
-    columns = columns or {}
     known = {"set": data.sets, "mode": tuple(map(str, data.modes)), SENSOR: data.sensors}
     C = np.full((*data.shape.shape, len(data.sensors)), np.nan)
     table = read_table(path, "a file of covariances of shapes")
@@ -459,8 +456,7 @@ def _function(path: Path, columns: Mapping[str, Floats], form: tuple[str, str]) 
         unit = "degrees" if degrees else "radians"
         expected = f"a phase in {unit} (NAME_deg is in degrees, NAME_rad in radians)"
         raise wrong(path, expected, f"{most:g} at most", places[1])
-    phase = np.radians(second) if degrees else second
-    return np.asarray(first * np.exp(1j * phase))
+    return np.asarray(first * np.exp(1j * (np.radians(second) if degrees else second)))
 
 
 def _forms(header: Sequence[str]) -> tuple[dict[str, tuple[str, str]], list[Said]]:

@@ -215,9 +215,7 @@ class Contents:
     used: frozenset[str] = frozenset()  # what of the map of columns of a set names one of the file
 
 
-def averaged_blows(
-    blows: Sequence[Blow], windows: Windows
-) -> tuple[list[Channel], list[str], float]:
+def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], list[str], float]:
     """Return the functions of all references, warnings, and the decay of the window in 1/s.
 
     Warnings are on blows that are left out, and on what has not died out. Raises InputError where

@@ -13,7 +13,7 @@ import numpy as np
 from modefront import options as opt
 from modefront._typing import Floats
 from modefront.data.csv import COLUMNS, read_numbers, read_test_csv, renamed
-from modefront.data.impact import EVEN, TIME, Blow, Windows, averaged_blows
+from modefront.data.impact import EVEN, TIME, Blow, Windows, averaged
 from modefront.data.responses import EXPECTED, ORDERS, Channel, DataSet, assemble
 from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import is_universal, read_functions, read_uff
@@ -346,7 +346,7 @@ def _data_set(root: opt.Table, known: SetFiles) -> DataSet:
     refuse(root.faults)
     warnings, decay = list[str](), known.decay
     if blows:
-        channels, warnings, decay = averaged_blows(blows, known.windows or Windows())
+        channels, warnings, decay = averaged(blows, known.windows or Windows())
     responses = {channel.response for channel in channels}
     references = {channel.reference for channel in channels}
     names, turned = known.channels, len(references) > len(responses) == 1

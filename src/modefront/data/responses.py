@@ -201,9 +201,7 @@ def assemble(
             H[b, j, i] = channel.H
             for part, values in zip(known, (channel.coherence, channel.variance), strict=True):
                 part[j, i] = part[j, i] if values is None else values
-    coherence, variance = (
-        part if blows == 1 and np.isfinite(part).any() else None for part in known
-    )
+    coherence, variance = (x if blows == 1 and np.isfinite(x).any() else None for x in known)
     dead = (np.nan_to_num(H) == np.nan_to_num(H[..., :1])).all(axis=(0, 3))
     H[:, dead] = np.nan
     # Where they are turned, each point of the hammer, now a response, has noise of its own, as has

@@ -323,16 +323,11 @@ NAMES = tuple(AXES.values())  # directions in the order of the components
 class NodalModes:
     """Modes at the nodes of a test."""
 
-    sets: tuple[str, ...]  # sets, modes: names of the data sets, numbers of the modes
-    modes: tuple[int, ...]
+    data: ModalData  # what they have without sensors
     nodes: Ints  # (nodes,) their numbers
     position: Floats  # (nodes, 3) coordinates; NaN where the file has none
     axes: Floats  # (nodes, 3, 3) axes of the components, in rows; NaN where they are not told
-    frequency: Floats  # frequency, damping: (sets, modes) in Hz, and ratios; NaN where none
-    damping: Floats
-    # (sets, modes, nodes, 6) components along X, Y, Z, RX, RY and RZ; NaN if not measured
-    shape: Floats
-    pairs: tuple[tuple[int, int], ...] = ()  # numbers of modes of one frequency
+    shape: Floats  # (sets, modes, nodes, 6) along X, Y, Z, RX, RY and RZ; NaN if not measured
 
     def local(self, node: int, direction: Floats) -> Floats:
         """Return a direction (6,) of space along the axes of a node, by position."""
@@ -357,11 +352,8 @@ class NodalModes:
     def at(self, sensors: Mapping[str, tuple[int, Floats]]) -> ModalData:
         """Return the modal data of sensors, each a position among the nodes and a vector (6,)."""
         shape = np.stack([self.along(*place) for place in sensors.values()], axis=-1)
-        nothing = np.full(shape.shape, np.nan)
-        return ModalData(
-            *(self.sets, self.modes, tuple(sensors), self.frequency, self.damping, shape),
-            *(nothing[..., 0], nothing, self.pairs),
-        )
+        std = np.full(shape.shape, np.nan)
+        return replace(self.data, sensors=tuple(sensors), shape=shape, shape_std=std)
 
     def place(self, name: str) -> tuple[int, Floats] | None:
         """Return the node, by position, and direction (6,) of a name, ``-3X``; None for others."""
@@ -404,19 +396,16 @@ def _integers(line: str, count: int) -> list[int]:
 
 
 class _Mode(NamedTuple):
-    """One dataset 55: its data set (empty if not given), number, values, and place in the file.
+    """One dataset 55."""
 
-    ``other`` is the number of the other mode of a pair, 0 for none.
-    """
-
-    set: str
+    set: str  # data set, empty if not given
     number: int
     frequency: float
     damping: float
     nodes: Ints
     shape: Floats
-    place: str
-    other: int
+    place: str  # in the file
+    other: int  # number of the other mode of a pair, 0 for none
 
 
 def _mode(block: Block) -> list[_Mode]:
@@ -546,10 +535,10 @@ def _assembled(
     for row in rows if known else ():
         _check_nodes(file, row, np.intersect1d(row.nodes, known))
     pairs = {(number, row.other) for (_, number), row in placed.items() if number < row.other}
-    return NodalModes(
-        *(sets, modes, nodes, places, axes, frequency, damping, shape),
-        tuple(sorted(pair for pair in pairs if pair[1] in modes)),
-    )
+    pairs = {pair for pair in pairs if pair[1] in modes}
+    none, of_none = np.full(frequency.shape, np.nan), np.zeros((*frequency.shape, 0))
+    known_of = sets, modes, (), frequency, damping, of_none, none, of_none, tuple(sorted(pairs))
+    return NodalModes(ModalData(*known_of), nodes, places, axes, shape)
 
 
 def _check_nodes(file: Path, row: _Mode, nodes: Ints) -> None:

@@ -81,7 +81,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     exists = _existing(X, blocks, following)
     held = np.zeros_like(exists)
     following += hold(X, structure.supports, held, exists, faults)
-    places = sensor_places(X, structure.sensors, np.flatnonzero(exists.any(1)), faults)
+    places = located(X, structure.sensors, np.flatnonzero(exists.any(1)), faults)
     forces = []
     for load in structure.loads:
         with noted(faults, f"load {load.name!r}"):
@@ -92,7 +92,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     with noted(faults):
         check_mechanisms(X, blocks, following, held, exists, floating)
     with noted(faults):
-        selection = selection_matrix(structure.sensors, places, dofs)
+        selection = selection_of(structure.sensors, places, dofs)
     refuse(faults)
     if len(dofs.free) == 0:
         raise wrong("structure", "at least one degree of freedom that is free", "none")
@@ -195,9 +195,7 @@ class _Terms:
         return sparse_affine(terms, Monomials(exponents), self.T.shape[1])
 
 
-def sensor_places(
-    X: Floats, sensors: Sequence[Sensor], used: Ints, faults: list[Fault]
-) -> SensorPlaces:
+def located(X: Floats, sensors: Sequence[Sensor], used: Ints, faults: list[Fault]) -> SensorPlaces:
     """Return nodes and directions of sensors, coordinates among the nodes `used`; note faults."""
     tree = scipy.spatial.KDTree(X[used]) if used.size else None
     nodes = np.zeros(len(sensors), dtype=np.int64)
@@ -220,9 +218,7 @@ def sensor_places(
     return nodes, np.reshape([unit_vector(x.direction) for x in sensors], (-1, 6))
 
 
-def selection_matrix(
-    sensors: Sequence[Sensor], places: SensorPlaces, dofs: Dofs
-) -> sparse.csr_array:
+def selection_of(sensors: Sequence[Sensor], places: SensorPlaces, dofs: Dofs) -> sparse.csr_array:
     """Return L, CSR (sensors, free DOFs), with y = L q; refuse sensors of what cannot move.
 
     A sensor at node n along the unit vector a measures a . u_n = a . (T q)_n: one on a slave of a

@@ -76,8 +76,7 @@ def _beams(X: Floats, group: members.Beams) -> Block:
             expected = "a vector in the plane of the beam's axis and its local y"
             found = "nothing, and the section is not the same in y and z"
             raise wrong("orientation", expected, found)
-        upright = np.abs(axis[:, 2:]) > 0.9
-        orientation = np.where(upright, np.eye(3)[0], np.eye(3)[2])
+        orientation = np.where(np.abs(axis[:, 2:]) > 0.9, np.eye(3)[0], np.eye(3)[2])
     else:
         v = check.unit_vector(group.orientation)[:3]
         orientation = np.broadcast_to(v, axis.shape)

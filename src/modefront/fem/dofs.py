@@ -94,19 +94,16 @@ def _coupling(X: Floats, coupling: Coupling) -> Followers:
     return _followers(X, node, of[None], factors, directions)
 
 
-def _followers(
-    X: Floats, slaves: Ints, masters: Ints, weight: Floats, directions: Sequence[int]
-) -> Followers:
+def _followers(X: Floats, slave: Ints, masters: Ints, weight: Floats, axes: list[int]) -> Followers:
     """Return the rows of the given directions of slaves (slaves,).
 
     They follow nodes ``masters`` (slaves, k) by factors (slaves, 6, k, 6) on their DOFs.
     """
     count = len(masters)
-    weight = weight[:, directions].reshape(count * len(directions), -1)
     columns = (6 * masters[:, :, None] + np.arange(6)).reshape(count, -1)
-    columns = np.repeat(columns, len(directions), axis=0)
-    rows = sparse_rows(weight, columns, 6 * len(X))
-    return Followers((6 * slaves[:, None] + np.array(directions)).ravel(), rows)
+    columns, weight = np.repeat(columns, len(axes), axis=0), weight[:, axes]
+    rows = sparse_rows(weight.reshape(count * len(axes), -1), columns, 6 * len(X))
+    return Followers((6 * slave[:, None] + np.array(axes)).ravel(), rows)
 
 
 def rigid_motion(arms: Floats) -> Floats:

@@ -50,10 +50,7 @@ MEMORY, PER_BYTE = 2 * 10**9, 40
 
 READABLE = "a mesh that meshio can read"
 
-REFERRING = (
-    *(".xdmf", ".xmf", ".h5m", ".cgns", ".hmf", ".exo", ".e", ".ex2"),
-    *(".ele", ".node", ".xml"),
-)
+LINKING = (".xdmf", ".xmf", ".h5m", ".cgns", ".hmf", ".exo", ".e", ".ex2", ".ele", ".node", ".xml")
 """Endings of formats that are several files, or keep values in HDF5, which may refer to others."""
 
 COMMANDS = (".inp", ".bdf", ".nas", ".fem", ".dat", ".key", ".cdb")
@@ -122,8 +119,7 @@ def read_mesh(path: str | Path) -> Mesh:
     path = Path(path)
     if importlib.util.find_spec("meshio") is None:
         raise wrong(path, "meshio for meshes (`pip install modefront[mesh]`)", "no such package")
-    size = file_size(path, "a mesh", MOST_DATA)
-    memory = min(available_memory(), MEMORY + PER_BYTE * size)
+    memory = min(available_memory(), MEMORY + PER_BYTE * file_size(path, "a mesh", MOST_DATA))
     arrays, parts = isolated(f"{__name__}:read_with_meshio", path, READABLE, memory=memory)
     points = arrays.pop("points")
     if points.ndim != 2 or not 1 <= points.shape[1] <= 3:
@@ -137,7 +133,7 @@ def read_mesh(path: str | Path) -> Mesh:
 def refers_to(path: Path) -> str:
     """Return in words what a mesh file takes from other files; nothing where it takes nothing."""
     suffix = path.suffix.lower()
-    if suffix in REFERRING:
+    if suffix in LINKING:
         return f"the format {suffix}, which keeps values in other files"
     if suffix in COMMANDS:
         with path.open("rb") as stream:

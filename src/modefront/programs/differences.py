@@ -182,10 +182,8 @@ class Differences:
             return wrong(label, expected, f"other changes of the {quantity}, at {place}")
         names, first = " and ".join(f"'{name}'" for name in guilty), guilty[0]
         functions = "*".join(guilty) if len(guilty) > 1 else f"{first},{first}^3"
-        expected = (
-            f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that are "
-        )
-        expected += f"declared, as in --function {first}={functions}, with as many runs)"
+        expected = f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that "
+        expected += f"are declared, as in --function {first}={functions}, with as many runs)"
         found = f"a {quantity} that differs by {np.abs(E.data).max():.2g} of its change at "
         return wrong(label, expected, found + self._changed(values))
 
@@ -194,10 +192,8 @@ def _share(E: Matrix, terms: Terms, quantity: Quantity, names: Sequence[str]) ->
     """Return the share of the squares of E within the entries of the terms of parameters."""
     columns = [terms.parameters.index(name) for name in names]
     acting = terms.coefficients.exponents[:, columns].any(axis=1)
-    matrices = [
-        x.matrices.get(quantity) for x, acts in zip(terms.terms, acting, strict=True) if acts
-    ]
-    patterns = (abs(A).sign() for A in matrices if A is not None)
+    found = [x.matrices.get(quantity) for x, acts in zip(terms.terms, acting, strict=True) if acts]
+    patterns = (abs(A).sign() for A in found if A is not None)
     inside = E.multiply(sum(patterns, scipy.sparse.csr_array(E.shape)).sign()).tocsr()
     return float((inside.data**2).sum() / (E.data**2).sum())
 
@@ -320,8 +316,7 @@ def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]
         singular = np.linalg.svd(blocks, compute_uv=False)
         good = singular[:, -1] > ACCUMULATED * singular[:, 0]
         done[members[good]] = True
-        places = row[good].ravel(), column[good].ravel()
-        triplets = np.linalg.inv(blocks[good]).ravel(), places
+        triplets = np.linalg.inv(blocks[good]).ravel(), (row[good].ravel(), column[good].ravel())
         inverse = inverse + scipy.sparse.csr_array(triplets, shape=inner.shape)
     others = np.ones(A.shape[0])
     others[internal[done]] = 0.0

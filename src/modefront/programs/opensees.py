@@ -41,8 +41,7 @@ def read(path: Path, options: base.JobOptions) -> base.Listed:
     kinds = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
     known = ((kinds[len(row)], row) for row in members.values() if len(row) in kinds)
     placed = {n: np.array([*x, 0.0, 0.0, 0.0][:3]) for n, x in points.items()}
-    mesh = base.mesh_of(placed, known)
-    return base.Listed((files[0], files[1]), entries, dofs, mesh=mesh)
+    return base.Listed((files[0], files[1]), entries, dofs, mesh=base.mesh_of(placed, known))
 
 
 def _rows(path: Path, form: str, number: type) -> dict[int, list[Any]]:

@@ -85,17 +85,13 @@ def narrowness(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
         own.append(((length / areas(X[each])[:, None]) ** 2).ravel())
     pairs = np.sort(np.concatenate(ends), axis=1)
     _, side = np.unique(pairs @ [len(X), 1], return_inverse=True)
-    mean = np.bincount(side, np.concatenate(own)) / np.bincount(side)
-    return _by_block(mean[side], cells)
+    return _by_block((np.bincount(side, np.concatenate(own)) / np.bincount(side))[side], cells)
 
 
 def _by_block(values: Floats, cells: Sequence[Ints]) -> list[Floats]:
     """Return values (corners of all blocks, ...) as arrays (elements, corners, ...)."""
     parts = np.split(values, np.cumsum([each.size for each in cells])[:-1])
-    return [
-        part.reshape(*each.shape, *values.shape[1:])
-        for part, each in zip(parts, cells, strict=True)
-    ]
+    return [x.reshape(*each.shape, *values.shape[1:]) for x, each in zip(parts, cells, strict=True)]
 
 
 # 8 arguments: what elements have, and what they share with others.
@@ -188,9 +184,7 @@ def centre_axes(x: Floats) -> Floats:
     return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
 
 
-def shell_stresses(
-    X: Floats, r: Floats, m: Floats, material: common.Ply, t: float
-) -> common.Stresses:
+def shell_stresses(X: Floats, r: Floats, m: Floats, ply: common.Ply, t: float) -> common.Stresses:
     """Return the stresses of shells of thickness t with nodes X (elements, nodes, 3).
 
     r are offsets of the mid-surface from them, and m vectors (elements, 3) in the shell along axis
@@ -200,5 +194,5 @@ def shell_stresses(
     R = centre_axes(X + r)[:, :2]
     x = (X + r) @ np.swapaxes(R, 1, 2)
     plane = np.array([[0, 2], [2, 1]])
-    D = t * material.turned((R @ m[:, :, None])[..., 0])[:, plane[:, :, None, None], plane]
+    D = t * ply.turned((R @ m[:, :, None])[..., 0])[:, plane[:, :, None, None], plane]
     return common.Stresses(x, R, D, common.attachment(r)[:, :, :3], cell, rule)
