@@ -106,8 +106,8 @@ def write_netcdf(data: Dataset, stream: IO[bytes]) -> None:
 def contents(path: Path) -> tuple[dict[str, Any], list[Any]]:
     """Return the values of all variables of a netCDF file in their order, and what belongs to them.
 
-    That is the name, dimensions and attributes of each variable, and the attributes of the file.
-    Raises ValueError where the file refers to others.
+    That is the name, dimensions and attributes of each, and those of the file. Raises ValueError
+    where the file refers to others.
     """
     arrays: dict[str, Any] = {}
     named: list[Any] = []

@@ -183,11 +183,10 @@ def number(text: str) -> float:
 
 
 def read_covariance(path: Path, data: ModalData, columns: Mapping[str, str]) -> ModalData:
-    """Return modal data with the covariances of shapes of a CSV file.
+    """Return modal data with the covariances of shapes of a CSV file; raises InputError.
 
-    A row is a component of a shape: columns ``set, mode, sensor``, then one a sensor with the
-    covariances. ``columns`` maps sensors of the file to those of the data; ``set`` may be left out
-    for one set. Shapes without rows keep their deviations. Raises InputError with what is wrong.
+    A row is a component of a shape: columns ``set, mode, sensor``, then one a sensor; ``columns``
+    maps them to those of the data; ``set`` may be left out for one set.
     """
     known = {"set": data.sets, "mode": tuple(map(str, data.modes)), SENSOR: data.sensors}
     C = np.full((*data.shape.shape, len(data.sensors)), np.nan)
@@ -402,8 +401,8 @@ LISTED = 5  # faults that are listed of one file
 def read_test_csv(path: Path, columns: Mapping[str, str] | None = None) -> Contents:
     """Return the functions or the blow of one file, which does not say their reference.
 
-    ``columns`` maps names of the file to those above: of a column, or of a response without the
-    endings of its columns. Raises InputError with what is wrong.
+    ``columns`` maps names of the file, with or without the endings of columns of a response.
+    Raises InputError with what is wrong.
     """
     own, values = read_numbers(path, "a file of frequency response functions or records")
     endings = (*dict.fromkeys(end for pair in PAIRS for end in pair), COHERENCE)

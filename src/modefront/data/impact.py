@@ -218,8 +218,7 @@ class Contents:
 def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], list[str], float]:
     """Return the functions of all references, warnings, and the decay of the window in 1/s.
 
-    Warnings are on blows that are left out, and on what has not died out. Raises InputError where
-    records do not fit, or no blow of a reference is left.
+    Raises InputError where records do not fit, or no blow of a reference is left.
     """
     time, faults = blows[0].time, list[Fault]()
     for blow in blows:

@@ -80,10 +80,7 @@ class Block:
 def _decoded(
     path: Path, what: str, needed: int, readers: Mapping[int, Callable[[Block], Sequence[Any]]]
 ) -> dict[int, list[Any]]:
-    """Return what readers return for the datasets of their numbers, of which one is needed.
-
-    Raises InputError for broken ones, of which a reader raises a ValueError or the like.
-    """
+    """Return what readers return for datasets of their numbers; refuse broken ones, and none."""
     known = blocks(read_text_bytes(path, what, MOST_DATA), path)
     numbers = list(dict.fromkeys(block.number for block in known))
     if needed not in numbers:
@@ -111,10 +108,9 @@ def read_functions(path: Path) -> list[Function]:
 
 
 def read_uff(path: Path) -> Contents:
-    """Return the frequency response functions of a universal file, with their coherence.
+    """Return the functions of a universal file with their coherence, or else the records of blows.
 
-    Where it has none, the records of blows: of the force and of the responses in time. Raises
-    InputError where the file holds neither, is cut off or cannot be decoded.
+    Raises InputError where the file holds neither, is cut off or cannot be decoded.
     """
     functions = read_functions(path)
     kinds = {kind for kind, *_ in functions}

@@ -95,10 +95,7 @@ def _coupling(X: Floats, coupling: Coupling) -> Followers:
 
 
 def _followers(X: Floats, slave: Ints, masters: Ints, weight: Floats, axes: list[int]) -> Followers:
-    """Return the rows of the given directions of slaves (slaves,).
-
-    They follow nodes ``masters`` (slaves, k) by factors (slaves, 6, k, 6) on their DOFs.
-    """
+    """Return rows of axes of slaves (slaves,) by factors (slaves, 6, k, 6) on masters (slaves, k)."""
     count = len(masters)
     columns = (6 * masters[:, :, None] + np.arange(6)).reshape(count, -1)
     columns, weight = np.repeat(columns, len(axes), axis=0), weight[:, axes]

@@ -56,10 +56,7 @@ def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Cha
 
 
 def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] | None:
-    """Return the factor of all numbers that a run changes, and a line of it, if it is another one.
-
-    None where some change by the given factor, by different ones, or something else changes.
-    """
+    """Return the factor of all numbers that a run changes, and a line of it, if it is another."""
     factors: dict[float, int] = {}
     for _, number, old, pairs in _different_lines(nominal, run):
         if old.lstrip().startswith(("**", "$", "!", "#")):
@@ -99,8 +96,8 @@ def text_of(deck: Path) -> str:
 def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
     """Write the deck of a study with updated values: that which its folder keeps, or the job's own.
 
-    It is left out where a value of it is no parameter of the model, and where it is not there with
-    the lines that were imported: what was not written, and why, is returned, else nothing.
+    It is left out where one is no parameter, and where it is not there as it was imported: what
+    was not written, and why, is returned, else nothing.
     """
     changes = read_changes(study / CHANGES) if (study / CHANGES).is_file() else []
     decks = [study / f"{beginning}{each.file}" for each in changes[:1] for beginning in (KEPT, "")]

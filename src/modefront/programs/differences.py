@@ -65,10 +65,9 @@ class Terms:
 
 
 class Differences:
-    """Matrices of a nominal run, and the differences of other runs from it.
+    """Matrices of a nominal run, and the differences of other runs from it, added one by one.
 
-    Runs are added one after the other, so that two of them are in memory at a time. The names of
-    the terms that a matrix may have are given for each quantity.
+    The names of the terms that a matrix may have are given for each quantity.
     """
 
     def __init__(
@@ -241,10 +240,7 @@ def _with(entries: scipy.sparse.coo_array, chosen: Bools) -> Matrix:
 
 
 def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int, int | None]:
-    """Return a term with the rank that it has above the rounding, its size, and this rank.
-
-    None is returned for the rank of a term of many degrees of freedom, which is left as it is.
-    """
+    """Return a term of its rank above the rounding, its size and this rank, None for large ones."""
     dofs = np.unique(np.concatenate(term.nonzero()))
     if dofs.size == 0 or dofs.size > 60:  # decomposing many takes long
         return term, dofs.size, None if dofs.size else 0

@@ -280,10 +280,7 @@ def read_bulk(path: Path) -> Bulk:
 
 
 def _cards(text: str, first: int) -> list[tuple[int, list[str]]]:
-    """Return line and fields of every entry, those of lines that continue it behind them.
-
-    The text begins in the line ``first``; empty fields follow on the last one.
-    """
+    """Return the line where each entry begins, and its fields with empty ones behind the last."""
     cards: list[tuple[int, list[str]]] = []
     for number, raw in enumerate(text.splitlines(), start=first):
         line = raw.partition("$")[0].rstrip()

@@ -143,9 +143,8 @@ def _strings(matrix: _Columns, body: Ints) -> Ints:
 def _text(lines: Iterator[bytes]) -> Iterator[tuple[str, Op4Matrix]]:
     """Yield the matrices of a text.
 
-    Lines of values are those with a point, and headers of strings are shorter than those of
-    columns. Headers count words: of a double either two, or one. Those of columns count the
-    headers of strings, or not.
+    Lines of values have a point, headers of strings are shorter than those of columns. Headers
+    count words: of a double two, or one. Those of columns count the headers of strings, or not.
     """
     for head in map(bytes.rstrip, lines):
         if not head:

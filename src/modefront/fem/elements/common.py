@@ -106,7 +106,7 @@ class Stresses:
     x: Floats  # nodes of the mid-surface (elements, nodes, dim) in the axes R
     R: Floats  # axes (elements, dim, 3)
     D: Floats  # stresses of gradients (elements, dim, dim, dim, dim)
-    P: Floats | None  # displacements by the DOFs (elements, nodes, 3, n); None where they are these
+    P: Floats  # displacements of nodes by the DOFs (elements, nodes, 3, n), or the same for all
     cell: Cell  # cell, rule: shape functions and quadrature
     rule: Rule
 
@@ -123,21 +123,16 @@ class Stresses:
         g, volume = self._centre()
         S = strain * np.trace(self.D, axis1=3, axis2=4)
         f = volume[:, None, None] * np.swapaxes(g, 1, 2) @ S @ self.R
-        if self.P is None:
-            return np.asarray(f.reshape(len(f), -1))
         return np.asarray(np.einsum("enj,enjk->ek", f, self.P))
 
     def stiffness(self, q: Floats, strain: float) -> Floats:
         """Return K_G (elements, n, n) of displacements q (elements, n) and a free strain."""
         count, nodes, dim = self.x.shape
-        P = self.P
-        u = q.reshape(count, nodes, 3) if P is None else np.einsum("enjk,ek->enj", P, q)
+        u = np.einsum("enjk,ek->enj", self.P, q)
         slopes = self._centre()[0] @ u @ np.swapaxes(self.R, 1, 2) - strain * np.eye(dim)
         S = np.einsum("eabcd,ecd->eab", self.D, slopes)
         xi, w = self.rule
         g, det = gradients(self.x, self.cell.shape(xi)[1])
         K = np.einsum("eg,egan,eab,egbm->enm", det * w, g, S, g, optimize=True)
-        if P is None:
-            return symmetric(np.einsum("enm,ij->enimj", K, np.eye(3)).reshape(count, 3 * nodes, -1))
-        right = (K @ P.reshape(count, nodes, -1)).reshape(count, 3 * nodes, -1)
-        return symmetric(np.swapaxes(P.reshape(count, 3 * nodes, -1), 1, 2) @ right)
+        right = (K @ self.P.reshape(len(self.P), nodes, -1)).reshape(count, 3 * nodes, -1)
+        return symmetric(np.swapaxes(self.P.reshape(len(self.P), 3 * nodes, -1), 1, 2) @ right)

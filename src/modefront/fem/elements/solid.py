@@ -80,5 +80,6 @@ def solid(X: Floats, rho: float, C: Floats) -> common.Matrices:
 
 def solid_stresses(X: Floats, C: Floats) -> common.Stresses:
     """Return the stresses of solids X (elements, nodes, 3) of the elasticity C."""
-    kind = SOLIDS[X.shape[1]]
-    return common.Stresses(X, np.eye(3)[None], C[None], None, kind.cell, kind.stiffness)
+    kind, nodes = SOLIDS[X.shape[1]], X.shape[1]
+    P = np.eye(3 * nodes).reshape(1, nodes, 3, -1)
+    return common.Stresses(X, np.eye(3)[None], C[None], P, kind.cell, kind.stiffness)
