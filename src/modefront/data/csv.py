@@ -1,9 +1,7 @@
 """Tables in CSV: modal data, frequency response functions, and the records of blows.
 
-``docs/study-file.md`` and ``docs/identification.md`` describe them. Commas, semicolons or tabs
-separate the columns, whichever the header has most of, or as a line ``sep=;`` before it says. Where
-they are no commas, numbers may have decimal commas, as spreadsheets write them. Empty columns
-without names at the end are left out.
+``docs/study-file.md`` and ``docs/identification.md`` describe them. Separators are those that the
+header has most of, or as a line ``sep=;`` before it says.
 """
 
 import csv

@@ -1,13 +1,8 @@
-r"""Universal files: functions or records of blows in dataset 58, modes of a test in dataset 55.
+"""Universal files: functions or records of blows in dataset 58, modes of a test in dataset 55.
 
 A dataset stands between two lines with -1; what it declares is compared with what it holds.
-``docs/study-file.md`` says how modes are read; of a complex one with the eigenvalue
-:math:`\lambda`,
-
-.. math:: f = |\lambda| / 2 \pi, \quad \zeta = -\operatorname{Re} \lambda / |\lambda| .
-
-``pair with mode NUMBER`` at the end of one of the first lines of a dataset 55 says that both shapes
-are a basis of a plane.
+``docs/study-file.md`` says how modes are read. ``pair with mode NUMBER`` at the end of one of the
+first lines of a dataset 55 says that both shapes are a basis of a plane.
 
 Format: Structural Dynamics Research Laboratory, University of Cincinnati, *Universal File
 Formats*, datasets 15, 55, 58, 58b, 2411 and 2420.

@@ -1,8 +1,7 @@
 r"""Checks of the parts of a structure: shapes, ranges, names, volumes.
 
-Each message names the place, the expected and the found value. Volumes and areas are judged by
-det J at the corners of the elements, relative to the element's size. Limits are shapes from which
-on an engineer should not trust a mesh; ``benchmarks/elements.py`` measures the errors to expect.
+Volumes and areas are judged by det J at the corners, relative to the element's size. Limits are
+shapes from which on an engineer should not trust a mesh; ``benchmarks/elements.py`` measures them.
 """
 
 from collections.abc import Iterator

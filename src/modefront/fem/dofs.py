@@ -95,7 +95,7 @@ def _coupling(X: Floats, coupling: Coupling) -> Followers:
 
 
 def _followers(X: Floats, slave: Ints, masters: Ints, weight: Floats, axes: list[int]) -> Followers:
-    """Return rows of axes of slaves (slaves,) by factors (slaves, 6, k, 6) on masters (slaves, k)."""
+    """Return rows of axes of slaves (slaves,) by factors (slaves, 6, k, 6) on their masters."""
     count = len(masters)
     columns = (6 * masters[:, :, None] + np.arange(6)).reshape(count, -1)
     columns, weight = np.repeat(columns, len(axes), axis=0), weight[:, axes]

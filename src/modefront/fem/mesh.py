@@ -168,10 +168,9 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
         with (
             contextlib.redirect_stderr(output),
             contextlib.redirect_stdout(output),
-            warnings.catch_warnings(),
+            warnings.catch_warnings(action="error", category=DeprecationWarning),  # of a cut text
             mock.patch.object(np, "fromfile", _from_file),
         ):
-            warnings.simplefilter("error", DeprecationWarning)  # NumPy's, of a text that is cut
             if path.suffix.lower() == ".msh":
                 _check_sections(path.read_bytes())
             raw = meshio.read(path)

@@ -119,10 +119,9 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
 
 def _deck(path: Path) -> Path | None:
     stem = path.with_suffix("") if path.suffix else path
-    for file in (*(stem.with_name(stem.name + x) for x in SUFFIXES), path):
-        if file.suffix.lower() in SUFFIXES and file.is_file() and file.stat().st_size < 2**26:
-            return file
-    return None
+    files = (*(stem.with_name(stem.name + x) for x in SUFFIXES), path)
+    decks = (x for x in files if x.suffix.lower() in SUFFIXES and x.is_file())
+    return next((x for x in decks if x.stat().st_size < 2**26), None)
 
 
 Numbers = list[tuple[tuple[int, int], float, float]]
