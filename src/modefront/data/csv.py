@@ -361,15 +361,11 @@ def _assembled(path: Path, rows: Rows, sensors: tuple[str, ...], pairs: Pairs) -
     places = {name: k for k, name in enumerate(sets)}
     row = [places[name] for name, _ in rows]
     column = np.searchsorted(modes, [mode for _, mode in rows])
-
-    def collect(*names: str) -> Floats:
-        out = np.full((len(sets), len(modes), len(names)), np.nan)
-        known = [[each.get(name, np.nan) for name in names] for _, each in rows.values()]
-        out[row, column] = np.array(known).reshape(len(row), len(names))
-        return out
-
-    f, zeta, f_std = (collect(name)[..., 0] for name in (*QUANTITIES, "frequency" + STD))
-    phi, phi_std = collect(*sensors), collect(*(name + STD for name in sensors))
+    names = (*QUANTITIES, "frequency" + STD, *sensors, *(name + STD for name in sensors))
+    out = np.full((len(sets), len(modes), len(names)), np.nan)
+    out[row, column] = [[each.get(name, np.nan) for name in names] for _, each in rows.values()]
+    f, zeta, f_std = np.moveaxis(out[..., :3], -1, 0).copy()
+    phi, phi_std = (x.copy() for x in np.split(out[..., 3:], 2, axis=-1))
     return ModalData(sets, modes, sensors, f, zeta, phi, f_std, phi_std, pairs)
 
 

@@ -195,7 +195,7 @@ def parts_of_job(path: Path, program: str, *given: str) -> Read:
     options = JobOptions(stiffness, mass, *(Path(file) if file else None for file in files))
     listed: Listed = importlib.import_module(f"modefront.programs.{program}").read(path, options)
     pairs = zip(listed.files, listed.matrices, strict=True)
-    K, M = (whole(file, entries, listed.dofs) for file, entries in pairs)
+    K, M = (whole(*pair, listed.dofs) for pair in pairs)
     table, notes = listed.dofs, list(listed.notes)
     alone = np.flatnonzero((abs(K).sum(axis=0) == 0) & (M.diagonal() != 0))
     if alone.size and not listed.counted:  # a text of the stiffness that is cut off at a line
