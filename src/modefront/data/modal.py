@@ -73,8 +73,8 @@ class ModalData(Shown):
             raise ValueError(f"expected data at each sensor once, found {', '.join(self.sensors)}")
         places = [self.sensors.index(name) if name in self.sensors else -1 for name in sensors]
         more = [(0, 0), (0, 0), (0, 1)]  # a sensor that measured nothing, at the end
-        known = (np.pad(x, more, constant_values=np.nan) for x in (self.shape, self.shape_std))
-        (phi, phi_std), C = (x[..., places] for x in known), self.shape_covariance
+        padded = (np.pad(x, more, constant_values=np.nan) for x in (self.shape, self.shape_std))
+        (phi, phi_std), C = (x[..., places] for x in padded), self.shape_covariance
         if C is not None:
             C = np.pad(C, [*more, (0, 1)], constant_values=np.nan)[..., places, :][..., places]
         return replace(self, sensors=sensors, shape=phi, shape_std=phi_std, shape_covariance=C)

@@ -131,8 +131,7 @@ def shell(
     squares = ((x[:, 2:] - x[:, :-2]) ** 2).sum(2)
     across = squares / areas(x)[:, None] ** 2
     shares = squares**2 / (squares**2).sum(1, keepdims=True)
-    parts: list[list[Rows]] = [[], [], [], [], []]
-    own = common.ply(material)
+    parts, own = list[tuple[Rows, ...]](), common.ply(material)
     for chosen in DIVISIONS[X.shape[1]]:
         corners, odd = list(chosen), chosen[1] % 2
         R = centre_axes(x[:, corners])
@@ -149,11 +148,10 @@ def shell(
             share=shares[:, [odd]] if quadrilateral else 1.0,
             varied=varied,
         )
-        found = membrane(each, t, own), *shear_and_bending(each, t, own), *mass(each)
-        for part, rows in zip(parts, found, strict=True):
-            part.append(rows)
+        parts.append((membrane(each, t, own), *shear_and_bending(each, t, own), *mass(each)))
     stretched, sheared, bent, moved, turned = (
-        products(*(np.concatenate(each, 1) for each in zip(*part, strict=True))) for part in parts
+        products(*(np.concatenate(x, 1) for x in zip(*part, strict=True)))
+        for part in zip(*parts, strict=True)
     )
     K_1, K_3 = t * sheared, t**3 * bent
     M_1, M_3 = material.rho * t * moved, material.rho * t**3 * turned
