@@ -113,11 +113,11 @@ def check_names(structure: Structure) -> None:
         "prestress": {x.name for x in structure.loads}
         | {g.name for g in structure.groups if getattr(g, "force", 0)},
     }
-    named = (*structure.springs, *structure.masses, *structure.loads)
+    own = [s.name for s in structure.springs] + [m.name for m in structure.masses]
     faults = [
         Fault("", f"{what} {x!r}", "a name used once", "it twice")
         for what, names in (
-            ("member", [*has["E"], *(x.name for x in named)]),
+            ("member", [*has["E"], *own, *(x.name for x in structure.loads)]),
             ("sensor", [s.name for s in structure.sensors]),
             ("parameter", [p.name for p in structure.parameters]),
         )

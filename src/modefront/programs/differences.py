@@ -119,15 +119,14 @@ class Differences:
                     rest = rest - term
             if (rest := _above(rest.tocsr(), A, noise)).nnz:
                 base[quantity] = rest
-        used = term_exponents([*terms], self.parameters).any(axis=0)
-        for name, acts in zip(self.parameters, used, strict=True):
-            if not acts:
-                raise wrong(name, "a term of the stiffness or the mass", "zeros")
+        idle = ~term_exponents([*terms], self.parameters).any(axis=0)
+        for name in np.array(self.parameters)[idle][:1]:
+            raise wrong(str(name), "a term of the stiffness or the mass", "zeros")
         found = []
         for name, matrices in terms.items():
             first: Quantity = "stiffness" if "stiffness" in matrices else "mass"
-            _, *known = _reduced(matrices[first], self.nominal.matrices[first], noise)
-            found.append(Term(name, matrices, *known))
+            _, size, rank = _reduced(matrices[first], self.nominal.matrices[first], noise)
+            found.append(Term(name, matrices, size, rank))
         return Terms(self.parameters, Term(BASE, base), tuple(found), self.nominal.dofs)
 
     def _weights(self, quantity: Quantity) -> Floats:
@@ -190,7 +189,7 @@ class Differences:
 def _share(E: Matrix, terms: Terms, quantity: Quantity, names: Sequence[str]) -> float:
     """Return the share of the squares of E within the entries of the terms of parameters."""
     columns = [terms.parameters.index(name) for name in names]
-    acting = terms.coefficients.exponents[:, columns].any(axis=1)
+    acting: Bools = np.asarray(terms.coefficients.exponents[:, columns].any(axis=1))
     found = [x.matrices.get(quantity) for x, acts in zip(terms.terms, acting, strict=True) if acts]
     patterns = (abs(A).sign() for A in found if A is not None)
     inside = E.multiply(sum(patterns, scipy.sparse.csr_array(E.shape)).sign()).tocsr()
@@ -294,7 +293,7 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
         rows = {x: A[kept][:, kept].tocsr() for x, A in both.items()}
         return replace(term, matrices={x: A for x, A in rows.items() if A.nnz})
 
-    dofs = DofTable(*(x[kept] for x in (terms.dofs.node, terms.dofs.direction, terms.dofs.weight)))
+    dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
     base, others = restricted(terms.base), tuple(map(restricted, terms.terms))
     return Terms(terms.parameters, base, others, dofs), int(gone.sum()), int((~gone).sum())
 

@@ -112,11 +112,9 @@ def shell(
     are vectors in the shell along axis 1 of the material.
     """
     if len(X) > AT_ONCE:
+        some = (slice(k, k + AT_ONCE) for k in range(0, len(X), AT_ONCE))
         same = material, thickness, offset, varied
-        pieces = [
-            shell(*(x[k : k + AT_ONCE] for x in (X, d, narrow, m)), *same)
-            for k in range(0, len(X), AT_ONCE)
-        ]
+        pieces = [shell(X[x], d[x], narrow[x], m[x], *same) for x in some]
         K, M = (
             {k: np.concatenate([x[k] for x in each]) for k in each[0]}
             for each in zip(*pieces, strict=True)
