@@ -173,6 +173,7 @@ FILES, SENSORS, REFERENCES = (
 )
 RATE = opt.number("samples per s, above zero", above=0)
 TAU = opt.number("a time constant in s above zero", above=0)
+WINDOW = opt.keys(["exponential"], exponential=TAU)
 CHANNELS = opt.mapping(
     "a table, name = channel", opt.text("node and direction of a channel, such as '1Z'")
 )
@@ -308,13 +309,10 @@ def _set_tables(root: opt.Table, ambient: bool, common: SetFiles) -> list[SetFil
             elif len(references) != len(files):
                 found = f"{len(references)} for {len(files)} files"
                 table.fault("reference", "one reference a file", found)
-            tau = None
             window = table.table("window", "a table { exponential = time constant in s }", None)
-            if window:
-                tau = window.value("exponential", TAU)
-                window.close()
+            tau = (window.read(WINDOW) if window else None) or {"exponential": np.inf}
             given = tuple(references or [""] * len(files))
-            known = replace(known, references=given, decay=1 / tau if tau else 0.0)
+            known = replace(known, references=given, decay=1 / tau["exponential"])
         table.close()
         out.append(known)
     for name in opt.repeated(known.name for known in out):

@@ -92,21 +92,14 @@ def frequency_responses(
 ) -> FrequencyResponses:
     r"""Return frequency response functions from arrays.
 
-    Parameters
-    ----------
-    frequency : (lines,) in Hz
-    H : (references, responses, lines), or (responses, lines) with one reference; or, with one
-        axis more in front, the same of several blows
-    coherence : of the shape of one ``H``: ordinary coherence, from which
+    ``H`` is (references, responses, lines), or (responses, lines) with one reference; or, with one
+    axis more in front, the same of several blows. The ``variance`` of the mean, of the shape of one
+    ``H``, follows from ordinary ``coherence`` where it is not known,
 
-        .. math:: \operatorname{var} H = |H|^2 \frac{1 - \gamma^2}{\gamma^2 n}
+    .. math:: \operatorname{var} H = |H|^2 \frac{1 - \gamma^2}{\gamma^2 n}
 
-        follows (Bendat & Piersol, *Random Data*, 4th ed., 2010, eq. 9.90,
-        doi:10.1002/9781118032428), where n is ``blows``; without it, up to a factor
-    blows : number of blows that were averaged
-    variance : of the shape of ``H``: variance of the mean, where it is known
-
-    Raises ValueError where the arrays do not fit.
+    (Bendat & Piersol, *Random Data*, 4th ed., 2010, eq. 9.90, doi:10.1002/9781118032428), where n
+    is the number of ``blows``; without it, up to a factor. Raises ValueError for other shapes.
     """
     H, scaled = np.asarray(H, complex), False
     H = H[None] if H.ndim == 2 else H
@@ -177,11 +170,10 @@ class DataSet:
 def assemble(
     channels: Sequence[Channel], quantity: str, name: str, turned: bool, decay: float = 0.0
 ) -> DataSet:
-    """Return one data set from its channels.
+    """Return one data set from its channels; raises InputError with everything that is wrong.
 
     ``quantity`` is what the test file says, or empty; ``turned`` makes the points of the hammer
-    the responses, by reciprocity; ``decay`` is that of an exponential window. Raises InputError
-    with everything that is wrong.
+    the responses, by reciprocity; ``decay`` is that of an exponential window.
     """
     quantity = _quantity(channels, quantity)
     if turned:

@@ -213,5 +213,4 @@ MADE: Mapping[type, tuple[str, Callable[[Floats, Any], Block]]] = {
     members.Spring: ("spring", _springs),
     members.Mass: ("mass", _masses),
 }
-"""What messages call the members of each class, and what makes blocks of them; shells, of which
-neighbours share directors, are made before these."""
+"""What messages call members, and what makes blocks of them; shells are made before these."""
