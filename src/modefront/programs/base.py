@@ -118,19 +118,9 @@ class Job(Shown):
     notes: tuple[str, ...] = ()  # what the program did to the model, and what was done about it
 
     @property
-    def size(self) -> int:
-        """Number of degrees of freedom N."""
-        return self.dofs.size
-
-    @property
     def matrices(self) -> Mapping[Quantity, Matrix]:
         """Both matrices by their names."""
         return {"stiffness": self.stiffness, "mass": self.mass}
-
-    @property
-    def labelled(self) -> bool:
-        """Whether the program's files tell nodes and directions; else there are only numbers."""
-        return bool((self.dofs.node > 0).any())
 
 
 @dataclass(frozen=True)

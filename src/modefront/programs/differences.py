@@ -201,21 +201,21 @@ def matching(nominal: Job, job: Job, label: str) -> Ints | slice:
 
     They are matched by node and direction, and those of the same label in their order.
     """
-    tables = nominal.dofs, job.dofs
-    if not (nominal.labelled and job.labelled):
-        if nominal.size != job.size:
-            expected = f"{nominal.size} degrees of freedom, as '{nominal.name}' has"
-            raise wrong(label, expected, job.size)
+    tables, size = (nominal.dofs, job.dofs), nominal.dofs.size
+    if not all((table.node > 0).any() for table in tables):  # there are only numbers
+        if size != job.dofs.size:
+            expected = f"{size} degrees of freedom, as '{nominal.name}' has"
+            raise wrong(label, expected, job.dofs.size)
         return slice(None)
     labels = [np.column_stack([table.node, table.direction]) for table in tables]
     orders = [np.lexsort(each.T[::-1]) for each in labels]
     known = [each[order] for each, order in zip(labels, orders, strict=True)]
     if not np.array_equal(known[0], known[1]):
-        expected = f"the degrees of freedom of '{nominal.name}' ({nominal.size})"
+        expected = f"the degrees of freedom of '{nominal.name}' ({size})"
         before, after = (Counter(map(tuple, labels.tolist())) for labels in known)
         node, direction = min((before - after) or (after - before))
         found = f"{after[node, direction] or 'none'} at node {node} {name_of(direction)}"
-        raise wrong(label, expected, f"{found}, {job.size} in all")
+        raise wrong(label, expected, f"{found}, {job.dofs.size} in all")
     return np.asarray(orders[1][np.argsort(orders[0])])
 
 
