@@ -132,8 +132,8 @@ def hold(
         C = np.concatenate([np.eye(6)[held[node]], *several]) * exists[node]
         for pivot, row in _solved(C):
             if row.any():
-                weight = np.outer(np.eye(6)[pivot], row)[None, :, None]
-                out.append(_followers(X, np.array([node]), np.array([[node]]), weight, [pivot]))
+                weight = sparse_rows(row[None], 6 * node + np.arange(6)[None], 6 * len(X))
+                out.append(Followers(np.array([6 * node + pivot]), weight))
             else:
                 held[node, pivot] = True
     return out

@@ -84,8 +84,7 @@ def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[scipy.sparse.co
         parts.append((node * slots + direction, other * slots + its, value))
     used = np.unique(np.concatenate([np.unique(key) for part in parts for key in part[:2]]))
     order = np.argsort(used < slots, kind="stable")  # nodes made by the program are below 1
-    place = np.empty(used.size, np.intp)
-    place[order] = np.arange(used.size)
+    place = np.argsort(order)
     entries = []
     for row, column, value in parts:
         i, j = (place[np.searchsorted(used, key)] for key in (row, column))
