@@ -33,6 +33,12 @@ PAIR = "pair"
 SEPARATORS = ",;\t"
 
 STD = "_std"
+FREQUENCY, FORCE, COHERENCE = "frequency", "force", "_coherence"
+
+PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))
+"""Endings of the two columns of a function, in each of its forms."""
+
+LISTED = 5  # faults that are listed of one file
 
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
 """Python itself would read more as numbers: 1_000, nan, digits of any script."""
@@ -49,6 +55,7 @@ EXPECTED = "a finite number or an empty field"
 
 Key = tuple[str, int]  # data set and mode
 Rows = dict[Key, tuple[int, dict[str, float]]]  # line of each, and values by column
+Said = tuple[str, str, str]  # a column, what is expected in it, and what was found
 
 
 def is_reserved(name: str, sensors: Collection[str]) -> bool:
@@ -289,9 +296,6 @@ def _lines(path: Path, what: str) -> tuple[list[str], str, int]:
     return lines, max(SEPARATORS, key=text.count), 0
 
 
-Said = tuple[str, str, str]  # a column, what is expected in it, and what was found
-
-
 def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[Said]:
     quantities, counts = (*QUANTITIES, *sensors), Counter(header)
     known = dict.fromkeys((*KEYS, *quantities, PAIR, *(name + STD for name in quantities)))
@@ -382,14 +386,6 @@ def _pairs(table: Table, rows: Rows) -> Pairs:
         expected = "each mode in one pair, the same in all sets"
         raise wrong(table.path, expected, f"mode {twice[0]} in two", f"column {PAIR!r}")
     return tuple(sorted(pairs))
-
-
-FREQUENCY, FORCE, COHERENCE = "frequency", "force", "_coherence"
-
-PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))
-"""Endings of the two columns of a function, in each of its forms."""
-
-LISTED = 5  # faults that are listed of one file
 
 
 def read_test_csv(path: Path, columns: Mapping[str, str] | None = None) -> Contents:

@@ -32,6 +32,8 @@ EXPONENTIAL = Requirement(
     lambda value: np.inf if value == "none" else float(value),
 )
 
+TIME = "time"  # column of a CSV file with records
+EVEN = 1e-3  # relative difference within which steps of time are even: files hold few digits
 SECOND = 0.1  # force of a second hit over that of the first
 SAME = 1e-9  # difference of two samples, over the greatest, that is none: converters have 24 bits
 TAPER = 0.1  # share of the force window over which it falls to zero
@@ -187,10 +189,6 @@ def _clipped(x: Floats) -> bool:
     start, end = edges[::2], edges[1::2]
     leaps = np.maximum(steps[start], steps[end])
     return bool(((end - start >= 3) & (leaps > 2 * least)).any())
-
-
-TIME = "time"  # column of a CSV file with records
-EVEN = 1e-3  # relative difference within which steps of time are even: files hold few digits
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,8 @@ OPENING = re.compile(
 )
 HEADER, RECORD_7 = 11, 6
 """Lines of dataset 58 before its numbers; the one with their kind and number, from 0."""
+Point = tuple[int, int, Floats]  # a node: its number, displacement system and coordinates (3,)
+System = tuple[int, Floats]  # of coordinates: its type, its axes in rows and its origin (4, 3)
 
 
 @dataclass(frozen=True)
@@ -444,10 +446,6 @@ def _mode(block: Block) -> list[_Mode]:
     other = re.search(r"pair with mode (\d{1,9})\s*$", text, re.MULTILINE)
     known = name[1] if name else "", number, frequency, damping
     return [_Mode(*known, np.array(nodes), shape, place, int(other[1]) if other else 0)]
-
-
-Point = tuple[int, int, Floats]  # a node: its number, displacement system and coordinates (3,)
-System = tuple[int, Floats]  # of coordinates: its type, its axes in rows and its origin (4, 3)
 
 
 def _nodes(block: Block) -> list[Point]:

@@ -44,6 +44,8 @@ DIVISIONS: Mapping[str, list[list[Sequence[int]]]] = {
     "quad9": [[(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]],
 }
 """Quadrilaterals and triangles that shells of more nodes are made of."""
+CORNERS = dict(enumerate((2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27), start=1)) | {15: 1, 16: 8}
+"""Nodes of elements by their type in Gmsh's format 2."""
 
 MEMORY, PER_BYTE = 2 * 10**9, 40
 """Memory that reading may take, in bytes, and that for each byte of the file besides."""
@@ -57,6 +59,8 @@ COMMANDS = (".inp", ".bdf", ".nas", ".fem", ".dat", ".key", ".cdb")
 """Endings of formats of commands, one of which may be to read another file."""
 
 INCLUDES = re.compile(rb"\*.*\binput\s*=|\*?\s*include\b", re.IGNORECASE)  # of another file
+SECTION = re.compile(rb"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", re.DOTALL | re.MULTILINE)  # of Gmsh
+FROM_FILE = np.fromfile  # returns fewer numbers than are asked for where a file ends
 
 
 @dataclass(frozen=True)
@@ -146,10 +150,6 @@ def refers_to(path: Path) -> str:
     return ""
 
 
-CORNERS = dict(enumerate((2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27), start=1)) | {15: 1, 16: 8}
-"""Nodes of elements by their type in Gmsh's format 2."""
-
-
 def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return nodes, cells and sets as arrays, and their names; see `modefront.isolated`."""
     from unittest import mock
@@ -190,18 +190,12 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     return arrays, {"blocks": list(blocks), "sets": list(sets)}
 
 
-FROM_FILE = np.fromfile  # returns fewer numbers than are asked for where a file ends
-
-
 def _from_file(file: Any, dtype: Any = float, count: int = -1, *others: Any, **named: Any) -> Any:
     """Return numbers of a file as NumPy does; raises ValueError where it ends before the last."""
     out = FROM_FILE(file, dtype, count, *others, **named)
     if 0 <= count != out.size:
         raise ValueError(f"{count} numbers announced, {out.size} there")
     return out
-
-
-SECTION = re.compile(rb"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", re.DOTALL | re.MULTILINE)  # of Gmsh
 
 
 def _check_sections(content: bytes) -> None:
