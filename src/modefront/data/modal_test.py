@@ -26,6 +26,46 @@ RECORDED = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """Number of differentiations of the displacement in each quantity."""
 
 WHAT = "a file with records in time"
+MOST_MODES = 200  # modes that a test file may ask for
+
+FILES, SENSORS, REFERENCES = (
+    opt.Requirement(
+        words, opt.array(opt.NAME, 1), further=lambda names: all(map(opt.is_name, names))
+    )
+    for words in ("a list of files", "a list of names", "one reference a file")
+)
+RATE = opt.number("samples per s, above zero", above=0)
+TAU = opt.number("a time constant in s above zero", above=0)
+WINDOW = opt.keys(["exponential"], exponential=TAU)
+CHANNELS = opt.mapping(
+    "a table, name = channel", opt.text("node and direction of a channel, such as '1Z'")
+)
+PLACES = opt.mapping(
+    "a table, sensor = place",
+    opt.numbers(
+        "x, y, z and a direction that is not zero, six numbers",
+        opt.array({"type": "number"}, 6, 6),
+        lambda six: any(six[3:]),
+    ),
+)
+MODES = opt.Requirement(
+    "a list of numbers of modes, from 1", opt.array(opt.whole(1, 10**9).schema), tuple
+)
+
+IDENTIFY = opt.keys(
+    (),
+    band=opt.numbers(
+        "a band [low, high] in Hz, 0 <= low < high", opt.array(opt.NOT_NEGATIVE, 2, 2), opt.rising
+    ),
+    modes=opt.Requirement(
+        f"'auto' or a number of modes from 1 to {MOST_MODES}",
+        opt.any_of({"enum": ["auto"]}, opt.whole(1, MOST_MODES).schema),
+        lambda value: None if value == "auto" else value,
+    ),
+    keep=MODES,
+    drop=MODES,
+    seed=opt.numbers("a list of frequencies in Hz", opt.array(opt.NOT_NEGATIVE)),
+)
 
 
 @dataclass(frozen=True)
@@ -161,48 +201,6 @@ def _rate(path: Path, time: Floats) -> float:
         found = f"times off by up to {off:.3g} s, steps of {length / count:.3g} s"
         raise wrong(path, "a time axis of even steps", found, "time")
     return float(f"{count / length:.12g}")  # products of steps and numbers have rounding
-
-
-MOST_MODES = 200  # modes that a test file may ask for
-
-FILES, SENSORS, REFERENCES = (
-    opt.Requirement(
-        words, opt.array(opt.NAME, 1), further=lambda names: all(map(opt.is_name, names))
-    )
-    for words in ("a list of files", "a list of names", "one reference a file")
-)
-RATE = opt.number("samples per s, above zero", above=0)
-TAU = opt.number("a time constant in s above zero", above=0)
-WINDOW = opt.keys(["exponential"], exponential=TAU)
-CHANNELS = opt.mapping(
-    "a table, name = channel", opt.text("node and direction of a channel, such as '1Z'")
-)
-PLACES = opt.mapping(
-    "a table, sensor = place",
-    opt.numbers(
-        "x, y, z and a direction that is not zero, six numbers",
-        opt.array({"type": "number"}, 6, 6),
-        lambda six: any(six[3:]),
-    ),
-)
-MODES = opt.Requirement(
-    "a list of numbers of modes, from 1", opt.array(opt.whole(1, 10**9).schema), tuple
-)
-
-IDENTIFY = opt.keys(
-    (),
-    band=opt.numbers(
-        "a band [low, high] in Hz, 0 <= low < high", opt.array(opt.NOT_NEGATIVE, 2, 2), opt.rising
-    ),
-    modes=opt.Requirement(
-        f"'auto' or a number of modes from 1 to {MOST_MODES}",
-        opt.any_of({"enum": ["auto"]}, opt.whole(1, MOST_MODES).schema),
-        lambda value: None if value == "auto" else value,
-    ),
-    keep=MODES,
-    drop=MODES,
-    seed=opt.numbers("a list of frequencies in Hz", opt.array(opt.NOT_NEGATIVE)),
-)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,13 @@ from modefront._typing import Bools, Complexes, Floats
 from modefront.errors import Fault, refuse
 from modefront.rounding import LARGEST
 
+EXPECTED = f"finite numbers up to {LARGEST:g}"  # what values of functions and records are
+STRAY = 300.0  # ratio of sizes from which on two channels seem to have different units
+
+UNEQUAL = 1.3
+"""Ratio of reciprocal functions from which on their sensors have different units: more than
+calibrations and mounted masses leave."""
+
 ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}
 """Number of differentiations of the displacement in each quantity."""
 
@@ -124,14 +131,6 @@ def frequency_responses(
         None if variance is None else np.asarray(variance, float).reshape(H.shape),
         scaled,
     )
-
-
-EXPECTED = f"finite numbers up to {LARGEST:g}"  # what values of functions and records are
-STRAY = 300.0  # ratio of sizes from which on two channels seem to have different units
-
-UNEQUAL = 1.3
-"""Ratio of reciprocal functions from which on their sensors have different units: more than
-calibrations and mounted masses leave."""
 
 
 @dataclass(frozen=True)

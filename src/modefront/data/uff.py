@@ -39,6 +39,9 @@ QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 """Quantities of the numerator: displacement, velocity, acceleration."""
 
 AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}  # directions by their numbers
+SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")  # ends of names of universal files
+REAL = {2: 1, 5: 2}  # numbers of a value by the type of data
+NAMES = tuple(AXES.values())  # directions in the order of the components
 
 KNOWN = (15, 55, 58, 2411, 2420)
 """Datasets that are read, whose numbers may have blanks before them as no other line has."""
@@ -49,8 +52,12 @@ OPENING = re.compile(
 )
 HEADER, RECORD_7 = 11, 6
 """Lines of dataset 58 before its numbers; the one with their kind and number, from 0."""
+
 Point = tuple[int, int, Floats]  # a node: its number, displacement system and coordinates (3,)
 System = tuple[int, Floats]  # of coordinates: its type, its axes in rows and its origin (4, 3)
+Function = tuple[int, int, Channel]
+"""A dataset 58: its type, quantity of the numerator, and what it holds as a channel. Values have
+the signs of the directions: functions that of both, others that of the response."""
 
 
 @dataclass(frozen=True)
@@ -91,11 +98,6 @@ def _decoded(
         except (ValueError, IndexError, KeyError, OverflowError) as error:
             raise wrong(path, f"a dataset {block.number}", reason(error), block.place) from None
     return out
-
-
-Function = tuple[int, int, Channel]
-"""A dataset 58: its type, quantity of the numerator, and what it holds as a channel. Values have
-the signs of the directions: functions that of both, others that of the response."""
 
 
 def read_functions(path: Path) -> list[Function]:
@@ -305,11 +307,6 @@ def dataset_55(
     for node, row in zip(nodes, rows, strict=True):
         lines += [f"{node:10d}", "".join(f"{x:13.5E}" for x in row)]
     return "\n".join(lines) + "\n"
-
-
-SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")  # ends of names of universal files
-REAL = {2: 1, 5: 2}  # numbers of a value by the type of data
-NAMES = tuple(AXES.values())  # directions in the order of the components
 
 
 @dataclass(frozen=True, eq=False)

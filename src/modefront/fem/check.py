@@ -19,6 +19,15 @@ from modefront.fem.structure import DIRECTIONS, Axes, Direction, Structure
 from modefront.options import repeated
 
 FLAT = 1e-8  # length, area or volume over that of the element's extent that is rounding
+DISTORTED = 0.3  # difference of greatest and least volume at corners of a brick, over the greatest
+CURVED = 10.0  # square of the size over radius and thickness, from which on elements are too coarse
+SMALL = 4.0  # size of shells over their thickness, below which the share of shear changes with it
+OBTUSE = 120.0  # greatest angle in degrees of half of the triangles, from which on they are poor
+
+CORNERS = np.array(
+    [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
+)
+"""Neighbours of each corner of a brick, in the order of a right-handed system."""
 
 
 def check_points(nodes: npt.ArrayLike) -> Floats:
@@ -136,17 +145,6 @@ def check_names(structure: Structure) -> None:
             if name not in known
         ]
     refuse(faults)
-
-
-DISTORTED = 0.3  # difference of greatest and least volume at corners of a brick, over the greatest
-CURVED = 10.0  # square of the size over radius and thickness, from which on elements are too coarse
-SMALL = 4.0  # size of shells over their thickness, below which the share of shear changes with it
-OBTUSE = 120.0  # greatest angle in degrees of half of the triangles, from which on they are poor
-
-CORNERS = np.array(
-    [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
-)
-"""Neighbours of each corner of a brick, in the order of a right-handed system."""
 
 
 def limits_of(structure: Structure, nodes: Floats) -> Iterator[str]:

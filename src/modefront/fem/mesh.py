@@ -44,6 +44,7 @@ DIVISIONS: Mapping[str, list[list[Sequence[int]]]] = {
     "quad9": [[(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]],
 }
 """Quadrilaterals and triangles that shells of more nodes are made of."""
+
 CORNERS = dict(enumerate((2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27), start=1)) | {15: 1, 16: 8}
 """Nodes of elements by their type in Gmsh's format 2."""
 

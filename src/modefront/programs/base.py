@@ -33,6 +33,10 @@ CORNERS: Mapping[str, int] = {
 }
 """Types of cells, as meshio and VTK call them, and their nodes; further nodes are left out."""
 
+Matrix: TypeAlias = scipy.sparse.csr_array
+
+Quantity = Literal["stiffness", "mass"]
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ProgramMesh(Shown):
@@ -98,11 +102,6 @@ def read_mesh(path: Path) -> ProgramMesh:
             return mesh_from({name: file[name] for name in file.files})
     except Exception as error:  # what NumPy raises for a damaged file is not documented
         raise wrong(path, "nodes and elements (mesh.npz)", reason(error)) from None
-
-
-Matrix: TypeAlias = scipy.sparse.csr_array
-
-Quantity = Literal["stiffness", "mass"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -16,6 +16,9 @@ from modefront.outputs import write_text
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
 """A number in a deck."""
 
+Numbers = list[tuple[tuple[int, int], float, float]]
+"""Numbers of a line that are others in a run: where they are, before and after."""
+
 SUFFIXES = (".inp", ".dat", ".bdf", ".nas", ".mac", ".py", ".tcl")
 CHANGES, KEPT = "changes.json", "deck-"
 """File of the changes in the folder of a study, and beginning of the name of the nominal deck."""
@@ -71,7 +74,7 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
     return None if value <= 0 or abs(value / factor - 1) < 1e-5 else (value, line)
 
 
-def _different_lines(nominal: Path, run: Path) -> "Iterator[tuple[str, int, str, Numbers | None]]":
+def _different_lines(nominal: Path, run: Path) -> Iterator[tuple[str, int, str, Numbers | None]]:
     """Yield file, number and text of lines of the nominal deck that differ, and their numbers."""
     deck, lines = _deck(nominal), [deck_text(job).splitlines() for job in (nominal, run)]
     if deck and len(lines[0]) == len(lines[1]):
@@ -122,10 +125,6 @@ def _deck(path: Path) -> Path | None:
     files = (*(stem.with_name(stem.name + x) for x in SUFFIXES), path)
     decks = (x for x in files if x.suffix.lower() in SUFFIXES and x.is_file())
     return next((x for x in decks if x.stat().st_size < 2**26), None)
-
-
-Numbers = list[tuple[tuple[int, int], float, float]]
-"""Numbers of a line that are others in a run: where they are, before and after."""
 
 
 def _changed(old: str, new: str) -> Numbers | None:

@@ -34,6 +34,24 @@ SETS = ("AA", "AAX", "LL", "XX", "HH", "GG", "JJ", "2GG", "")
 
 ADVICE = "OUTPUT4 KAA,MAA,,,//-1/21 writes an .op4 file, EXTSEOUT or PARAM,EXTOUT,DMIGPCH a .pch"
 
+_ELEMENTS = {  # field where nodes begin, number of nodes, cell, what it makes stiff
+    **dict.fromkeys(("CQUAD4", "CQUADR", "CSHEAR"), (3, 4, "quad", "shell")),
+    **dict.fromkeys(("CTRIA3", "CTRIAR"), (3, 3, "triangle", "shell")),
+    "CQUAD8": (3, 8, "quad", "shell"),
+    "CTRIA6": (3, 6, "triangle", "shell"),
+    **dict.fromkeys(("CBAR", "CBEAM", "CBUSH"), (3, 2, "line", "all")),
+    **dict.fromkeys(("CROD", "CTUBE"), (3, 2, "line", "rod")),
+    "CONROD": (2, 2, "line", "rod"),
+    "CHEXA": (3, 20, "hexahedron", "solid"),
+    "CPENTA": (3, 15, "wedge", "solid"),
+    "CTETRA": (3, 10, "tetra", "solid"),
+    "CPYRAM": (3, 13, "pyramid", "solid"),
+}
+
+EMPTY = [""] * 8
+
+Dof = tuple[int, int]
+
 
 def read(path: Path, options: base.JobOptions) -> base.Listed:
     """Return the matrices of a job, given by its .op4 or .pch file, or without suffix.
@@ -146,27 +164,6 @@ def _from_dmig(path: Path, options: base.JobOptions) -> base.Listed:
     mesh = _drawn(deck, notes) if deck else None
     known = (path, path), (numbered(*K), numbered(*M)), dofs, K[2]
     return base.Listed(*known, counted=False, mesh=mesh, notes=notes)
-
-
-# Bulk data
-
-_ELEMENTS = {  # field where nodes begin, number of nodes, cell, what it makes stiff
-    **dict.fromkeys(("CQUAD4", "CQUADR", "CSHEAR"), (3, 4, "quad", "shell")),
-    **dict.fromkeys(("CTRIA3", "CTRIAR"), (3, 3, "triangle", "shell")),
-    "CQUAD8": (3, 8, "quad", "shell"),
-    "CTRIA6": (3, 6, "triangle", "shell"),
-    **dict.fromkeys(("CBAR", "CBEAM", "CBUSH"), (3, 2, "line", "all")),
-    **dict.fromkeys(("CROD", "CTUBE"), (3, 2, "line", "rod")),
-    "CONROD": (2, 2, "line", "rod"),
-    "CHEXA": (3, 20, "hexahedron", "solid"),
-    "CPENTA": (3, 15, "wedge", "solid"),
-    "CTETRA": (3, 10, "tetra", "solid"),
-    "CPYRAM": (3, 13, "pyramid", "solid"),
-}
-
-EMPTY = [""] * 8
-
-Dof = tuple[int, int]
 
 
 # 12 fields: one for each kind of entry of a deck.

@@ -39,6 +39,10 @@ PRECISIONS = {1: 6e-8, 2: 1e-15}
 Op4Matrix: TypeAlias = tuple[scipy.sparse.coo_array, float]
 """A matrix and the relative error of its entries."""
 
+DmigMatrix: TypeAlias = tuple[Ints, Floats, float]
+"""Labels (entries, 4) of rows and columns, each a node and a component; values (entries,); and the
+relative error of these."""
+
 
 def read_op4(path: Path) -> Mapping[str, Op4Matrix]:
     """Return all matrices of a file by their names; raises InputError for broken, complex ones."""
@@ -193,11 +197,6 @@ def _text(lines: Iterator[bytes]) -> Iterator[tuple[str, Op4Matrix]]:
         except ValueError:  # Fortran leaves out the E before three digits
             values = np.array([fortran(field.decode("latin-1")) for field in fixed.tolist()])
         yield matrix.matrix(values, given, 10.0 ** -int(form[2]))
-
-
-DmigMatrix: TypeAlias = tuple[Ints, Floats, float]
-"""Labels (entries, 4) of rows and columns, each a node and a component; values (entries,); and the
-relative error of these."""
 
 
 def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:

@@ -18,6 +18,8 @@ ByPower = dict[int, Floats]
 of the thickness with which they grow; 0 where there is none, or it does not vary."""
 
 Matrices = tuple[ByPower, ByPower]  # stiffness, linear in E, and mass, linear in density
+VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
+"""Numbers of the components ij of stress and strain in the order 11, 22, 33, 23, 13, 12."""
 
 
 def symmetric(K: Floats) -> Floats:
@@ -78,10 +80,6 @@ def attachment(r: Floats, R: Floats | None = None) -> Floats:
         A[:, n, :3, n, :3] = A[:, n, 3:, n, 3:] = axes
         A[:, n, :3, n, 3:] = lever[:, n]
     return A.reshape(count, nodes, 6, 6 * nodes)
-
-
-VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
-"""Numbers of the components ij of stress and strain in the order 11, 22, 33, 23, 13, 12."""
 
 
 def elasticity(material: Material | Orthotropic, R: Floats) -> Floats:
