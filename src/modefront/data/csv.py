@@ -34,10 +34,7 @@ SEPARATORS = ",;\t"
 
 STD = "_std"
 FREQUENCY, FORCE, COHERENCE = "frequency", "force", "_coherence"
-
-PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))
-"""Endings of the two columns of a function, in each of its forms."""
-
+PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))  # endings of columns
 LISTED = 5  # faults that are listed of one file
 
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)

@@ -153,8 +153,7 @@ class Channel:
         return Fault(self.file, self.place, expected, found)
 
 
-_Groups: TypeAlias = dict[tuple[int, int], list[Channel]]
-"""Channels by the positions of their reference and response."""
+_Groups: TypeAlias = dict[tuple[int, int], list[Channel]]  # by positions of reference and response
 
 
 @dataclass(frozen=True)

@@ -35,9 +35,7 @@ BINARY_CLOSING = re.compile(rb"    -1[ \t]*\r?(?=[\s\0\x1a]*(\Z|^    -1[ \t]*\r?
 """The end of a binary dataset, with the end of the file or the next dataset behind it. The number
 of bytes in the header is wrong in files of some programs, `pyuff` among them."""
 
-QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
-"""Quantities of the numerator: displacement, velocity, acceleration."""
-
+QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}  # by that of the numerator
 AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}  # directions by their numbers
 SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")  # ends of names of universal files
 REAL = {2: 1, 5: 2}  # numbers of a value by the type of data

@@ -16,8 +16,7 @@ from modefront.outputs import write_text
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
 """A number in a deck."""
 
-Numbers = list[tuple[tuple[int, int], float, float]]
-"""Numbers of a line that are others in a run: where they are, before and after."""
+Numbers = list[tuple[tuple[int, int], float, float]]  # in a line: where, before and after a run
 
 SUFFIXES = (".inp", ".dat", ".bdf", ".nas", ".mac", ".py", ".tcl")
 CHANGES, KEPT = "changes.json", "deck-"

@@ -29,8 +29,7 @@ from modefront.programs.nastran_files import read_dmig, read_op4
 DECKS = (".dat", ".bdf", ".nas", ".inp")
 MATRICES = (".op4", ".pch")
 
-SETS = ("AA", "AAX", "LL", "XX", "HH", "GG", "JJ", "2GG", "")
-"""Names of pairs of matrices behind K and M, the first that there is being taken."""
+SETS = ("AA", "AAX", "LL", "XX", "HH", "GG", "JJ", "2GG", "")  # behind K and M, the first of these
 
 ADVICE = "OUTPUT4 KAA,MAA,,,//-1/21 writes an .op4 file, EXTSEOUT or PARAM,EXTOUT,DMIGPCH a .pch"
 

@@ -33,11 +33,9 @@ from modefront.inputs import ended, fortran, wrong
 
 STRING = 65536  # unit of the length in the header of a string
 
-PRECISIONS = {1: 6e-8, 2: 1e-15}
-"""Relative errors of the types of numbers: single and double; others are complex."""
+PRECISIONS = {1: 6e-8, 2: 1e-15}  # relative errors of single and double; others are complex
 
-Op4Matrix: TypeAlias = tuple[scipy.sparse.coo_array, float]
-"""A matrix and the relative error of its entries."""
+Op4Matrix: TypeAlias = tuple[scipy.sparse.coo_array, float]  # with the relative error of entries
 
 DmigMatrix: TypeAlias = tuple[Ints, Floats, float]
 """Labels (entries, 4) of rows and columns, each a node and a component; values (entries,); and the
