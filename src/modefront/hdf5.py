@@ -17,11 +17,10 @@ from modefront.datasets import Dataset
 WITHOUT_VALUES = b"This is a netCDF dimension but not a netCDF variable."
 """What the name of a scale without values begins with."""
 
-HIDDEN = (
+HIDDEN = (  # attributes that say how a file, or `xarray`, holds a variable
     *("CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "_nc3_strict", "_NCProperties"),
     *("_Netcdf4Dimid", "_Netcdf4Coordinates", "_FillValue", "dtype", "coordinates"),
 )
-"""Attributes that say how a file, or `xarray`, holds a variable."""
 
 
 def inner(group: h5py.Group, name: str) -> Any:

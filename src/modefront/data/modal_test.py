@@ -22,9 +22,7 @@ from modefront.inputs import MOST_DATA, file_size, is_hdf5, wrong
 from modefront.isolated import Read, isolated
 from modefront.rounding import LARGEST
 
-RECORDED = {"displacement": 0, "velocity": 1, "acceleration": 2}
-"""Number of differentiations of the displacement in each quantity."""
-
+RECORDED = {"displacement": 0, "velocity": 1, "acceleration": 2}  # number of differentiations
 WHAT = "a file with records in time"
 MOST_MODES = 200  # modes that a test file may ask for
 

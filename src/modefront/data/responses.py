@@ -24,8 +24,7 @@ UNEQUAL = 1.3
 """Ratio of reciprocal functions from which on their sensors have different units: more than
 calibrations and mounted masses leave."""
 
-ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}
-"""Number of differentiations of the displacement in each quantity."""
+ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # differentiations of displacement
 
 
 @dataclass(frozen=True, eq=False)

@@ -48,9 +48,7 @@ OPENING = re.compile(
     rb"(?:\xef\xbb\xbf)?\s*^[ ]{4}-1[ \t]*\r?\n[ ]*([0-9]{1,5})(b?)(?!\S)([^\n]*)(?:\n|\Z)",
     re.MULTILINE,
 )
-HEADER, RECORD_7 = 11, 6
-"""Lines of dataset 58 before its numbers; the one with their kind and number, from 0."""
-
+HEADER, RECORD_7 = 11, 6  # lines of dataset 58 before its numbers; that with their number, from 0
 Point = tuple[int, int, Floats]  # a node: its number, displacement system and coordinates (3,)
 System = tuple[int, Floats]  # of coordinates: its type, its axes in rows and its origin (4, 3)
 Function = tuple[int, int, Channel]

@@ -31,11 +31,8 @@ from modefront.linalg.affine import Members, Monomials, SparseAffine, sparse_aff
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError, factorise
 from modefront.rounding import WRITTEN
 
-OF_STIFFNESS, OF_MASS = ("E", "spring"), ("density", "mass")
-"""Quantities that are factors of stiffness, and of mass."""
-
-SensorPlaces = tuple[Ints, Floats]
-"""Nodes (sensors,) of sensors, and their directions (sensors, 6), weights of the DOFs of a node."""
+OF_STIFFNESS, OF_MASS = ("E", "spring"), ("density", "mass")  # quantities that are their factors
+SensorPlaces = tuple[Ints, Floats]  # nodes (sensors,), and weights (sensors, 6) of their DOFs
 
 
 @dataclass(frozen=True)

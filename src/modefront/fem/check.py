@@ -24,10 +24,9 @@ CURVED = 10.0  # square of the size over radius and thickness, from which on ele
 SMALL = 4.0  # size of shells over their thickness, below which the share of shear changes with it
 OBTUSE = 120.0  # greatest angle in degrees of half of the triangles, from which on they are poor
 
-CORNERS = np.array(
+CORNERS = np.array(  # neighbours of each corner of a brick, in a right-handed order
     [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
 )
-"""Neighbours of each corner of a brick, in the order of a right-handed system."""
 
 
 def check_points(nodes: npt.ArrayLike) -> Floats:

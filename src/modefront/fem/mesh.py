@@ -38,18 +38,16 @@ CELL_TYPES: Mapping[Kind, tuple[str, ...]] = {
     "solid": ("hexahedron", "tetra10", "wedge15", "hexahedron20"),
 }
 
-DIVISIONS: Mapping[str, list[list[Sequence[int]]]] = {
+DIVISIONS: Mapping[str, list[list[Sequence[int]]]] = {  # that shells of more nodes are made of
     "triangle6": [[(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]],
     "quad8": [[(4, 5, 6, 7)], [(0, 4, 7), (4, 1, 5), (5, 2, 6), (7, 6, 3)]],
     "quad9": [[(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]],
 }
-"""Quadrilaterals and triangles that shells of more nodes are made of."""
 
 CORNERS = dict(enumerate((2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27), start=1)) | {15: 1, 16: 8}
 """Nodes of elements by their type in Gmsh's format 2."""
 
-MEMORY, PER_BYTE = 2 * 10**9, 40
-"""Memory that reading may take, in bytes, and that for each byte of the file besides."""
+MEMORY, PER_BYTE = 2 * 10**9, 40  # bytes that reading may take, and for each of the file besides
 
 READABLE = "a mesh that meshio can read"
 

@@ -27,11 +27,10 @@ from modefront.models.matrices import symmetrised
 from modefront.outputs import output
 from modefront.text import Shown
 
-CORNERS: Mapping[str, int] = {
+CORNERS: Mapping[str, int] = {  # nodes of cells by types of meshio and VTK; others are left out
     **{"vertex": 1, "line": 2},
     **{kind: 1 + max(map(max, faces)) for kind, faces in FACES.items()},
 }
-"""Types of cells, as meshio and VTK call them, and their nodes; further nodes are left out."""
 
 Matrix: TypeAlias = scipy.sparse.csr_array
 

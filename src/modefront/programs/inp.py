@@ -16,7 +16,7 @@ from modefront.programs.base import ProgramMesh, mesh_of, refuse_unknown_nodes
 
 DEEPEST = 20  # decks that include each other, one in the other, at most
 
-_TYPES = (
+_TYPES = (  # beginnings of the names of element types, and the cells that they are
     (r"C3D(8|20|27)|SC8|F3D8|DC3D(8|20)", "hexahedron"),
     (r"C3D(4|10)|F3D4|DC3D(4|10)", "tetra"),
     (r"C3D(6|15)|SC6|F3D6|DC3D(6|15)", "wedge"),
@@ -25,7 +25,6 @@ _TYPES = (
     (r"B[23][123]|PIPE|T[23]D|SPRINGA|SPRING2|DASHPOT[A2]|GAP|CONN[23]D2|D$|DCOUP|ITS", "line"),
     (r"MASS|ROTARYI|SPRING1|DASHPOT1", "vertex"),
 )
-"""Beginnings of the names of element types, and the cells that they are."""
 
 
 @dataclass

@@ -33,8 +33,7 @@ from modefront.fem.elements.common import Matrices, attachment, symmetric
 from modefront.fem.section import Material, Section
 from modefront.rounding import COMPUTED
 
-U, V, W, TWIST, PSI_Y, PSI_Z = range(6)
-"""Directions of an end in local axes, of which the last two are rotations about y and z."""
+U, V, W, TWIST, PSI_Y, PSI_Z = range(6)  # of an end in local axes; PSI: rotations about y and z
 
 
 @dataclass(frozen=True)

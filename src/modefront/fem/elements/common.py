@@ -18,8 +18,7 @@ ByPower = dict[int, Floats]
 of the thickness with which they grow; 0 where there is none, or it does not vary."""
 
 Matrices = tuple[ByPower, ByPower]  # stiffness, linear in E, and mass, linear in density
-VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
-"""Numbers of the components ij of stress and strain in the order 11, 22, 33, 23, 13, 12."""
+VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # places of ij in 11, 22, 33, 23, 13, 12
 
 
 def symmetric(K: Floats) -> Floats:

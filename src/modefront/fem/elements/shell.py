@@ -31,11 +31,10 @@ FOLD = 20.0  # angle in degrees between elements from which on they meet in a fo
 DIVISIONS = {3: ((0, 1, 2),), 4: ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))}
 """Corners of the triangles that make an element; in quadrilaterals, their third side is inside."""
 
-SURFACES = {
+SURFACES = {  # cells and quadrature of shells by their number of nodes
     3: (TRIANGLE_3, (np.full((1, 2), 1 / 3), np.array([0.5]))),
     4: (SQUARE_4, gauss_box(2, 2)),
 }
-"""Cells and quadrature of shells by their number of nodes."""
 
 AT_ONCE = 1000  # elements at a time, so that their rows stay in the cache of a processor
 

@@ -31,7 +31,7 @@ class Solid:
     mass: shapes.Rule
 
 
-SOLIDS = {
+SOLIDS = {  # by their number of nodes
     8: Solid(shapes.CUBE_8, FACES["hexahedron"], shapes.gauss_box(2, 3), shapes.gauss_box(3, 3)),
     10: Solid(
         shapes.TETRAHEDRON_10,
@@ -42,7 +42,6 @@ SOLIDS = {
     15: Solid(shapes.WEDGE_15, FACES["wedge"], shapes.gauss_wedge(3), shapes.gauss_wedge(3)),
     20: Solid(shapes.CUBE_20, FACES["hexahedron"], shapes.gauss_box(3, 3), shapes.gauss_box(3, 3)),
 }
-"""Kinds of solids by their number of nodes."""
 
 
 def solid(X: Floats, rho: float, C: Floats) -> common.Matrices:
