@@ -25,7 +25,6 @@ from modefront.options import Checked, Requirement, any_of, number
 from modefront.rounding import ACCUMULATED, LARGEST
 
 Estimator = Literal["H1", "H2", "Hv"]
-
 EXPONENTIAL = Requirement(
     "a time constant in s above zero, or 'none'",
     any_of({"type": "number", "exclusiveMinimum": 0}, {"enum": ["none"]}),

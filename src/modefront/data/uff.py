@@ -30,7 +30,6 @@ from modefront.rounding import LARGEST
 FRF, COHERENCE, TIME = 4, 6, 1  # types of functions in dataset 58
 
 CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
-
 BINARY_CLOSING = re.compile(rb"    -1[ \t]*\r?(?=[\s\0\x1a]*(\Z|^    -1[ \t]*\r?\n))", re.MULTILINE)
 """The end of a binary dataset, with the end of the file or the next dataset behind it. The number
 of bytes in the header is wrong in files of some programs, `pyuff` among them."""

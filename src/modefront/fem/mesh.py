@@ -54,8 +54,7 @@ READABLE = "a mesh that meshio can read"
 LINKING = (".xdmf", ".xmf", ".h5m", ".cgns", ".hmf", ".exo", ".e", ".ex2", ".ele", ".node", ".xml")
 """Endings of formats that are several files, or keep values in HDF5, which may refer to others."""
 
-COMMANDS = (".inp", ".bdf", ".nas", ".fem", ".dat", ".key", ".cdb")
-"""Endings of formats of commands, one of which may be to read another file."""
+COMMANDS = (".inp", ".bdf", ".nas", ".fem", ".dat", ".key", ".cdb")  # one may read another file
 
 INCLUDES = re.compile(rb"\*.*\binput\s*=|\*?\s*include\b", re.IGNORECASE)  # of another file
 SECTION = re.compile(rb"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", re.DOTALL | re.MULTILINE)  # of Gmsh

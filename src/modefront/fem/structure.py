@@ -32,8 +32,7 @@ from modefront.rounding import WRITTEN
 
 Direction = str | Sequence[float]
 Vector = Sequence[float]
-Axes = tuple[Sequence[float], Sequence[float]]
-"""Local axes: the local x axis, and a vector in the local x-y plane."""
+Axes = tuple[Sequence[float], Sequence[float]]  # local x axis, and a vector in the local x-y plane
 
 Quantity = Literal["E", "density", "thickness", "spring", "mass", "prestress"]
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
@@ -79,7 +78,7 @@ LOADED = numbers("3 components, or 6 with moments", any_of(VECTOR, array(NUMBER,
 STRAINS = mapping("a table, group = free strain", number("a strain"))
 SCALED = Requirement("a list of groups, springs, masses or loads", array({"type": "string"}, 1))
 
-FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
+FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {  # corners of the faces of cells, as in VTK
     "triangle": ((0, 1, 2),),
     "quad": ((0, 1, 2, 3),),
     "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
@@ -90,7 +89,6 @@ FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
         *((1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
     ),
 }
-"""Corners of the faces of cells, in the order of VTK; nodes between corners follow them there."""
 
 
 @dataclass(frozen=True, eq=False)

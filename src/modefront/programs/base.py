@@ -33,7 +33,6 @@ CORNERS: Mapping[str, int] = {  # nodes of cells by types of meshio and VTK; oth
 }
 
 Matrix: TypeAlias = scipy.sparse.csr_array
-
 Quantity = Literal["stiffness", "mass"]
 
 

@@ -48,7 +48,6 @@ _ELEMENTS = {  # field where nodes begin, number of nodes, cell, what it makes s
 }
 
 EMPTY = [""] * 8
-
 Dof = tuple[int, int]
 
 

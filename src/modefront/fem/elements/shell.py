@@ -27,7 +27,6 @@ from modefront.fem.elements.shapes import SQUARE_4, TRIANGLE_3, gauss_box
 from modefront.fem.section import Material, Orthotropic
 
 FOLD = 20.0  # angle in degrees between elements from which on they meet in a fold
-
 DIVISIONS = {3: ((0, 1, 2),), 4: ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))}
 """Corners of the triangles that make an element; in quadrilaterals, their third side is inside."""
 
