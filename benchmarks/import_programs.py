@@ -179,7 +179,7 @@ def measure(program: str, job: Path, out: multiprocessing.Queue[tuple[float, ...
     result = read_job(program, job, JobOptions())
     times = time.process_time() - processor, time.perf_counter() - clock
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
-    out.put((result.size, result.stiffness.nnz, result.mass.nnz, *times, memory))
+    out.put((result.dofs.size, result.stiffness.nnz, result.mass.nnz, *times, memory))
 
 
 def measure_import(program: str, job: Path, out: multiprocessing.Queue[tuple[float, ...]]) -> None:

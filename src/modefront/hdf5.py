@@ -11,15 +11,11 @@ import scipy.sparse
 
 from modefront.datasets import Dataset
 
-HIDDEN = ("_FillValue", "dtype", "coordinates")
-"""Attributes that say how `xarray` holds a variable."""
+HIDDEN = ("_FillValue", "dtype", "coordinates")  # how `xarray` holds a variable
 
 
 def inner(group: h5py.Group, name: str) -> Any:
-    """Return a group or dataset of a group that the file itself holds.
-
-    Raises ValueError for links to other files, soft links, and data that is kept elsewhere.
-    """
+    """Return a group or dataset that the file itself holds; raises ValueError for any other."""
     link = group.get(name, getlink=True)
     if isinstance(link, h5py.ExternalLink):
         raise ValueError(f"'{name}' is a link to another file, '{link.filename}'")
@@ -90,8 +86,8 @@ def write_netcdf(data: Dataset, stream: IO[bytes]) -> None:
 def contents(path: Path) -> tuple[dict[str, Any], list[Any]]:
     """Return the values of all variables of a netCDF file in their order, and what belongs to them.
 
-    That is the name, dimensions and attributes of each variable, and the attributes of the file.
-    Raises ValueError where the file refers to others.
+    That is the name, dimensions and attributes of each, and those of the file. Raises ValueError
+    where the file refers to others.
     """
     arrays: dict[str, Any] = {}
     named: list[Any] = []

@@ -30,7 +30,7 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
     half = rng.normal(size=(1, 2, 3, 3))
     data = bare().with_covariance(half @ half.swapaxes(2, 3))
     write_covariance(tmp_path / "c.csv", data)
-    again = read_covariance(tmp_path / "c.csv", bare())
+    again = read_covariance(tmp_path / "c.csv", bare(), {})
     assert data.shape_covariance is not None
     assert again.shape_covariance is not None
     np.testing.assert_allclose(again.shape_covariance, data.shape_covariance, rtol=1e-8)

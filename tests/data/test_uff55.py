@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from modefront.data.modal import ModalData
 from modefront.data.uff import NodalModes, read_uff55, write_uff55
 from modefront.errors import InputError
 from modefront.study.check import check
@@ -54,8 +55,8 @@ def test_normal_modes_with_geometry(number: int, tmp_path: Path) -> None:
     modes = read_uff55(write(tmp_path / "modes.uff", geometry(number)))
     assert modes.measured == ("3X", "3Z", "7X", "7Z")
     np.testing.assert_allclose(modes.position, [[0.0, 0.0, 2.0], [1.5, 0.0, 4.0]])
-    np.testing.assert_allclose(modes.frequency, [[4.0, 11.0]])
-    np.testing.assert_allclose(modes.damping, [[0.01, 0.02]])
+    np.testing.assert_allclose(modes.data.frequency, [[4.0, 11.0]])
+    np.testing.assert_allclose(modes.data.damping, [[0.01, 0.02]])
     place = modes.place("-7z")
     assert place is not None
     data = modes.at({"top": place, "low": (0, np.array([0.6, 0, 0.8, 0, 0, 0]))})
@@ -69,9 +70,9 @@ def test_complex_modes_of_several_sets_are_read_as_they_were_written(tmp_path: P
         tmp_path / "a.uff", ["a", "b"], [[(pole, shape)], [(2 * pole, shape)]], ["1Z", "2X"]
     )
     modes = read_uff55(tmp_path / "a.uff")
-    assert (modes.sets, modes.modes, modes.measured) == (("a", "b"), (1,), ("1Z", "2X"))
-    np.testing.assert_allclose(modes.frequency[:, 0], np.abs([pole, 2 * pole]) / (2 * np.pi))
-    np.testing.assert_allclose(modes.damping, 0.3 / abs(pole), rtol=1e-4)
+    assert (modes.data.sets, modes.data.modes, modes.measured) == (("a", "b"), (1,), ("1Z", "2X"))
+    np.testing.assert_allclose(modes.data.frequency[:, 0], np.abs([pole, 2 * pole]) / (2 * np.pi))
+    np.testing.assert_allclose(modes.data.damping, 0.3 / abs(pole), rtol=1e-4)
     z, x = modes.shape[0, 0, 0, 2], modes.shape[0, 0, 1, 0]
     assert x / z == pytest.approx(-0.5, rel=1e-4)
 
@@ -178,10 +179,10 @@ def test_sensors_that_the_file_does_not_have(sensors: str, says: str, tmp_path: 
 
 
 def test_sensors_of_a_mesh_are_found_by_coordinates_and_names(tmp_path: Path) -> None:
-    modes = NodalModes(
-        *("modes.uff", ("1",), (1,), np.array([5, 6]), np.array([[0.0, 0, 0], [1, 0, 0]])),
-        *(np.tile(np.eye(3), (2, 1, 1)), np.ones((1, 1)), np.ones((1, 1)), np.ones((1, 1, 2, 6))),
-    )
+    empty, none = np.ones((1, 1)), np.ones((1, 1, 0))
+    data = ModalData(("1",), (1,), (), empty, empty, none, empty, none)
+    position, axes = np.array([[0.0, 0, 0], [1, 0, 0]]), np.tile(np.eye(3), (2, 1, 1))
+    modes = NodalModes(data, np.array([5, 6]), position, axes, np.ones((1, 1, 2, 6)))
     assert modes.place("6RZ") is not None
     assert modes.place("floor1") is None
     assert modes.place("9X") is None
@@ -227,4 +228,4 @@ def test_what_the_header_declares_is_counted(
 def test_a_header_with_a_blank_more_is_that_of_the_same_dataset(tmp_path: Path) -> None:
     text = "\n".join(lines_of()) + "\n"
     (tmp_path / "a.uff").write_text(text.replace("\n    55\n", "\n     55\n"))
-    assert read_uff55(tmp_path / "a.uff").frequency.tolist() == [[4.0, 8.0]]
+    assert read_uff55(tmp_path / "a.uff").data.frequency.tolist() == [[4.0, 8.0]]

@@ -69,7 +69,7 @@ def test_a_pair_reaches_files_and_the_check(tmp_path: Path) -> None:
     assert read_csv(tmp_path / "modes.csv").pairs == ((2, 3),)
     modes = [(complex(-1, 50), np.array([1.0 + 0j, 2.0])), (complex(-1, 50), np.array([1j, 0.1]))]
     write_uff55(tmp_path / "modes.uff", ["a"], [modes], ["1Z", "2Z"], [[(0, 1)]])
-    assert read_uff55(tmp_path / "modes.uff").pairs == ((1, 2),)
+    assert read_uff55(tmp_path / "modes.uff").data.pairs == ((1, 2),)
 
     write_example("three-story-c0", tmp_path / "study")
     file = tmp_path / "study" / "modes.csv"

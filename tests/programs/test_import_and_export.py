@@ -613,7 +613,7 @@ def test_a_deck_that_does_not_fit_its_matrices(tmp_path: Path) -> None:
 @needs_data
 def test_the_solid_of_ansys() -> None:
     job = read_job("ansys", DATA / "ansys.full", JobOptions())
-    assert (job.size, scipy.sparse.triu(job.stiffness).nnz) == (900, 39023 - 63)
+    assert (job.dofs.size, scipy.sparse.triu(job.stiffness).nnz) == (900, 39023 - 63)
     M = job.mass
     masses = [M[job.dofs.direction == d][:, job.dofs.direction == d].sum() for d in (1, 2, 3)]
     assert masses == pytest.approx([masses[0]] * 3)

@@ -183,8 +183,8 @@ def modes_55(kind: int, size: int, nodes: int, geometry: int) -> Callable[[Path]
 
 def read_55(folder: Path) -> object:
     modes = read_uff55(folder / "a.uff")
-    parts = (modes.frequency, modes.damping, modes.shape, modes.nodes, modes.position, modes.axes)
-    return plain((modes.sets, modes.modes, parts))
+    data, places = modes.data, (modes.shape, modes.nodes, modes.position, modes.axes)
+    return plain((data.sets, data.modes, (data.frequency, data.damping, *places)))
 
 
 def _functions(count: int) -> tuple[np.ndarray, np.ndarray]:

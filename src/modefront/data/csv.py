@@ -1,9 +1,7 @@
 """Tables in CSV: modal data, frequency response functions, and the records of blows.
 
-``docs/study-file.md`` and ``docs/identification.md`` describe them. Commas, semicolons or tabs
-separate the columns, whichever the header has most of, or as a line ``sep=;`` before it says. Where
-they are no commas, numbers may have decimal commas, as spreadsheets write them. Empty columns
-without names at the end are left out.
+``docs/study-file.md`` and ``docs/identification.md`` describe them. Separators are those that the
+header has most of, or as a line ``sep=;`` before it says.
 """
 
 import csv
@@ -35,6 +33,9 @@ PAIR = "pair"
 SEPARATORS = ",;\t"
 
 STD = "_std"
+FREQUENCY, FORCE, COHERENCE = "frequency", "force", "_coherence"
+PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))  # endings of columns
+LISTED = 5  # faults that are listed of one file
 
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
 """Python itself would read more as numbers: 1_000, nan, digits of any script."""
@@ -42,8 +43,7 @@ NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORE
 DECIMAL_COMMA = re.compile(r"^(\s*[+-]?[0-9]*),([0-9]*(?:e[+-]?[0-9]+)?\s*)$", re.IGNORECASE)
 """A number with a decimal comma, before and behind it."""
 
-COLUMNS = mapping("a table, name in the file = name here", text("a text"))
-"""Names that columns of a file stand for."""
+COLUMNS = mapping("a table, name in the file = name here", text("a text"))  # of a file
 
 MOST_FAULTS = 100  # faults of rows after which the rest is not looked at
 
@@ -51,6 +51,7 @@ EXPECTED = "a finite number or an empty field"
 
 Key = tuple[str, int]  # data set and mode
 Rows = dict[Key, tuple[int, dict[str, float]]]  # line of each, and values by column
+Said = tuple[str, str, str]  # a column, what is expected in it, and what was found
 
 
 def is_reserved(name: str, sensors: Collection[str]) -> bool:
@@ -182,16 +183,12 @@ def number(text: str) -> float:
     return float(text) if NUMBER.fullmatch(text) else math.inf if text else math.nan
 
 
-def read_covariance(
-    path: Path, data: ModalData, columns: Mapping[str, str] | None = None
-) -> ModalData:
-    """Return modal data with the covariances of shapes of a CSV file.
+def read_covariance(path: Path, data: ModalData, columns: Mapping[str, str]) -> ModalData:
+    """Return modal data with the covariances of shapes of a CSV file; raises InputError.
 
-    A row is a component of a shape: columns ``set, mode, sensor``, then one a sensor with the
-    covariances. ``columns`` maps sensors of the file to those of the data; ``set`` may be left out
-    for one set. Shapes without rows keep their deviations. Raises InputError with what is wrong.
+    A row is a component of a shape: columns ``set, mode, sensor``, then one a sensor; ``columns``
+    maps them to those of the data; ``set`` may be left out for one set.
     """
-    columns = columns or {}
     known = {"set": data.sets, "mode": tuple(map(str, data.modes)), SENSOR: data.sensors}
     C = np.full((*data.shape.shape, len(data.sensors)), np.nan)
     table = read_table(path, "a file of covariances of shapes")
@@ -280,10 +277,7 @@ def table_rows(path: Path, what: str) -> Iterator[tuple[int, list[str]]]:
 
 
 def _lines(path: Path, what: str) -> tuple[list[str], str, int]:
-    """Return the lines of a table, the separator, and the number of lines that are left out.
-
-    Raises InputError for what is no text, or too large.
-    """
+    """Return the lines of a table, the separator, and how many lines are left out before them."""
     file_size(path, what, min(MOST_DATA, available_memory() // 4))
     try:
         with path.open(newline="", encoding="utf-8-sig") as stream:
@@ -296,9 +290,6 @@ def _lines(path: Path, what: str) -> tuple[list[str], str, int]:
     if declared := re.fullmatch(r'"?sep=([,;\t])"?[,;\t \r\n]*', text, re.IGNORECASE):
         return lines[first + 1 :], declared[1], first + 1  # as spreadsheets say it
     return lines, max(SEPARATORS, key=text.count), 0
-
-
-Said = tuple[str, str, str]  # a column, what is expected in it, and what was found
 
 
 def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[Said]:
@@ -370,15 +361,11 @@ def _assembled(path: Path, rows: Rows, sensors: tuple[str, ...], pairs: Pairs) -
     places = {name: k for k, name in enumerate(sets)}
     row = [places[name] for name, _ in rows]
     column = np.searchsorted(modes, [mode for _, mode in rows])
-
-    def collect(*names: str) -> Floats:
-        out = np.full((len(sets), len(modes), len(names)), np.nan)
-        known = [[each.get(name, np.nan) for name in names] for _, each in rows.values()]
-        out[row, column] = np.array(known).reshape(len(row), len(names))
-        return out
-
-    f, zeta, f_std = (collect(name)[..., 0] for name in (*QUANTITIES, "frequency" + STD))
-    phi, phi_std = collect(*sensors), collect(*(name + STD for name in sensors))
+    names = (*QUANTITIES, "frequency" + STD, *sensors, *(name + STD for name in sensors))
+    out = np.full((len(sets), len(modes), len(names)), np.nan)
+    out[row, column] = [[each.get(name, np.nan) for name in names] for _, each in rows.values()]
+    f, zeta, f_std = np.moveaxis(out[..., :3], -1, 0).copy()
+    phi, phi_std = (x.copy() for x in np.split(out[..., 3:], 2, axis=-1))
     return ModalData(sets, modes, sensors, f, zeta, phi, f_std, phi_std, pairs)
 
 
@@ -397,19 +384,11 @@ def _pairs(table: Table, rows: Rows) -> Pairs:
     return tuple(sorted(pairs))
 
 
-FREQUENCY, FORCE, COHERENCE = "frequency", "force", "_coherence"
-
-PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))
-"""Endings of the two columns of a function, in each of its forms."""
-
-LISTED = 5  # faults that are listed of one file
-
-
 def read_test_csv(path: Path, columns: Mapping[str, str] | None = None) -> Contents:
     """Return the functions or the blow of one file, which does not say their reference.
 
-    ``columns`` maps names of the file to those above: of a column, or of a response without the
-    endings of its columns. Raises InputError with what is wrong.
+    ``columns`` maps names of the file, with or without the endings of columns of a response.
+    Raises InputError with what is wrong.
     """
     own, values = read_numbers(path, "a file of frequency response functions or records")
     endings = (*dict.fromkeys(end for pair in PAIRS for end in pair), COHERENCE)
@@ -462,8 +441,7 @@ def _function(path: Path, columns: Mapping[str, Floats], form: tuple[str, str]) 
         unit = "degrees" if degrees else "radians"
         expected = f"a phase in {unit} (NAME_deg is in degrees, NAME_rad in radians)"
         raise wrong(path, expected, f"{most:g} at most", places[1])
-    phase = np.radians(second) if degrees else second
-    return np.asarray(first * np.exp(1j * phase))
+    return np.asarray(first * np.exp(1j * (np.radians(second) if degrees else second)))
 
 
 def _forms(header: Sequence[str]) -> tuple[dict[str, tuple[str, str]], list[Said]]:
@@ -489,10 +467,7 @@ def _forms(header: Sequence[str]) -> tuple[dict[str, tuple[str, str]], list[Said
 
 
 def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
-    """Return the header and the rows of a CSV file of numbers; NaN in columns that are empty.
-
-    Raises InputError.
-    """
+    """Return header and rows of a CSV file of numbers, NaN in empty columns; raises InputError."""
     lines, separator, _ = _lines(path, what)
     with suppress(ValueError, csv.Error):
         header = [field.strip() for field in next(csv.reader(lines, delimiter=separator), [])]

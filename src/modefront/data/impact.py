@@ -1,9 +1,8 @@
 """Frequency response functions from the records of impacts.
 
-Every blow is a record of force and responses; the estimators and the windows are those of
-docs/methods/deviations.md. A record that stays at its greatest value, and gets there by more
-than the resolution of its numbers, is overloaded. A second hit is a push beyond `SECOND` of the
-peak after the first impact has ended.
+The estimators and the windows are those of docs/methods/deviations.md. A record that stays at its
+greatest value, and gets there by more than the resolution of its numbers, is overloaded. A second
+hit is a push beyond `SECOND` of the peak after the first impact has ended.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,13 +25,14 @@ from modefront.options import Checked, Requirement, any_of, number
 from modefront.rounding import ACCUMULATED, LARGEST
 
 Estimator = Literal["H1", "H2", "Hv"]
-
 EXPONENTIAL = Requirement(
     "a time constant in s above zero, or 'none'",
     any_of({"type": "number", "exclusiveMinimum": 0}, {"enum": ["none"]}),
     lambda value: np.inf if value == "none" else float(value),
 )
 
+TIME = "time"  # column of a CSV file with records
+EVEN = 1e-3  # relative difference within which steps of time are even: files hold few digits
 SECOND = 0.1  # force of a second hit over that of the first
 SAME = 1e-9  # difference of two samples, over the greatest, that is none: converters have 24 bits
 TAPER = 0.1  # share of the force window over which it falls to zero
@@ -40,18 +40,12 @@ TAPER = 0.1  # share of the force window over which it falls to zero
 
 @dataclass(frozen=True)
 class Windows(Checked):
-    """Estimator and windows that make functions of records.
-
-    Attributes
-    ----------
-    estimator : H1, H2 or Hv
-    force_window : seconds after the peak beyond which the force is set to zero, or None
-    exponential : time constant tau of the exponential window in seconds, by default a quarter of
-        the record; infinity is no window, for responses that die out by themselves
-    """
+    """Estimator and windows that make functions of records."""
 
     estimator: Estimator = "H1"
+    # seconds after the peak beyond which the force is set to zero
     force_window: Annotated[float, number("a time in s above zero", above=0)] | None = None
+    # time constant in seconds, by default a quarter of the record; infinity is no window
     exponential: Annotated[float, EXPONENTIAL] | None = None
 
 
@@ -59,8 +53,7 @@ class Windows(Checked):
 class ImpactResponses:
     """Functions from impacts."""
 
-    # the functions, with the variance of their mean from the scatter of the blows
-    data: FrequencyResponses
+    data: FrequencyResponses  # with the variance of their mean from the scatter of the blows
     coherence: Floats  # (responses, lines)
     left_out: tuple[str, ...]  # (blows,) why each blow is not in the mean; empty where it is
     remaining: Floats  # (responses,) rms at the end of the windowed records over the greatest
@@ -76,14 +69,8 @@ def impact_responses(
 ) -> ImpactResponses:
     """Return the functions of one reference from several blows.
 
-    Parameters
-    ----------
-    force : (blows, samples)
-    response : (blows, responses, samples)
-    rate : samples per second
-    quantity : what responses over force are
-    windows : estimator and windows
-    responses : names
+    These are a ``force`` (blows, samples) and a ``response`` (blows, responses, samples), with
+    ``rate`` samples per second; ``quantity`` is what responses over force are.
 
     Double hits and overloads are left out and said. What the exponential window adds to all decay
     rates is noted in the data, and `identify` takes it off. Raises ValueError where no blow is
@@ -110,32 +97,24 @@ def impact_responses(
         window = (0.5 + 0.5 * np.cos(np.pi * np.clip(past, 0, 1))) * window
     y = response * np.exp(-decay * t)
     X, Y = scipy.fft.rfft(force * window), scipy.fft.rfft(y)
-    H, coherence = _estimates(X, Y, windows.estimator)
-    data = frequency_responses(
-        scipy.fft.rfftfreq(force.shape[1], 1 / rate),
-        H,
-        quantity,
-        responses=responses,
-        variance=_variance(H, X, Y)[None] if len(X) > 1 else None,
-    )
-    noise = _force_noise(force, window, X, t)
-    data = replace(data, decay=decay, force_noise=(noise,))
-    size = max(y.shape[-1] // 20, 1)
-    parts = y[..., : y.shape[-1] // size * size].reshape(*y.shape[:2], -1, size)
+    S_xx, S_yy = (np.sum(np.abs(x) ** 2, axis=0) for x in (X, Y))
+    S_yx = np.sum(Y * X[:, None].conj(), axis=0)
+    size = np.abs(S_yx)
+    coherence = _over(size, S_xx).real * _over(size, S_yy).real
+    H = {
+        "H1": _over(S_yx, S_xx),
+        "H2": _over(S_yy, S_yx.conj()),
+        "Hv": _over(S_yx, size) * np.sqrt(_over(S_yy, S_xx).real),
+    }[windows.estimator]
+    variance = _variance(H, X, Y)[None] if len(X) > 1 else None
+    f = scipy.fft.rfftfreq(force.shape[1], 1 / rate)
+    data = frequency_responses(f, H, quantity, responses=responses, variance=variance)
+    data = replace(data, decay=decay, force_noise=(_force_noise(force, window, X, t),))
+    part = max(y.shape[-1] // 20, 1)
+    parts = y[..., : y.shape[-1] // part * part].reshape(*y.shape[:2], -1, part)
     rms = np.sqrt(np.mean(parts**2, axis=(0, 3)))
     remaining = rms[:, -1] / np.maximum(rms.max(axis=1), np.finfo(float).tiny)
     return ImpactResponses(data, coherence, reasons, remaining)
-
-
-def _estimates(X: Complexes, Y: Complexes, estimator: Estimator) -> tuple[Complexes, Floats]:
-    S_xx, S_yy = (np.sum(np.abs(x) ** 2, axis=0) for x in (X, Y))
-    S_yx = np.sum(Y * X[:, None].conj(), axis=0)
-    coherence: Floats = _over(np.abs(S_yx), S_xx).real * _over(np.abs(S_yx), S_yy).real
-    if estimator == "H1":
-        return _over(S_yx, S_xx), coherence
-    if estimator == "H2":
-        return _over(S_yy, S_yx.conj()), coherence
-    return _over(S_yx, np.abs(S_yx)) * np.sqrt(_over(S_yy, S_xx).real), coherence
 
 
 def _variance(H: Complexes, X: Complexes, Y: Complexes) -> Floats:
@@ -154,10 +133,7 @@ def _variance(H: Complexes, X: Complexes, Y: Complexes) -> Floats:
 
 
 def _force_noise(force: Floats, window: Floats, X: Complexes, t: Floats) -> ForceNoise:
-    """Return the effect of noise of the force channel on the functions, from samples after impacts.
-
-    The second half of the records has no force; its scatter is the noise.
-    """
+    """Return the effect of noise of the force, from the second half of records, on functions."""
     quiet = force[:, force.shape[1] // 2 :]
     level = np.mean((quiet - quiet.mean(axis=1, keepdims=True)) ** 2, axis=1)
     energy = window**2
@@ -185,9 +161,9 @@ def _reason(x: Floats, y: Floats, rate: float, force_window: float | None) -> st
     peak = int(size.argmax())
     if _clipped(x):
         return "the force is overloaded"
-    over = [i + 1 for i, channel in enumerate(y) if _clipped(channel)]
-    if over:
-        return f"response {over[0]} is overloaded"
+    for i, channel in enumerate(y, start=1):
+        if _clipped(channel):
+            return f"response {i} is overloaded"
     after = np.flatnonzero(size[peak:] < SECOND / 2 * size[peak])
     end = peak + int(after[0]) if len(after) else len(x)
     if force_window is not None:
@@ -214,10 +190,6 @@ def _clipped(x: Floats) -> bool:
     return bool(((end - start >= 3) & (leaps > 2 * least)).any())
 
 
-TIME = "time"  # column of a CSV file with records
-EVEN = 1e-3  # relative difference within which steps of time are even: files hold few digits
-
-
 @dataclass(frozen=True)
 class Blow:
     """The records of one impact."""
@@ -228,8 +200,7 @@ class Blow:
     time: Floats  # (samples,) in s
     force: Floats  # (samples,)
     responses: Mapping[str, Floats]  # records by name, (samples,) each
-    # of the functions that responses over force make; empty where the file does not say
-    quantity: str = ""
+    quantity: str = ""  # of responses over force; empty where the file does not say
 
 
 @dataclass(frozen=True)
@@ -241,13 +212,10 @@ class Contents:
     used: frozenset[str] = frozenset()  # what of the map of columns of a set names one of the file
 
 
-def averaged_blows(
-    blows: Sequence[Blow], windows: Windows
-) -> tuple[list[Channel], list[str], float]:
+def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], list[str], float]:
     """Return the functions of all references, warnings, and the decay of the window in 1/s.
 
-    Warnings are on blows that are left out, and on what has not died out. Raises InputError where
-    records do not fit, or no blow of a reference is left.
+    Raises InputError where records do not fit, or no blow of a reference is left.
     """
     time, faults = blows[0].time, list[Fault]()
     for blow in blows:
@@ -265,14 +233,28 @@ def averaged_blows(
     for blow in blows:
         groups.setdefault((blow.reference, tuple(blow.responses)), []).append(blow)
     channels, warnings = list[Channel](), list[str]()
-    for group in groups.values():
-        result, first = _averaged(group, windows), group[0]
+    for (reference, names), group in groups.items():
+        first, place = group[0], f"blows at {reference!r}"
+        force = np.array([blow.force for blow in group])
+        records = np.array([list(blow.responses.values()) for blow in group])
+        moving = np.ptp(records, axis=2).any(axis=0)
+        if not moving.any():
+            raise InputError(Fault(first.file, place, "a response that moves", "none"))
+        rate = (len(first.time) - 1) / float(np.ptp(first.time))
+        try:
+            result = impact_responses(
+                force, records * moving[:, None], rate, windows=windows, responses=names
+            )
+        except ValueError as error:
+            expected, _, found = str(error).removeprefix("expected ").partition(", found none: ")
+            raise InputError(Fault(first.file, place, expected, found)) from None
         data, (noise,) = result.data, result.data.force_noise
-        for k, name in enumerate(data.responses):
+        for k, name in enumerate(names):
             variance = None if data.variance is None else data.variance[0, k]
-            place = first.file, f"response {name!r}", first.reference, name
-            values = data.frequency, data.H[0, k], first.quantity
-            channels.append(Channel(*place, *values, variance=variance, noise=noise))
+            known = first.file, f"response {name!r}", reference, name
+            H = np.where(moving[k], data.H[0, k], 0)  # of a response that is still
+            values = data.frequency, H, first.quantity
+            channels.append(Channel(*known, *values, variance=variance, noise=noise))
         warnings += [
             f"{blow.file}: {blow.place}: the blow is left out: {why}"
             for blow, why in zip(group, result.left_out, strict=True)
@@ -283,26 +265,3 @@ def averaged_blows(
             advice = "[impact] exponential takes a shorter time constant"
             warnings.append(f"{first.file}: {left}: expect errors of leakage; {advice}")
     return channels, warnings, result.data.decay
-
-
-def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
-    """Return the functions of blows at one reference, which are 0 where a response is still."""
-    first = blows[0]
-    place, names = f"blows at {first.reference!r}", tuple(first.responses)
-    records = np.array([[blow.responses[name] for name in names] for blow in blows])
-    moving = np.ptp(records, axis=2).any(axis=0)
-    if not moving.any():
-        raise InputError(Fault(first.file, place, "a response that moves", "none"))
-    try:
-        out = impact_responses(
-            np.array([blow.force for blow in blows]),
-            records * moving[:, None],
-            (len(first.time) - 1) / float(np.ptp(first.time)),
-            windows=windows,
-            responses=names,
-        )
-    except ValueError as error:
-        expected, _, found = str(error).removeprefix("expected ").partition(", found none: ")
-        raise InputError(Fault(first.file, place, expected, found)) from None
-    H: Complexes = np.where(moving[:, None], out.data.H, 0)
-    return replace(out, data=replace(out.data, H=H))

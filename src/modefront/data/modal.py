@@ -73,11 +73,8 @@ class ModalData(Shown):
             raise ValueError(f"expected data at each sensor once, found {', '.join(self.sensors)}")
         places = [self.sensors.index(name) if name in self.sensors else -1 for name in sensors]
         more = [(0, 0), (0, 0), (0, 1)]  # a sensor that measured nothing, at the end
-        phi, phi_std = (
-            np.pad(x, more, constant_values=np.nan)[..., places]
-            for x in (self.shape, self.shape_std)
-        )
-        C = self.shape_covariance
+        padded = (np.pad(x, more, constant_values=np.nan) for x in (self.shape, self.shape_std))
+        (phi, phi_std), C = (x[..., places] for x in padded), self.shape_covariance
         if C is not None:
             C = np.pad(C, [*more, (0, 1)], constant_values=np.nan)[..., places, :][..., places]
         return replace(self, sensors=sensors, shape=phi, shape_std=phi_std, shape_covariance=C)
@@ -97,12 +94,12 @@ class ModalData(Shown):
         variance = np.einsum("krss->krs", C)
         known = (self.shape_std > 0) | np.isnan(variance)
         std = np.where(known, self.shape_std, np.sqrt(np.maximum(variance, 0.0)))
-        out, faults = replace(self, shape_std=std, shape_covariance=C), list[Fault]()
-        for k, r in np.argwhere(np.isfinite(C).any(axis=(2, 3))).tolist():
-            if said := out.covariance_fault(k, r):
-                place = f"covariance of mode {self.modes[r]} in set {self.sets[k]!r}"
-                faults.append(Fault("", place, *said))
-        refuse(faults)
+        out = replace(self, shape_std=std, shape_covariance=C)
+        refuse(
+            Fault("", f"covariance of mode {self.modes[r]} in set {self.sets[k]!r}", *said)
+            for k, r in np.argwhere(np.isfinite(C).any(axis=(2, 3))).tolist()
+            if (said := out.covariance_fault(k, r))
+        )
         return out
 
     def covariance_fault(self, k: int, r: int) -> tuple[str, str] | None:

@@ -13,7 +13,7 @@ import numpy as np
 from modefront import options as opt
 from modefront._typing import Floats
 from modefront.data.csv import COLUMNS, read_numbers, read_test_csv, renamed
-from modefront.data.impact import EVEN, TIME, Blow, Windows, averaged_blows
+from modefront.data.impact import EVEN, TIME, Blow, Windows, averaged
 from modefront.data.responses import EXPECTED, ORDERS, Channel, DataSet, assemble
 from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import is_universal, read_functions, read_uff
@@ -22,10 +22,48 @@ from modefront.inputs import MOST_DATA, file_size, is_hdf5, wrong
 from modefront.isolated import Read, isolated
 from modefront.rounding import LARGEST
 
-RECORDED = {"displacement": 0, "velocity": 1, "acceleration": 2}
-"""Number of differentiations of the displacement in each quantity."""
-
+RECORDED = {"displacement": 0, "velocity": 1, "acceleration": 2}  # number of differentiations
 WHAT = "a file with records in time"
+MOST_MODES = 200  # modes that a test file may ask for
+
+FILES, SENSORS, REFERENCES = (
+    opt.Requirement(
+        words, opt.array(opt.NAME, 1), further=lambda names: all(map(opt.is_name, names))
+    )
+    for words in ("a list of files", "a list of names", "one reference a file")
+)
+RATE = opt.number("samples per s, above zero", above=0)
+TAU = opt.number("a time constant in s above zero", above=0)
+WINDOW = opt.keys(["exponential"], exponential=TAU)
+CHANNELS = opt.mapping(
+    "a table, name = channel", opt.text("node and direction of a channel, such as '1Z'")
+)
+PLACES = opt.mapping(
+    "a table, sensor = place",
+    opt.numbers(
+        "x, y, z and a direction that is not zero, six numbers",
+        opt.array({"type": "number"}, 6, 6),
+        lambda six: any(six[3:]),
+    ),
+)
+MODES = opt.Requirement(
+    "a list of numbers of modes, from 1", opt.array(opt.whole(1, 10**9).schema), tuple
+)
+
+IDENTIFY = opt.keys(
+    (),
+    band=opt.numbers(
+        "a band [low, high] in Hz, 0 <= low < high", opt.array(opt.NOT_NEGATIVE, 2, 2), opt.rising
+    ),
+    modes=opt.Requirement(
+        f"'auto' or a number of modes from 1 to {MOST_MODES}",
+        opt.any_of({"enum": ["auto"]}, opt.whole(1, MOST_MODES).schema),
+        lambda value: None if value == "auto" else value,
+    ),
+    keep=MODES,
+    drop=MODES,
+    seed=opt.numbers("a list of frequencies in Hz", opt.array(opt.NOT_NEGATIVE)),
+)
 
 
 @dataclass(frozen=True)
@@ -39,16 +77,6 @@ class Records:
     quantity: str = "acceleration"  # ``"displacement"``, ``"velocity"`` or ``"acceleration"``
     still: tuple[str, ...] = ()  # names of channels that do not move, which are left out
 
-    def __post_init__(self) -> None:
-        """Raise ValueError where the arrays do not fit."""
-        if self.values.ndim != 2 or len(self.values) != len(self.sensors):
-            expected = f"records of {len(self.sensors)} sensors, (sensors, samples)"
-            raise ValueError(f"expected {expected}, found {self.values.shape}")
-        if self.quantity not in RECORDED:
-            raise ValueError(f"expected one of {', '.join(RECORDED)}, found {self.quantity!r}")
-        if not np.isfinite(self.values).all():
-            raise ValueError("expected finite numbers")
-
     @property
     def duration(self) -> float:
         """Length in s."""
@@ -61,10 +89,8 @@ class SetFiles:
 
     name: str  # of the data set
     files: tuple[Path, ...]  # paths
-    # names of columns in CSV files and what they are here
-    columns: Mapping[str, str] = field(default_factory=dict)
-    # names by node and direction in universal files, such as 1Z or 1-Z
-    channels: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str] = field(default_factory=dict)  # names by those in CSV files
+    channels: Mapping[str, str] = field(default_factory=dict)  # names by node and axis, 1Z or 1-Z
     rate: float | None = None  # samples per second, for arrays
     sensors: tuple[str, ...] = ()  # names of the channels of arrays
     references: tuple[str, ...] = ()  # one a file of functions, empty where it says its own
@@ -175,47 +201,6 @@ def _rate(path: Path, time: Floats) -> float:
     return float(f"{count / length:.12g}")  # products of steps and numbers have rounding
 
 
-MOST_MODES = 200  # modes that a test file may ask for
-
-FILES, SENSORS, REFERENCES = (
-    opt.Requirement(
-        words, opt.array(opt.NAME, 1), further=lambda names: all(map(opt.is_name, names))
-    )
-    for words in ("a list of files", "a list of names", "one reference a file")
-)
-RATE = opt.number("samples per s, above zero", above=0)
-TAU = opt.number("a time constant in s above zero", above=0)
-CHANNELS = opt.mapping(
-    "a table, name = channel", opt.text("node and direction of a channel, such as '1Z'")
-)
-PLACES = opt.mapping(
-    "a table, sensor = place",
-    opt.numbers(
-        "x, y, z and a direction that is not zero, six numbers",
-        opt.array({"type": "number"}, 6, 6),
-        lambda six: any(six[3:]),
-    ),
-)
-MODES = opt.Requirement(
-    "a list of numbers of modes, from 1", opt.array(opt.whole(1, 10**9).schema), tuple
-)
-
-IDENTIFY = opt.keys(
-    (),
-    band=opt.numbers(
-        "a band [low, high] in Hz, 0 <= low < high", opt.array(opt.NOT_NEGATIVE, 2, 2), opt.rising
-    ),
-    modes=opt.Requirement(
-        f"'auto' or a number of modes from 1 to {MOST_MODES}",
-        opt.any_of({"enum": ["auto"]}, opt.whole(1, MOST_MODES).schema),
-        lambda value: None if value == "auto" else value,
-    ),
-    keep=MODES,
-    drop=MODES,
-    seed=opt.numbers("a list of frequencies in Hz", opt.array(opt.NOT_NEGATIVE)),
-)
-
-
 @dataclass(frozen=True)
 class ByHand:
     """Modes that are chosen by hand."""
@@ -235,7 +220,7 @@ class ModalTest:
     sets: tuple[DataSet, ...]  # the data sets with functions
     setups: tuple[Records, ...] = ()  # the records of an ambient test, which has no functions
     chosen: ByHand = ByHand()  # what is chosen by hand
-    # (3,) positions of sensors and (3,) directions, by name; of sensors that are placed
+    # (3,) positions and (3,) directions of sensors that are placed, by name
     places: Mapping[str, tuple[Floats, Floats]] = field(default_factory=dict)
 
 
@@ -320,13 +305,10 @@ def _set_tables(root: opt.Table, ambient: bool, common: SetFiles) -> list[SetFil
             elif len(references) != len(files):
                 found = f"{len(references)} for {len(files)} files"
                 table.fault("reference", "one reference a file", found)
-            tau = None
             window = table.table("window", "a table { exponential = time constant in s }", None)
-            if window:
-                tau = window.value("exponential", TAU)
-                window.close()
+            tau = (window.read(WINDOW) if window else None) or {"exponential": np.inf}
             given = tuple(references or [""] * len(files))
-            known = replace(known, references=given, decay=1 / tau if tau else 0.0)
+            known = replace(known, references=given, decay=1 / tau["exponential"])
         table.close()
         out.append(known)
     for name in opt.repeated(known.name for known in out):
@@ -358,7 +340,7 @@ def _data_set(root: opt.Table, known: SetFiles) -> DataSet:
     refuse(root.faults)
     warnings, decay = list[str](), known.decay
     if blows:
-        channels, warnings, decay = averaged_blows(blows, known.windows or Windows())
+        channels, warnings, decay = averaged(blows, known.windows or Windows())
     responses = {channel.response for channel in channels}
     references = {channel.reference for channel in channels}
     names, turned = known.channels, len(references) > len(responses) == 1

@@ -17,8 +17,14 @@ from modefront._typing import Bools, Complexes, Floats
 from modefront.errors import Fault, refuse
 from modefront.rounding import LARGEST
 
-ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}
-"""Number of differentiations of the displacement in each quantity."""
+EXPECTED = f"finite numbers up to {LARGEST:g}"  # what values of functions and records are
+STRAY = 300.0  # ratio of sizes from which on two channels seem to have different units
+
+UNEQUAL = 1.3
+"""Ratio of reciprocal functions from which on their sensors have different units: more than
+calibrations and mounted masses leave."""
+
+ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # differentiations of displacement
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,12 +54,9 @@ class FrequencyResponses:
     references: tuple[str, ...]  # references, responses: names
     responses: tuple[str, ...]
     variance: Floats | None = None  # (references, responses, lines), E|H - E H|², or None
-    # whether ``variance`` is known up to a factor for each function only, as it is from coherence
-    # where the number of blows is not known
-    scaled: bool = False
+    scaled: bool = False  # whether the variance of each function is known up to a factor only
     decay: float = 0.0  # what an exponential window added to the decay rate of every pole, in 1/s
-    # noise of the force at each reference, where it is known for all of them
-    force_noise: tuple[ForceNoise, ...] = ()
+    force_noise: tuple[ForceNoise, ...] = ()  # at each reference, where all are known
 
     def __post_init__(self) -> None:
         """Raise ValueError where the arrays do not fit."""
@@ -95,21 +98,14 @@ def frequency_responses(
 ) -> FrequencyResponses:
     r"""Return frequency response functions from arrays.
 
-    Parameters
-    ----------
-    frequency : (lines,) in Hz
-    H : (references, responses, lines), or (responses, lines) with one reference; or, with one
-        axis more in front, the same of several blows
-    coherence : of the shape of one ``H``: ordinary coherence, from which
+    ``H`` is (references, responses, lines), or (responses, lines) with one reference; or, with one
+    axis more in front, the same of several blows. The ``variance`` of the mean, of the shape of one
+    ``H``, follows from ordinary ``coherence`` where it is not known,
 
-        .. math:: \operatorname{var} H = |H|^2 \frac{1 - \gamma^2}{\gamma^2 n}
+    .. math:: \operatorname{var} H = |H|^2 \frac{1 - \gamma^2}{\gamma^2 n}
 
-        follows (Bendat & Piersol, *Random Data*, 4th ed., 2010, eq. 9.90,
-        doi:10.1002/9781118032428), where n is ``blows``; without it, up to a factor
-    blows : number of blows that were averaged
-    variance : of the shape of ``H``: variance of the mean, where it is known
-
-    Raises ValueError where the arrays do not fit.
+    (Bendat & Piersol, *Random Data*, 4th ed., 2010, eq. 9.90, doi:10.1002/9781118032428), where n
+    is the number of ``blows``; without it, up to a factor. Raises ValueError for other shapes.
     """
     H, scaled = np.asarray(H, complex), False
     H = H[None] if H.ndim == 2 else H
@@ -136,14 +132,6 @@ def frequency_responses(
     )
 
 
-EXPECTED = f"finite numbers up to {LARGEST:g}"  # what values of functions and records are
-STRAY = 300.0  # ratio of sizes from which on two channels seem to have different units
-
-UNEQUAL = 1.3
-"""Ratio of reciprocal functions from which on their sensors have different units: more than
-calibrations and mounted masses leave."""
-
-
 @dataclass(frozen=True)
 class Channel:
     """One measured function."""
@@ -164,8 +152,7 @@ class Channel:
         return Fault(self.file, self.place, expected, found)
 
 
-_Groups: TypeAlias = dict[tuple[int, int], list[Channel]]
-"""Channels by the positions of their reference and response."""
+_Groups: TypeAlias = dict[tuple[int, int], list[Channel]]  # by positions of reference and response
 
 
 @dataclass(frozen=True)
@@ -180,11 +167,10 @@ class DataSet:
 def assemble(
     channels: Sequence[Channel], quantity: str, name: str, turned: bool, decay: float = 0.0
 ) -> DataSet:
-    """Return one data set from its channels.
+    """Return one data set from its channels; raises InputError with everything that is wrong.
 
     ``quantity`` is what the test file says, or empty; ``turned`` makes the points of the hammer
-    the responses, by reciprocity; ``decay`` is that of an exponential window. Raises InputError
-    with everything that is wrong.
+    the responses, by reciprocity; ``decay`` is that of an exponential window.
     """
     quantity = _quantity(channels, quantity)
     if turned:
@@ -204,9 +190,7 @@ def assemble(
             H[b, j, i] = channel.H
             for part, values in zip(known, (channel.coherence, channel.variance), strict=True):
                 part[j, i] = part[j, i] if values is None else values
-    coherence, variance = (
-        part if blows == 1 and np.isfinite(part).any() else None for part in known
-    )
+    coherence, variance = (x if blows == 1 and np.isfinite(x).any() else None for x in known)
     dead = (np.nan_to_num(H) == np.nan_to_num(H[..., :1])).all(axis=(0, 3))
     H[:, dead] = np.nan
     # Where they are turned, each point of the hammer, now a response, has noise of its own, as has
@@ -264,10 +248,7 @@ def _quantity(channels: Sequence[Channel], declared: str) -> str:
 
 
 def _units(name: str, data: FrequencyResponses, groups: _Groups, dead: Bools) -> Iterator[str]:
-    """Warn of an axis in rad/s, of dead channels, and of functions far from the others in size.
-
-    Dead (references, responses) are those that are zero, or one number at all lines.
-    """
+    """Warn of an axis in rad/s, dead (references, responses), and functions of other sizes."""
     if looks_like_circular(data.frequency):
         yield (
             f"set {name!r}: the frequency axis looks like rad/s: its lines are "

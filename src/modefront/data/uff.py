@@ -1,13 +1,8 @@
-r"""Universal files: functions or records of blows in dataset 58, modes of a test in dataset 55.
+"""Universal files: functions or records of blows in dataset 58, modes of a test in dataset 55.
 
 A dataset stands between two lines with -1; what it declares is compared with what it holds.
-``docs/study-file.md`` says how modes are read; of a complex one with the eigenvalue
-:math:`\lambda`,
-
-.. math:: f = |\lambda| / 2 \pi, \quad \zeta = -\operatorname{Re} \lambda / |\lambda| .
-
-``pair with mode NUMBER`` at the end of one of the first lines of a dataset 55 says that both shapes
-are a basis of a plane.
+``docs/study-file.md`` says how modes are read. ``pair with mode NUMBER`` at the end of one of the
+first lines of a dataset 55 says that both shapes are a basis of a plane.
 
 Format: Structural Dynamics Research Laboratory, University of Cincinnati, *Universal File
 Formats*, datasets 15, 55, 58, 58b, 2411 and 2420.
@@ -35,16 +30,15 @@ from modefront.rounding import LARGEST
 FRF, COHERENCE, TIME = 4, 6, 1  # types of functions in dataset 58
 
 CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
-
 BINARY_CLOSING = re.compile(rb"    -1[ \t]*\r?(?=[\s\0\x1a]*(\Z|^    -1[ \t]*\r?\n))", re.MULTILINE)
 """The end of a binary dataset, with the end of the file or the next dataset behind it. The number
 of bytes in the header is wrong in files of some programs, `pyuff` among them."""
 
-QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
-"""Quantities of the numerator: displacement, velocity, acceleration."""
-
-AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
-"""Directions by their numbers in universal files."""
+QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}  # by that of the numerator
+AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}  # directions by their numbers
+SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")  # ends of names of universal files
+REAL = {2: 1, 5: 2}  # numbers of a value by the type of data
+NAMES = tuple(AXES.values())  # directions in the order of the components
 
 KNOWN = (15, 55, 58, 2411, 2420)
 """Datasets that are read, whose numbers may have blanks before them as no other line has."""
@@ -53,8 +47,12 @@ OPENING = re.compile(
     rb"(?:\xef\xbb\xbf)?\s*^[ ]{4}-1[ \t]*\r?\n[ ]*([0-9]{1,5})(b?)(?!\S)([^\n]*)(?:\n|\Z)",
     re.MULTILINE,
 )
-HEADER, RECORD_7 = 11, 6
-"""Lines of dataset 58 before its numbers; the one with their kind and number, from 0."""
+HEADER, RECORD_7 = 11, 6  # lines of dataset 58 before its numbers; that with their number, from 0
+Point = tuple[int, int, Floats]  # a node: its number, displacement system and coordinates (3,)
+System = tuple[int, Floats]  # of coordinates: its type, its axes in rows and its origin (4, 3)
+Function = tuple[int, int, Channel]
+"""A dataset 58: its type, quantity of the numerator, and what it holds as a channel. Values have
+the signs of the directions: functions that of both, others that of the response."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +63,7 @@ class Block:
     number: int
     line: int
     body: bytes  # what it holds, behind its number
-    # the words behind the number of a binary dataset; None for one of text
-    binary: list[str] | None
+    binary: list[str] | None  # words behind the number of a binary dataset; None for one of text
 
     @property
     def place(self) -> str:
@@ -81,44 +78,33 @@ class Block:
 
 def _decoded(
     path: Path, what: str, needed: int, readers: Mapping[int, Callable[[Block], Sequence[Any]]]
-) -> list[list[Any]]:
-    """Return what each reader returns for the datasets of its number.
-
-    Raises InputError where there is none of the number that is needed, and for broken ones, of
-    which a reader raises a ValueError or the like.
-    """
+) -> dict[int, list[Any]]:
+    """Return what readers return for datasets of their numbers; refuse broken ones, and none."""
     known = blocks(read_text_bytes(path, what, MOST_DATA), path)
     numbers = list(dict.fromkeys(block.number for block in known))
     if needed not in numbers:
         raise wrong(path, what, f"datasets {', '.join(map(str, numbers))} only", "datasets")
-    out: list[list[Any]] = [[] for _ in readers]
-    for found, (number, read) in zip(out, readers.items(), strict=True):
-        for block in (block for block in known if block.number == number):
-            try:
-                found += read(block)
-            except InputError:
-                raise
-            except (ValueError, IndexError, KeyError, OverflowError) as error:
-                raise wrong(path, f"a dataset {number}", reason(error), block.place) from None
+    out: dict[int, list[Any]] = {number: [] for number in readers}
+    for block in (block for block in known if block.number in readers):
+        try:
+            out[block.number] += readers[block.number](block)
+        except InputError:
+            raise
+        except (ValueError, IndexError, KeyError, OverflowError) as error:
+            raise wrong(path, f"a dataset {block.number}", reason(error), block.place) from None
     return out
-
-
-Function = tuple[int, int, Channel]
-"""A dataset 58: its type, quantity of the numerator, and what it holds as a channel. Values have
-the signs of the directions: functions that of both, others that of the response."""
 
 
 def read_functions(path: Path) -> list[Function]:
     """Return all datasets 58 of a universal file; raises InputError where it has none."""
     what = "a universal file with frequency response functions or records of blows (dataset 58)"
-    return _decoded(path, what, 58, {58: _function})[0]
+    return _decoded(path, what, 58, {58: _function})[58]
 
 
 def read_uff(path: Path) -> Contents:
-    """Return the frequency response functions of a universal file, with their coherence.
+    """Return the functions of a universal file with their coherence, or else the records of blows.
 
-    Where it has none, the records of blows: of the force and of the responses in time. Raises
-    InputError where the file holds neither, is cut off or cannot be decoded.
+    Raises InputError where the file holds neither, is cut off or cannot be decoded.
     """
     functions = read_functions(path)
     kinds = {kind for kind, *_ in functions}
@@ -318,27 +304,15 @@ def dataset_55(
     return "\n".join(lines) + "\n"
 
 
-SUFFIXES = (".uff", ".unv", ".uf", ".bunv", ".ufb")  # ends of names of universal files
-REAL = {2: 1, 5: 2}  # numbers of a value by the type of data
-NAMES = tuple(AXES.values())  # directions in the order of the components
-
-
 @dataclass(frozen=True, eq=False)
 class NodalModes:
     """Modes at the nodes of a test."""
 
-    file: str  # where they were read
-    sets: tuple[str, ...]  # sets, modes: names of the data sets, numbers of the modes
-    modes: tuple[int, ...]
+    data: ModalData  # what they have without sensors
     nodes: Ints  # (nodes,) their numbers
     position: Floats  # (nodes, 3) coordinates; NaN where the file has none
-    # (nodes, 3, 3) axes of the components, in rows; NaN where the file does not tell them
-    axes: Floats
-    frequency: Floats  # frequency, damping: (sets, modes) in Hz, and ratios; NaN where none
-    damping: Floats
-    # (sets, modes, nodes, 6) components along X, Y, Z, RX, RY and RZ; NaN if not measured
-    shape: Floats
-    pairs: tuple[tuple[int, int], ...] = ()  # numbers of modes of one frequency
+    axes: Floats  # (nodes, 3, 3) axes of the components, in rows; NaN where they are not told
+    shape: Floats  # (sets, modes, nodes, 6) along X, Y, Z, RX, RY and RZ; NaN if not measured
 
     def local(self, node: int, direction: Floats) -> Floats:
         """Return a direction (6,) of space along the axes of a node, by position."""
@@ -356,27 +330,18 @@ class NodalModes:
         return tuple(f"{self.nodes[k]}{NAMES[axis]}" for k, axis in observed)
 
     def along(self, node: int, direction: Floats) -> Floats:
-        """Return the components (sets, modes) of a node, by position, along a vector (6,).
-
-        NaN where a component along it was not measured.
-        """
+        """Return components (sets, modes) of a node along a vector (6,), NaN if not measured."""
         used = np.flatnonzero(direction)
         return np.asarray(self.shape[:, :, node, used] @ direction[used])
 
     def at(self, sensors: Mapping[str, tuple[int, Floats]]) -> ModalData:
         """Return the modal data of sensors, each a position among the nodes and a vector (6,)."""
         shape = np.stack([self.along(*place) for place in sensors.values()], axis=-1)
-        nothing = np.full(shape.shape, np.nan)
-        return ModalData(
-            *(self.sets, self.modes, tuple(sensors), self.frequency, self.damping, shape),
-            *(nothing[..., 0], nothing, self.pairs),
-        )
+        std = np.full(shape.shape, np.nan)
+        return replace(self.data, sensors=tuple(sensors), shape=shape, shape_std=std)
 
     def place(self, name: str) -> tuple[int, Floats] | None:
-        """Return the node, by position, and the direction (6,) of a name such as ``-3X``.
-
-        None for other names and nodes that there are not.
-        """
+        """Return the node, by position, and direction (6,) of a name, ``-3X``; None for others."""
         matched = re.fullmatch(r"([+-]?)([0-9]{1,9}) ?([+-]?)(R?[XYZ])", name.upper())
         if not matched or int(matched[2]) not in self.nodes:
             return None
@@ -399,15 +364,12 @@ def is_universal(file: Path | str) -> bool:
 
 
 def read_uff55(path: Path) -> NodalModes:
-    """Return the modes of a universal file.
-
-    Raises InputError where the file holds none, is cut off or cannot be decoded.
-    """
-    known: dict[int, Callable[[Block], Sequence[Any]]]
-    known = {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode}
-    old, new, systems, modes = _decoded(path, "a universal file with modes (dataset 55)", 55, known)
-    once(path, "nodes", "each node", (node for node, *_ in old + new))
-    return _assembled(path, modes, old + new, dict(systems))
+    """Return the modes of a universal file; raises InputError where it holds none or is broken."""
+    what = "a universal file with modes (dataset 55)"
+    found = _decoded(path, what, 55, {15: _nodes, 2411: _nodes, 2420: _systems, 55: _mode})
+    points: list[Point] = found[15] + found[2411]
+    once(path, "nodes", "each node", (node for node, *_ in points))
+    return _assembled(path, found[55], points, dict(found[2420]))
 
 
 def _integers(line: str, count: int) -> list[int]:
@@ -419,19 +381,16 @@ def _integers(line: str, count: int) -> list[int]:
 
 
 class _Mode(NamedTuple):
-    """One dataset 55: its data set (empty if not given), number, values, and place in the file.
+    """One dataset 55."""
 
-    ``other`` is the number of the other mode of a pair, 0 for none.
-    """
-
-    set: str
+    set: str  # data set, empty if not given
     number: int
     frequency: float
     damping: float
     nodes: Ints
     shape: Floats
-    place: str
-    other: int
+    place: str  # in the file
+    other: int  # number of the other mode of a pair, 0 for none
 
 
 def _mode(block: Block) -> list[_Mode]:
@@ -479,13 +438,6 @@ def _mode(block: Block) -> list[_Mode]:
     other = re.search(r"pair with mode (\d{1,9})\s*$", text, re.MULTILINE)
     known = name[1] if name else "", number, frequency, damping
     return [_Mode(*known, np.array(nodes), shape, place, int(other[1]) if other else 0)]
-
-
-Point = tuple[int, int, Floats]
-"""A node: its number, its displacement system, and its coordinates (3,)."""
-
-System = tuple[int, Floats]
-"""A system of coordinates: its type, its axes in rows and its origin (4, 3)."""
 
 
 def _nodes(block: Block) -> list[Point]:
@@ -564,10 +516,10 @@ def _assembled(
     for row in rows if known else ():
         _check_nodes(file, row, np.intersect1d(row.nodes, known))
     pairs = {(number, row.other) for (_, number), row in placed.items() if number < row.other}
-    return NodalModes(
-        *(str(file), sets, modes, nodes, places, axes, frequency, damping, shape),
-        tuple(sorted(pair for pair in pairs if pair[1] in modes)),
-    )
+    pairs = {pair for pair in pairs if pair[1] in modes}
+    none, of_none = np.full(frequency.shape, np.nan), np.zeros((*frequency.shape, 0))
+    known_of = sets, modes, (), frequency, damping, of_none, none, of_none, tuple(sorted(pairs))
+    return NodalModes(ModalData(*known_of), nodes, places, axes, shape)
 
 
 def _check_nodes(file: Path, row: _Mode, nodes: Ints) -> None:

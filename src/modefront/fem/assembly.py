@@ -31,11 +31,8 @@ from modefront.linalg.affine import Members, Monomials, SparseAffine, sparse_aff
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError, factorise
 from modefront.rounding import WRITTEN
 
-OF_STIFFNESS, OF_MASS = ("E", "spring"), ("density", "mass")
-"""Quantities that are factors of stiffness, and of mass."""
-
-SensorPlaces = tuple[Ints, Floats]
-"""Nodes (sensors,) of sensors, and their directions (sensors, 6), weights of the DOFs of a node."""
+OF_STIFFNESS, OF_MASS = ("E", "spring"), ("density", "mass")  # quantities that are their factors
+SensorPlaces = tuple[Ints, Floats]  # nodes (sensors,), and weights (sensors, 6) of their DOFs
 
 
 @dataclass(frozen=True)
@@ -81,7 +78,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     exists = _existing(X, blocks, following)
     held = np.zeros_like(exists)
     following += hold(X, structure.supports, held, exists, faults)
-    places = sensor_places(X, structure.sensors, np.flatnonzero(exists.any(1)), faults)
+    places = located(X, structure.sensors, np.flatnonzero(exists.any(1)), faults)
     forces = []
     for load in structure.loads:
         with noted(faults, f"load {load.name!r}"):
@@ -92,7 +89,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     with noted(faults):
         check_mechanisms(X, blocks, following, held, exists, floating)
     with noted(faults):
-        selection = selection_matrix(structure.sensors, places, dofs)
+        selection = selection_of(structure.sensors, places, dofs)
     refuse(faults)
     if len(dofs.free) == 0:
         raise wrong("structure", "at least one degree of freedom that is free", "none")
@@ -146,10 +143,7 @@ def _exponents(
 def members_of(
     structure: Structure, T: sparse.csr_array, stiffness: Floats, mass: Floats
 ) -> list[Members]:
-    """Return what members add to the terms of K and M, of which the exponents are given, by blocks.
-
-    ``T`` is that of the degrees of freedom, `Dofs.T`.
-    """
+    """Return what members add to the terms by blocks, given T of `Dofs` and the exponents."""
     out = []
     for block in blocks_of(check_points(structure.nodes), structure, []):
         rows, count = T[block.dofs().ravel()], len(block.cells)
@@ -173,17 +167,12 @@ class _Terms:
         self.terms: dict[tuple[int, ...], sparse.csr_array] = {}
 
     def add(self, block: Block, name: str, parts: ByPower, linear: Sequence[str]) -> None:
-        """Add parts of a block by the parameters of a name; `linear` ones are plain factors.
-
-        T^T A T is summed element by element, in the same order on either side of the diagonal.
-        """
+        """Add parts of a block by the parameters of a name; `linear` ones are plain factors."""
+        # Summed element by element, in the same order on either side of the diagonal.
         moved = self.T[block.dofs().ravel()]
         for power, matrices in parts.items():
-            exponents = _exponents(self.parameters, name, power, linear)
-            count, size = matrices.shape[:2]
-            columns = np.repeat(np.arange(count * size).reshape(count, size), size, axis=0)
-            starts = np.arange(count * size + 1) * size
-            each = sparse.csr_array((matrices.ravel(), columns.ravel(), starts))
+            exponents, places = _exponents(self.parameters, name, power, linear), len(matrices)
+            each = sparse.bsr_array((matrices, np.arange(places), np.arange(places + 1))).tocsr()
             term = moved.T @ (each @ moved)
             known = self.terms.get(exponents)
             self.terms[exponents] = term if known is None else known + term
@@ -203,17 +192,11 @@ class _Terms:
         return sparse_affine(terms, Monomials(exponents), self.T.shape[1])
 
 
-def sensor_places(
-    X: Floats, sensors: Sequence[Sensor], used: Ints, faults: list[Fault]
-) -> SensorPlaces:
-    """Return nodes and directions of sensors; coordinates are looked for among the nodes `used`.
-
-    What is wrong with them is noted in ``faults``.
-    """
+def located(X: Floats, sensors: Sequence[Sensor], used: Ints, faults: list[Fault]) -> SensorPlaces:
+    """Return nodes and directions of sensors, coordinates among the nodes `used`; note faults."""
     tree = scipy.spatial.KDTree(X[used]) if used.size else None
-    rows, nodes = np.zeros((len(sensors), 6)), np.zeros(len(sensors), dtype=np.int64)
+    nodes = np.zeros(len(sensors), dtype=np.int64)
     for n, sensor in enumerate(sensors):
-        rows[n] = unit_vector(sensor.direction)
         with noted(faults, f"sensor {sensor.name!r}"):
             if isinstance(sensor.at, int):
                 nodes[n] = node_list(sensor.at, len(X))[0]
@@ -229,18 +212,14 @@ def sensor_places(
                 expected = f"a node within {tolerance:.3g} of {tuple(point.tolist())}"
                 near = f"node {node} at {tuple(X[node].tolist())}, {distance:.3g} away"
                 raise wrong("", expected, f"none; the nearest is {near}")
-    return nodes, rows
+    return nodes, np.reshape([unit_vector(x.direction) for x in sensors], (-1, 6))
 
 
-def selection_matrix(
-    sensors: Sequence[Sensor], places: SensorPlaces, dofs: Dofs
-) -> sparse.csr_array:
-    """Return L, CSR (sensors, free DOFs), with y = L q.
+def selection_of(sensors: Sequence[Sensor], places: SensorPlaces, dofs: Dofs) -> sparse.csr_array:
+    """Return L, CSR (sensors, free DOFs), with y = L q; refuse sensors of what cannot move.
 
     A sensor at node n along the unit vector a measures a . u_n = a . (T q)_n: one on a slave of a
     rigid link measures what its master moves.
-
-    Raises InputError with all sensors that measure what cannot move.
     """
     nodes, directions = places
     columns = 6 * nodes[:, None] + np.arange(6)
@@ -260,9 +239,7 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools) -> Floats:
         raise wrong("", "nodes and a force on them", "one without the other")
     if load.nodes is not None:
         f[node_list(load.nodes, len(f)), : len(force)] = force
-    nowhere = np.argwhere((f != 0) & ~exists)
-    if len(nowhere):
-        node, direction = nowhere[0]
+    for node, direction in np.argwhere((f != 0) & ~exists):
         raise wrong("", f"what resists {DIRECTIONS[direction]} of node {node}", "nothing")
     out = f.ravel()
     known = {block.name for block in blocks if block.internal is not None}

@@ -31,10 +31,8 @@ class Block:
     stiffness: common.ByPower  # stiffness, mass: matrices of size k d
     mass: common.ByPower
     rigid: bool = False  # whether an element that nothing deforms is one rigid body with its nodes
-    # geometric stiffness of given forces
-    prestress: common.ByPower = field(default_factory=dict)
-    # returns internal forces; None for elements that make no geometric stiffness
-    internal: Callable[[], Axial | common.Stresses] | None = None
+    prestress: common.ByPower = field(default_factory=dict)  # geometric stiffness of given forces
+    internal: Callable[[], Axial | common.Stresses] | None = None  # forces, if they make stiffness
 
     def dofs(self) -> Ints:
         """Return 6 node + direction of each row of the matrices (elements, k d)."""
@@ -43,10 +41,7 @@ class Block:
 
 
 def blocks_of(X: Floats, structure: members.Structure, faults: list[Fault]) -> list[Block]:
-    """Return a block for each group, and set of springs or masses, in which nothing is wrong.
-
-    Its faults are noted.
-    """
+    """Return a block for each group, and set of springs or masses; note the faults of others."""
     shells: list[tuple[members.Shells, Ints]] = []
     for group in structure.groups:
         if isinstance(group, members.Shells):
@@ -81,8 +76,7 @@ def _beams(X: Floats, group: members.Beams) -> Block:
             expected = "a vector in the plane of the beam's axis and its local y"
             found = "nothing, and the section is not the same in y and z"
             raise wrong("orientation", expected, found)
-        upright = np.abs(axis[:, 2:]) > 0.9
-        orientation = np.where(upright, np.eye(3)[0], np.eye(3)[2])
+        orientation = np.where(np.abs(axis[:, 2:]) > 0.9, np.eye(3)[0], np.eye(3)[2])
     else:
         v = check.unit_vector(group.orientation)[:3]
         orientation = np.broadcast_to(v, axis.shape)
@@ -219,5 +213,4 @@ MADE: Mapping[type, tuple[str, Callable[[Floats, Any], Block]]] = {
     members.Spring: ("spring", _springs),
     members.Mass: ("mass", _masses),
 }
-"""What messages call the members of each class, and what makes blocks of them; shells, of which
-neighbours share directors, are made before these."""
+"""What messages call members, and what makes blocks of them; shells are made before these."""

@@ -1,8 +1,7 @@
 r"""Checks of the parts of a structure: shapes, ranges, names, volumes.
 
-Each message names the place, the expected and the found value. Volumes and areas are judged by
-det J at the corners of the elements, relative to the element's size. Limits are shapes from which
-on an engineer should not trust a mesh; ``benchmarks/elements.py`` measures the errors to expect.
+Volumes and areas are judged by det J at the corners, relative to the element's size. Limits are
+shapes from which on an engineer should not trust a mesh; ``benchmarks/elements.py`` measures them.
 """
 
 from collections.abc import Iterator
@@ -12,23 +11,22 @@ import numpy.typing as npt
 
 from modefront._typing import Floats, Ints
 from modefront.errors import Fault, refuse, suggestion, wrong
+from modefront.fem import structure as members
 from modefront.fem.elements.shapes import jacobian
 from modefront.fem.elements.shell import FOLD, corner_normals
 from modefront.fem.elements.solid import SOLIDS
-from modefront.fem.structure import (
-    DIRECTIONS,
-    Axes,
-    Beams,
-    Direction,
-    Shells,
-    Solids,
-    Structure,
-    Trusses,
-)
+from modefront.fem.structure import DIRECTIONS, Axes, Direction, Structure
 from modefront.options import repeated
 
-FLAT = 1e-8
-"""Length, area or volume of an element over that of its extent that is rounding of coordinates."""
+FLAT = 1e-8  # length, area or volume over that of the element's extent that is rounding
+DISTORTED = 0.3  # difference of greatest and least volume at corners of a brick, over the greatest
+CURVED = 10.0  # square of the size over radius and thickness, from which on elements are too coarse
+SMALL = 4.0  # size of shells over their thickness, below which the share of shear changes with it
+OBTUSE = 120.0  # greatest angle in degrees of half of the triangles, from which on they are poor
+
+CORNERS = np.array(  # neighbours of each corner of a brick, in a right-handed order
+    [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
+)
 
 
 def check_points(nodes: npt.ArrayLike) -> Floats:
@@ -41,20 +39,15 @@ def check_points(nodes: npt.ArrayLike) -> Floats:
     return X
 
 
-def _within(nodes: npt.NDArray[np.integer], count: int) -> Ints:
-    """Return nodes, which have to be those of a model of `count`."""
-    beyond = nodes[(nodes < 0) | (nodes >= count)]
-    if beyond.size:
-        raise wrong("", f"nodes from 0 to {count - 1}", beyond[0])
-    return nodes.astype(np.int64)
-
-
 def node_list(nodes: npt.ArrayLike, count: int) -> Ints:
-    """One node or a list of nodes as an array."""
+    """One node or a list of nodes of a model of `count` as an array."""
     array = np.atleast_1d(np.asarray(nodes))
     if array.ndim != 1 or array.size == 0 or not np.issubdtype(array.dtype, np.integer):
         raise wrong("", "a list of nodes", repr(nodes))
-    return _within(array, count)
+    beyond = array[(array < 0) | (array >= count)]
+    if beyond.size:
+        raise wrong("", f"nodes from 0 to {count - 1}", beyond[0])
+    return array.astype(np.int64)
 
 
 def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int) -> Ints:
@@ -64,7 +57,7 @@ def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int) -> Ints
     if array.ndim != 2 or array.shape[1] not in sizes or len(array) == 0 or not integer:
         expected = f"cells, integers (elements, {' or '.join(map(str, sizes))})"
         raise wrong("", expected, f"{array.dtype} of shape {array.shape}")
-    return _within(array, count)
+    return node_list(array.ravel(), count).reshape(array.shape)
 
 
 def unit_vector(direction: Direction) -> Floats:
@@ -88,10 +81,7 @@ def axes_of(axes: Axes | None) -> Floats:
 
 
 def check_sizes(relative: Floats, cells: Ints, what: str) -> None:
-    """No element has a relative length, area or volume of zero or less.
-
-    That is (elements,) the smallest det J over the power of the element's extent.
-    """
+    """No element has a relative length, area or volume (elements,) of zero or less."""
     bad = np.flatnonzero(~(relative > FLAT))
     if len(bad):
         e = bad[0]
@@ -121,28 +111,26 @@ def solid_sizes(X: Floats) -> Floats:
 
 
 def check_names(structure: Structure) -> None:
-    """Check that names are used once, and that parameters scale what the named members have.
-
-    Groups of one kind may share a name.
-    """
+    """Names are used once, but for groups of one kind; parameters scale what named members have."""
     has: dict[str, set[str]] = {
         "E": {g.name for g in structure.groups},
         "density": {g.name for g in structure.groups},
-        "thickness": {g.name for g in structure.groups if isinstance(g, Shells)},
+        "thickness": {g.name for g in structure.groups if isinstance(g, members.Shells)},
         "spring": {s.name for s in structure.springs},
         "mass": {m.name for m in structure.masses},
         "prestress": {x.name for x in structure.loads}
-        | {g.name for g in structure.groups if isinstance(g, Beams | Trusses) and g.force},
+        | {g.name for g in structure.groups if getattr(g, "force", 0)},
     }
-    members = [s.name for s in structure.springs] + [m.name for m in structure.masses]
-    faults = []
-    for what, names in (
-        ("member", [*has["E"], *members, *(x.name for x in structure.loads)]),
-        ("sensor", [s.name for s in structure.sensors]),
-        ("parameter", [p.name for p in structure.parameters]),
-    ):
-        expected = "a name used once"
-        faults += [Fault("", f"{what} {x!r}", expected, "it twice") for x in repeated(names)]
+    own = [s.name for s in structure.springs] + [m.name for m in structure.masses]
+    faults = [
+        Fault("", f"{what} {x!r}", "a name used once", "it twice")
+        for what, names in (
+            ("member", [*has["E"], *own, *(x.name for x in structure.loads)]),
+            ("sensor", [s.name for s in structure.sensors]),
+            ("parameter", [p.name for p in structure.parameters]),
+        )
+        for x in repeated(names)
+    ]
     for name in sorted(has["E"]):
         classes = sorted({type(g).__name__ for g in structure.groups if g.name == name})
         if len(classes) > 1:
@@ -158,35 +146,27 @@ def check_names(structure: Structure) -> None:
     refuse(faults)
 
 
-DISTORTED = 0.3
-"""Difference of the greatest and least volume at the corners of a brick, over the greatest."""
-
-CURVED = 10.0
-"""Square of the size of an element over radius and thickness, from which on it is too coarse."""
-
-SMALL = 4.0
-"""Size of shells over their thickness, below which another thickness has another share of shear."""
-
-OBTUSE = 120.0
-"""Greatest angle in degrees of half of the triangles of a group, from which on they are poor."""
-
-CORNERS = np.array(
-    [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
-)
-"""Neighbours of each corner of a brick, in the order of a right-handed system."""
-
-
 def limits_of(structure: Structure, nodes: Floats) -> Iterator[str]:
     """Yield warnings on the elements of a structure; its nodes (nodes, 3) are checked."""
     for group in structure.groups:
         cells = np.asarray(group.cells)
-        if isinstance(group, Shells):
-            normal = corner_normals(nodes[cells]).mean(axis=1)
+        X = nodes[cells]
+        if isinstance(group, members.Shells):
+            normal = corner_normals(X).mean(axis=1)
             area = np.linalg.norm(normal, axis=1)
             size = np.sqrt(area if cells.shape[1] == 4 else area / 2)
             yield from _curved(group, cells, normal / area[:, None], size)
-            if cells.shape[1] == 3:
-                yield from _obtuse(group, nodes[cells])
+            sides = np.roll(X, -1, axis=1) - X
+            sides /= np.linalg.norm(sides, axis=2, keepdims=True)
+            turns = np.arccos((sides * np.roll(sides, 1, axis=1)).sum(2).clip(-1, 1))
+            angle = 180 - float(np.degrees(np.median(turns.min(axis=1))))
+            if cells.shape[1] == 3 and angle >= OBTUSE:
+                yield (
+                    f"half of the triangles of group '{group.name}' have angles of {angle:.0f}° "
+                    "and more: expect bending frequencies off by 3 % at 120° and 13 % at 150° "
+                    "where a span has 16; divide along the shorter diagonals, or take "
+                    "quadrilaterals"
+                )
             if group.name in structure.varied_thickness and size.min() < SMALL * group.thickness:
                 ratio = size.min() / group.thickness
                 yield (
@@ -194,40 +174,20 @@ def limits_of(structure: Structure, nodes: Floats) -> Iterator[str]:
                     "thickness, which is a parameter: at twice the nominal one, frequencies differ "
                     "by up to 11 % from those of a model with that thickness; begin near it"
                 )
-        elif isinstance(group, Solids) and cells.shape[1] == 8:
-            yield from _distorted(group, nodes[cells])
+        elif isinstance(group, members.Solids) and cells.shape[1] == 8:
+            volume = np.abs(np.linalg.det(X[:, CORNERS] - X[:, :, None]))
+            distortion = 1 - volume.min(axis=1) / volume.max(axis=1)
+            if count := int((distortion >= DISTORTED).sum()):
+                yield (
+                    f"{count} of {len(distortion)} bricks of group '{group.name}' are distorted, "
+                    f"by up to {100 * distortion.max():.0f} % of the volume at their corners "
+                    f"(element {int(np.argmax(distortion))}): expect bending frequencies too great "
+                    "by some 20 % at a third and 30 % at a half where a span has 5 bricks, by 3 to "
+                    "6 % where it has 10; refine, or take bricks of 20 nodes"
+                )
 
 
-def _obtuse(group: Shells, X: Floats) -> Iterator[str]:
-    """Yield a warning where triangles X (elements, 3, 3) have great angles."""
-    sides = np.roll(X, -1, axis=1) - X
-    sides /= np.linalg.norm(sides, axis=2, keepdims=True)
-    turns = np.arccos((sides * np.roll(sides, 1, axis=1)).sum(2).clip(-1, 1))
-    angle = 180 - float(np.degrees(np.median(turns.min(axis=1))))
-    if angle >= OBTUSE:
-        yield (
-            f"half of the triangles of group '{group.name}' have angles of {angle:.0f}° and more: "
-            "expect bending frequencies off by 3 % at 120° and 13 % at 150° where a span has 16; "
-            "divide along the shorter diagonals, or take quadrilaterals"
-        )
-
-
-def _distorted(group: Solids, X: Floats) -> Iterator[str]:
-    """Yield a warning where bricks X (elements, 8, 3) are distorted."""
-    edges = X[:, CORNERS] - X[:, :, None]
-    volume = np.abs(np.linalg.det(edges))
-    distortion = 1 - volume.min(axis=1) / volume.max(axis=1)
-    if count := int((distortion >= DISTORTED).sum()):
-        yield (
-            f"{count} of {len(distortion)} bricks of group '{group.name}' are distorted, by up to "
-            f"{100 * distortion.max():.0f} % of the volume at their corners (element "
-            f"{int(np.argmax(distortion))}): expect bending frequencies too great by some 20 % at "
-            "a third and 30 % at a half where a span has 5 bricks, by 3 to 6 % where it has 10; "
-            "refine, or take bricks of 20 nodes"
-        )
-
-
-def _curved(group: Shells, cells: Ints, normal: Floats, size: Floats) -> Iterator[str]:
+def _curved(group: members.Shells, cells: Ints, normal: Floats, size: Floats) -> Iterator[str]:
     """Yield a warning where elements are large beside radius and thickness of the shell."""
     edges = np.sort(np.stack([cells, np.roll(cells, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     owner = np.repeat(np.arange(len(cells)), cells.shape[1])

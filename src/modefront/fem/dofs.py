@@ -20,7 +20,7 @@ from scipy.linalg import block_diag
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import Fault, noted, wrong
 from modefront.fem.check import axes_of, node_list
-from modefront.fem.elements.common import cross_matrix
+from modefront.fem.elements.common import attachment
 from modefront.fem.structure import DIRECTIONS, Coupling, Structure, Support
 from modefront.linalg.affine import sparse_rows
 from modefront.rounding import ACCUMULATED, COMPUTED, WRITTEN
@@ -94,26 +94,18 @@ def _coupling(X: Floats, coupling: Coupling) -> Followers:
     return _followers(X, node, of[None], factors, directions)
 
 
-def _followers(
-    X: Floats, slaves: Ints, masters: Ints, weight: Floats, directions: Sequence[int]
-) -> Followers:
-    """Return the rows of the given directions of slaves (slaves,).
-
-    They follow nodes ``masters`` (slaves, k) by factors (slaves, 6, k, 6) on their DOFs.
-    """
+def _followers(X: Floats, slave: Ints, masters: Ints, weight: Floats, axes: list[int]) -> Followers:
+    """Return rows of axes of slaves (slaves,) by factors (slaves, 6, k, 6) on their masters."""
     count = len(masters)
-    weight = weight[:, directions].reshape(count * len(directions), -1)
     columns = (6 * masters[:, :, None] + np.arange(6)).reshape(count, -1)
-    columns = np.repeat(columns, len(directions), axis=0)
-    rows = sparse_rows(weight, columns, 6 * len(X))
-    return Followers((6 * slaves[:, None] + np.array(directions)).ravel(), rows)
+    columns, weight = np.repeat(columns, len(axes), axis=0), weight[:, axes]
+    rows = sparse_rows(weight.reshape(count * len(axes), -1), columns, 6 * len(X))
+    return Followers((6 * slave[:, None] + np.array(axes)).ravel(), rows)
 
 
 def rigid_motion(arms: Floats) -> Floats:
     """Motions (points, 6, 6) of points at arms (points, 3) from a node, from its motion."""
-    P = np.tile(np.eye(6), (len(arms), 1, 1))
-    P[:, :3, 3:] = -cross_matrix(arms)
-    return P
+    return attachment(arms[:, None])[:, 0]
 
 
 def hold(
@@ -140,8 +132,8 @@ def hold(
         C = np.concatenate([np.eye(6)[held[node]], *several]) * exists[node]
         for pivot, row in _solved(C):
             if row.any():
-                weight = np.outer(np.eye(6)[pivot], row)[None, :, None]
-                out.append(_followers(X, np.array([node]), np.array([[node]]), weight, [pivot]))
+                weight = sparse_rows(row[None], 6 * node + np.arange(6)[None], 6 * len(X))
+                out.append(Followers(np.array([6 * node + pivot]), weight))
             else:
                 held[node, pivot] = True
     return out
@@ -164,9 +156,7 @@ def _solved(C: Floats) -> list[tuple[int, Floats]]:
 
 
 def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> Dofs:
-    """Number the DOFs node by node and build T.
-
-    Raises InputError if a DOF is slave twice, slave and held, or follows itself.
+    """Number the DOFs node by node and build T; refuse those that are slaves twice, or held too.
 
     A DOF ``exists`` (nodes, 6) where an element or link uses it, and a support holds those that are
     ``held`` (nodes, 6). The rows ``following`` of links, couplings and supports may be chains.

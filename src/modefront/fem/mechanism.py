@@ -28,9 +28,7 @@ from modefront.linalg.affine import sparse_rows
 from modefront.linalg.factorisation import factorise
 from modefront.rounding import ACCUMULATED, WRITTEN
 
-STEPS = 4
-"""Steps of inverse iteration: each leaves of other motions the ratio of shift and eigenvalue."""
-
+STEPS = 4  # of inverse iteration: each leaves of other motions the ratio of shift and eigenvalue
 NAMED = 0.05  # share of a direction in a motion, over the greatest, from which the message names it
 
 
@@ -47,18 +45,14 @@ class Bodies:
 
 def rigid_bodies(X: Floats, elements: Sequence[Block], exists: Bools) -> Bodies:
     """Bodies of the elements and of the nodes that belong to none."""
-    incidence = _incidence(len(X), elements, exists)
-    bodies, compact = np.unique(incidence[:, 1], return_inverse=True)
-    incidence = np.stack([incidence[:, 0], compact], 1)
-    n, b = incidence.T
+    n, label = _incidence(len(X), elements, exists).T
+    _, b = np.unique(label, return_inverse=True)
     home = np.full(len(X), -1)
-    home_nodes, earliest = np.unique(n, return_index=True)
-    home[home_nodes] = b[earliest]
-    shared = incidence[b != home[n]]
-    members = np.bincount(b, minlength=len(bodies))
-    sums = [np.bincount(b, weights=X[n, d], minlength=len(bodies)) for d in range(3)]
-    centre = np.stack(sums, 1) / members[:, None]
-    extent = np.zeros(len(bodies))
+    home[n[::-1]] = b[::-1]  # the first of those of a node
+    shared = np.stack([n, b], 1)[b != home[n]]
+    members = np.bincount(b)
+    centre = np.stack([np.bincount(b, weights=x) for x in X[n].T], 1) / members[:, None]
+    extent = np.zeros(len(members))
     np.maximum.at(extent, b, np.linalg.norm(X[n] - centre[b], axis=1))
     alone = members == 1
     moves = np.repeat(~alone[:, None], 6, axis=1)
@@ -74,8 +68,7 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
     to the body of each.
     """
     none, size = np.zeros((0, 2), np.int64), nodes
-    pairs, solid_pairs = [none], [none]
-    faces: dict[int, list[tuple[Ints, Ints]]] = {3: [], 4: []}
+    pairs, solid_pairs, faces = [none], [none], [np.zeros((0, 5), np.int64)]
     for block in elements:
         count, k = block.cells.shape
         vertex, size = size + np.arange(count), size + count
@@ -85,13 +78,13 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
             continue
         solid_pairs.append(to_nodes)
         for corners in SOLIDS[k].faces:
-            faces[len(corners)].append((np.sort(block.cells[:, corners], -1), vertex))
-    for sides in faces.values():
-        if sides:
-            keys = np.concatenate([side[0] for side in sides])
-            _, face = np.unique(keys, axis=0, return_inverse=True)
-            pairs.append(np.stack([size + face, np.concatenate([s[1] for s in sides])], 1))
-            size += int(face.max()) + 1
+            missing = np.full((count, 4 - len(corners)), -1)
+            key = np.sort(block.cells[:, corners], -1)
+            faces.append(np.column_stack([key, missing, vertex]))
+    *sides, element = np.concatenate(faces).T
+    _, face = np.unique(sides, axis=1, return_inverse=True)
+    pairs.append(np.stack([size + face, element], 1))
+    size += int(face.max(initial=-1)) + 1
     edges = np.concatenate(pairs)
     graph = sparse.coo_array((np.ones(len(edges)), edges.T), shape=(size, size))
     _, label = connected_components(graph, directed=False)
@@ -143,17 +136,16 @@ def _resisted(block: Block, size: int) -> sparse.csr_array:
     return sparse_rows(rows.reshape(len(columns), -1), columns, size)
 
 
-def null_space(C: sparse.csr_array, columns: Ints) -> Floats:
-    """Orthonormal null space (columns, k) of C at the given columns.
+def null_space(C: sparse.csr_array) -> Floats:
+    """Orthonormal null space (columns, k) of C.
 
     The negative pivots of C^T C less a small shift say how many motions are free (Sylvester), and
     inverse iteration finds them.
     """
-    part = C[:, columns]
-    gram, one = part.T @ part, sparse.eye_array(len(columns))
+    gram, one = C.T @ C, sparse.eye_array(C.shape[1])
     shift = ACCUMULATED * max(float(abs(gram).sum(0).max()), 1.0)
     count = factorise(gram - shift * one).negative or 0
-    N = np.random.default_rng(0).normal(size=(len(columns), count))
+    N = np.random.default_rng(0).normal(size=(C.shape[1], count))
     if count:
         factor = factorise(gram + shift * one)
         for _ in range(STEPS):
@@ -169,9 +161,7 @@ def check_mechanisms(
     exists: Bools,
     floating: bool,
 ) -> None:
-    """Refuse structures with a motion that nothing resists.
-
-    Raises InputError, which names the nodes of the part that moves, and how.
+    """Refuse structures with a motion that nothing resists; name the nodes that move, and how.
 
     A support holds the DOFs ``held`` (nodes, 6) of those that there are; a ``floating`` structure
     may move as a rigid body as a whole.
@@ -186,7 +176,8 @@ def check_mechanisms(
     for part in range(parts):
         inside = np.flatnonzero(part_of == part)
         columns = (6 * inside[:, None] + np.arange(6))[bodies.moves[inside]]
-        N = null_space(C, columns)
+        own = C[:, columns]
+        N = null_space(own)
         if floating:
             # Motions (6 bodies, 6) in which all bodies of the part move as one, scaled like C.
             arms = bodies.centre[inside] - bodies.centre[inside].mean(0)
@@ -195,8 +186,8 @@ def check_mechanisms(
             motions[inside] = rigid_motion(arms)
             motions[:, :, 3:] /= size
             motions[:, 3:] *= bodies.extent[:, None, None]
-            whole = motions.reshape(-1, 6)[np.isin(np.arange(6 * count), columns)]
-            allowed = null_space(sparse.csr_array(C[:, columns] @ whole), np.arange(6)).shape[1]
+            whole = motions.reshape(-1, 6)[columns]
+            allowed = null_space(sparse.csr_array(own @ whole)).shape[1]
             loose += allowed > 0
             if N.shape[1] <= allowed and loose <= 1:
                 continue

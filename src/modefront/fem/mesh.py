@@ -38,29 +38,27 @@ CELL_TYPES: Mapping[Kind, tuple[str, ...]] = {
     "solid": ("hexahedron", "tetra10", "wedge15", "hexahedron20"),
 }
 
-DIVISIONS: Mapping[str, list[list[Sequence[int]]]] = {
+DIVISIONS: Mapping[str, list[list[Sequence[int]]]] = {  # that shells of more nodes are made of
     "triangle6": [[(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]],
     "quad8": [[(4, 5, 6, 7)], [(0, 4, 7), (4, 1, 5), (5, 2, 6), (7, 6, 3)]],
     "quad9": [[(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]],
 }
-"""Quadrilaterals and triangles that shells of more nodes are made of."""
 
-MEMORY, PER_BYTE = 2 * 10**9, 40
-"""Memory that reading may take, in bytes, and that for each byte of the file besides."""
+CORNERS = dict(enumerate((2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27), start=1)) | {15: 1, 16: 8}
+"""Nodes of elements by their type in Gmsh's format 2."""
+
+MEMORY, PER_BYTE = 2 * 10**9, 40  # bytes that reading may take, and for each of the file besides
 
 READABLE = "a mesh that meshio can read"
 
-REFERRING = (
-    *(".xdmf", ".xmf", ".h5m", ".cgns", ".hmf", ".exo", ".e", ".ex2"),
-    *(".ele", ".node", ".xml"),
-)
+LINKING = (".xdmf", ".xmf", ".h5m", ".cgns", ".hmf", ".exo", ".e", ".ex2", ".ele", ".node", ".xml")
 """Endings of formats that are several files, or keep values in HDF5, which may refer to others."""
 
-COMMANDS = (".inp", ".bdf", ".nas", ".fem", ".dat", ".key", ".cdb")
-"""Endings of formats of commands, one of which may be to read another file."""
+COMMANDS = (".inp", ".bdf", ".nas", ".fem", ".dat", ".key", ".cdb")  # one may read another file
 
-INCLUDES = re.compile(rb"\*.*\binput\s*=|\*?\s*include\b", re.IGNORECASE)
-"""A command that reads another file."""
+INCLUDES = re.compile(rb"\*.*\binput\s*=|\*?\s*include\b", re.IGNORECASE)  # of another file
+SECTION = re.compile(rb"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", re.DOTALL | re.MULTILINE)  # of Gmsh
+FROM_FILE = np.fromfile  # returns fewer numbers than are asked for where a file ends
 
 
 @dataclass(frozen=True)
@@ -81,10 +79,8 @@ class Mesh:
     def cells_of(self, group: str, kind: Kind) -> tuple[Ints, ...]:
         """Cells of a group, an array for each type, for elements of the given kind.
 
-        Shells of more than 4 nodes are divided into triangles and quadrilaterals.
-
-        Raises InputError if there is no such group, or it has cells of which no such elements can
-        be made.
+        Shells of more than 4 nodes are divided into triangles and quadrilaterals. Raises InputError
+        if there is no such group, or it has cells of which no such elements can be made.
         """
         blocks = [b for b in self.blocks if b.group == group]
         if not blocks:
@@ -102,10 +98,7 @@ class Mesh:
         )
 
     def nodes_of(self, name: str) -> Ints:
-        """Nodes of a set, or of the cells of a group, ascending.
-
-        Raises InputError if there is neither.
-        """
+        """Nodes of a set or cells of a group, ascending; raises InputError if there is neither."""
         blocks = [b.nodes.ravel() for b in self.blocks if b.group == name]
         if name in self.node_sets:
             blocks.append(self.node_sets[name])
@@ -128,8 +121,7 @@ def read_mesh(path: str | Path) -> Mesh:
     path = Path(path)
     if importlib.util.find_spec("meshio") is None:
         raise wrong(path, "meshio for meshes (`pip install modefront[mesh]`)", "no such package")
-    size = file_size(path, "a mesh", MOST_DATA)
-    memory = min(available_memory(), MEMORY + PER_BYTE * size)
+    memory = min(available_memory(), MEMORY + PER_BYTE * file_size(path, "a mesh", MOST_DATA))
     arrays, parts = isolated(f"{__name__}:read_with_meshio", path, READABLE, memory=memory)
     points = arrays.pop("points")
     if points.ndim != 2 or not 1 <= points.shape[1] <= 3:
@@ -143,7 +135,7 @@ def read_mesh(path: str | Path) -> Mesh:
 def refers_to(path: Path) -> str:
     """Return in words what a mesh file takes from other files; nothing where it takes nothing."""
     suffix = path.suffix.lower()
-    if suffix in REFERRING:
+    if suffix in LINKING:
         return f"the format {suffix}, which keeps values in other files"
     if suffix in COMMANDS:
         with path.open("rb") as stream:
@@ -156,15 +148,8 @@ def refers_to(path: Path) -> str:
     return ""
 
 
-CORNERS = dict(enumerate((2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27), start=1)) | {15: 1, 16: 8}
-"""Nodes of elements by their type in Gmsh's format 2."""
-
-
 def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return nodes, cells and sets as arrays, and the names that belong to them.
-
-    This is called in a process of its own, see `modefront.isolated`.
-    """
+    """Return nodes, cells and sets as arrays, and their names; see `modefront.isolated`."""
     from unittest import mock
 
     import h5py
@@ -181,10 +166,9 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
         with (
             contextlib.redirect_stderr(output),
             contextlib.redirect_stdout(output),
-            warnings.catch_warnings(),
+            warnings.catch_warnings(action="error", category=DeprecationWarning),  # of a cut text
             mock.patch.object(np, "fromfile", _from_file),
         ):
-            warnings.simplefilter("error", DeprecationWarning)  # NumPy's, of a text that is cut
             if path.suffix.lower() == ".msh":
                 _check_sections(path.read_bytes())
             raw = meshio.read(path)
@@ -204,20 +188,12 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     return arrays, {"blocks": list(blocks), "sets": list(sets)}
 
 
-FROM_FILE = np.fromfile
-"""NumPy's function, which returns fewer numbers than are asked for where a file ends."""
-
-
 def _from_file(file: Any, dtype: Any = float, count: int = -1, *others: Any, **named: Any) -> Any:
     """Return numbers of a file as NumPy does; raises ValueError where it ends before the last."""
     out = FROM_FILE(file, dtype, count, *others, **named)
     if 0 <= count != out.size:
         raise ValueError(f"{count} numbers announced, {out.size} there")
     return out
-
-
-SECTION = re.compile(rb"^\$(\w+)\s*\n(.*?)^\$End\1\s*$", re.DOTALL | re.MULTILINE)
-"""A section of a Gmsh file."""
 
 
 def _check_sections(content: bytes) -> None:

@@ -32,8 +32,7 @@ from modefront.rounding import WRITTEN
 
 Direction = str | Sequence[float]
 Vector = Sequence[float]
-Axes = tuple[Sequence[float], Sequence[float]]
-"""Local axes: the local x axis, and a vector in the local x-y plane."""
+Axes = tuple[Sequence[float], Sequence[float]]  # local x axis, and a vector in the local x-y plane
 
 Quantity = Literal["E", "density", "thickness", "spring", "mass", "prestress"]
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
@@ -68,7 +67,6 @@ OFFSETS = Requirement("a vector of 3 numbers for either end", array(VECTOR, 2, 2
 RELEASES = Requirement(f"a list for either end, of {NAMES}", array(OF_NAMES, 2, 2))
 FORCE = number("an axial force")
 
-
 SIX, THREE = array(NOT_NEGATIVE, 6, 6), array(NOT_NEGATIVE, 3, 3)
 STIFFNESS = Requirement("a stiffness above 0, or 6 of 0 or more", any_of(ABOVE_ZERO, SIX))
 MASS = Requirement("a mass of 0 or more, or 3 for x, y and z", any_of(NOT_NEGATIVE, THREE))
@@ -80,8 +78,7 @@ LOADED = numbers("3 components, or 6 with moments", any_of(VECTOR, array(NUMBER,
 STRAINS = mapping("a table, group = free strain", number("a strain"))
 SCALED = Requirement("a list of groups, springs, masses or loads", array({"type": "string"}, 1))
 
-
-FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
+FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {  # corners of the faces of cells, as in VTK
     "triangle": ((0, 1, 2),),
     "quad": ((0, 1, 2, 3),),
     "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
@@ -92,7 +89,6 @@ FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
         *((1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
     ),
 }
-"""Corners of the faces of cells, in the order of VTK; nodes between corners follow them there."""
 
 
 @dataclass(frozen=True, eq=False)

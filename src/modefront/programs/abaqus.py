@@ -63,10 +63,7 @@ def _files(path: Path) -> tuple[Path, Path]:
 
 
 def _first(path: Path) -> tuple[int, str | None]:
-    """Return how many numbers the first line of a matrix has, five or three, and what is between.
-
-    Raises InputError where there are none, or others.
-    """
+    """Return how many numbers the first line has, five or three, and what is between them."""
     with path.open(encoding="latin-1") as text:
         lines = (line for line in text if line.strip() and line.lstrip()[0] not in "*%")
         if (line := next(lines, None)) is None:
@@ -87,8 +84,7 @@ def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[scipy.sparse.co
         parts.append((node * slots + direction, other * slots + its, value))
     used = np.unique(np.concatenate([np.unique(key) for part in parts for key in part[:2]]))
     order = np.argsort(used < slots, kind="stable")  # nodes made by the program are below 1
-    place = np.empty(used.size, np.intp)
-    place[order] = np.arange(used.size)
+    place = np.argsort(order)
     entries = []
     for row, column, value in parts:
         i, j = (place[np.searchsorted(used, key)] for key in (row, column))

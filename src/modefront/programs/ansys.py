@@ -55,9 +55,6 @@ def read(path: Path, options: JobOptions) -> Listed:
     return Listed((files[0], files[1]), matrices, _labels(path, options, matrices[0].shape[0]))
 
 
-# .full
-
-
 class _Words:
     """Words of 4 bytes of a file, and where in them the next record is."""
 

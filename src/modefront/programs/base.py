@@ -1,8 +1,8 @@
 """Finite-element programs: their options and jobs, meshes for pictures, and how jobs are read.
 
-A program has a module with a function ``read``, which returns what the files of a job list. It runs
-in a process of its own, with limits on time and memory, in which the matrices are checked too: they
-are whole, finite and symmetric, and without what is held.
+A program has a module with a function ``read``, which takes a path and options and returns what
+the files of a job list. It runs in a process of its own, with limits on time and memory, in which
+the matrices are checked too: they are whole, finite and symmetric, and without what is held.
 """
 
 import importlib
@@ -20,34 +20,29 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.data.csv import NUMBER
 from modefront.errors import reason
 from modefront.fem.structure import FACES
-from modefront.inputs import ended, file_size, first_repeated, fortran, wrong
+from modefront.inputs import ended, file_size, first_repeated, wrong
 from modefront.isolated import Read, isolated
 from modefront.models.dofs import DofTable, read_dofs
 from modefront.models.matrices import symmetrised
 from modefront.outputs import output
 from modefront.text import Shown
 
-CORNERS: Mapping[str, int] = {
+CORNERS: Mapping[str, int] = {  # nodes of cells by types of meshio and VTK; others are left out
     **{"vertex": 1, "line": 2},
     **{kind: 1 + max(map(max, faces)) for kind, faces in FACES.items()},
 }
-"""Types of cells, as meshio and VTK call them, and their nodes; further nodes are left out."""
+
+Matrix: TypeAlias = scipy.sparse.csr_array
+Quantity = Literal["stiffness", "mass"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ProgramMesh(Shown):
-    """Nodes by their numbers, and cells between them.
+    """Nodes by their numbers, and cells between them."""
 
-    Attributes
-    ----------
-    number : (nodes,) numbers of the program, ascending
-    coordinates : (nodes, 3)
-    cells : (cells, k) numbers of nodes, by the type of the cell
-    """
-
-    number: Ints
-    coordinates: Floats
-    cells: Mapping[str, Ints]
+    number: Ints  # (nodes,) numbers of the program, ascending
+    coordinates: Floats  # (nodes, 3)
+    cells: Mapping[str, Ints]  # (cells, k) numbers of nodes, by the type of the cell
 
 
 def mesh_of(nodes: Mapping[int, Floats], elements: Iterable[tuple[str, list[int]]]) -> ProgramMesh:
@@ -55,15 +50,15 @@ def mesh_of(nodes: Mapping[int, Floats], elements: Iterable[tuple[str, list[int]
 
     Elements with unknown nodes, or fewer than corners, are left out.
     """
-    number = np.array(sorted(nodes), dtype=np.intp)
-    coordinates = np.array([nodes[n] for n in number.tolist()], dtype=float).reshape(-1, 3)
+    number = sorted(nodes)
+    coordinates = np.array([nodes[n] for n in number], dtype=float).reshape(-1, 3)
     cells: dict[str, list[list[int]]] = {}
     for kind, members in elements:
         corners = members[: CORNERS[kind]]
         if len(corners) == CORNERS[kind] and nodes.keys() >= set(corners):
             cells.setdefault(kind, []).append(corners)
     tables = {kind: np.array(x, np.intp) for kind, x in cells.items()}
-    return ProgramMesh(number, coordinates, tables)
+    return ProgramMesh(np.array(number, np.intp), coordinates, tables)
 
 
 def refuse_unknown_nodes(path: Path, known: Collection[int], nodes: Iterable[int]) -> None:
@@ -98,10 +93,7 @@ def write_mesh(path: Path, mesh: ProgramMesh) -> None:
 
 
 def read_mesh(path: Path) -> ProgramMesh:
-    """Return a mesh that `write_mesh` has written.
-
-    Raises InputError for any other file.
-    """
+    """Return a mesh that `write_mesh` has written; raises InputError for any other file."""
     file_size(path, "nodes and elements (mesh.npz)")
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
@@ -110,47 +102,22 @@ def read_mesh(path: Path) -> ProgramMesh:
         raise wrong(path, "nodes and elements (mesh.npz)", reason(error)) from None
 
 
-Matrix: TypeAlias = scipy.sparse.csr_array
-
-Quantity = Literal["stiffness", "mass"]
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Job(Shown):
-    """Matrices of one job of a program.
+    """Matrices of one job of a program."""
 
-    Attributes
-    ----------
-    name : file or files, for messages
-    stiffness, mass : (N, N), symmetric, rows compressed
-    dofs : node and direction of each degree of freedom
-    precision : relative error of the numbers as they are written
-    mesh : nodes and elements where the deck is at hand; None where it is not
-    notes : what the program did to the model, and what was done about it
-    """
-
-    name: str
-    stiffness: Matrix
+    name: str  # file, for messages
+    stiffness: Matrix  # stiffness, mass: (N, N), symmetric, rows compressed
     mass: Matrix
-    dofs: DofTable
-    precision: float
-    mesh: ProgramMesh | None = None
-    notes: tuple[str, ...] = ()
-
-    @property
-    def size(self) -> int:
-        """Number of degrees of freedom N."""
-        return self.dofs.size
+    dofs: DofTable  # node and direction of each degree of freedom
+    precision: float  # relative error of the numbers as they are written
+    mesh: ProgramMesh | None = None  # nodes and elements; None where the deck is not at hand
+    notes: tuple[str, ...] = ()  # what the program did to the model, and what was done about it
 
     @property
     def matrices(self) -> Mapping[Quantity, Matrix]:
         """Both matrices by their names."""
         return {"stiffness": self.stiffness, "mass": self.mass}
-
-    @property
-    def labelled(self) -> bool:
-        """Whether the program's files tell nodes and directions; else there are only numbers."""
-        return bool((self.dofs.node > 0).any())
 
 
 @dataclass(frozen=True)
@@ -160,18 +127,12 @@ class JobOptions:
     # stiffness, mass: names of the matrices in files that hold several; None for the usual ones
     stiffness: str | None = None
     mass: str | None = None
-    # a table of degrees of freedom, for files that do not tell nodes; None where they do
-    dofs: Path | None = None
-    # the input file, for coordinates and elements; None for one beside the matrices
-    deck: Path | None = None
+    dofs: Path | None = None  # a table of degrees of freedom, for files that do not tell nodes
+    deck: Path | None = None  # the input file; None for one beside the matrices
 
 
 def read_job(program: str, path: Path, options: JobOptions) -> Job:
-    """Return a job of a program; raises InputError where its files cannot be read, for any cause.
-
-    A program is a module beside this one, whose function ``read`` takes a path and options, and
-    returns `Listed`.
-    """
+    """Return a job of a program; raises InputError where its files cannot be read."""
     given = (program, *(str(text or "") for text in astuple(options)))
     reader, expected = f"{__name__}:parts_of_job", f"a job of {program}"
     arrays, texts = isolated(reader, path, expected, arguments=given)
@@ -189,10 +150,9 @@ class Listed:
     files: tuple[Path, Path]  # that of the stiffness, and that of the mass
     # stiffness and mass as they are listed, one triangle or both
     matrices: Sequence[scipy.sparse.coo_array]
-    # node and direction of each row; those of `given_table` where no file tells them
-    dofs: DofTable
+    dofs: DofTable  # node and direction of each row; `given_table` where no file tells them
     precision: float = 1e-15  # relative error of the numbers, that of binary doubles unless given
-    # returns which rows are not held, (N,), given both matrices
+    # which rows are not held, (N,), given both matrices
     free: Callable[[Matrix, Matrix], Bools] = lambda K, _: np.ones(K.shape[0], bool)
     # whether files say how many entries they have; else those that are cut off at a line show by
     # mass without stiffness, which is refused
@@ -222,7 +182,7 @@ def parts_of_job(path: Path, program: str, *given: str) -> Read:
     options = JobOptions(stiffness, mass, *(Path(file) if file else None for file in files))
     listed: Listed = importlib.import_module(f"modefront.programs.{program}").read(path, options)
     pairs = zip(listed.files, listed.matrices, strict=True)
-    K, M = (whole(file, entries, listed.dofs) for file, entries in pairs)
+    K, M = (whole(*pair, listed.dofs) for pair in pairs)
     table, notes = listed.dofs, list(listed.notes)
     alone = np.flatnonzero((abs(K).sum(axis=0) == 0) & (M.diagonal() != 0))
     if alone.size and not listed.counted:  # a text of the stiffness that is cut off at a line
@@ -235,20 +195,18 @@ def parts_of_job(path: Path, program: str, *given: str) -> Read:
         K, M = K[free][:, free].tocsr(), M[free][:, free].tocsr()
     if not (table.node > 0).any():
         notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
-    arrays = {name: getattr(table, name)[free] for name in ("node", "direction", "weight")}
+    arrays = {} if listed.mesh is None else arrays_of(listed.mesh)
+    arrays |= {name: getattr(table, name)[free] for name in ("node", "direction", "weight")}
     for letter, A in (("K", K), ("M", M)):
         arrays |= {f"{letter}{k}": x for k, x in enumerate((A.data, A.indices, A.indptr))}
-    if listed.mesh is not None:
-        arrays |= arrays_of(listed.mesh)
     return arrays, [str(listed.files[0]), listed.precision, notes]
 
 
 def whole(path: Path, listed: scipy.sparse.coo_array, dofs: DofTable) -> Matrix:
     """Return the symmetric matrix of which one triangle or both are listed.
 
-    Entries on both sides of the diagonal are both triangles, or one of them whose entries are
-    turned here and there; in the latter no pair of places is given twice. Raises InputError where
-    a value is no number, an entry is listed again, or both triangles are listed and differ.
+    In one triangle, entries may be turned here and there. Raises InputError where a value is no
+    number, an entry is listed again, or both triangles are listed and differ.
     """
 
     def label(i: int, j: int) -> str:
@@ -268,10 +226,7 @@ def whole(path: Path, listed: scipy.sparse.coo_array, dofs: DofTable) -> Matrix:
 
 
 def existing(path: Path, expected: str, advice: str) -> Path:
-    """Return a path of a file that is there and not empty.
-
-    Raises InputError, which says what to do, where it is not.
-    """
+    """Return a path of a file; raises InputError, with advice, where it is empty or not there."""
     file_size(path, f"{expected} ({advice})")
     return path
 
@@ -279,8 +234,8 @@ def existing(path: Path, expected: str, advice: str) -> Path:
 def columns(path: Path, separator: str | None, kinds: str, *, comment: str) -> list[np.ndarray]:
     """Return the columns of a table of numbers in a file, between blanks or a separator.
 
-    What follows a ``comment`` is left out. ``kinds`` has a letter for each column, ``i`` for whole
-    numbers and ``f`` for real ones. Raises InputError for other lines.
+    ``kinds`` has a letter for each column, ``i`` for whole numbers and ``f`` for real ones. Raises
+    InputError for other lines.
     """
     ended(path)
     form = [(str(k), np.int32 if kind == "i" else np.float64) for k, kind in enumerate(kinds)]
@@ -296,16 +251,3 @@ def columns(path: Path, separator: str | None, kinds: str, *, comment: str) -> l
             found = next(bad, (reason(error), "file"))
         raise wrong(path, f"{len(kinds)} numbers in every line", *found) from None
     return [table[name] for name, _ in form]
-
-
-def fixed_width(text: bytes, width: int) -> Floats:
-    """Return numbers of a fixed width that follow each other without separators.
-
-    A ``D`` stands for the ``E`` of an exponent, which Fortran leaves out before three digits.
-    Raises ValueError where one is no number.
-    """
-    array = np.frombuffer(text.replace(b"D", b"E").replace(b"d", b"e"), dtype=f"S{width}")
-    try:
-        return np.asarray(array.astype(float))
-    except ValueError:
-        return np.array([fortran(field.decode("latin-1")) for field in array.tolist()])

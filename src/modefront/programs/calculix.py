@@ -71,10 +71,9 @@ def read(path: Path, options: JobOptions) -> Listed:
 
 def _table(labels: DofTable, deck: Deck | None) -> DofTable:
     """Return the degrees of freedom with their shares in the motion of their node."""
-    blocks, leading = _own_blocks(labels, deck)
-    itself = np.zeros(labels.size, bool)  # not one of those that were made of the node
-    for first, behind in blocks.values():
-        itself[first:behind] = True
+    alone, leading = _own_nodes(labels, deck)
+    # Whether it is not one of those that were made of the node.
+    itself = np.isin(labels.node, list(alone)) & (np.arange(labels.size) < leading)
     pairs = np.column_stack([labels.node, labels.direction])
     _, group = np.unique(pairs, axis=0, return_inverse=True)
     nodes, owner = np.unique(labels.node, return_inverse=True)
@@ -87,7 +86,7 @@ def _table(labels: DofTable, deck: Deck | None) -> DofTable:
     node = labels.node.copy()
     if deck is not None:
         node[~np.isin(node, deck.mesh.number)] *= -1
-        single = set(nodes[most == 1].tolist()) & (deck.expanded - deck.others - blocks.keys())
+        single = set(nodes[most == 1].tolist()) & (deck.expanded - deck.others - alone)
         # Of what follows a rigid body, the program eliminates all but one of the nodes it makes
         # of a node. What is left does not tell how that moves, nor does the motion that it prints
         # for the reference node agree with that of its degrees of freedom.
@@ -98,29 +97,18 @@ def _table(labels: DofTable, deck: Deck | None) -> DofTable:
     return DofTable(node, labels.direction, counted / np.where(itself, own, made).clip(1))
 
 
-def _own_blocks(labels: DofTable, deck: Deck | None) -> tuple[dict[int, tuple[int, int]], int]:
-    """Return the degrees of freedom (first, one behind the last) of nodes that move themselves.
+def _own_nodes(labels: DofTable, deck: Deck | None) -> tuple[set[int], int]:
+    """Return the nodes that move themselves, and the number of degrees of freedom that ascend.
 
-    The second value is the number of degrees of freedom at the beginning whose nodes ascend.
-
-    The program numbers the nodes of the deck before those that it makes of them. So the first block
-    of a node whose other blocks follow later is the node itself.
+    The program numbers the nodes of the deck before those that it makes of them. So of a node that
+    comes again behind the beginning, in which nodes ascend, the first is the node itself.
     """
     node, direction = labels.node, labels.direction
     new = np.append(True, (node[1:] != node[:-1]) | (direction[1:] <= direction[:-1]))
-    starts = np.append(np.flatnonzero(new), node.size).tolist()
-    blocks = [(int(node[first]), first, last) for first, last in pairwise(starts)]
-    places_of: dict[int, list[int]] = {}
-    for k, (number, _, _) in enumerate(blocks):
-        places_of.setdefault(number, []).append(k)
-    pairs = enumerate(pairwise(blocks), start=1)
-    leading = next((k for k, (one, other) in pairs if other[0] <= one[0]), len(blocks))
-    out = {}
-    for number, places in places_of.items():
-        if len(places) < 2 or places[0] >= leading:
-            continue
-        apart = places[1] > places[0] + 1
-        attached = deck is not None and number in deck.others and places[0] == leading - 1
-        if apart or attached:
-            out[number] = blocks[places[0]][1:]
-    return out, blocks[leading - 1][2] if leading else 0
+    starts, numbers = np.append(np.flatnonzero(new), node.size), node[new].tolist()
+    ascending = (k for k, (one, other) in enumerate(pairwise(numbers), start=1) if other <= one)
+    leading = next(ascending, len(numbers))
+    own, last = set(numbers[:leading]).intersection(numbers[leading:]), numbers[leading - 1]
+    if numbers[leading : leading + 1] == [last] and not (deck and last in deck.others):
+        own.remove(last)  # the first of those that are made of it
+    return own, int(starts[leading])

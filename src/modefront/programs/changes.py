@@ -16,6 +16,8 @@ from modefront.outputs import write_text
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
 """A number in a deck."""
 
+Numbers = list[tuple[tuple[int, int], float, float]]  # in a line: where, before and after a run
+
 SUFFIXES = (".inp", ".dat", ".bdf", ".nas", ".mac", ".py", ".tcl")
 CHANGES, KEPT = "changes.json", "deck-"
 """File of the changes in the folder of a study, and beginning of the name of the nominal deck."""
@@ -29,8 +31,7 @@ class Change:
     file: str  # the nominal deck
     line: int  # number from 1
     text: str  # the line
-    # beginning and end of each number that the factor multiplies
-    spans: tuple[tuple[int, int], ...]
+    spans: tuple[tuple[int, int], ...]  # ends of each number that the factor multiplies
 
     def updated(self, factor: float) -> str:
         """Return the line with its numbers times a factor."""
@@ -48,10 +49,7 @@ def _multiplied(text: str, factors: Mapping[tuple[int, int], float]) -> str:
 
 
 def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Change]:
-    """Return the lines in which a run multiplies numbers of the nominal deck by a factor.
-
-    None are returned where there are no decks, or these have different numbers of lines.
-    """
+    """Return the lines in which a run multiplies numbers of the nominal deck by a factor."""
     return [
         Change(parameter, name, number, old, tuple(span for span, _, _ in pairs))
         for name, number, old, pairs in _different_lines(nominal, run)
@@ -60,10 +58,7 @@ def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Cha
 
 
 def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] | None:
-    """Return the factor of all numbers that a run changes, and a line of it, if it is another one.
-
-    None where some change by the given factor, by different ones, or something else changes.
-    """
+    """Return the factor of all numbers that a run changes, and a line of it, if it is another."""
     factors: dict[float, int] = {}
     for _, number, old, pairs in _different_lines(nominal, run):
         if old.lstrip().startswith(("**", "$", "!", "#")):
@@ -78,7 +73,7 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
     return None if value <= 0 or abs(value / factor - 1) < 1e-5 else (value, line)
 
 
-def _different_lines(nominal: Path, run: Path) -> "Iterator[tuple[str, int, str, Numbers | None]]":
+def _different_lines(nominal: Path, run: Path) -> Iterator[tuple[str, int, str, Numbers | None]]:
     """Yield file, number and text of lines of the nominal deck that differ, and their numbers."""
     deck, lines = _deck(nominal), [deck_text(job).splitlines() for job in (nominal, run)]
     if deck and len(lines[0]) == len(lines[1]):
@@ -89,8 +84,7 @@ def _different_lines(nominal: Path, run: Path) -> "Iterator[tuple[str, int, str,
 
 def deck_text(job: Path) -> str:
     """Return the deck of a job; empty where there is none."""
-    deck = _deck(job)
-    return text_of(deck) if deck else ""
+    return text_of(deck) if (deck := _deck(job)) else ""
 
 
 def text_of(deck: Path) -> str:
@@ -104,8 +98,8 @@ def text_of(deck: Path) -> str:
 def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
     """Write the deck of a study with updated values: that which its folder keeps, or the job's own.
 
-    It is left out where a value of it is no parameter of the model, and where it is not there with
-    the lines that were imported: what was not written, and why, is returned, else nothing.
+    It is left out where one is no parameter, and where it is not there as it was imported: what
+    was not written, and why, is returned, else nothing.
     """
     changes = read_changes(study / CHANGES) if (study / CHANGES).is_file() else []
     decks = [study / f"{beginning}{each.file}" for each in changes[:1] for beginning in (KEPT, "")]
@@ -119,24 +113,17 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
     factors: dict[int, dict[tuple[int, int], float]] = {}
     for each in changes:
         line = factors.setdefault(each.line, {})
-        for span in each.spans:
-            line[span] = line.get(span, 1.0) * theta[each.parameter]
-    for k, of_line in factors.items():
-        lines[k] = _multiplied(lines[k], of_line)
+        line |= {span: line.get(span, 1.0) * theta[each.parameter] for span in each.spans}
+    lines |= {k: _multiplied(lines[k], of_line) for k, of_line in factors.items()}
     write_text(folder / changes[0].file, "".join(lines.values()))
     return ""
 
 
 def _deck(path: Path) -> Path | None:
     stem = path.with_suffix("") if path.suffix else path
-    for file in (*(stem.with_name(stem.name + x) for x in SUFFIXES), path):
-        if file.suffix.lower() in SUFFIXES and file.is_file() and file.stat().st_size < 2**26:
-            return file
-    return None
-
-
-Numbers = list[tuple[tuple[int, int], float, float]]
-"""Numbers of a line that are others in a run: where they are, before and after."""
+    files = (*(stem.with_name(stem.name + x) for x in SUFFIXES), path)
+    decks = (x for x in files if x.suffix.lower() in SUFFIXES and x.is_file())
+    return next((x for x in decks if x.stat().st_size < 2**26), None)
 
 
 def _changed(old: str, new: str) -> Numbers | None:
@@ -159,8 +146,8 @@ def read_changes(path: Path) -> list[Change]:
     file_size(path, "changes of a deck")
     try:
         listed = json.loads(path.read_text(encoding="utf-8"))
-        spans = [tuple((int(a), int(b)) for a, b in each["spans"]) for each in listed]
-        pairs = zip(listed, spans, strict=True)
-        return [Change(**{**each, "spans": of_line}) for each, of_line in pairs]
+        for each in listed:
+            each["spans"] = tuple((int(a), int(b)) for a, b in each["spans"])
+        return [Change(**each) for each in listed]
     except (OSError, ValueError, TypeError, KeyError) as error:
         raise wrong(path, "changes of a deck", reason(error)) from None

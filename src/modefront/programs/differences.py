@@ -30,10 +30,7 @@ from modefront.rounding import ACCUMULATED
 
 AFFINE = 1e-10  # greatest error of the terms at other values of the parameters, over the change
 ROUNDING = 20.0  # roundings that may add up in an entry
-
-CANCELLED = 1e-14
-"""Size over the greatest of what has cancelled: some fifty roundings of one operation."""
-
+CANCELLED = 1e-14  # size over the greatest of what has cancelled: some fifty roundings
 COVERED = 0.99  # share of an error within the terms of a parameter, from which it may come from it
 
 
@@ -44,8 +41,7 @@ class Term:
     name: str  # as `modefront.models.parameters` has it
     matrices: Mapping[Quantity, Matrix]  # symmetric ones by quantity; only those that are not zero
     dofs: int = 0  # number of degrees of freedom on which the term acts
-    # of the stiffness, or of the mass where there is no stiffness; None where not found
-    rank: int | None = None
+    rank: int | None = None  # of the stiffness, or of the mass without one; None if not found
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +65,9 @@ class Terms:
 
 
 class Differences:
-    """Matrices of a nominal run, and the differences of other runs from it.
+    """Matrices of a nominal run, and the differences of other runs from it, added one by one.
 
-    Runs are added one after the other, so that two of them are in memory at a time. The names of
-    the terms that a matrix may have are given for each quantity.
+    The names of the terms that a matrix may have are given for each quantity.
     """
 
     def __init__(
@@ -107,10 +102,7 @@ class Differences:
         return ", ".join(f"{name} = {value:g}" for name, value in pairs if value != 1)
 
     def terms(self) -> Terms:
-        """Return base and terms, those that are not zero.
-
-        Raises InputError where the runs do not determine a term, and for a parameter without one.
-        """
+        """Return base and terms, those that are not zero; raises InputError for missing ones."""
         terms: dict[str, dict[Quantity, Matrix]] = {}
         base: dict[Quantity, Matrix] = {}
         for quantity, A in self.nominal.matrices.items():
@@ -133,8 +125,8 @@ class Differences:
         found = []
         for name, matrices in terms.items():
             first: Quantity = "stiffness" if "stiffness" in matrices else "mass"
-            rank = _reduced(matrices[first], self.nominal.matrices[first], noise)[1]
-            found.append(Term(name, matrices, _support(matrices[first]).size, rank))
+            _, size, rank = _reduced(matrices[first], self.nominal.matrices[first], noise)
+            found.append(Term(name, matrices, size, rank))
         return Terms(self.parameters, Term(BASE, base), tuple(found), self.nominal.dofs)
 
     def _weights(self, quantity: Quantity) -> Floats:
@@ -154,10 +146,7 @@ class Differences:
         return np.asarray(np.linalg.pinv(c))
 
     def check(self, terms: Terms, label: str, job: Job, values: Floats) -> float:
-        """Return the error of the terms at another job, over the greatest entry of the matrices.
-
-        Raises InputError, which names the parameter, where the matrices are not affine.
-        """
+        """Return the relative error of the terms at another job; refuse one that is not affine."""
         order = matching(self.nominal, job, label)
         shifts = terms.coefficients.values(values) - 1.0
         worst = 0.0
@@ -189,52 +178,44 @@ class Differences:
             place = terms.dofs.label(int(entries.row[k]))
             expected = f"only {', '.join(moved)} to differ from '{self.nominal.name}'"
             return wrong(label, expected, f"other changes of the {quantity}, at {place}")
-        names = " and ".join(f"'{name}'" for name in guilty)
-        functions = f"--function {guilty[0]}={guilty[0]},{guilty[0]}^3"
-        if len(guilty) > 1:
-            functions = f"--function {guilty[0]}={'*'.join(guilty)}"
-        greatest = float(np.abs(E.data).max())
-        return wrong(
-            label,
-            f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that are "
-            f"declared, as in {functions}, with as many runs)",
-            f"a {quantity} that differs by {greatest:.2g} of its change at {self._changed(values)}",
-        )
+        names, first = " and ".join(f"'{name}'" for name in guilty), guilty[0]
+        functions = "*".join(guilty) if len(guilty) > 1 else f"{first},{first}^3"
+        expected = f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that "
+        expected += f"are declared, as in --function {first}={functions}, with as many runs)"
+        found = f"a {quantity} that differs by {np.abs(E.data).max():.2g} of its change at "
+        return wrong(label, expected, found + self._changed(values))
 
 
 def _share(E: Matrix, terms: Terms, quantity: Quantity, names: Sequence[str]) -> float:
     """Return the share of the squares of E within the entries of the terms of parameters."""
     columns = [terms.parameters.index(name) for name in names]
     acting: Bools = np.asarray(terms.coefficients.exponents[:, columns].any(axis=1))
-    pattern = scipy.sparse.csr_array(E.shape)
-    for term, acts in zip(terms.terms, acting, strict=True):
-        if acts and quantity in term.matrices:
-            pattern = pattern + abs(term.matrices[quantity]).sign()
-    inside = E.multiply(pattern.sign()).tocsr()
+    found = [x.matrices.get(quantity) for x, acts in zip(terms.terms, acting, strict=True) if acts]
+    patterns = (abs(A).sign() for A in found if A is not None)
+    inside = E.multiply(sum(patterns, scipy.sparse.csr_array(E.shape)).sign()).tocsr()
     return float((inside.data**2).sum() / (E.data**2).sum())
 
 
 def matching(nominal: Job, job: Job, label: str) -> Ints | slice:
-    """Return where each nominal degree of freedom is among those of ``job``.
+    """Return where each nominal degree of freedom is among those of ``job``; refuse others.
 
-    They are matched by node and direction, and those of the same label in their order. Raises
-    InputError where there are others.
+    They are matched by node and direction, and those of the same label in their order.
     """
-    tables = nominal.dofs, job.dofs
-    if not (nominal.labelled and job.labelled):
-        if nominal.size != job.size:
-            expected = f"{nominal.size} degrees of freedom, as '{nominal.name}' has"
-            raise wrong(label, expected, job.size)
+    tables, size = (nominal.dofs, job.dofs), nominal.dofs.size
+    if not all((table.node > 0).any() for table in tables):  # there are only numbers
+        if size != job.dofs.size:
+            expected = f"{size} degrees of freedom, as '{nominal.name}' has"
+            raise wrong(label, expected, job.dofs.size)
         return slice(None)
     labels = [np.column_stack([table.node, table.direction]) for table in tables]
     orders = [np.lexsort(each.T[::-1]) for each in labels]
     known = [each[order] for each, order in zip(labels, orders, strict=True)]
     if not np.array_equal(known[0], known[1]):
-        expected = f"the degrees of freedom of '{nominal.name}' ({nominal.size})"
+        expected = f"the degrees of freedom of '{nominal.name}' ({size})"
         before, after = (Counter(map(tuple, labels.tolist())) for labels in known)
         node, direction = min((before - after) or (after - before))
         found = f"{after[node, direction] or 'none'} at node {node} {name_of(direction)}"
-        raise wrong(label, expected, f"{found}, {job.size} in all")
+        raise wrong(label, expected, f"{found}, {job.dofs.size} in all")
     return np.asarray(orders[1][np.argsort(orders[0])])
 
 
@@ -257,29 +238,22 @@ def _with(entries: scipy.sparse.coo_array, chosen: Bools) -> Matrix:
     return scipy.sparse.coo_array((entries.data[chosen], places), shape=entries.shape).tocsr()
 
 
-def _support(term: Matrix) -> Ints:
-    return np.unique(np.concatenate(term.nonzero()))
-
-
-def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]:
-    """Return a term with the rank that it has above the rounding, and this rank.
-
-    None is returned for the rank of a term of many degrees of freedom, which is left as it is.
-    """
-    dofs = _support(term)
+def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int, int | None]:
+    """Return a term of its rank above the rounding, its size and this rank, None for large ones."""
+    dofs = np.unique(np.concatenate(term.nonzero()))
     if dofs.size == 0 or dofs.size > 60:  # decomposing many takes long
-        return term, None if dofs.size else 0
+        return term, dofs.size, None if dofs.size else 0
     values, vectors = np.linalg.eigh(term[dofs][:, dofs].toarray())
     limit = max(noise * float(np.abs(A.diagonal()[dofs]).max()), ACCUMULATED * np.abs(values).max())
     strong = np.abs(values) > limit
     rank = int(strong.sum())
     if rank in (0, dofs.size):
-        return term, rank or dofs.size
+        return term, dofs.size, rank or dofs.size
     part = (vectors[:, strong] * values[strong]) @ vectors[:, strong].T
     part[np.abs(part) <= CANCELLED * np.abs(part).max()] = 0.0
     small = scipy.sparse.coo_array((part + part.T) / 2)
-    places = dofs[small.row], dofs[small.col]
-    return scipy.sparse.coo_array((small.data, places), shape=term.shape).tocsr(), rank
+    triplets = small.data, (dofs[small.row], dofs[small.col])
+    return scipy.sparse.coo_array(triplets, shape=term.shape).tocsr(), dofs.size, rank
 
 
 def condensed(terms: Terms) -> tuple[Terms, int, int]:
@@ -329,7 +303,7 @@ def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]
     order = np.argsort(groups, kind="stable")
     _, starts, sizes = np.unique(groups[order], return_index=True, return_counts=True)
     done, inner = np.zeros(internal.size, bool), A[internal][:, internal].tocsr()
-    rows, columns, values = ([np.zeros(0, kind)] for kind in (np.intp, np.intp, float))
+    inverse = scipy.sparse.csr_array(inner.shape)
     for size in np.unique(sizes).tolist():
         members = order[starts[sizes == size][:, None] + np.arange(size)]
         row, column = np.repeat(members, size, axis=1), np.tile(members, (1, size))
@@ -337,11 +311,8 @@ def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]
         singular = np.linalg.svd(blocks, compute_uv=False)
         good = singular[:, -1] > ACCUMULATED * singular[:, 0]
         done[members[good]] = True
-        rows.append(row[good].ravel())
-        columns.append(column[good].ravel())
-        values.append(np.linalg.inv(blocks[good]).ravel())
-    triplets = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
-    inverse = scipy.sparse.csr_array(triplets, shape=(internal.size, internal.size))
+        triplets = np.linalg.inv(blocks[good]).ravel(), (row[good].ravel(), column[good].ravel())
+        inverse = inverse + scipy.sparse.csr_array(triplets, shape=inner.shape)
     others = np.ones(A.shape[0])
     others[internal[done]] = 0.0
     coupling = A[internal] @ scipy.sparse.diags_array(others)

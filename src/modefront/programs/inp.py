@@ -16,7 +16,7 @@ from modefront.programs.base import ProgramMesh, mesh_of, refuse_unknown_nodes
 
 DEEPEST = 20  # decks that include each other, one in the other, at most
 
-_TYPES = (
+_TYPES = (  # beginnings of the names of element types, and the cells that they are
     (r"C3D(8|20|27)|SC8|F3D8|DC3D(8|20)", "hexahedron"),
     (r"C3D(4|10)|F3D4|DC3D(4|10)", "tetra"),
     (r"C3D(6|15)|SC6|F3D6|DC3D(6|15)", "wedge"),
@@ -25,7 +25,6 @@ _TYPES = (
     (r"B[23][123]|PIPE|T[23]D|SPRINGA|SPRING2|DASHPOT[A2]|GAP|CONN[23]D2|D$|DCOUP|ITS", "line"),
     (r"MASS|ROTARYI|SPRING1|DASHPOT1", "vertex"),
 )
-"""Beginnings of the names of element types, and the cells that they are."""
 
 
 @dataclass
@@ -38,14 +37,11 @@ class Deck:
     # node or set, first and last direction, from 1
     supports: list[tuple[str, int, int]] = field(default_factory=list)
     elements: set[int] = field(default_factory=set)  # numbers
-    # nodes of elements that CalculiX makes solids of
-    expanded: set[int] = field(default_factory=set)
+    expanded: set[int] = field(default_factory=set)  # nodes of what CalculiX makes solids of
     others: set[int] = field(default_factory=set)  # nodes of all other elements
     bodies: list[str] = field(default_factory=list)  # nodes of rigid bodies, or their sets
-    # reference nodes of rigid bodies and couplings, or their sets
-    guides: list[str] = field(default_factory=list)
-    # whether nodes are numbered in parts, so that their numbers are not those of matrices
-    parts: bool = False
+    guides: list[str] = field(default_factory=list)  # reference nodes of bodies and couplings
+    parts: bool = False  # whether nodes are numbered in parts: numbers of matrices are others
 
     @cached_property
     def mesh(self) -> ProgramMesh:
@@ -65,16 +61,11 @@ class Deck:
 
 
 def read_deck(path: Path) -> Deck:
-    """Return the model of a deck.
-
-    Raises OSError where it cannot be read, and InputError for lines of nodes, elements and
-    supports that cannot be understood.
-    """
-    deck = Deck()
+    """Return the model of a deck; raises OSError, and InputError for lines that are wrong."""
     if not path.is_file():
         raise FileNotFoundError(f"no file {path.name}")
     ended(path)
-    more = False  # whether other lines make nodes, or these may be in another file
+    deck, more = Deck(), False  # whether other lines make nodes, or these may be in another file
     for keyword, options, rows in _blocks(path):
         more |= "INPUT" in options or keyword in ("NGEN", "NFILL", "NCOPY", "NMAP")
         if take := _TAKEN.get(keyword):
@@ -115,8 +106,6 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
             if text.startswith("**") or not text:
                 continue
             if not text.startswith("*"):
-                if text.endswith(","):
-                    text += " "
                 rows.append([item.strip() for item in text.split(",")])
                 continue
             if keyword:
@@ -135,20 +124,18 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
 def keyword_of(text: str) -> tuple[str, dict[str, str]]:
     """Return the keyword of a line with a star, and its options."""
     name, *parts = text[1:].split(",")
-    options = {}
-    for part in parts:
-        key, _, value = part.partition("=")
-        options[key.strip().upper()] = value.strip().strip('"')
+    pairs = (part.partition("=") for part in parts)
+    options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
     return name.strip().upper(), options
 
 
 def _nodes(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None:
     for row in rows:
         number = int(row[0])
-        point = [float(x) if x else 0.0 for x in row[1:4]]
+        point = [float(x or 0) for x in (*row[1:4], "", "", "")[:3]]
         if not np.isfinite(point).all():
             raise ValueError(f"{', '.join(row)!r}")
-        deck.nodes[number] = np.array(point + [0.0] * (3 - len(point)))
+        deck.nodes[number] = np.array(point)
         if "NSET" in options:
             deck.sets.setdefault(options["NSET"].upper(), []).append(number)
 

@@ -10,7 +10,7 @@ makes stiff, which AUTOSPC holds: the rotation about the normal of a flat shell,
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -29,10 +29,26 @@ from modefront.programs.nastran_files import read_dmig, read_op4
 DECKS = (".dat", ".bdf", ".nas", ".inp")
 MATRICES = (".op4", ".pch")
 
-SETS = ("AA", "AAX", "LL", "XX", "HH", "GG", "JJ", "2GG", "")
-"""Names of pairs of matrices behind K and M, the first that there is being taken."""
+SETS = ("AA", "AAX", "LL", "XX", "HH", "GG", "JJ", "2GG", "")  # behind K and M, the first of these
 
 ADVICE = "OUTPUT4 KAA,MAA,,,//-1/21 writes an .op4 file, EXTSEOUT or PARAM,EXTOUT,DMIGPCH a .pch"
+
+_ELEMENTS = {  # field where nodes begin, number of nodes, cell, what it makes stiff
+    **dict.fromkeys(("CQUAD4", "CQUADR", "CSHEAR"), (3, 4, "quad", "shell")),
+    **dict.fromkeys(("CTRIA3", "CTRIAR"), (3, 3, "triangle", "shell")),
+    "CQUAD8": (3, 8, "quad", "shell"),
+    "CTRIA6": (3, 6, "triangle", "shell"),
+    **dict.fromkeys(("CBAR", "CBEAM", "CBUSH"), (3, 2, "line", "all")),
+    **dict.fromkeys(("CROD", "CTUBE"), (3, 2, "line", "rod")),
+    "CONROD": (2, 2, "line", "rod"),
+    "CHEXA": (3, 20, "hexahedron", "solid"),
+    "CPENTA": (3, 15, "wedge", "solid"),
+    "CTETRA": (3, 10, "tetra", "solid"),
+    "CPYRAM": (3, 13, "pyramid", "solid"),
+}
+
+EMPTY = [""] * 8
+Dof = tuple[int, int]
 
 
 def read(path: Path, options: base.JobOptions) -> base.Listed:
@@ -79,28 +95,20 @@ def _deck(path: Path, options: base.JobOptions, notes: list[str]) -> "Bulk | Non
 def _from_op4(path: Path, options: base.JobOptions) -> base.Listed:
     matrices = read_op4(path)
     (K, digits), (M, others) = (matrices[name] for name in _pair(path, matrices, options))
-    deck = _deck(path, options, notes := list[str]())
-    dofs, precision = base.given_table(options, K.shape[0]), max(digits, others)
+    deck, size = _deck(path, options, notes := list[str]()), K.shape[0]
+    dofs, precision = base.given_table(options, size), max(digits, others)
     listed = base.Listed((path, path), (K, M), dofs, precision, notes=notes)
-    return listed if deck is None or options.dofs else _labelled(listed, deck, notes)
-
-
-def _labelled(listed: base.Listed, deck: "Bulk", notes: list[str]) -> base.Listed:
-    """Return a job with nodes and components of the deck, of which some may be held."""
-    path, size = listed.files[0], listed.dofs.size
-    choices = {
-        "all nodes": deck.dofs(reduced=False, singular=True),
-        "its free degrees of freedom": deck.dofs(reduced=True, singular=True),
-        "its free degrees of freedom that are stiff": deck.dofs(reduced=True, singular=False),
-    }
+    if deck is None or options.dofs:
+        return listed
+    choices = deck.dofs()
     fitting = [dofs for dofs in choices.values() if len(dofs) == size]
     if not fitting:
         counts = ", ".join(f"{len(dofs)} for {name}" for name, dofs in choices.items())
         expected = f"{size} degrees of freedom, as the matrices have, in the deck (or --dofs FILE)"
         raise wrong(path, expected, counts)
     node, direction = np.array(fitting[0], dtype=np.intp).reshape(-1, 2).T
-    dofs = DofTable(node, direction, np.ones(size))
-    unheld = np.array([dof not in deck.held | deck.followers for dof in fitting[0]])
+    dofs, gone = DofTable(node, direction, np.ones(size)), deck.held | deck.followers
+    unheld = np.array([dof not in gone for dof in fitting[0]])
 
     def free(K: base.Matrix, M: base.Matrix) -> Bools:
         rows: Bools = unheld & (K.diagonal() + M.diagonal() != 0)
@@ -133,13 +141,10 @@ def _check_labels(path: Path, deck: "Bulk", K: base.Matrix, dofs: DofTable, free
         force, size = K @ r, abs(K) @ r
         bad = (np.abs(force) > 1e-6 * size) & (size > 0) & strained  # less is rounding
         if bad.any():
-            k = int(np.argmax(np.abs(force) * bad))
-            raise wrong(
-                path,
-                "a stiffness matrix that fits the nodes of the deck; --dofs FILE says which "
-                "degrees of freedom its rows are",
-                f"a force at {dofs.label(k)} in a translation of the whole",
-            )
+            place = dofs.label(int(np.argmax(np.abs(force) * bad)))
+            expected = "a stiffness matrix that fits the nodes of the deck; --dofs FILE says which "
+            expected += "degrees of freedom its rows are"
+            raise wrong(path, expected, f"a force at {place} in a translation of the whole")
 
 
 def _from_dmig(path: Path, options: base.JobOptions) -> base.Listed:
@@ -159,50 +164,24 @@ def _from_dmig(path: Path, options: base.JobOptions) -> base.Listed:
     return base.Listed(*known, counted=False, mesh=mesh, notes=notes)
 
 
-# Bulk data
-
-_ELEMENTS = {  # field where nodes begin, number of nodes, cell, what it makes stiff
-    **dict.fromkeys(("CQUAD4", "CQUADR", "CSHEAR"), (3, 4, "quad", "shell")),
-    **dict.fromkeys(("CTRIA3", "CTRIAR"), (3, 3, "triangle", "shell")),
-    "CQUAD8": (3, 8, "quad", "shell"),
-    "CTRIA6": (3, 6, "triangle", "shell"),
-    **dict.fromkeys(("CBAR", "CBEAM", "CBUSH"), (3, 2, "line", "all")),
-    **dict.fromkeys(("CROD", "CTUBE"), (3, 2, "line", "rod")),
-    "CONROD": (2, 2, "line", "rod"),
-    "CHEXA": (3, 20, "hexahedron", "solid"),
-    "CPENTA": (3, 15, "wedge", "solid"),
-    "CTETRA": (3, 10, "tetra", "solid"),
-    "CPYRAM": (3, 13, "pyramid", "solid"),
-}
-
-EMPTY = [""] * 8
-
-Dof = tuple[int, int]
-
-
 # 12 fields: one for each kind of entry of a deck.
 @dataclass
 class Bulk:
     """Nodes, elements and constraints of a deck, as they are collected while it is read."""
 
-    # coordinates by number; NaN for those in another than the basic system
-    nodes: dict[int, Floats] = field(default_factory=dict)
+    nodes: dict[int, Floats] = field(default_factory=dict)  # coordinates; NaN in other systems
     scalar: set[int] = field(default_factory=set)  # scalar points
-    # name and nodes by number
-    elements: dict[int, tuple[str, list[int]]] = field(default_factory=dict)
+    elements: dict[int, tuple[str, list[int]]] = field(default_factory=dict)  # name and nodes
     springs: list[Dof] = field(default_factory=list)  # nodes and components that springs hold
-    # nodes that a spring or a constraint joins
-    links: list[tuple[int, ...]] = field(default_factory=list)
-    # supports that the case control chooses, node and component
-    held: set[Dof] = field(default_factory=set)
+    links: list[tuple[int, ...]] = field(default_factory=list)  # what springs, constraints join
+    held: set[Dof] = field(default_factory=set)  # supports that the case control chooses
     # sets, added: sets of SPC and MPC by kind and number, and the sets of which others are
     sets: dict[tuple[str, int], set[Dof]] = field(default_factory=dict)
     added: dict[tuple[str, int], list[int]] = field(default_factory=dict)
     followers: set[Dof] = field(default_factory=set)  # dependent degrees of freedom
     omitted: set[Dof] = field(default_factory=set)  # OMIT; kept : ASET, empty for all
     kept: set[Dof] = field(default_factory=set)
-    # nodes whose directions are those of a system of their own
-    turned: set[int] = field(default_factory=set)
+    turned: set[int] = field(default_factory=set)  # nodes with directions of their own
 
     @cached_property
     def mesh(self) -> base.ProgramMesh:
@@ -210,18 +189,18 @@ class Bulk:
         elements = self.elements.values()
         return base.mesh_of(self.nodes, ((_ELEMENTS[name][2], nodes) for name, nodes in elements))
 
-    def dofs(self, *, reduced: bool, singular: bool) -> list[Dof]:
-        """Return nodes and components in the order of matrices: of the a-set, or of all nodes.
-
-        ``singular`` says whether components that nothing makes stiff are among them.
-        """
+    def dofs(self) -> dict[str, list[Dof]]:
+        """Return nodes and components in the order of matrices, by what these may be of."""
         points = [(n, c) for n in self.nodes for c in range(1, 7)]
         every = sorted([*points, *((n, 0) for n in self.scalar)])
-        if not reduced:
-            return every
         gone = self.held | self.followers | self.omitted
-        gone |= set() if singular else self._singular()
-        return [dof for dof in every if dof not in gone and (not self.kept or dof in self.kept)]
+        left = [dof for dof in every if dof not in gone and (not self.kept or dof in self.kept)]
+        singular = self._singular()
+        return {
+            "all nodes": every,
+            "its free degrees of freedom": left,
+            "its free degrees of freedom that are stiff": [x for x in left if x not in singular],
+        }
 
     def chosen(self, kind: str, control: str) -> set[Dof]:
         """Return the set of a kind that the case control chooses; else the only one, if any."""
@@ -238,10 +217,9 @@ class Bulk:
             added = self._stiffness(name, nodes)
             for n in stiff.keys() & set(nodes):
                 stiff[n] += added
-        for n, component in self.springs:
-            if n in stiff:
-                part, axis = divmod(component - 1, 3)
-                stiff[n][part, axis, axis] += 1.0
+        for n, component in (each for each in self.springs if each[0] in stiff):
+            part, axis = divmod(component - 1, 3)
+            stiff[n][part, axis, axis] += 1.0
         out: set[Dof] = set()
         for n, blocks in stiff.items():
             for part, block in enumerate(blocks):
@@ -271,19 +249,13 @@ class Bulk:
 
 
 def read_bulk(path: Path) -> Bulk:
-    """Return the model of a deck.
-
-    Raises OSError where it cannot be read, and InputError for entries of nodes, elements and
-    supports that cannot be understood.
-    """
+    """Return the model of a deck; raises OSError, and InputError for entries that are wrong."""
     text = path.read_text(encoding="utf-8", errors="replace")
     parted = re.search(r"^\s*BEGIN\s+(BULK|SUPER).*$", text, re.MULTILINE | re.IGNORECASE)
     control, bulk = (text[: parted.start()], text[parted.end() :]) if parted else ("", text)
-    content = Bulk()
-    if bulk != text and not re.search(r"^\s*ENDDATA", bulk, re.MULTILINE | re.IGNORECASE):
+    if parted and not re.search(r"^\s*ENDDATA", bulk, re.MULTILINE | re.IGNORECASE):
         raise wrong(path, "a line ENDDATA at the end", "none: is the file cut off?")
-    first = text.count("\n", 0, len(text) - len(bulk)) + 1
-    cards = list(_cards(bulk, first))
+    content, cards = Bulk(), _cards(bulk, text.count("\n", 0, len(text) - len(bulk)) + 1)
     default = next((card for _, card in cards if card[0] == "GRDSET"), 2 * EMPTY)
     for line, card in cards:
         try:
@@ -302,13 +274,9 @@ def read_bulk(path: Path) -> Bulk:
     return content
 
 
-def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
-    """Yield line and fields of every entry, those of lines that continue it behind them.
-
-    The text begins in the line ``first``; empty fields follow on the last one.
-    """
-    card: list[str] = []
-    begins = first
+def _cards(text: str, first: int) -> list[tuple[int, list[str]]]:
+    """Return the line where each entry begins, and its fields with empty ones behind the last."""
+    cards: list[tuple[int, list[str]]] = []
     for number, raw in enumerate(text.splitlines(), start=first):
         line = raw.partition("$")[0].rstrip()
         if not line.strip():
@@ -324,14 +292,12 @@ def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
             fields = [line[k : k + width].strip() for k in range(8, 72, width)]
         count = 4 if "*" in name[:1] + name[-1:] else 8  # of large fields, and of others
         fields = (fields + [""] * count)[:count]
-        if name in ("", "+", "*") or name[0] in "+*":
-            card += fields
-            continue
-        if card:
-            yield begins, card + EMPTY
-        begins, card = number, [name.rstrip("*").upper(), *fields]
-    if card:
-        yield begins, card + EMPTY
+        if name[:1] in ("", "+", "*"):
+            if cards:
+                cards[-1][1].extend(fields)
+        else:
+            cards.append((number, [name.rstrip("*").upper(), *fields]))
+    return [(number, card + EMPTY) for number, card in cards]
 
 
 def _components(text: str) -> list[int]:

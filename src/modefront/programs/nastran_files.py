@@ -30,22 +30,20 @@ from scipy.io import FortranEOFError, FortranFile
 from modefront._typing import Floats, Ints
 from modefront.errors import reason
 from modefront.inputs import ended, fortran, wrong
-from modefront.programs.base import fixed_width
 
 STRING = 65536  # unit of the length in the header of a string
 
-PRECISIONS = {1: 6e-8, 2: 1e-15}
-"""Relative errors of the types of numbers: single and double; others are complex."""
+PRECISIONS = {1: 6e-8, 2: 1e-15}  # relative errors of single and double; others are complex
 
-Op4Matrix: TypeAlias = tuple[scipy.sparse.coo_array, float]
-"""A matrix and the relative error of its entries."""
+Op4Matrix: TypeAlias = tuple[scipy.sparse.coo_array, float]  # with the relative error of entries
+
+DmigMatrix: TypeAlias = tuple[Ints, Floats, float]
+"""Labels (entries, 4) of rows and columns, each a node and a component; values (entries,); and the
+relative error of these."""
 
 
 def read_op4(path: Path) -> Mapping[str, Op4Matrix]:
-    """Return all matrices of a file by their names.
-
-    Raises InputError for a file that is none of OUTPUT4, is cut off or holds complex numbers.
-    """
+    """Return all matrices of a file by their names; raises InputError for broken, complex ones."""
     data = path.read_bytes()
     lengths = {order: int(np.frombuffer(data[:4].ljust(4), order + "i4")[0]) for order in "<>"}
     binary = next(((order, x // 6) for order, x in lengths.items() if x in (24, 48)), None)
@@ -147,9 +145,8 @@ def _strings(matrix: _Columns, body: Ints) -> Ints:
 def _text(lines: Iterator[bytes]) -> Iterator[tuple[str, Op4Matrix]]:
     """Yield the matrices of a text.
 
-    Lines of values are those with a point, and headers of strings are shorter than those of
-    columns. Headers count words: of a double either two, or one. Those of columns count the
-    headers of strings, or not.
+    Lines of values have a point, headers of strings are shorter than those of columns. Headers
+    count words: of a double two, or one. Those of columns count the headers of strings, or not.
     """
     for head in map(bytes.rstrip, lines):
         if not head:
@@ -191,19 +188,17 @@ def _text(lines: Iterator[bytes]) -> Iterator[tuple[str, Op4Matrix]]:
             (total == strings + k * headers).all() for k in (0, 1)
         ):
             raise ValueError(f"other numbers of values in '{matrix.name}' than its headers say")
-        yield matrix.matrix(fixed_width(b"".join(texts), width), given, 10.0 ** -int(form[2]))
-
-
-DmigMatrix: TypeAlias = tuple[Ints, Floats, float]
-"""Labels (entries, 4) of rows and columns, each a node and a component; values (entries,); and the
-relative error of these."""
+        content = b"".join(texts).replace(b"D", b"E").replace(b"d", b"e")
+        fixed = np.frombuffer(content, f"S{width}")
+        try:
+            values = fixed.astype(float)
+        except ValueError:  # Fortran leaves out the E before three digits
+            values = np.array([fortran(field.decode("latin-1")) for field in fixed.tolist()])
+        yield matrix.matrix(values, given, 10.0 ** -int(form[2]))
 
 
 def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
-    """Return all matrices of a punch file by their names.
-
-    Raises InputError for a file without any, with complex numbers, or cut off.
-    """
+    """Return all matrices of a punch file by their names; raises InputError likewise."""
     ended(path)
     entries: dict[str, list[tuple[tuple[int, ...], float, str]]] = {}
     with path.open(encoding="latin-1") as stream:

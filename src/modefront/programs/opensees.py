@@ -32,19 +32,16 @@ def read(path: Path, options: base.JobOptions) -> base.Listed:
         matrix.sum_duplicates()  # what a sum of elements is kept as
         files.append(file)
         entries.append(matrix)
-    return base.Listed((files[0], files[1]), entries, dofs, mesh=_mesh(path))
-
-
-def _mesh(path: Path) -> base.ProgramMesh | None:
     nodes, elements = (path.with_name(f"{path.name}_{x}.csv") for x in ("nodes", "elements"))
     if not nodes.is_file():
-        return None
+        return base.Listed((files[0], files[1]), entries, dofs)
     points = _rows(nodes, "node,x,y,z", float)
     members = _rows(elements, "element,node,…", int) if elements.is_file() else {}
     base.refuse_unknown_nodes(elements, points, (n for row in members.values() for n in row))
     kinds = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
     known = ((kinds[len(row)], row) for row in members.values() if len(row) in kinds)
-    return base.mesh_of({n: np.array([*x, 0.0, 0.0, 0.0][:3]) for n, x in points.items()}, known)
+    placed = {n: np.array([*x, 0.0, 0.0, 0.0][:3]) for n, x in points.items()}
+    return base.Listed((files[0], files[1]), entries, dofs, mesh=base.mesh_of(placed, known))
 
 
 def _rows(path: Path, form: str, number: type) -> dict[int, list[Any]]:

@@ -33,8 +33,7 @@ from modefront.fem.elements.common import Matrices, attachment, symmetric
 from modefront.fem.section import Material, Section
 from modefront.rounding import COMPUTED
 
-U, V, W, TWIST, PSI_Y, PSI_Z = range(6)
-"""Directions of an end in local axes, of which the last two are rotations about y and z."""
+U, V, W, TWIST, PSI_Y, PSI_Z = range(6)  # of an end in local axes; PSI: rotations about y and z
 
 
 @dataclass(frozen=True)
@@ -126,17 +125,11 @@ def beam(
     r: Floats,
     released: Sequence[int] = (),
 ) -> tuple[Matrices, Axial]:
-    """Matrices of straight beams, DOFs (u, r) node by node in global axes.
+    """Matrices of straight beams X (elements, 2, 3), DOFs (u, r) node by node in global axes.
 
-    Parameters
-    ----------
-    X : nodes (elements, 2, 3)
-    material, section : the same for all elements
-    orientation : vectors (elements, 3), not parallel to the beams; local y is their part across the
-        axis
-    r : offsets (2, 3) of the flexible part's ends from the nodes, global. Along the axis it is a
-        rigid end zone (without mass), across it an eccentricity.
-    released : those of the 12 local DOFs of the flexible part's ends that are without force
+    Local y is the part of the orientation (elements, 3) across the axis; r (2, 3) are offsets of
+    the flexible part's ends from the nodes, global: along the axis a rigid end zone (without mass),
+    across it an eccentricity. Of the ends' 12 local DOFs, those released are without force.
     """
     ends = X + r
     R = axes(ends, orientation)

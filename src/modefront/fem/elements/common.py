@@ -17,9 +17,8 @@ ByPower = dict[int, Floats]
 """Element matrices (elements, dof, dof), symmetric, in global axes, DOFs node by node, by the power
 of the thickness with which they grow; 0 where there is none, or it does not vary."""
 
-
-Matrices = tuple[ByPower, ByPower]
-"""Stiffness, linear in Young's modulus, and mass, linear in density."""
+Matrices = tuple[ByPower, ByPower]  # stiffness, linear in E, and mass, linear in density
+VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # places of ij in 11, 22, 33, 23, 13, 12
 
 
 def symmetric(K: Floats) -> Floats:
@@ -42,10 +41,7 @@ class Ply:
         return np.asarray(np.swapaxes(T, 1, 2) @ self.D @ T)
 
     def along(self, c2: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the moduli of bending and twist, and of transverse shear, along a line.
-
-        ``c2`` is the squared cosine of the line and axis 1.
-        """
+        """Return moduli of bending, twist and transverse shear at squared cosines c2 to axis 1."""
         D, s2 = self.D, 1 - c2
         mixed = D[0, 1] + 2 * D[2, 2]
         bend = D[0, 0] * c2**2 + 2 * mixed * c2 * s2 + D[1, 1] * s2**2
@@ -85,10 +81,6 @@ def attachment(r: Floats, R: Floats | None = None) -> Floats:
     return A.reshape(count, nodes, 6, 6 * nodes)
 
 
-VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
-"""Numbers of the components ij of stress and strain in the order 11, 22, 33, 23, 13, 12."""
-
-
 def elasticity(material: Material | Orthotropic, R: Floats) -> Floats:
     """Return C (3, 3, 3, 3), stresses ij of gradients kl; R has the material's axes in rows."""
     C = np.linalg.inv(material.compliance())[VOIGT[:, :, None, None], VOIGT]
@@ -109,11 +101,9 @@ class Stresses:
     """
 
     x: Floats  # nodes of the mid-surface (elements, nodes, dim) in the axes R
-    # R, D: axes (elements, dim, 3), and stresses of gradients (elements, dim, dim, dim, dim)
-    R: Floats
-    D: Floats
-    # displacements of the nodes by the DOFs (elements, nodes, 3, n); None where they are these
-    P: Floats | None
+    R: Floats  # axes (elements, dim, 3)
+    D: Floats  # stresses of gradients (elements, dim, dim, dim, dim)
+    P: Floats  # displacements of nodes by the DOFs (elements, nodes, 3, n), or the same for all
     cell: Cell  # cell, rule: shape functions and quadrature
     rule: Rule
 
@@ -130,21 +120,16 @@ class Stresses:
         g, volume = self._centre()
         S = strain * np.trace(self.D, axis1=3, axis2=4)
         f = volume[:, None, None] * np.swapaxes(g, 1, 2) @ S @ self.R
-        if self.P is None:
-            return np.asarray(f.reshape(len(f), -1))
         return np.asarray(np.einsum("enj,enjk->ek", f, self.P))
 
     def stiffness(self, q: Floats, strain: float) -> Floats:
         """Return K_G (elements, n, n) of displacements q (elements, n) and a free strain."""
         count, nodes, dim = self.x.shape
-        P = self.P
-        u = q.reshape(count, nodes, 3) if P is None else np.einsum("enjk,ek->enj", P, q)
+        u = np.einsum("enjk,ek->enj", self.P, q)
         slopes = self._centre()[0] @ u @ np.swapaxes(self.R, 1, 2) - strain * np.eye(dim)
         S = np.einsum("eabcd,ecd->eab", self.D, slopes)
         xi, w = self.rule
         g, det = gradients(self.x, self.cell.shape(xi)[1])
         K = np.einsum("eg,egan,eab,egbm->enm", det * w, g, S, g, optimize=True)
-        if P is None:
-            return symmetric(np.einsum("enm,ij->enimj", K, np.eye(3)).reshape(count, 3 * nodes, -1))
-        right = (K @ P.reshape(count, nodes, -1)).reshape(count, 3 * nodes, -1)
-        return symmetric(np.swapaxes(P.reshape(count, 3 * nodes, -1), 1, 2) @ right)
+        right = (K @ self.P.reshape(len(self.P), nodes, -1)).reshape(count, 3 * nodes, -1)
+        return symmetric(np.swapaxes(self.P.reshape(len(self.P), 3 * nodes, -1), 1, 2) @ right)

@@ -51,9 +51,7 @@ from modefront.fem.elements.shapes import TRIANGLE_3, TRIANGLE_6, TRIANGLE_EDGES
 
 KAPPA = 5 / 6  # shear factor of a plate
 
-MIDDLES = TRIANGLE_6.nodes[3:]
-"""Midpoints of the sides: with equal weights, a quadrature rule of degree 2."""
-
+MIDDLES = TRIANGLE_6.nodes[3:]  # of sides: with equal weights, a quadrature rule of degree 2
 
 _POINTS, _WEIGHTS = gauss_simplex(3, 2)
 _N = np.concatenate([TRIANGLE_3.shape(_POINTS)[0], TRIANGLE_6.shape(_POINTS)[0][:, 3:]], 1)
@@ -86,10 +84,7 @@ class Elements:
         return (self.x[:, 1:, :2] - self.x[:, :1, :2])[:, None]
 
     def integrand(self, B: Floats, D: Floats) -> Rows:
-        """Return B (elements, points, rows, n) and D (elements, points, rows, rows) times weight.
-
-        The weights of the points are equal.
-        """
+        """Return B (elements, points, rows, n), and D times weights, the same at all points."""
         weight = self.share * np.linalg.det(self.J) / 2 / B.shape[1]
         return B, np.repeat(weight, B.shape[1], axis=1)[..., None, None] * D
 

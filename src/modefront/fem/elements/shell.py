@@ -27,16 +27,13 @@ from modefront.fem.elements.shapes import SQUARE_4, TRIANGLE_3, gauss_box
 from modefront.fem.section import Material, Orthotropic
 
 FOLD = 20.0  # angle in degrees between elements from which on they meet in a fold
-
 DIVISIONS = {3: ((0, 1, 2),), 4: ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))}
 """Corners of the triangles that make an element; in quadrilaterals, their third side is inside."""
 
-
-SURFACES = {
+SURFACES = {  # cells and quadrature of shells by their number of nodes
     3: (TRIANGLE_3, (np.full((1, 2), 1 / 3), np.array([0.5]))),
     4: (SQUARE_4, gauss_box(2, 2)),
 }
-"""Cells and quadrature of shells by their number of nodes."""
 
 AT_ONCE = 1000  # elements at a time, so that their rows stay in the cache of a processor
 
@@ -77,10 +74,7 @@ def areas(X: Floats) -> Floats:
 
 
 def narrowness(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
-    """1 / b^2 of each side (elements, corners), by block: the mean over the elements there.
-
-    The breadth b of an element is its area over the length of the side.
-    """
+    """1 / b^2 of each side (elements, corners), by block: the mean over the elements there."""
     ends, own = [], []
     for each in cells:
         following = np.roll(each, -1, axis=1)
@@ -89,17 +83,13 @@ def narrowness(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
         own.append(((length / areas(X[each])[:, None]) ** 2).ravel())
     pairs = np.sort(np.concatenate(ends), axis=1)
     _, side = np.unique(pairs @ [len(X), 1], return_inverse=True)
-    mean = np.bincount(side, np.concatenate(own)) / np.bincount(side)
-    return _by_block(mean[side], cells)
+    return _by_block((np.bincount(side, np.concatenate(own)) / np.bincount(side))[side], cells)
 
 
 def _by_block(values: Floats, cells: Sequence[Ints]) -> list[Floats]:
     """Return values (corners of all blocks, ...) as arrays (elements, corners, ...)."""
     parts = np.split(values, np.cumsum([each.size for each in cells])[:-1])
-    return [
-        part.reshape(*each.shape, *values.shape[1:])
-        for part, each in zip(parts, cells, strict=True)
-    ]
+    return [x.reshape(*each.shape, *values.shape[1:]) for x, each in zip(parts, cells, strict=True)]
 
 
 # 8 arguments: what elements have, and what they share with others.
@@ -115,21 +105,14 @@ def shell(
 ) -> common.Matrices:
     """Matrices of shells, DOFs (u, r) node by node in global axes.
 
-    Parameters
-    ----------
-    X : nodes (elements, 3 or 4, 3), counter-clockwise about the normal
-    d : `directors` (elements, 3 or 4, 3)
-    narrow : `narrowness` (elements, 3 or 4)
-    m : vectors (elements, 3) in the shell along axis 1 of the material
-    material, thickness : of all elements; thickness in units of length
-    offset : distance of the mid-surface from the nodes along the directors
-    varied : whether the thickness is a parameter
+    Nodes X (elements, 3 or 4, 3) are counter-clockwise about the normal; d and narrow are their
+    `directors` and `narrowness`, along the former the mid-surface is at the offset; m (elements, 3)
+    are vectors in the shell along axis 1 of the material.
     """
     if len(X) > AT_ONCE:
-        pieces = [
-            shell(X[some], d[some], narrow[some], m[some], material, thickness, offset, varied)
-            for some in (slice(k, k + AT_ONCE) for k in range(0, len(X), AT_ONCE))
-        ]
+        some = (slice(k, k + AT_ONCE) for k in range(0, len(X), AT_ONCE))
+        same = material, thickness, offset, varied
+        pieces = [shell(X[x], d[x], narrow[x], m[x], *same) for x in some]
         K, M = (
             {k: np.concatenate([x[k] for x in each]) for k in each[0]}
             for each in zip(*pieces, strict=True)
@@ -144,8 +127,7 @@ def shell(
     squares = ((x[:, 2:] - x[:, :-2]) ** 2).sum(2)
     across = squares / areas(x)[:, None] ** 2
     shares = squares**2 / (squares**2).sum(1, keepdims=True)
-    parts: list[list[Rows]] = [[], [], [], [], []]
-    own = common.ply(material)
+    parts, own = list[tuple[Rows, ...]](), common.ply(material)
     for chosen in DIVISIONS[X.shape[1]]:
         corners, odd = list(chosen), chosen[1] % 2
         R = centre_axes(x[:, corners])
@@ -162,11 +144,10 @@ def shell(
             share=shares[:, [odd]] if quadrilateral else 1.0,
             varied=varied,
         )
-        found = membrane(each, t, own), *shear_and_bending(each, t, own), *mass(each)
-        for part, rows in zip(parts, found, strict=True):
-            part.append(rows)
+        parts.append((membrane(each, t, own), *shear_and_bending(each, t, own), *mass(each)))
     stretched, sheared, bent, moved, turned = (
-        products(*(np.concatenate(each, 1) for each in zip(*part, strict=True))) for part in parts
+        products(*(np.concatenate(x, 1) for x in zip(*part, strict=True)))
+        for part in zip(*parts, strict=True)
     )
     K_1, K_3 = t * sheared, t**3 * bent
     M_1, M_3 = material.rho * t * moved, material.rho * t**3 * turned
@@ -197,9 +178,7 @@ def centre_axes(x: Floats) -> Floats:
     return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
 
 
-def shell_stresses(
-    X: Floats, r: Floats, m: Floats, material: common.Ply, t: float
-) -> common.Stresses:
+def shell_stresses(X: Floats, r: Floats, m: Floats, ply: common.Ply, t: float) -> common.Stresses:
     """Return the stresses of shells of thickness t with nodes X (elements, nodes, 3).
 
     r are offsets of the mid-surface from them, and m vectors (elements, 3) in the shell along axis
@@ -209,5 +188,5 @@ def shell_stresses(
     R = centre_axes(X + r)[:, :2]
     x = (X + r) @ np.swapaxes(R, 1, 2)
     plane = np.array([[0, 2], [2, 1]])
-    D = t * material.turned((R @ m[:, :, None])[..., 0])[:, plane[:, :, None, None], plane]
+    D = t * ply.turned((R @ m[:, :, None])[..., 0])[:, plane[:, :, None, None], plane]
     return common.Stresses(x, R, D, common.attachment(r)[:, :, :3], cell, rule)

@@ -23,10 +23,7 @@ from modefront.fem.structure import FACES
 
 @dataclass(frozen=True)
 class Solid:
-    """Kind of solid: its cell, faces (corners) and quadrature (points, weights).
-
-    The rules are exact for straight edges.
-    """
+    """Kind of solid: cell, faces (corners), and quadratures that are exact for straight edges."""
 
     cell: shapes.Cell
     faces: tuple[tuple[int, ...], ...]
@@ -34,7 +31,7 @@ class Solid:
     mass: shapes.Rule
 
 
-SOLIDS = {
+SOLIDS = {  # by their number of nodes
     8: Solid(shapes.CUBE_8, FACES["hexahedron"], shapes.gauss_box(2, 3), shapes.gauss_box(3, 3)),
     10: Solid(
         shapes.TETRAHEDRON_10,
@@ -45,7 +42,6 @@ SOLIDS = {
     15: Solid(shapes.WEDGE_15, FACES["wedge"], shapes.gauss_wedge(3), shapes.gauss_wedge(3)),
     20: Solid(shapes.CUBE_20, FACES["hexahedron"], shapes.gauss_box(3, 3), shapes.gauss_box(3, 3)),
 }
-"""Kinds of solids by their number of nodes."""
 
 
 def solid(X: Floats, rho: float, C: Floats) -> common.Matrices:
@@ -83,5 +79,6 @@ def solid(X: Floats, rho: float, C: Floats) -> common.Matrices:
 
 def solid_stresses(X: Floats, C: Floats) -> common.Stresses:
     """Return the stresses of solids X (elements, nodes, 3) of the elasticity C."""
-    kind = SOLIDS[X.shape[1]]
-    return common.Stresses(X, np.eye(3)[None], C[None], None, kind.cell, kind.stiffness)
+    kind, nodes = SOLIDS[X.shape[1]], X.shape[1]
+    P = np.eye(3 * nodes).reshape(1, nodes, 3, -1)
+    return common.Stresses(X, np.eye(3)[None], C[None], P, kind.cell, kind.stiffness)
