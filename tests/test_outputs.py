@@ -35,7 +35,7 @@ ALLOWED = {
     ("outputs.py", "tempfile.mkstemp"): "the one function",
     ("outputs.py", "os.fdopen"): "the one function",
     ("isolated.py", "os.open"): "what a reader prints, in a folder of its own",
-    ("hdf5.py", "h5netcdf.File"): "a stream of `output`",
+    ("hdf5.py", "h5py.File"): "a stream of `output`",
     ("cli/main.py", "os.open"): "the null device, where the terminal has gone",
 }
 """Places that open files for writing."""

@@ -1,17 +1,26 @@
-"""HDF5 files that hold what they show: no links to others, no data kept elsewhere."""
+"""HDF5 files that hold what they show: no links to others, no data kept elsewhere.
 
-from collections.abc import Mapping
+A netCDF-4 file is an HDF5 file in which each dimension is a scale that its variables refer to. One
+that has no variable of its own name is a scale without values
+(https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html).
+"""
+
 from pathlib import Path
 from typing import IO, Any
 
-import h5netcdf
 import h5py
 import numpy as np
 import scipy.sparse
 
 from modefront.datasets import Dataset
 
-HIDDEN = ("_FillValue", "dtype", "coordinates")  # how `xarray` holds a variable
+WITHOUT_VALUES = b"This is a netCDF dimension but not a netCDF variable."
+"""What the name of a scale without values begins with."""
+
+HIDDEN = (  # attributes that say how a file, or `xarray`, holds a variable
+    *("CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "_nc3_strict", "_NCProperties"),
+    *("_Netcdf4Dimid", "_Netcdf4Coordinates", "_FillValue", "dtype", "coordinates"),
+)
 
 
 def inner(group: h5py.Group, name: str) -> Any:
@@ -71,15 +80,25 @@ def _shape(item: h5py.Dataset | h5py.Group) -> tuple[int, ...]:
 def write_netcdf(data: Dataset, stream: IO[bytes]) -> None:
     """Write a dataset to a file that is open for reading and writing."""
     text = h5py.string_dtype()
-    with h5netcdf.File(stream, "w") as file:
-        file.dimensions = dict(data.sizes)
+    with h5py.File(stream, "w", track_order=True) as file:
         for name, variable in data.variables.items():
             x = variable.values
             held = {"b": np.int8, "U": text, "O": text, "T": text}.get(x.dtype.kind, x.dtype)
-            item = file.create_variable(name, variable.dims, held, x.astype(held))
+            item = file.create_dataset(name, data=x.astype(held))
             item.attrs.update(variable.attrs)
             if x.dtype.kind == "b":
                 item.attrs["dtype"] = "bool"  # as `xarray` has it
+        for k, (name, size) in enumerate(data.sizes.items()):
+            label = str(name).encode()
+            if name not in data.variables:
+                file.create_dataset(name, (size,), ">f4")
+                label = WITHOUT_VALUES + b"%10d" % size
+            file[name].make_scale(label)
+            file[name].attrs["_Netcdf4Dimid"] = np.int32(k)
+        for name, variable in data.variables.items():
+            if variable.dims != (name,):
+                for axis, dimension in zip(file[name].dims, variable.dims, strict=True):
+                    axis.attach_scale(file[dimension])
         file.attrs.update(data.attrs)
 
 
@@ -91,23 +110,29 @@ def contents(path: Path) -> tuple[dict[str, Any], list[Any]]:
     """
     arrays: dict[str, Any] = {}
     named: list[Any] = []
-    with h5py.File(path, "r") as whole:
-        check_tree(whole)
-        file = h5netcdf.File(whole, "r")
-        for name, item in file.variables.items():
-            kind = bool if item.attrs.get("dtype") == "bool" else None
-            is_text = h5py.check_string_dtype(whole[name].dtype) is not None
-            values = whole[name].asstr()[...].astype(str) if is_text else item[...]
-            arrays[str(len(named))] = np.asarray(values, kind)
-            named.append([name, list(item.dimensions), _attributes(item.attrs)])
-        return arrays, [named, _attributes(file.attrs)]
+    with h5py.File(path, "r") as file:
+        check_tree(file)
+        for name, item in file.items():
+            scale = np.bytes_(item.attrs.get("NAME", b""))
+            if isinstance(item, h5py.Dataset) and not scale.startswith(WITHOUT_VALUES):
+                dims = [name] if item.is_scale else [each[0].name[1:] for each in item.dims]
+                arrays[str(len(named))] = _values(item)
+                named.append([name, dims, _attributes(item)])
+        return arrays, [named, _attributes(file)]
 
 
-def _attributes(kept: Mapping[str, Any]) -> dict[str, Any]:
+def _values(item: h5py.Dataset) -> np.ndarray[Any, Any]:
+    if h5py.check_string_dtype(item.dtype):
+        return np.asarray(item.asstr()[...], dtype=str)
+    return np.asarray(item[...], bool if item.attrs.get("dtype") == "bool" else None)
+
+
+def _attributes(item: h5py.Dataset | h5py.File) -> dict[str, Any]:
     """Return the attributes of a variable or of all; a list of one value is that value."""
     out: dict[str, Any] = {}
-    for name in (name for name in kept if name not in HIDDEN):
-        x = np.asarray("" if isinstance(kept[name], h5py.Empty) else kept[name])
+    for name, kept in item.attrs.items():
+        x = np.asarray("" if isinstance(kept, h5py.Empty) else kept)
         x = np.char.decode(x, "utf-8") if x.dtype.kind == "S" else x
-        out[name] = x.item() if x.size == 1 else x.tolist()
+        if name not in HIDDEN:
+            out[name] = x.item() if x.size == 1 else x.tolist()
     return out
