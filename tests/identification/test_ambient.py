@@ -298,6 +298,22 @@ def test_modes_are_flagged_where_their_band_holds_another_one(seed: int) -> None
     assert [mode.explained for mode in both] == [True, True]
 
 
+def test_a_mode_whose_damping_starts_far_too_small_is_not_lost() -> None:
+    rng, rate, zeta = np.random.default_rng(1), 16.0, 0.012
+    f = np.fft.rfftfreq(int(1800 * rate), 1 / rate)
+    phi = np.array([0.6, 0.8])
+    x = f / 5.0
+    h = x**2 / (1 - x**2 + 2j * zeta * x)
+    y = np.fft.irfft(phi[:, None] * (h * _circular(rng, len(f))), axis=1)
+    y += 0.02 * y.std() * rng.standard_normal(y.shape)
+    records = Records("all", ("a", "b"), rate, y)
+    none: Any = None
+    setup = _Setup(records, transforms(records, 3.0, 7.0), none, ())
+    rough = _fitted(setup, [Local(10 * np.pi, zeta / 5, phi)], 1e-4)
+    (mode,) = _fitted(rough, rough.modes, 1e-4, last=True).modes
+    assert abs(np.log(mode.zeta / zeta)) < 3 * np.sqrt(mode.covariance[1, 1])
+
+
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_close_modes_have_one_start_each(seed: int) -> None:
     rng, rate, f0 = np.random.default_rng(seed), 16.0, np.array([4.6, 4.8, 5.0, 5.2, 5.4, 5.6])
