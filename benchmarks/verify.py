@@ -251,9 +251,9 @@ PARTS = (
     ),
     Part(
         "Ambient tests",
-        "Four simulated tests of one setup. The target is the best of three model orders of pyOMA2 "
-        "(stochastic subspace identification), which is told the true frequencies. Errors are "
-        "those of the modes that all find.",
+        "Four simulated tests of one setup. The target is the best of pyOMA2 (stochastic subspace "
+        "identification): three model orders, which are told the true frequencies, and its "
+        "clusters of poles. Errors are those of the modes that all find.",
         ambient_identification,
     ),
     Part(
