@@ -1,6 +1,7 @@
 """How often 90 % intervals of parameters hold the truth, in random simulated tests.
 
-    python benchmarks/calibration.py --seeds 1000:1100 [--draws 200] [--wrong] [--few] [--quiet]
+    python benchmarks/calibration.py --seeds 1000:1100 [--draws 200] [--wrong] [--few] [--bricks]
+                                     [--quiet]
     python benchmarks/calibration.py --seeds 1000:1100 --prior [--quiet]
     python benchmarks/calibration.py --seeds 1000:1030 --setups
 
@@ -12,23 +13,27 @@ parameters, with 2 to 8 modes at 2 to 12 sensors in 1 to 4 data sets; frequencie
 to 3 %, shapes of 1 to 5 % of their greatest component. The errors that are expected are the true
 ones, twice or half of these, in columns ``_std`` or in ``[noise]``. With ``--wrong`` the members of
 a parameter vary by 5 to 10 % about its true value, or springs are missing in the model. With
-``--few`` there are two or three sensors, which hardly tell modes apart. With ``--prior`` the truth
-and the variances of the errors are drawn from their priors, and the ranks of the truth among the
-draws are counted: they are uniform where draws are from the posterior (simulation-based
-calibration, Talts et al. 2018, arXiv:1804.06788). No test is left out then. With ``--setups`` the
-modes are those that are identified of simulated ambient tests of chains of 4 to 6 springs, each a
-parameter, in 2 or 3 setups with one or two references; studies take the covariances of shapes, or
-the deviations alone, and the widths of intervals are compared.
+``--few`` there are two or three sensors, which hardly tell modes apart. With ``--bricks`` it is a
+plate or a block of solid elements, clamped at one end. With ``--prior`` the truth and the variances
+of the errors are drawn from their priors, and the ranks of the truth among the draws are counted:
+they are uniform where draws are from the posterior (simulation-based calibration, Talts et al.
+2018, arXiv:1804.06788). No test is left out then. With ``--setups`` the modes are those that are
+identified of simulated ambient tests of chains of 4 to 6 springs, each a parameter, in 2 or 3
+setups with one or two references; studies take the covariances of shapes, or the deviations alone,
+and the widths of intervals are compared.
 
 ``held`` is the share of parameters of which the interval holds the truth, ``old`` that of Laplace's
-approximation about optimal weights, where these exist. ``far`` are the parameters that are called
-determined and are off by more than 5 standard deviations, ``worst`` is the farthest of these. Tests
-of which the verdict says that no model is to be used are counted, and are in no rate.
+approximation about optimal weights, where these exist. ``next f`` are the frequencies of the first
+mode that is not measured, which the draws predict; they are in no other rate. ``far`` are the
+parameters that are called determined and are off by more than 5 standard deviations, ``worst`` is
+the farthest of these. Tests of which the verdict says that no model is to be used are counted, and
+are in no rate.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -113,14 +118,52 @@ def members(kind: str, rng: np.random.Generator) -> tuple[int, list[Floats]]:
     return N, out
 
 
+def brick(size: Floats) -> Floats:
+    """Return the stiffness (24, 24) of a solid element with eight nodes, Young's modulus 1."""
+    nu = 0.3
+    D = np.diag([1 - 2 * nu] * 3 + [0.5 - nu] * 3)
+    D[:3, :3] += nu
+    D /= (1 + nu) * (1 - 2 * nu)
+    corners = np.array(list(itertools.product((-1, 1), repeat=3)))
+    K = np.zeros((24, 24))
+    for at in corners / np.sqrt(3):
+        factors = 1 + corners * at
+        slopes = [corners[:, k] * np.delete(factors, k, 1).prod(axis=1) / 8 for k in range(3)]
+        x, y, z = 2 / size[:, None] * slopes
+        B, no = np.zeros((6, 8, 3)), np.zeros(8)
+        B[:3, :, :] = np.array([[x, no, no], [no, y, no], [no, no, z]]).transpose(0, 2, 1)
+        B[3:, :, :] = np.array([[y, x, no], [no, z, y], [z, no, x]]).transpose(0, 2, 1)
+        flat = B.reshape(6, 24)
+        K += flat.T @ D @ flat * size.prod() / 8
+    return K
+
+
+def bricks(kind: str, rng: np.random.Generator) -> tuple[int, list[Floats]]:
+    """Return the degrees of freedom of a plate or a block clamped at one end, and its elements."""
+    least, most = ((3, 3, 1), (6, 5, 1)) if kind == "plate" else ((3, 1, 1), (6, 2, 2))
+    count = rng.integers(least, most, endpoint=True)
+    size = rng.uniform(0.7, 1.4, 3) * (1, 1, 0.15 if kind == "plate" else 0.7)
+    number = np.arange(np.prod(count + 1)).reshape(count + 1)
+    clamped = number[0].size
+    N, K, out = 3 * (number.size - clamped), brick(size), list[Floats]()
+    for place in itertools.product(*map(range, count)):
+        nodes = number[tuple(slice(k, k + 2) for k in place)].ravel() - clamped
+        dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
+        free = dofs >= 0
+        own = np.zeros((N, N))
+        own[np.ix_(dofs[free], dofs[free])] = K[np.ix_(free, free)]
+        out.append(own)
+    return N, out
+
+
 # 62 lines: one choice after the other.
 def case(
-    seed: int, wrong: bool = False, few: bool = False, prior: bool = False
+    seed: int, wrong: bool = False, few: bool = False, prior: bool = False, solid: bool = False
 ) -> tuple[mf.UpdatingProblem, NoisePrior, Floats, tuple[str, ...]]:
     """Return a simulated test, what is expected of its errors, the truth and its classes."""
     rng = np.random.default_rng(seed)
-    kind = str(rng.choice(["chain", "frame", "lattice"]))
-    N, parts = members(kind, rng)
+    kind = str(rng.choice(["plate", "block"] if solid else ["chain", "frame", "lattice"]))
+    N, parts = (bricks if solid else members)(kind, rng)
     p = min(int(rng.integers(2, 21)), len(parts))
     owner = np.sort(np.append(np.arange(p), rng.integers(0, p, len(parts) - p)))
     names = tuple(f"k{j}" for j in range(p))
@@ -239,13 +282,11 @@ Test = tuple[mf.UpdatingProblem, NoisePrior, Floats, tuple[str, ...]]
 """A problem, what is expected of its errors, the truth and its classes."""
 
 
-def judge(seed: int, draws: int, wrong: bool, few: bool) -> list[Verdict]:
-    """Return the verdicts of a simulated test; none where no model is to be used."""
-    return judged(seed, draws, case(seed, wrong, few))
+def judged(seed: int, draws: int, test: Test, predict: bool = False) -> list[Verdict]:
+    """Return the verdicts of a test; none where no model is to be used.
 
-
-def judged(seed: int, draws: int, test: Test) -> list[Verdict]:
-    """Return the verdicts of a test; none where no model is to be used."""
+    With ``predict`` the last one is that of the next frequency, where there is one.
+    """
     problem, prior, truth, classes = test
     source = mf.Uncertainty().of(problem.data)
     noise = prior.of(problem, source)
@@ -267,7 +308,7 @@ def judged(seed: int, draws: int, test: Test) -> list[Verdict]:
     std = np.maximum((high - low) / (2 * 1.645), 1e-12)
     determined = high - low < DETERMINED * 0.9 * (BOUNDS[1] - BOUNDS[0])
     old = jeffreys(problem, [problem.start, best.theta, *known])
-    return [
+    out = [
         Verdict(
             classes,
             bool(low[j] - 1e-9 <= truth[j] <= high[j] + 1e-9),
@@ -278,6 +319,16 @@ def judged(seed: int, draws: int, test: Test) -> list[Verdict]:
         )
         for j in range(truth.size)
     ]
+    count = len(problem.data.modes) + 1
+    if predict and problem.model.modes(truth, count, derivatives=False).frequency.size == count:
+        true, *predicted = (
+            problem.model.modes(x, count, derivatives=False).frequency[-1]
+            for x in (truth, *samples)
+        )
+        low, middle, high = np.quantile(predicted, (0.05, 0.5, 0.95), method="weibull")
+        away, held = abs(true - middle) / ((high - low) / (2 * 1.645)), low <= true <= high
+        out.append(Verdict(("next f",), bool(held), None, float(away), False, high - low))
+    return out
 
 
 def jeffreys(problem: mf.UpdatingProblem, starts: Sequence[Floats]) -> tuple[Floats, Floats] | None:
@@ -324,6 +375,7 @@ def main() -> None:
     parser.add_argument("--wrong", action="store_true")
     parser.add_argument("--quiet", action="store_true")
     parser.add_argument("--few", action="store_true")
+    parser.add_argument("--bricks", action="store_true")
     parser.add_argument("--prior", action="store_true")
     parser.add_argument("--setups", action="store_true")
     options = parser.parse_args()
@@ -352,7 +404,8 @@ def main() -> None:
     verdicts, refused = [], 0
     for seed in seeds:
         began = time.process_time()
-        found = judge(seed, options.draws, options.wrong, options.few)
+        test = case(seed, options.wrong, options.few, solid=options.bricks)
+        found = judged(seed, options.draws, test, predict=not options.wrong)
         verdicts += found
         refused += not found
         if not options.quiet and not found:

@@ -110,7 +110,10 @@ def both_kinds(
 def intervals(count: int = 10) -> Iterator[Row]:
     """Yield how often 90 % intervals hold the truth."""
     for wrong, what in ((False, "a model of the right class"), (True, "a model of a wrong class")):
-        tests = [calibration.judge(JUDGED + k, 100, wrong, False) for k in range(count)]
+        tests = [
+            calibration.judged(JUDGED + k, 100, calibration.case(JUDGED + k, wrong))
+            for k in range(count)
+        ]
         held = [x.held for found in tests for x in found]
         rate, error = np.mean(held), np.sqrt(0.09 / len(held))
         ours = f"{100 * rate:.0f} % of {len(held)} parameters"
