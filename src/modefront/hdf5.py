@@ -5,6 +5,7 @@ that has no variable of its own name is a scale without values
 (https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html).
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import IO, Any
 
@@ -77,36 +78,43 @@ def _shape(item: h5py.Dataset | h5py.Group) -> tuple[int, ...]:
     return (int(item.attrs["MATLAB_sparse"]), inner(item, "jc").size - 1) if sparse else ()
 
 
-def write_netcdf(data: Dataset, stream: IO[bytes]) -> None:
-    """Write a dataset to a file that is open for reading and writing."""
-    text = h5py.string_dtype()
+def write_netcdf(data: Dataset, stream: IO[bytes], groups: Mapping[str, Dataset]) -> None:
+    """Write a dataset, and others in groups, to a file that is open for reading and writing."""
     with h5py.File(stream, "w", track_order=True) as file:
-        for name, variable in data.variables.items():
-            x = variable.values
-            held = {"b": np.int8, "U": text, "O": text, "T": text}.get(x.dtype.kind, x.dtype)
-            item = file.create_dataset(name, data=x.astype(held))
-            item.attrs.update(variable.attrs)
-            if x.dtype.kind == "b":
-                item.attrs["dtype"] = "bool"  # as `xarray` has it
-        for k, (name, size) in enumerate(data.sizes.items()):
-            label = str(name).encode()
-            if name not in data.variables:
-                file.create_dataset(name, (size,), ">f4")
-                label = WITHOUT_VALUES + b"%10d" % size
-            file[name].make_scale(label)
-            file[name].attrs["_Netcdf4Dimid"] = np.int32(k)
-        for name, variable in data.variables.items():
-            if variable.dims != (name,):
-                for axis, dimension in zip(file[name].dims, variable.dims, strict=True):
-                    axis.attach_scale(file[dimension])
-        file.attrs.update(data.attrs)
+        _fill(file, data, 0)
+        for name, each in groups.items():
+            _fill(file.create_group(name, track_order=True), each, len(data.sizes))
+
+
+def _fill(group: h5py.Group, data: Dataset, first: int) -> None:
+    """Write a dataset to a group, whose dimensions have numbers from ``first`` on in the file."""
+    text = h5py.string_dtype()
+    for name, variable in data.variables.items():
+        x = variable.values
+        held = {"b": np.int8, "U": text, "O": text, "T": text}.get(x.dtype.kind, x.dtype)
+        item = group.create_dataset(name, data=x.astype(held))
+        item.attrs.update(variable.attrs)
+        if x.dtype.kind == "b":
+            item.attrs["dtype"] = "bool"  # as `xarray` has it
+    for k, (name, size) in enumerate(data.sizes.items(), first):
+        label = str(name).encode()
+        if name not in data.variables:
+            group.create_dataset(name, (size,), ">f4")
+            label = WITHOUT_VALUES + b"%10d" % size
+        group[name].make_scale(label)
+        group[name].attrs["_Netcdf4Dimid"] = np.int32(k)
+    for name, variable in data.variables.items():
+        if variable.dims != (name,):
+            for axis, dimension in zip(group[name].dims, variable.dims, strict=True):
+                axis.attach_scale(group[dimension])
+    group.attrs.update(data.attrs)
 
 
 def contents(path: Path) -> tuple[dict[str, Any], list[Any]]:
     """Return the values of all variables of a netCDF file in their order, and what belongs to them.
 
-    That is the name, dimensions and attributes of each, and those of the file. Raises ValueError
-    where the file refers to others.
+    That is the name, dimensions and attributes of each, and those of the file; groups are left out.
+    Raises ValueError where the file refers to others.
     """
     arrays: dict[str, Any] = {}
     named: list[Any] = []

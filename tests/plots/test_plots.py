@@ -117,6 +117,19 @@ def test_the_ranges_of_predictions_are_over_the_reference(two: Results) -> None:
     assert list(np.asarray(widths[0])) == pytest.approx([ratio.min(), ratio.max()])
 
 
+def test_draws_of_the_posterior_are_drawn_in_pairs(two: Results, three: Results) -> None:
+    figure = two.plot.corner()
+    draws = two["sample_theta"].values
+    (pair,) = (axes for axes in figure.axes if axes.get_ylabel())
+    x, y = next(line for line in pair.lines if len(line.get_xdata()) == len(draws)).get_data()
+    assert np.array_equal(np.column_stack([x, y]), draws)
+    assert len(two.plot.corner(["k1"]).axes) == 1
+    with pytest.raises(KeyError, match="no parameter 'k3'"):
+        two.plot.corner(["k3"])
+    with pytest.raises(mf.InputError, match="expected results with draws of a posterior"):
+        three.plot.corner()
+
+
 def test_what_results_do_not_hold_is_said(three: Results) -> None:
     with pytest.raises(mf.InputError, match="expected results with predictions, found none"):
         three.plot.predictions()

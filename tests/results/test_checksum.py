@@ -43,6 +43,16 @@ def test_what_a_run_writes_fits(run: Path) -> None:
     assert "checksum" not in data.attrs
 
 
+def test_draws_are_a_group_with_dimensions_of_arviz(run: Path) -> None:
+    data = read_dataset(run)
+    with xr.open_datatree(run / FILE, engine="h5netcdf") as tree:  # as ArviZ opens it
+        draws = tree["posterior"].load()
+    assert draws["theta"].dims == ("chain", "draw", "parameter")
+    for name in ("theta", "frf_peak", "failure_probability"):
+        assert np.array_equal(draws[name][0], data[f"draw_{name}"].values, equal_nan=True)
+    assert draws["parameter"].values.tolist() == data["parameter"].values.tolist()
+
+
 def test_every_variable_with_a_doubled_value_has_another_checksum(run: Path) -> None:
     data = xr.load_dataset(run / FILE, engine="h5netcdf")
     tried, same = 0, []

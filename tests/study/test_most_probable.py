@@ -16,6 +16,7 @@ from two_masses import STUDY
 import modefront as mf
 from modefront.cli.show import as_json
 from modefront.linalg.small import mac
+from modefront.results.files import FILE
 from modefront.results.verdict import with_verdict
 from modefront.study.examples import write_example
 from modefront.uncertainty.inference import wider
@@ -61,6 +62,14 @@ def test_the_reference_is_the_most_probable_model_with_intervals(
     lower, upper = data["bounds"].values.T
     assert (data["sample_theta"].values >= lower).all()
     assert (data["sample_theta"].values <= upper).all()
+
+
+def test_draws_are_a_group_of_the_file(whole: tuple[Path, xr.Dataset]) -> None:
+    folder, data = whole
+    file = folder / "results" / FILE
+    with xr.open_dataset(file, group="posterior", engine="h5netcdf") as draws:
+        assert draws["theta"].dims == ("chain", "draw", "parameter")
+        assert np.array_equal(draws["theta"][0], data["sample_theta"])
 
 
 @pytest.mark.slow(4)

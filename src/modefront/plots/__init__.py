@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
@@ -24,6 +24,7 @@ PLOTS: Mapping[str, tuple[tuple[str, ...], str]] = {
     "modes": (("shape",), "mode shapes"),
     "predictions": (("range",), "predictions"),
     "uncertainty": (("theta_std", "posterior_std"), "errors of the data or a posterior"),
+    "corner": (("sample_theta",), "draws of a posterior"),
     "minima": ((), ""),
 }
 """Pictures in the order of their files: variables or dimensions, one of which each shows, and what
@@ -84,6 +85,14 @@ class Plots:
     def uncertainty(self) -> Picture:
         """Return the scatter of parameters and front by errors of the data."""
         return self._draw("uncertainty")
+
+    def corner(self, parameters: Sequence[str] = ()) -> Picture:
+        """Return the draws of the posterior, of each parameter and of each two of them.
+
+        ``parameters`` are names; unless given, all, or the eight that are determined best. Raises
+        KeyError for an unknown name.
+        """
+        return self._draw("corner", parameters=parameters)
 
     def minima(self) -> Picture:
         """Return all minima, and the models that fit equally well."""

@@ -1,6 +1,6 @@
 """The front in the space of errors, quantities along it, minima, their scatter, and predictions."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,8 @@ from modefront.text import NAME
 
 FAR = 2.5
 """Error over the greatest of the Pareto-optimal models from which a model is beyond the axes."""
+
+CORNER = 8  # parameters of which all pairs are drawn
 
 
 def front(data: Dataset, *, log: bool = False) -> canvas.Picture:
@@ -215,6 +217,49 @@ def uncertainty(data: Dataset) -> canvas.Picture:
         axes.set_title(f"correlation at {canvas.short(preferred(data.attrs))}", loc="left")
     if scattered:
         _ellipses(row.pop(0), data)
+    return figure
+
+
+def corner(data: Dataset, parameters: Sequence[str] = ()) -> canvas.Picture:
+    """Return the draws of the posterior: of each parameter, and of each two; red is the reference.
+
+    Grey is the 90 % interval. Unless named, they are those whose intervals are least beside those
+    of the prior. Raises KeyError for an unknown name.
+    """
+    every = data["parameter"].values.tolist()
+    if unknown := [name for name in parameters if name not in every]:
+        raise KeyError(f"no parameter {unknown[0]!r}; there are {', '.join(map(repr, every))}")
+    ends = data["interval"].values
+    share = (ends[:, 2] - ends[:, 0]) / data["prior_width"].values
+    chosen = [every.index(name) for name in parameters] or sorted(np.argsort(share)[:CORNER])
+    names = [canvas.short(every[j], 18) for j in chosen]
+    unit, title = unit_of(data)
+    draws = data["sample_theta"].values / unit
+    best = data["theta"].values[position(data)] / unit
+    n = len(chosen)
+    figure = canvas.picture(max(1.5 * n, 3.0), max(1.5 * n, 3.0))
+    grid = figure.subplots(n, n, sharex="col", squeeze=False)
+    for (row, column), axes in np.ndenumerate(grid):
+        i, j = chosen[row], chosen[column]
+        if row < column:
+            axes.remove()
+            continue
+        axes.axvline(best[j], color=canvas.COLOURS[1], lw=0.9)
+        if row == column:
+            axes.axvspan(*ends[j, [0, 2]] / unit[j], color="0.9", lw=0)
+            axes.hist(draws[:, j], bins=20, color=canvas.COLOURS[0], histtype="step")
+            axes.set_yticks([])
+        else:
+            axes.axhline(best[i], color=canvas.COLOURS[1], lw=0.9)
+            axes.plot(draws[:, j], draws[:, i], ".", color=canvas.COLOURS[0], ms=2, alpha=0.5)
+        if column == 0 and row:
+            axes.set_ylabel(names[row])
+        if column and row != column:
+            axes.set_yticklabels([])
+        if row == n - 1:
+            axes.set_xlabel(names[column])
+    left = f", {n} of {len(every)}" * (n < len(every))
+    figure.suptitle(f"draws of the posterior: {title}{left}", x=0.01, ha="left")
     return figure
 
 

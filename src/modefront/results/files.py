@@ -32,9 +32,21 @@ CHECKSUM = "checksum"  # attribute that holds the checksums, in JSON
 
 
 def write(data: Dataset, path: Path) -> None:
-    """Write a dataset with its checksums, whole or not at all."""
+    """Write a dataset with its checksums, whole or not at all.
+
+    Draws are there once more as a group ``posterior`` with the dimensions that ArviZ expects.
+    """
+    drawn = {str(x): data[x] for x in data.variables if str(x).startswith("draw_")}
+    if not drawn and "sample_theta" in data:
+        drawn["draw_theta"] = data["sample_theta"]
+    posterior = {
+        name.removeprefix("draw_"): Array(("chain", "draw", *x.dims[1:]), x.values[None], x.attrs)
+        for name, x in drawn.items()
+    }
+    named = {x: data[x] for each in drawn.values() for x in each.dims if x in data.variables}
+    groups = {"posterior": ArrayDataset({**named, **posterior})} if drawn else {}
     with output(path, lasting=True) as stream:
-        write_netcdf(data.assign_attrs({CHECKSUM: json.dumps(checksums(data))}), stream)
+        write_netcdf(data.assign_attrs({CHECKSUM: json.dumps(checksums(data))}), stream, groups)
 
 
 def read_dataset(folder: Path) -> ArrayDataset:
