@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from operator import attrgetter
 from typing import Any, Generic, TypeVar
 
 from modefront.errors import Fault, InputError, reason, refuse, wrong
@@ -16,15 +17,15 @@ class Family(Mapping[str, T], Generic[T]):
     """The members of a family by their names, in the order in which they came.
 
     They are the package's ``own``, those added by `modefront.register`, and those brought by entry
-    points of a ``group``; ``what`` describes one in messages. ``takes`` says whether an object can
-    be a member, ``faults`` what keeps it from being one.
+    points of a ``group``; ``what`` describes one in messages. Members are instances of a class or
+    protocol; ``faults`` says what else keeps an object from being one.
     """
 
     group: str
     what: str
-    takes: Callable[[Any], bool]
-    name: Callable[[T], str]
+    member: type
     own: Sequence[T] = ()
+    name: Callable[[T], str] = attrgetter("name")
     faults: Callable[[T], Iterable[Fault]] = lambda _: ()
     added: dict[str, T] = field(default_factory=dict)
     _is_loaded: bool = False
@@ -34,7 +35,7 @@ class Family(Mapping[str, T], Generic[T]):
 
         Raises InputError where it is none of the family, or the package has one of its name.
         """
-        if not self.takes(member):
+        if not isinstance(member, self.member):
             raise wrong("register", self.what, clean(repr(member), NAME))
         refuse(self.faults(member))
         name = self.name(member)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +21,15 @@ from modefront.inputs import file_size, wrong
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry, axis_name
 from modefront.models.matrices import MatrixModel
-from modefront.options import NAME, Table, any_of, keys, of_options, text, whole
+from modefront.options import NAME, Table, any_of, entries, keys, of_options, table_of, text, whole
 from modefront.text import Shown
 
 FILE = text("the name of a file of modal data")
 COVARIANCE = text("the name of a file of covariances of shapes, in CSV")
 OF_PLACE = keys(["node", "direction"], node=whole(0, 10**9), direction=DIRECTION)
 PLACE = any_of(NAME, of_options(OF_PLACE))
+SENSORS = entries("a table, sensor = node and direction in the file", table_of(PLACE))
+DATA = keys(["file"], file=FILE, covariance=COVARIANCE, sensors=SENSORS, columns=COLUMNS)
 
 
 @dataclass(frozen=True, repr=False)
@@ -45,10 +48,7 @@ class DataReader(Shown):
 
 
 READERS: Family[DataReader] = Family(
-    "modefront.readers",
-    "a DataReader",
-    lambda reader: isinstance(reader, DataReader),
-    lambda reader: reader.ending,
+    "modefront.readers", "a DataReader", DataReader, name=attrgetter("ending")
 )
 """Readers of the user by their endings."""
 
