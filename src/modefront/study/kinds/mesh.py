@@ -145,7 +145,8 @@ def read_mesh_model(table: opt.Table, parameters: Sequence[str]) -> Model | None
         """Return nodes: one, or those of a list of nodes and of groups or node sets of the mesh."""
         out: dict[int, None] = {}
         before = len(table.faults)
-        for place in listed(member.value(key, NODES) or []):
+        given = member.value(key, NODES)
+        for place in [] if given is None else listed(given):
             if isinstance(place, str):
                 used.add(place)
                 with member.noting(key):
