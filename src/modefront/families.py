@@ -6,7 +6,7 @@ from functools import cache
 from operator import attrgetter
 from typing import Any, Generic, TypeVar
 
-from modefront.errors import Fault, InputError, reason, refuse, wrong
+from modefront.errors import Fault, refuse, refusing, wrong
 from modefront.text import NAME, clean
 
 T = TypeVar("T")
@@ -57,13 +57,9 @@ class Family(Mapping[str, T], Generic[T]):
         """Return all members; raises InputError for an entry point that brings none."""
         if not self._is_loaded:
             for each in _entry_points().select(group=self.group):
-                try:
+                place = f"entry point '{each.name}' = {each.value} of {self.group}"
+                with refusing("", self.what, place=place):  # another's package may raise anything
                     self.add(each.load())
-                except InputError:
-                    raise
-                except Exception as error:  # the package of another may raise anything
-                    place = f"entry point '{each.name}' = {each.value} of {self.group}"
-                    raise wrong(place, self.what, reason(error)) from None
             self._is_loaded = True
         return {self.name(member): member for member in self.own} | self.added
 

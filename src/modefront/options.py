@@ -27,7 +27,7 @@ from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_t
 
 import numpy as np
 
-from modefront.errors import Fault, InputError, reason, refuse, suggestion
+from modefront.errors import Fault, InputError, refuse, refusing, suggestion
 from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.rounding import LARGEST
 from modefront.text import NAME as LENGTH
@@ -531,10 +531,9 @@ def read_toml(path: Path, expected: str) -> tuple[Table, bytes]:
     Raises InputError where it cannot be read; ``expected`` says what it should be.
     """
     content = read_text_bytes(path, expected, MOST_TABLES)
-    try:
-        return Table(str(path), "", tomllib.loads(content.decode("utf-8-sig")), []), content
-    except (ValueError, RecursionError) as error:
-        raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
+    with refusing(path, "TOML in UTF-8", ValueError, RecursionError):
+        values = tomllib.loads(content.decode("utf-8-sig"))
+    return Table(str(path), "", values, []), content
 
 
 def names_of(tables: Iterable[Table]) -> list[str]:

@@ -21,7 +21,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion, writing
+from modefront.errors import Fault, InputError, ModelError, refuse, refusing, suggestion, writing
 from modefront.fem.structure import DIRECTIONS
 from modefront.inputs import wrong
 from modefront.models.dofs import write_dofs
@@ -522,10 +522,8 @@ def lines_of(path: Path, depth: int = 0) -> Iterator[tuple[str, int]]:
 
     Raises InputError where there is none.
     """
-    try:
+    with refusing(path, "a deck of CalculiX", OSError):
         texts = text_of(path).splitlines()
-    except OSError as error:
-        raise wrong(path, "a deck of CalculiX", reason(error)) from None
     for k, text in enumerate(texts, start=1):
         keyword, options = keyword_of(text)
         if text.startswith("*") and keyword == "INCLUDE" and depth < DEEPEST:
@@ -559,12 +557,10 @@ def _run(program: str, job: Path, text: str, result: str) -> None:
     made = job.with_name(job.name + result)
     made.unlink(missing_ok=True)
     write_text(job.with_name(f"{job.name}.inp"), text)
-    try:
+    with refusing(program, "a program that runs", OSError, place="--run"):
         done = subprocess.run(
             [program, job.name], cwd=job.parent, capture_output=True, text=True, errors="replace"
         )
-    except OSError as error:
-        raise InputError(Fault(program, "--run", "a program that runs", reason(error))) from None
     errors = done.stdout.split("*ERROR", 2)[1:]
     if errors or not made.is_file() or not made.stat().st_size:
         found = one_line(errors[0] if errors else done.stdout[-400:], 400) or "nothing"

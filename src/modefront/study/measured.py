@@ -12,7 +12,7 @@ from modefront._typing import Floats
 from modefront.data.csv import COLUMNS, read_covariance, read_csv
 from modefront.data.modal import ModalData
 from modefront.data.uff import NodalModes, is_universal, read_uff55
-from modefront.errors import InputError, reason, suggestion
+from modefront.errors import refusing, suggestion
 from modefront.families import Family
 from modefront.fem.check import unit_vector
 from modefront.fem.structure import DIRECTION
@@ -78,12 +78,8 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
         elif path.suffix in READERS:
             file = table.path(name)
             file_size(file, "a file of modal data")
-            try:
+            with refusing(file, "a file of modal data"):  # a user's function may raise anything
                 data = READERS[path.suffix].read(file, sensors)
-            except InputError:
-                raise
-            except Exception as error:  # a user's function may raise anything
-                raise wrong(file, "a file of modal data", reason(error)) from error
             if sensors is not None and tuple(data.sensors) != sensors:
                 expected = f"the sensors {', '.join(sensors)}, in this order"
                 raise wrong(file, expected, ", ".join(data.sensors))
