@@ -129,6 +129,12 @@ def test_what_cannot_be_run_is_refused(deck: Path, tmp_path: Path) -> None:
         mf.import_deck(tmp_path / "none.inp", {"E": "material:STEEL"}, run=sys.executable)
 
 
+def test_what_is_no_number_in_a_deck_is_nothing_to_multiply(deck: Path) -> None:
+    (deck.parent / "steel.inp").write_text(STEEL.replace("7850", "heavy"))
+    with pytest.raises(mf.InputError, match=r"a name with \*DENSITY, found 'STEEL'"):
+        mf.import_deck(deck, {"rho": "density:STEEL"}, run=sys.executable)
+
+
 @needs_ccx
 def test_a_deck_is_imported_with_jobs_of_its_own_and_comes_back_whole(tmp_path: Path) -> None:
     write_example("calculix", tmp_path / "decks")
