@@ -289,11 +289,8 @@ def _frequencies(
     if massless := int((sum(A.diagonal() for A in mass.values()) == 0).sum()):
         notes.append(f"{massless} degrees of freedom have no mass, which is allowed")
     count = max(min(modes or SHOWN, size - massless), 1)
-    try:
+    with refusing("", "matrices with modes", ModelError, place="the nominal model"):
         lowest = model.full_modes(np.ones(len(terms.parameters)), count)
-    except ModelError as error:
-        fault = Fault("", "the nominal model", "matrices with modes", str(error))
-        raise InputError(fault) from None
     frequencies = np.sqrt(np.maximum(lowest.lam, 0.0)) / (2 * np.pi)
     if floating := int((lowest.lam == 0).sum()):
         notes.append(f"{floating} rigid-body modes or mechanisms: floating = true is written")
