@@ -83,10 +83,8 @@ def test_a_parameter_multiplies_what_the_deck_says_of_a_name(
 ) -> None:
     lines = list(lines_of(deck))
     multiplied, _ = targets_of(deck, lines, {"x": f"{kind}:{name}"})
-    before, after = (
-        job_text(deck, lines, multiplied, factors, stored=True).splitlines()
-        for factors in ({}, {"x": 2.0})
-    )
+    before = job_text(deck, lines, multiplied, {}, stored=True).splitlines()
+    after = job_text(deck, lines, multiplied, {"x": 2.0}, stored=True).splitlines()
     pairs = [(x.split(","), y.split(",")) for x, y in zip(before, after, strict=True) if x != y]
     scaled = [[k for k, (a, b) in enumerate(zip(x, y, strict=True)) if a != b] for x, y in pairs]
     assert scaled == places

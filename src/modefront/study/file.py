@@ -365,7 +365,7 @@ def register(extension: T) -> T:
         Where it is none of these, or its name is that of another one.
     """
     for family in FAMILIES:
-        if isinstance(extension, family.member):
+        if family.takes(extension):
             family.add(extension)
             return extension
     expected = ", ".join(family.what for family in FAMILIES)
