@@ -3,7 +3,7 @@
 import difflib
 import errno
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -99,13 +99,22 @@ def noted(faults: list[Fault], place: str = "") -> Iterator[None]:
 
 
 @contextmanager
-def writing(path: Path, place: str = "folder") -> Iterator[None]:
-    """Raise InputError, with the reason, where a folder, or a file, cannot be written to."""
+def refusing(
+    file: object, expected: str, *kinds: type[Exception], place: str = "file"
+) -> Iterator[None]:
+    """Raise InputError, with the reason, in place of errors of these kinds, or of any kind."""
     try:
         yield
-    except OSError as error:
-        known = "folder that can be written to" if place == "folder" else "file that can be written"
-        raise InputError(Fault(str(path), place, f"a {known}", reason(error))) from None
+    except Exception as error:
+        if isinstance(error, InputError) or not isinstance(error, kinds or Exception):
+            raise
+        raise InputError(Fault(str(file), place, expected, reason(error))) from error
+
+
+def writing(path: Path, place: str = "folder") -> AbstractContextManager[None]:
+    """Raise InputError, with the reason, where a folder, or a file, cannot be written to."""
+    known = "a folder that can be written to" if place == "folder" else "a file that can be written"
+    return refusing(path, known, OSError, place=place)
 
 
 def reason(error: BaseException) -> str:

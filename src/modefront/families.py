@@ -3,9 +3,10 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from operator import attrgetter
 from typing import Any, Generic, TypeVar
 
-from modefront.errors import Fault, InputError, reason, refuse, wrong
+from modefront.errors import Fault, refuse, refusing, wrong
 from modefront.text import NAME, clean
 
 T = TypeVar("T")
@@ -16,18 +17,22 @@ class Family(Mapping[str, T], Generic[T]):
     """The members of a family by their names, in the order in which they came.
 
     They are the package's ``own``, those added by `modefront.register`, and those brought by entry
-    points of a ``group``; ``what`` describes one in messages. ``takes`` says whether an object can
-    be a member, ``faults`` what keeps it from being one.
+    points of a ``group``; ``what`` describes one in messages. Members are instances of a class or
+    protocol; ``faults`` says what else keeps an object from being one.
     """
 
     group: str
     what: str
-    takes: Callable[[Any], bool]
-    name: Callable[[T], str]
+    member: type
     own: Sequence[T] = ()
+    name: Callable[[T], str] = attrgetter("name")
     faults: Callable[[T], Iterable[Fault]] = lambda _: ()
     added: dict[str, T] = field(default_factory=dict)
     _is_loaded: bool = False
+
+    def takes(self, extension: object) -> bool:
+        """Return whether an object is of the class or protocol of the members."""
+        return isinstance(extension, self.member)
 
     def add(self, member: T) -> T:
         """Add a member, in place of one that was added under its name, and return it.
@@ -56,13 +61,9 @@ class Family(Mapping[str, T], Generic[T]):
         """Return all members; raises InputError for an entry point that brings none."""
         if not self._is_loaded:
             for each in _entry_points().select(group=self.group):
-                try:
+                place = f"entry point '{each.name}' = {each.value} of {self.group}"
+                with refusing("", self.what, place=place):  # another's package may raise anything
                     self.add(each.load())
-                except InputError:
-                    raise
-                except Exception as error:  # the package of another may raise anything
-                    place = f"entry point '{each.name}' = {each.value} of {self.group}"
-                    raise wrong(place, self.what, reason(error)) from None
             self._is_loaded = True
         return {self.name(member): member for member in self.own} | self.added
 

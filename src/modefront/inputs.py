@@ -61,13 +61,6 @@ def read_text_bytes(path: Path, expected: str, most: int) -> bytes:
         raise wrong(path, expected, reason(error)) from None
 
 
-def is_hdf5(path: Path) -> bool:
-    """Return whether a file holds HDF5, at its beginning or after a block of the user's."""
-    import h5py  # takes time
-
-    return bool(h5py.is_hdf5(path))
-
-
 def available_memory() -> int:
     """Return the memory in bytes that may be taken, 8 GB where the system does not say."""
     memory = 8 * 10**9

@@ -27,7 +27,7 @@ from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_t
 
 import numpy as np
 
-from modefront.errors import Fault, InputError, reason, refuse, suggestion
+from modefront.errors import Fault, InputError, refuse, refusing, suggestion
 from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.rounding import LARGEST
 from modefront.text import NAME as LENGTH
@@ -145,26 +145,22 @@ class Requirement:
     """Requirement on the value of an option."""
 
     expected: str  # the same in words
-    schema: Schema  # of such a value; empty where `entries` are read by a reader of their own
+    schema: Schema  # of such a value
     convert: Callable[[Any], Any] = lambda value: value  # into the form that is kept
     further: Callable[[Any], bool] = lambda _: True  # whether it meets what no schema says
-    record: type | None = None  # class of a record in a table within the table; None for a value
-    # schema of a table with its entries, where these are read one by one and what is wrong is said
-    # of each; empty where ``schema`` says all
-    entries: Schema = field(default_factory=dict)
-    read: "Callable[[Table, str], Any] | None" = None  # reads this table in another, by its key
+    # reads the table of a key within another one, and says what is wrong with each of its entries;
+    # None for values
+    read: "Callable[[Table, str], Any] | None" = None
+    entries: Schema = field(default_factory=dict)  # schema of a table that is read so
 
     def holds(self, value: Any) -> bool:
         """Return whether a value in plain Python is so."""
-        if self.record:
-            return isinstance(value, self.record)
         return fits(value, self.schema) and self.further(value)
 
     @property
     def described(self) -> Schema:
         """Schema of a value in a file, with all that is within it, and its requirement in words."""
-        schema = schema_of(self.record) if self.record else self.entries or self.schema
-        return {"description": self.expected, **schema}
+        return {"description": self.expected, **(self.entries or self.schema)}
 
 
 def one_of(*choices: str) -> Requirement:
@@ -208,19 +204,26 @@ def text(expected: str) -> Requirement:
 
 def nested(expected: str, record: type) -> Requirement:
     """Return the requirement of another record of options."""
-    return Requirement(expected, TABLE, record=record)
+
+    def read(outer: Table, key: str) -> Any:
+        table = outer.table(key, expected)
+        return table and table.record(record)
+
+    return Requirement(
+        expected, {}, further=lambda x: isinstance(x, record), read=read, entries=schema_of(record)
+    )
 
 
 def entries(expected: str, schema: Schema) -> Requirement:
-    """Return the requirement of a table which a reader of its own reads, entry by entry."""
-    return Requirement(expected, {}, entries=schema)
+    """Return the requirement of a table that is read later, entry by entry."""
+    return Requirement(expected, {}, read=lambda table, key: table.values.get(key), entries=schema)
 
 
 def mapping(expected: str, each: Requirement) -> Requirement:
     """Return the requirement of a table of any names, of which each value meets another one."""
 
     def read(outer: Table, key: str) -> dict[str, Any]:
-        table = outer.table(key)
+        table = outer.table(key, expected)
         values = {name: table.value(name, each) for name in table.values} if table else {}
         return {name: value for name, value in values.items() if value is not None}
 
@@ -444,13 +447,10 @@ class Table:
         value = self.values.get(key)
         if value is None and default is not ...:
             return default
-        if not requirement.schema and requirement.entries:
-            return value  # a reader of its own says what is wrong with it
-        if requirement.record and isinstance(value, dict):
-            inner = self.table(key)
-            return inner and inner.record(requirement.record)
+        if requirement.read:
+            return requirement.read(self, key)
         if value is not None and requirement.holds(value):
-            return requirement.read(self, key) if requirement.read else requirement.convert(value)
+            return requirement.convert(value)
         self.fault(key, requirement.expected, shown(value))
         return None if default is ... else default
 
@@ -531,10 +531,9 @@ def read_toml(path: Path, expected: str) -> tuple[Table, bytes]:
     Raises InputError where it cannot be read; ``expected`` says what it should be.
     """
     content = read_text_bytes(path, expected, MOST_TABLES)
-    try:
-        return Table(str(path), "", tomllib.loads(content.decode("utf-8-sig")), []), content
-    except (ValueError, RecursionError) as error:
-        raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
+    with refusing(path, "TOML in UTF-8", ValueError, RecursionError):
+        values = tomllib.loads(content.decode("utf-8-sig"))
+    return Table(str(path), "", values, []), content
 
 
 def names_of(tables: Iterable[Table]) -> list[str]:

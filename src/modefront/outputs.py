@@ -11,10 +11,6 @@ from pathlib import Path
 
 ENDING = ".tmp"  # ending of files that are not yet written to the end
 
-MASK = os.umask(0o077)
-"""Permissions that new files of this process do not have; read once, as reading changes it."""
-os.umask(MASK)
-
 
 @contextmanager
 def output(path: Path, *, lasting: bool = False) -> Iterator[io.BufferedRandom]:
@@ -23,23 +19,19 @@ def output(path: Path, *, lasting: bool = False) -> Iterator[io.BufferedRandom]:
     It has the permissions of the file that was there, or those of any new file. A ``lasting`` one
     is on the drive before it takes its place. Raises OSError where it cannot be written.
     """
-    descriptor, name = tempfile.mkstemp(ENDING, f".{path.name[:40]}-", path.parent)
+    unfinished = path.with_name(f".{path.name[:40]}-{os.urandom(6).hex()}{ENDING}")
     try:
-        with os.fdopen(descriptor, "w+b") as stream:
-            mode = 0o666 & ~MASK
-            with suppress(OSError):
-                known = path.lstat().st_mode
-                mode = stat.S_IMODE(known) & 0o777 if stat.S_ISREG(known) else mode
-            if hasattr(os, "fchmod"):
-                with suppress(OSError):  # drives without permissions
-                    os.fchmod(descriptor, mode)
+        with unfinished.open("xb+") as stream:
+            with suppress(OSError):  # no earlier file, or a drive without permissions
+                if stat.S_ISREG(mode := path.lstat().st_mode):
+                    unfinished.chmod(mode & 0o777)
             yield stream
             stream.flush()
             if lasting:
-                os.fsync(descriptor)
-        Path(name).replace(path)
+                os.fsync(stream.fileno())
+        unfinished.replace(path)
     except BaseException:  # a full disk or an interrupt
-        Path(name).unlink(missing_ok=True)
+        unfinished.unlink(missing_ok=True)
         raise
 
 

@@ -21,7 +21,13 @@ from modefront.programs.changes import (
     write_deck,
 )
 from modefront.study.examples import write_example
-from modefront.study.importing import Target, job_text, lines_of, model_of, printed_frequencies
+from modefront.study.importing import (
+    job_text,
+    lines_of,
+    model_of,
+    printed_frequencies,
+    targets_of,
+)
 
 CCX = shutil.which("ccx")
 needs_ccx = pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not installed")
@@ -76,8 +82,9 @@ def test_a_parameter_multiplies_what_the_deck_says_of_a_name(
     kind: str, name: str, places: list[list[int]], deck: Path
 ) -> None:
     lines = list(lines_of(deck))
-    before = job_text(deck, lines, {}, stored=True).splitlines()
-    after = job_text(deck, lines, {Target(kind, name): 2.0}, stored=True).splitlines()
+    multiplied, _ = targets_of(deck, lines, {"x": f"{kind}:{name}"})
+    before = job_text(deck, lines, multiplied, {}, stored=True).splitlines()
+    after = job_text(deck, lines, multiplied, {"x": 2.0}, stored=True).splitlines()
     pairs = [(x.split(","), y.split(",")) for x, y in zip(before, after, strict=True) if x != y]
     scaled = [[k for k, (a, b) in enumerate(zip(x, y, strict=True)) if a != b] for x, y in pairs]
     assert scaled == places
@@ -90,9 +97,9 @@ def test_a_parameter_multiplies_what_the_deck_says_of_a_name(
 
 def test_jobs_store_matrices_or_print_frequencies(deck: Path) -> None:
     lines = list(lines_of(deck))
-    assert "*FREQUENCY, SOLVER=MATRIXSTORAGE\n*End" in job_text(deck, lines, {}, stored=True)
-    assert "*FREQUENCY\n10\n*End" in job_text(deck, lines, {}, stored=False)
-    assert "INCLUDE" not in job_text(deck, lines, {}, stored=True)
+    assert "*FREQUENCY, SOLVER=MATRIXSTORAGE\n*End" in job_text(deck, lines, [], {}, stored=True)
+    assert "*FREQUENCY\n10\n*End" in job_text(deck, lines, [], {}, stored=False)
+    assert "INCLUDE" not in job_text(deck, lines, [], {}, stored=True)
 
 
 def test_what_cannot_be_run_is_refused(deck: Path, tmp_path: Path) -> None:
@@ -118,6 +125,12 @@ def test_what_cannot_be_run_is_refused(deck: Path, tmp_path: Path) -> None:
         mf.import_deck(deck, {"E": "material:STEEL"}, run=sys.executable)
     with pytest.raises(mf.InputError, match="a deck of CalculiX"):
         mf.import_deck(tmp_path / "none.inp", {"E": "material:STEEL"}, run=sys.executable)
+
+
+def test_what_is_no_number_in_a_deck_is_nothing_to_multiply(deck: Path) -> None:
+    (deck.parent / "steel.inp").write_text(STEEL.replace("7850", "heavy"))
+    with pytest.raises(mf.InputError, match=r"a name with \*DENSITY, found 'STEEL'"):
+        mf.import_deck(deck, {"rho": "density:STEEL"}, run=sys.executable)
 
 
 @needs_ccx
@@ -189,8 +202,9 @@ def test_what_the_program_says_of_a_deck_is_not_cut_at_a_star(tmp_path: Path) ->
 
 def test_factors_of_powers_of_ten_have_a_point(deck: Path) -> None:
     deck.write_text(DECK.replace("4000", "4e20"))
-    text = job_text(deck, list(lines_of(deck)), {Target("spring", "ENDS"): 2.0}, stored=True)
-    assert "\n 8.e+20\n" in text
+    lines = list(lines_of(deck))
+    multiplied, _ = targets_of(deck, lines, {"k": "spring:ENDS"})
+    assert "\n8.e+20\n" in job_text(deck, lines, multiplied, {"k": 2.0}, stored=True)
 
 
 def test_a_study_beside_its_deck_has_it_back_whole_and_no_other_one(tmp_path: Path) -> None:

@@ -43,7 +43,9 @@ NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORE
 DECIMAL_COMMA = re.compile(r"^(\s*[+-]?[0-9]*),([0-9]*(?:e[+-]?[0-9]+)?\s*)$", re.IGNORECASE)
 """A number with a decimal comma, before and behind it."""
 
-COLUMNS = mapping("a table, name in the file = name here", text("a text"))  # of a file
+COLUMNS = mapping(  # of a file
+    "a table, column in the file = column of modal data, or sensor", text("a text")
+)
 
 MOST_FAULTS = 100  # faults of rows after which the rest is not looked at
 

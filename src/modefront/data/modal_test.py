@@ -18,7 +18,7 @@ from modefront.data.responses import EXPECTED, ORDERS, Channel, DataSet, assembl
 from modefront.data.uff import TIME as OF_TIME
 from modefront.data.uff import is_universal, read_functions, read_uff
 from modefront.errors import Fault, InputError, noted, refuse, suggestion
-from modefront.inputs import MOST_DATA, file_size, is_hdf5, wrong
+from modefront.inputs import MOST_DATA, file_size, wrong
 from modefront.isolated import Read, isolated
 from modefront.rounding import LARGEST
 
@@ -162,11 +162,12 @@ def read_arrays(path: Path) -> Read:
     """Return the numbers of a file of NumPy or MATLAB by name, in a process with limits."""
     if path.suffix.lower() == ".npy":
         return {"array": np.load(path, allow_pickle=False)}, None
+    import h5py  # takes time
     from scipy.io import loadmat
 
-    from modefront import hdf5  # takes time
+    from modefront import hdf5
 
-    shapes = hdf5.variables(path) if is_hdf5(path) else {}  # of MATLAB 7.3
+    shapes = hdf5.variables(path) if h5py.is_hdf5(path) else {}  # of MATLAB 7.3
     read = {name: hdf5.variable(path, name) for name, shape in shapes.items() if shape}
     arrays = {k: x for k, x in (read or loadmat(path)).items() if isinstance(x, np.ndarray)}
     return {name: x for name, x in arrays.items() if x.dtype.kind in "fiuc"}, None

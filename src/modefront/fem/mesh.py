@@ -19,6 +19,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, Literal
 
+import h5py
 import numpy as np
 
 from modefront import errors
@@ -26,7 +27,7 @@ from modefront._typing import Floats, Ints
 from modefront.errors import suggestion
 from modefront.fem.structure import Cells
 from modefront.hdf5 import check_tree
-from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, wrong
+from modefront.inputs import MOST_DATA, available_memory, file_size, wrong
 from modefront.isolated import isolated
 from modefront.text import one_line
 
@@ -143,7 +144,7 @@ def refers_to(path: Path) -> str:
                 if INCLUDES.match(line):
                     text = one_line(line[:200].decode("utf-8", "replace"), 80)
                     return f"a part from another file, line {number}: {text}"
-    if suffix != ".med" and is_hdf5(path):
+    if suffix != ".med" and h5py.is_hdf5(path):
         return "HDF5, which may refer to other files: convert it to Gmsh, VTK or MED"
     return ""
 
@@ -152,12 +153,11 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return nodes, cells and sets as arrays, and their names; see `modefront.isolated`."""
     from unittest import mock
 
-    import h5py
     import meshio
 
     if reference := refers_to(path):
         raise wrong(path, "a mesh that is one file", reference)
-    if is_hdf5(path):  # MED
+    if h5py.is_hdf5(path):  # MED
         with h5py.File(path, "r") as file:
             check_tree(file)
     output = io.StringIO()

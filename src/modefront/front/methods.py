@@ -72,8 +72,7 @@ def _nsga2(population: int) -> Any:
 METHODS: Family[Method] = Family(
     "modefront.methods",
     "a Method of fronts",
-    lambda method: isinstance(method, Method),
-    lambda method: method.name,
+    Method,
     (
         Method("nbi", "normal-boundary intersection", "boundary"),
         Method("weights", "a sweep of the weights", "weights"),

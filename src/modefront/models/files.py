@@ -143,8 +143,10 @@ def _npz(path: Path, name: str) -> Any:
 
 
 def _matlab(path: Path, name: str) -> Any:
-    if inputs.is_hdf5(path):
-        from modefront import hdf5  # takes time to import
+    import h5py  # takes time
+
+    if h5py.is_hdf5(path):
+        from modefront import hdf5
 
         return hdf5.variable(path, _chosen(path, name, hdf5.variables(path)))
     known = {each: shape for each, shape, _ in scipy.io.whosmat(path)}

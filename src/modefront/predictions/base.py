@@ -10,6 +10,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, is_dataclass
 from functools import cache
+from operator import attrgetter
 from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
@@ -303,8 +304,8 @@ def _faults(prediction: Any) -> Iterator[Fault]:
 CLASSES: Family[type[Prediction]] = Family(
     "modefront.predictions",
     "a class of predictions",
-    lambda each: isinstance(each, type),
-    lambda each: each.kind.table,
+    type,
+    name=attrgetter("kind.table"),
     faults=_faults,
 )
 """Classes of predictions by the names of their tables in study files."""

@@ -5,7 +5,7 @@ From it, updated values can be written as lines of the deck.
 
 import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -35,17 +35,30 @@ class Change:
 
     def updated(self, factor: float) -> str:
         """Return the line with its numbers times a factor."""
-        return _multiplied(self.text, dict.fromkeys(self.spans, factor))
+        return times({self.line: self.text}, [self], {self.parameter: factor})[self.line]
 
 
-def _multiplied(text: str, factors: Mapping[tuple[int, int], float]) -> str:
-    """Return a line with the numbers between beginnings and ends times factors."""
-    for (first, last), factor in sorted(factors.items(), reverse=True):
-        mantissa, e, exponent = f"{fortran(text[first:last]) * factor:.9g}".partition("e")
-        # Some programs take a number without a decimal point for an integer.
-        point = "" if "." in mantissa else "."
-        text = f"{text[:first]}{mantissa}{point}{e}{exponent}{text[last:]}"
-    return text
+def times(
+    lines: Mapping[int, str],
+    changes: Iterable[Change],
+    theta: Mapping[str, float],
+    digits: int = 9,
+) -> dict[int, str]:
+    """Return the changed lines, by their numbers, with their numbers times the parameters."""
+    factors: dict[int, dict[tuple[int, int], float]] = {}
+    for each in changes:
+        line = factors.setdefault(each.line, {})
+        line |= {span: line.get(span, 1.0) * theta[each.parameter] for span in each.spans}
+    out = {k: lines[k] for k in factors}
+    for k, text in out.items():
+        for (first, last), factor in sorted(factors[k].items(), reverse=True):
+            number = f"{fortran(lines[k][first:last]) * factor:.{digits}g}"
+            mantissa, e, exponent = number.partition("e")
+            # Some programs take a number without a decimal point for an integer.
+            point = "" if "." in mantissa else "."
+            text = f"{text[:first]}{mantissa}{point}{e}{exponent}{text[last:]}"
+        out[k] = text
+    return out
 
 
 def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Change]:
@@ -110,11 +123,7 @@ def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> str:
     for each in changes:
         if lines.get(each.line, "").splitlines() != [each.text]:
             return f"{each.file}: line {each.line} of {kept} is not as it was imported: {each.text}"
-    factors: dict[int, dict[tuple[int, int], float]] = {}
-    for each in changes:
-        line = factors.setdefault(each.line, {})
-        line |= {span: line.get(span, 1.0) * theta[each.parameter] for span in each.spans}
-    lines |= {k: _multiplied(lines[k], of_line) for k, of_line in factors.items()}
+    lines |= times(lines, changes, theta)
     write_text(folder / changes[0].file, "".join(lines.values()))
     return ""
 

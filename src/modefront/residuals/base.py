@@ -7,7 +7,7 @@ A kind (`ResidualKind`) says which measured modes it can be formed of, makes the
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -104,6 +104,7 @@ class Stack(Protocol):
         """Return the residuals, their derivatives and what is needed of second derivatives."""
 
 
+@runtime_checkable
 class ResidualKind(Protocol):
     """A kind of residual, such as that of natural frequencies."""
 

@@ -14,13 +14,10 @@ from modefront.residuals.frequency import FrequencyKind
 from modefront.residuals.shape import ShapeKind
 from modefront.text import Shown
 
-NEEDED = ("name", "plural", "usable_std", "measured", "has_usable_std", "members", "stack")
-
 KINDS: Family[ResidualKind] = Family(
     "modefront.residuals",
     "a kind of residual, with what modefront.residuals.base.ResidualKind has",
-    lambda kind: not isinstance(kind, type) and all(hasattr(kind, name) for name in NEEDED),
-    lambda kind: kind.name,
+    ResidualKind,
     (
         FrequencyKind(),
         ShapeKind("shape", "shapes", joint=False),

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from modefront.datasets import Array, ArrayDataset, Dataset
-from modefront.errors import Fault, InputError, reason, refuse
+from modefront.errors import Fault, InputError, refuse, refusing
 from modefront.hdf5 import write_netcdf
 from modefront.inputs import file_size
 from modefront.isolated import isolated
@@ -57,12 +57,8 @@ def read_dataset(folder: Path) -> ArrayDataset:
     """
     path = folder / FILE
     file_size(path, "results of a finished run")
-    try:
+    with refusing(path, EXPECTED):  # what is raised for a damaged file is not documented
         data = _read(path)
-    except InputError:
-        raise
-    except Exception as error:  # what is raised for a damaged file is not documented
-        raise InputError(Fault(str(path), "file", EXPECTED, reason(error))) from None
     version = data.attrs.get("format", 1 if "label" in data else None)
     if version is not None and not np.array_equal(version, FORMAT):
         expected = f"results of format {FORMAT}"

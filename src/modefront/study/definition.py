@@ -1,6 +1,7 @@
 """A study: an updating problem and the options of its solution, analysis and predictions."""
 
 import hashlib
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -158,11 +159,8 @@ def label_faults(name: str, groups: Sequence[str]) -> Iterator[Fault]:
     Points of the front, and of its identifiable part, have a number behind a beginning; how many
     there are is not known beforehand.
     """
-    numbered, named = (Kind.FRONT, Kind.IDENTIFIABLE), (Kind.EDGE, Kind.IDENTIFIABLE_EDGE)
-    alone = [label(x) for x in Kind if x not in {*named, *numbered, Kind.GIVEN}]
-    labels = {"iterated-weights", *alone, *(label(x, group) for x in named for group in groups)}
-    beginning, _, end = name.rpartition("-")
-    first = [*(label(Kind.FRONT, method) for method in METHODS), label(Kind.IDENTIFIABLE)]
-    is_point = end.isascii() and end.isdigit() and f"{beginning}-0" in first
-    if name in labels or is_point:
+    labels = {"iterated-weights", *map(label, Kind)}
+    labels |= {label(x, of) for x in (Kind.EDGE, Kind.IDENTIFIABLE_EDGE) for of in groups}
+    points = {*(label(Kind.FRONT, method) for method in METHODS), label(Kind.IDENTIFIABLE)}
+    if name in labels or re.sub("[0-9]+$", "0", name) in points:
         yield Fault("", "name", "another name than the labels of a study's models", f"'{name}'")

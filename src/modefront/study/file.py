@@ -35,7 +35,7 @@ from modefront.residuals.groups import MODE_NUMBERS, Group, faults
 from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.study.definition import Origin, Study, label_faults, undrawn
 from modefront.study.kinds import KINDS
-from modefront.study.measured import COVARIANCE, FILE, PLACE, READERS, read_data
+from modefront.study.measured import DATA, READERS, read_data
 from modefront.text import NAME as LENGTH
 from modefront.text import clean
 
@@ -332,26 +332,14 @@ def add_schema(studies: Sequence[Path]) -> Path:
 
 def _data() -> opt.Schema:
     """Return the schema of ``[data]``: only universal files have sensors, only others columns."""
-    columns = "name of a column in the file = name of a column of modal data, or of a sensor"
-    places = "sensor = node and direction in the file"
-    table = opt.closed(
-        {
-            "file": {
-                **FILE.described,
-                **opt.file_name([".csv", *SUFFIXES, *READERS], any_case=True),
-            },
-            "covariance": COVARIANCE.described,
-            "sensors": {"description": places, **opt.table_of(PLACE)},
-            "columns": {"description": columns, **opt.table_of(opt.NAME)},
-        },
-        ["file"],
-    )
+    known = {each.name: each.schema for each in DATA}
+    known["file"] = {**known["file"], **opt.file_name([".csv", *SUFFIXES, *READERS], any_case=True)}
     universal = {"properties": {"file": opt.file_name(SUFFIXES, any_case=True)}, **opt.OPEN}
     without: dict[str, opt.Schema] = {
         "then": {"properties": {"columns": False}, **opt.OPEN},
         "else": {"properties": {"sensors": False}, **opt.OPEN},
     }
-    return {**table, "if": universal, **without}
+    return {**opt.closed(known, ["file"]), "if": universal, **without}
 
 
 FAMILIES: tuple[Family[Any], ...] = (CLASSES, KINDS, RESIDUALS, METHODS, READERS)

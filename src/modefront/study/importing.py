@@ -15,15 +15,15 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain, cycle
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion, writing
+from modefront.errors import Fault, InputError, ModelError, refuse, refusing, suggestion, writing
 from modefront.fem.structure import DIRECTIONS
-from modefront.inputs import fortran, wrong
+from modefront.inputs import wrong
 from modefront.models.dofs import write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.parameters import exponents_of, form_of
@@ -33,11 +33,13 @@ from modefront.programs.base import Job, JobOptions, Quantity, read_job, write_m
 from modefront.programs.changes import (
     CHANGES,
     KEPT,
+    NUMBER,
     Change,
     changes,
     deck_text,
     other_factor,
     text_of,
+    times,
     write_changes,
 )
 from modefront.programs.differences import Differences, Terms, condensed
@@ -158,8 +160,8 @@ def import_model(
         raise InputError(Fault("", "program", f"one of {', '.join(PROGRAMS)}", found))
 
     nominal_path, options, names = Path(base), options or JobOptions(), tuple(parameters)
-    declared = {x: _terms_of(names, functions or {}, x).values() for x in QUANTITIES}
-    terms = {x: list(dict.fromkeys(chain(*each))) for x, each in declared.items()}
+    declared = _terms_of(names, functions or {})
+    terms = {x: list(dict.fromkeys(chain(*each.values()))) for x, each in declared.items()}
     runs = _runs(parameters, factors or {}, checks)
 
     def read(path: Path, doing: str = "reading") -> Job:
@@ -210,26 +212,28 @@ def import_model(
 
 
 def _terms_of(
-    names: Sequence[str], functions: Functions, quantity: Quantity
-) -> dict[str, Sequence[str]]:
-    """Return the terms of each parameter in a matrix: those declared, or the parameter itself."""
+    names: Sequence[str], functions: Functions
+) -> dict[Quantity, dict[str, Sequence[str]]]:
+    """Return the terms of each parameter in either matrix: those declared, or itself."""
     faults: list[Fault] = []
-    out: dict[str, Sequence[str]] = {name: (name,) for name in names}
+    out: dict[Any, dict[str, Sequence[str]]] = {x: {y: (y,) for y in names} for x in QUANTITIES}
     for name, each in functions.items():
         if name not in names:
             faults.append(Fault("", "--function", "a parameter", suggestion(name, names)))
         of = each if isinstance(each, Mapping) else dict.fromkeys(QUANTITIES, each)
-        for key in (key for key in of if key not in QUANTITIES):
-            found = suggestion(key, QUANTITIES)
-            faults.append(Fault("", f"functions '{name}'", " or ".join(QUANTITIES), found))
-        out[name] = of.get(quantity, (name,))
-        for term in out[name]:
-            exponents, place = exponents_of(term, names), f"--function {name}"
-            if exponents is None or not exponents.any():
-                faults.append(Fault("", place, form_of(term + "^"), repr(term)))
-            elif name in names and not exponents[names.index(name)]:
-                faults.append(Fault("", place, f"terms with '{name}'", repr(term)))
-    refuse(faults)
+        for quantity, terms in of.items():
+            if quantity not in out:
+                found = suggestion(quantity, QUANTITIES)
+                faults.append(Fault("", f"functions '{name}'", " or ".join(QUANTITIES), found))
+                continue
+            out[quantity][name] = terms
+            for term in terms:
+                exponents, place = exponents_of(term, names), f"--function {name}"
+                if exponents is None or not exponents.any():
+                    faults.append(Fault("", place, form_of(term + "^"), repr(term)))
+                elif name in names and not exponents[names.index(name)]:
+                    faults.append(Fault("", place, f"terms with '{name}'", repr(term)))
+    refuse(dict.fromkeys(faults))
     return out
 
 
@@ -285,11 +289,8 @@ def _frequencies(
     if massless := int((sum(A.diagonal() for A in mass.values()) == 0).sum()):
         notes.append(f"{massless} degrees of freedom have no mass, which is allowed")
     count = max(min(modes or SHOWN, size - massless), 1)
-    try:
+    with refusing("", "matrices with modes", ModelError, place="the nominal model"):
         lowest = model.full_modes(np.ones(len(terms.parameters)), count)
-    except ModelError as error:
-        fault = Fault("", "the nominal model", "matrices with modes", str(error))
-        raise InputError(fault) from None
     frequencies = np.sqrt(np.maximum(lowest.lam, 0.0)) / (2 * np.pi)
     if floating := int((lowest.lam == 0).sum()):
         notes.append(f"{floating} rigid-body modes or mechanisms: floating = true is written")
@@ -347,56 +348,24 @@ MODULI: Mapping[str, tuple[Sequence[int], ...]] = {
 """Places of moduli in the lines of ``*ELASTIC``, by its type; lines repeat for temperatures."""
 
 
-KEYWORDS: Mapping[str, str] = {
-    "material": "ELASTIC",
-    "density": "DENSITY",
-    "spring": "SPRING",
-    "mass": "MASS",
-    "section": "SHELL SECTION",
+TARGETS: Mapping[str, tuple[str, str]] = {
+    "material": ("ELASTIC", "MATERIAL"),
+    "density": ("DENSITY", "MATERIAL"),
+    "spring": ("SPRING", "ELSET"),
+    "mass": ("MASS", "ELSET"),
+    "section": ("SHELL SECTION", "ELSET"),
 }
-"""Keywords that hold the numbers, by the kinds of targets."""
+"""What a parameter may multiply: the keyword of its numbers, and the option that names it."""
 
 
 OF_MATERIAL: Mapping[Quantity, str] = {"stiffness": "material", "mass": "density"}
 """Kinds of targets that multiply the matrices of all elements of a material."""
 
 
-@dataclass(frozen=True)
-class Line:
-    """A line of a deck, and where it is.
+STEP = re.compile(r"^\*\s*FREQUENCY\s*(?:,.*)?$(?=(?:\n\*\*.*)*(\n(?!\*).)?)", re.M | re.I)
+"""The line of a keyword *FREQUENCY, and whether a line that is none of a keyword is behind it."""
 
-    ``row`` counts the lines of its keyword from 1, and is 0 for the keyword itself and comments;
-    ``number`` is that in the deck, 0 in what it includes.
-    """
-
-    text: str
-    keyword: str = ""
-    elset: str = ""
-    type: str = ""
-    material: str = ""
-    row: int = 0
-    number: int = 0
-
-
-class Target(NamedTuple):
-    """What a parameter multiplies: a kind of `KEYWORDS`, and the material or set of elements."""
-
-    kind: str
-    name: str
-
-    def of(self, line: Line) -> str:
-        """Return the name that a line has where this one has its own."""
-        return line.material if self.kind in OF_MATERIAL.values() else line.elset
-
-    def columns(self, line: Line) -> Sequence[int]:
-        """Return the places of the numbers in a line that it multiplies."""
-        where = self.of(line), line.keyword
-        if not line.row or where != (self.name.upper(), KEYWORDS[self.kind]):
-            return ()
-        if self.kind == "material":
-            rows = MODULI.get(line.type or "ISO", ())
-            return rows[(line.row - 1) % len(rows)] if rows else ()
-        return (0,) if self.kind != "spring" or line.row > 1 else ()
+Lines = Sequence[tuple[str, int]]  # of a deck and of what it includes: text and number
 
 
 # 6 arguments and many lines: the deck with its parameters, options by keyword, and jobs in turn.
@@ -437,40 +406,35 @@ def import_deck(
     program = shutil.which(run)
     if program is None:
         raise InputError(Fault("", "--run", "a program that is installed", f"'{run}'"))
-    lines = list(lines_of(path))
-    targets = _targets(path, lines, parameters)
-    terms: Functions = {**_of_thickness(lines, targets), **(functions or {})}
-    in_terms = [_terms_of(tuple(targets), terms, quantity) for quantity in QUANTITIES]
-    factors = {name: FACTORS[: max(len(x[name]) for x in in_terms)] for name in targets}
-    jobs = {f"{name}-{factor:g}": {name: factor} for name in targets for factor in factors[name]}
-    check = dict(zip(targets, cycle(CHECK), strict=False))
+    lines, names = list(lines_of(path)), tuple(parameters)
+    multiplied, materials = targets_of(path, lines, parameters)
+    terms: Functions = {**_of_thickness(parameters, materials), **(functions or {})}
+    in_terms = _terms_of(names, terms).values()
+    factors = {name: FACTORS[: max(len(x[name]) for x in in_terms)] for name in names}
+    jobs = {f"{name}-{factor:g}": {name: factor} for name in names for factor in factors[name]}
+    check = dict(zip(names, cycle(CHECK), strict=False))
     with writing(folder):
         folder.mkdir(exist_ok=True)
     for job, values in {"nominal": {}, **jobs, "check": check, "frequencies": {}}.items():
         progress(f"running {run} {folder / job}")
-        of_targets, stored = {targets[x]: y for x, y in values.items()}, job != "frequencies"
-        text = job_text(path, lines, of_targets, stored=stored)
+        stored = job != "frequencies"
+        text = job_text(path, lines, multiplied, values, stored=stored)
         _run(program, folder / job, text, ".sti" if stored else ".dat")
     imported = import_model(
         "calculix",
         folder / "nominal",
-        {name: [folder / f"{name}-{x:g}" for x in factors[name]] for name in targets},
+        {name: [folder / f"{name}-{x:g}" for x in factors[name]] for name in names},
         factors=factors,
         functions=terms,
         checks=[(folder / "check", check)],
         modes=modes,
         progress=progress,
     )
-    # The deck as it is; with what it includes in its place where a change is in that.
-    own, text = {k: line.number for k, line in enumerate(lines, 1)}, text_of(path)
-    if not all(own[change.line] for change in imported.changes):
-        own, text = {k: k for k in own}, "".join(f"{line.text}\n" for line in lines)
-    imported = replace(
-        imported,
-        nominal=replace(imported.nominal, name=str(path)),
-        changes=tuple(replace(x, file=path.name, line=own[x.line]) for x in imported.changes),
-        deck=text,
-    )
+    own, text = [replace(x, line=lines[x.line - 1][1]) for x in multiplied], text_of(path)
+    if not all(change.line for change in own):  # what the deck includes is kept in its place
+        own, text = multiplied, "".join(f"{line}\n" for line, _ in lines)
+    nominal = replace(imported.nominal, name=str(path))
+    imported = replace(imported, nominal=nominal, changes=tuple(own), deck=text)
     computed, printed = imported.frequencies, printed_frequencies(folder / "frequencies.dat")
     if computed is None or not printed.size:
         return imported
@@ -485,98 +449,115 @@ def import_deck(
 
 
 def _of_thickness(
-    lines: Sequence[Line], targets: Mapping[str, Target]
+    parameters: Mapping[str, str], materials: Mapping[str, str]
 ) -> dict[str, dict[Quantity, list[str]]]:
     """Return the terms of thicknesses in either matrix, with the parameter of their material."""
-    names = {(each.kind, each.name.upper()): name for name, each in targets.items()}
-    out: dict[str, dict[Quantity, list[str]]] = {}
-    for name in (name for name, target in targets.items() if target.kind == "section"):
-        material = next(line.material for line in lines if targets[name].columns(line))
-        out[name] = {
-            quantity: [
-                f"{names.get((kind, material), '1')}{term.format(name)}".removeprefix("1*")
-                for term in THICKNESS
-            ]
-            for quantity, kind in OF_MATERIAL.items()
-        }
+    names = {text.upper(): name for name, text in parameters.items()}
+    out: dict[str, dict[Quantity, list[str]]] = {name: {} for name in materials}
+    for name, material in materials.items():
+        for quantity, kind in OF_MATERIAL.items():
+            factor = names.get(f"{kind}:{material}".upper(), "1")
+            terms = [f"{factor}{term.format(name)}" for term in THICKNESS]
+            out[name][quantity] = [term.removeprefix("1*") for term in terms]
     return out
 
 
-def _targets(path: Path, lines: Sequence[Line], parameters: Mapping[str, str]) -> dict[str, Target]:
-    """Return what parameters multiply; raises InputError for what is not in the deck."""
-    out, faults = {}, []
+def targets_of(
+    path: Path, lines: Lines, parameters: Mapping[str, str]
+) -> tuple[list[Change], dict[str, str]]:
+    """Return the lines, from 1, of which parameters multiply numbers, and materials by thicknesses.
+
+    Raises InputError for what is not in the deck.
+    """
+    known: dict[str, dict[str, list[Change]]] = {kind: {} for kind in TARGETS}
+    options, of_shells, keyword, row = {"MATERIAL": ""}, dict[str, str](), "", 0
+    for k, (text, _) in enumerate(lines, start=1):
+        if text.startswith("*"):
+            if not text.startswith("**"):
+                material, (keyword, options) = options["MATERIAL"], keyword_of(text.upper())
+                named = options.get("NAME", "") if keyword == "MATERIAL" else material
+                options.setdefault("MATERIAL", named)
+                row = 0
+            continue
+        row += 1
+        for kind, (of, option) in TARGETS.items():
+            if of == keyword and (spans := _spans(kind, options.get("TYPE", "ISO"), row, text)):
+                changes = known[kind].setdefault(options.get(option, ""), [])
+                changes.append(Change("", path.name, k, text, spans))
+        if keyword == "SHELL SECTION":
+            of_shells[options.get("ELSET", "")] = options["MATERIAL"]
+    out, materials, faults = list[Change](), dict[str, str](), list[Fault]()
     for parameter, text in parameters.items():
         kind, _, name = text.partition(":")
-        target, place = Target(kind, name), f"--parameter {parameter}"
-        if kind not in KEYWORDS or not name:
-            expected = f"NAME=WHAT:NAME, WHAT one of {', '.join(KEYWORDS)}"
-            faults.append(Fault(str(path), place, expected, repr(text)))
-        elif not any(target.columns(line) for line in lines):
-            names = {target.of(x) for x in lines if x.keyword == KEYWORDS[kind] and x.row} - {""}
-            expected = f"a name with *{KEYWORDS[kind]}"
-            faults.append(Fault(str(path), place, expected, suggestion(name, sorted(names))))
-        out[parameter] = target
-    refuse(faults)
-    return out
-
-
-def lines_of(path: Path, depth: int = 0) -> Iterator[Line]:
-    """Yield the lines of a deck and of what it includes; raises InputError where there is none."""
-    try:
-        texts = text_of(path).splitlines()
-    except OSError as error:
-        raise wrong(path, "a deck of CalculiX", reason(error)) from None
-    line = Line("")
-    for k, text in enumerate(texts, start=1):
-        number = 0 if depth else k
-        if text.startswith("**"):
-            yield Line(text, number=number)
-        elif text.startswith("*"):
-            keyword, options = keyword_of(text)
-            material = options.get("MATERIAL", line.material).upper()
-            material = options.get("NAME", "").upper() if keyword == "MATERIAL" else material
-            elset, kind = (options.get(x, "").upper() for x in ("ELSET", "TYPE"))
-            line = Line(text, keyword, elset, kind, material, number=number)
-            if keyword == "INCLUDE" and depth < DEEPEST:
-                yield from lines_of(path.parent / options.get("INPUT", ""), depth + 1)
-            else:
-                yield line
+        if kind not in TARGETS or not name:
+            expected, found = f"NAME=WHAT:NAME, WHAT one of {', '.join(TARGETS)}", repr(text)
+        elif name.upper() in known[kind]:
+            out += [replace(x, parameter=parameter) for x in known[kind][name.upper()]]
+            materials |= {parameter: of_shells[name.upper()]} if kind == "section" else {}
+            continue
         else:
-            line = replace(line, text=text, row=line.row + 1, number=number)
-            yield line
+            expected = f"a name with *{TARGETS[kind][0]}"
+            found = suggestion(name, sorted({*known[kind]} - {""}))
+        faults.append(Fault(str(path), f"--parameter {parameter}", expected, found))
+    refuse(faults)
+    return out, materials
+
+
+def _spans(kind: str, elastic: str, row: int, text: str) -> tuple[tuple[int, int], ...]:
+    """Return the ends of the numbers that a parameter multiplies in a line behind its keyword."""
+    columns: Sequence[int] = (0,) if kind != "spring" or row > 1 else ()
+    if kind == "material":
+        rows = MODULI.get(elastic, ((),))
+        columns = rows[(row - 1) % len(rows)]
+    parts = re.finditer(r"([^,]*)(?:,|$)", text)
+    found = [NUMBER.search(text, *part.span(1)) for part in parts]
+    return tuple(x.span() for k in columns if k < len(found) and (x := found[k]))
+
+
+def lines_of(path: Path, depth: int = 0) -> Iterator[tuple[str, int]]:
+    """Yield the lines of a deck and of what it includes, with their numbers, 0 in what it includes.
+
+    Raises InputError where there is none.
+    """
+    with refusing(path, "a deck of CalculiX", OSError):
+        texts = text_of(path).splitlines()
+    for k, text in enumerate(texts, start=1):
+        keyword, options = keyword_of(text)
+        if text.startswith("*") and keyword == "INCLUDE" and depth < DEEPEST:
+            yield from lines_of(path.parent / options.get("INPUT", ""), depth + 1)
+        else:
+            yield text, 0 if depth else k
 
 
 def job_text(
-    path: Path, lines: Sequence[Line], factors: Mapping[Target, float], *, stored: bool
+    path: Path,
+    lines: Lines,
+    multiplied: Sequence[Change],
+    factors: Mapping[str, float],
+    *,
+    stored: bool,
 ) -> str:
     """Return a deck with numbers times factors, which stores matrices or prints frequencies."""
-    out, found = [], False
-    counted = any(line.keyword == "FREQUENCY" and line.row for line in lines)
-    for line in lines:
-        items = line.text.split(",")
-        if line.keyword == "FREQUENCY" and not line.row:
-            ending = ", SOLVER=MATRIXSTORAGE" if stored else "\n10" * (not counted)
-            items, found = [f"*FREQUENCY{ending}"], True
-        for target, factor in factors.items():
-            for k in (k for k in target.columns(line) if k < len(items) and items[k].strip()):
-                number = f" {fortran(items[k].strip()) * factor:.12g}"
-                items[k] = re.sub(r"^( -?\d+)(e|$)", r"\1.\2", number)  # ccx wants a point
-        out.append(",".join(items))
-    if not found:
+    texts = {k: text for k, (text, _) in enumerate(lines, start=1)}
+    texts |= times(texts, [x for x in multiplied if x.parameter in factors], factors, digits=12)
+    ending = ", SOLVER=MATRIXSTORAGE" if stored else ""
+    text, steps = STEP.subn(
+        lambda step: f"*FREQUENCY{ending}" + "\n10" * (not stored and not step[1]),
+        "\n".join(texts.values()) + "\n",
+    )
+    if not steps:
         raise wrong(path, "a step with *FREQUENCY", "none", "deck")
-    return "\n".join(out) + "\n"
+    return text
 
 
 def _run(program: str, job: Path, text: str, result: str) -> None:
     made = job.with_name(job.name + result)
     made.unlink(missing_ok=True)
     write_text(job.with_name(f"{job.name}.inp"), text)
-    try:
+    with refusing(program, "a program that runs", OSError, place="--run"):
         done = subprocess.run(
             [program, job.name], cwd=job.parent, capture_output=True, text=True, errors="replace"
         )
-    except OSError as error:
-        raise InputError(Fault(program, "--run", "a program that runs", reason(error))) from None
     errors = done.stdout.split("*ERROR", 2)[1:]
     if errors or not made.is_file() or not made.stat().st_size:
         found = one_line(errors[0] if errors else done.stdout[-400:], 400) or "nothing"

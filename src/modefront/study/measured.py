@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from modefront._typing import Floats
 from modefront.data.csv import COLUMNS, read_covariance, read_csv
 from modefront.data.modal import ModalData
 from modefront.data.uff import NodalModes, is_universal, read_uff55
-from modefront.errors import InputError, reason, suggestion
+from modefront.errors import refusing, suggestion
 from modefront.families import Family
 from modefront.fem.check import unit_vector
 from modefront.fem.structure import DIRECTION
@@ -20,13 +21,15 @@ from modefront.inputs import file_size, wrong
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry, axis_name
 from modefront.models.matrices import MatrixModel
-from modefront.options import NAME, Table, any_of, keys, of_options, text, whole
+from modefront.options import NAME, Table, any_of, entries, keys, of_options, table_of, text, whole
 from modefront.text import Shown
 
 FILE = text("the name of a file of modal data")
 COVARIANCE = text("the name of a file of covariances of shapes, in CSV")
 OF_PLACE = keys(["node", "direction"], node=whole(0, 10**9), direction=DIRECTION)
 PLACE = any_of(NAME, of_options(OF_PLACE))
+SENSORS = entries("a table, sensor = node and direction in the file", table_of(PLACE))
+DATA = keys(["file"], file=FILE, covariance=COVARIANCE, sensors=SENSORS, columns=COLUMNS)
 
 
 @dataclass(frozen=True, repr=False)
@@ -45,10 +48,7 @@ class DataReader(Shown):
 
 
 READERS: Family[DataReader] = Family(
-    "modefront.readers",
-    "a DataReader",
-    lambda reader: isinstance(reader, DataReader),
-    lambda reader: reader.ending,
+    "modefront.readers", "a DataReader", DataReader, name=attrgetter("ending")
 )
 """Readers of the user by their endings."""
 
@@ -78,12 +78,8 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
         elif path.suffix in READERS:
             file = table.path(name)
             file_size(file, "a file of modal data")
-            try:
+            with refusing(file, "a file of modal data"):  # a user's function may raise anything
                 data = READERS[path.suffix].read(file, sensors)
-            except InputError:
-                raise
-            except Exception as error:  # a user's function may raise anything
-                raise wrong(file, "a file of modal data", reason(error)) from error
             if sensors is not None and tuple(data.sensors) != sensors:
                 expected = f"the sensors {', '.join(sensors)}, in this order"
                 raise wrong(file, expected, ", ".join(data.sensors))

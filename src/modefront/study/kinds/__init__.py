@@ -7,10 +7,6 @@ from modefront.study.kinds.mesh import MESH
 from modefront.study.kinds.sensors import ModelKind
 
 KINDS: Family[ModelKind] = Family(
-    "modefront.models",
-    "a ModelKind",
-    lambda kind: isinstance(kind, ModelKind),
-    lambda kind: kind.name,
-    (CHAIN, MATRICES, MESH),
+    "modefront.models", "a ModelKind", ModelKind, (CHAIN, MATRICES, MESH)
 )
 """All kinds by their names."""

@@ -113,13 +113,9 @@ def _terms(
         if exponents_of(name, parameters) is None:
             table.fault(name, form_of(name), suggestion(name, [BASE, *parameters]))
             continue
-        known: dict[str, Any] | None = {}
-        if isinstance(value, dict):
-            inner = table.table(name)
-            known = inner.read(OF_SEVERAL) if inner else None
-        elif file := table.value(name, FILE):
-            known = {"file": file}
-        if known:
+        inner = table.table(name) if isinstance(value, dict) else None
+        known = inner.read(OF_SEVERAL) if inner else {"file": table.value(name, FILE)}
+        if known and known["file"]:
             with table.noting(name):  # of files in which there may be several
                 out[name] = read_matrix(table.path(known["file"]), known.get("name"))
     return out

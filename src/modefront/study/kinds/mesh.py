@@ -26,7 +26,7 @@ SHAPES: Mapping[str, Callable[..., fem.Section]] = {
 
 
 def _section(group: opt.Table, key: str) -> fem.Section | None:
-    table = group.table(key)
+    table = group.table(key, SECTION.expected)
     shape = table and table.value("shape", opt.one_of(*SHAPES))
     return table.record(SHAPES[shape]) if table and shape else None
 
@@ -145,7 +145,8 @@ def read_mesh_model(table: opt.Table, parameters: Sequence[str]) -> Model | None
         """Return nodes: one, or those of a list of nodes and of groups or node sets of the mesh."""
         out: dict[int, None] = {}
         before = len(table.faults)
-        for place in listed(member.values[key]):
+        given = member.value(key, NODES)
+        for place in [] if given is None else listed(given):
             if isinstance(place, str):
                 used.add(place)
                 with member.noting(key):
