@@ -16,13 +16,13 @@ from modefront.analysis import front as analysis
 from modefront.analysis.front import Identifiable
 from modefront.cli.show import as_json, print_results
 from modefront.front import pareto
+from modefront.front.dominance import distinct_points
 from modefront.front.front import Front
 from modefront.front.gaps import Gap
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind
 from modefront.front.search import Search
-from modefront.front.state import distinct_points
 from modefront.identifiability.combinations import Identifiability
 from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution, Status, begin

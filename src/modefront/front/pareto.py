@@ -9,6 +9,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import UnfinishedError
+from modefront.front.dominance import distinct_points
 from modefront.front.front import Edge, Front
 from modefront.front.gaps import Gap, gaps
 from modefront.front.methods import METHODS, evolve_front
@@ -17,9 +18,8 @@ from modefront.front.point import Kind, Point, label
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Starts
-from modefront.front.search import EDGES, POINTS, Loop, Proposer, Search, at, evaluated
+from modefront.front.search import EDGES, POINTS, Place, Proposer, Search, State, at, evaluated
 from modefront.front.simplex import Payoff, default_points, is_flat, lattice, nearest, payoff
-from modefront.front.state import Place, State, distinct_points
 from modefront.front.subproblems import LOOSE, LatticePoint, Least, Weights, near_best, sample
 from modefront.front.weights import accepted, iterate_weights, least_along
 from modefront.optim.lexicographic import EXACT, TIE
@@ -70,14 +70,13 @@ class _Run:
         self.n, self.sizes = len(self.problem.objectives), np.zeros(0)
         named = [(Kind.GIVEN, name, w) for name, w in self.given]
         self.weighted = [*named, (Kind.EQUAL, "", np.ones(self.n))]
-        self.state, self.cut = State(self.problem, self.search.tolerance, self.work), False
+        self.state, self.cut = State(self.problem, self.search, self.work), False
         rng = np.random.default_rng(seed_sequence(self.seed, "search"))
         self.children = np.random.default_rng(seed_sequence(self.seed, "evolution"))
         names, edges = self.problem.objectives, self.known.edges if self.known else ()
         pairs = zip(names, edges, strict=False)
         again: dict[Key, Sequence[Solution]] = {("edge", x): edge.minima for x, edge in pairs}
         self.starts = Starts(rng, again if self.known else None)
-        self.loop = Loop(self.state, self.search)
 
     def front(self) -> Front:
         """Return all that is found."""
@@ -140,14 +139,14 @@ class _Run:
         """
         evolution = () if self.known else (Evolution(self.children, self.starts.unseen, not more),)
         polish = Polish()
-        self.loop.run(stage, (polish, *more, *evolution), share)
-        self.loop.run(stage, (polish,), (1 + share) / 2)
+        self.state.search(stage, (polish, *more, *evolution), share)
+        self.state.search(stage, (polish,), (1 + share) / 2)
 
     def _open(self) -> tuple[str, ...]:
         """Return what the search had not finished at its budget, as labels; once for all points."""
         names: dict[Key, str] = {("edge", x): label(Kind.EDGE, x) for x in self.problem.objectives}
         names |= {("weights", k.value, x): label(k, x) for k, x, _ in self.weighted}
-        left = self.loop.open | {x.subproblem.key for x in self.state.places if not x.closed}
+        left = self.state.open | {x.subproblem.key for x in self.state.places if not x.closed}
         more = ("points between the edges",) * bool(left - names.keys())
         more += ("what follows from the points",) * self.cut
         return (*(text for key, text in names.items() if key in left), *more)
@@ -164,7 +163,7 @@ class _Run:
         outcomes = self.state.run(tasks, most)
         for outcome in outcomes:
             self.cut |= outcome.spent
-            self.state.tell(-1, None, outcome)
+            self.state.tell(None, None, outcome)
         return [outcome.result for outcome in outcomes]
 
     def _sizes(self) -> Floats:
@@ -294,7 +293,7 @@ class _Run:
             if self.known:
                 out.append(replace(self.known.edges[k], best=place.incumbent, minima=minima))
                 continue
-            rare = known.hits(place, self.state.tolerance) < SURE
+            rare = known.hits(place, self.search.tolerance) < SURE
             doubtful = rare and known.unseen() >= self.search.doubt
             out.append(Edge(place.incumbent, minima, known.tries, len(known.ends), doubtful))
         return out
