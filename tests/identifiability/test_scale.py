@@ -23,7 +23,7 @@ from modefront.identifiability.combinations import (
     unchanged_groups,
     without_effect,
 )
-from modefront.identifiability.scale import scale_at, whole_scalings
+from modefront.identifiability.scale import Scale, scale_at
 from modefront.linalg.affine import SparseAffine
 from modefront.models.matrices import MatrixModel
 from modefront.study.check import determined, refuse_unchanged_groups
@@ -330,7 +330,7 @@ def test_a_base_that_stays_leaves_no_scaling_of_the_stiffness() -> None:
     fixed = mf.matrices(
         ["k1"], {"base": spring(2, 0), "k1": spring(2, 1)}, {"base": np.eye(2)}, {"f": 0}
     )
-    assert whole_scalings(fixed, np.ones(1), np.ones(1)) == []
+    assert Scale(np.ones(1), np.ones(1), np.ones(1, dtype=bool), fixed).scalings == []
     both = mf.chain(
         ("k", "m"),
         [1.0, 2.0],
@@ -338,7 +338,8 @@ def test_a_base_that_stays_leaves_no_scaling_of_the_stiffness() -> None:
         stiffness_parameters=["k"] * 2,
         mass_parameters=["m"] * 2,
     )
-    result = whole_scalings(both, np.array([2.0, 3.0]), np.ones(2))
+    theta = np.array([2.0, 3.0])
+    result = Scale(theta, np.ones(2), np.ones(2, dtype=bool), both).scalings
     assert [combination.of for combination in result] == [
         "stiffness matrix",
         "mass matrix",

@@ -7,9 +7,16 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.findings.record import Finding, found
-from modefront.identifiability.combinations import NONE, WEAK, Combination, Determination, pairs
+from modefront.identifiability.combinations import (
+    NONE,
+    SAME,
+    WEAK,
+    Combination,
+    Determination,
+    pairs,
+    sparse_basis,
+)
 from modefront.identifiability.scale import Scale
-from modefront.identifiability.sparse import SAME, sparse_basis
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.inference import Freed, excluding
 

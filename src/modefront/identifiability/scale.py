@@ -35,10 +35,8 @@ SINGULAR = 1e-13
 """Eigenvalue of K with a unit diagonal, over the greatest and their number, that is rounding."""
 
 WHOLE = 1e-6
-"""Remainder of a matrix, over all of it, below which a combination of parameters scales it."""
-
-RANK = 1e-6
-"""Singular value of the derivatives of K and M, over the greatest, below which they depend."""
+"""Remainder of a matrix, over all of it, below which a combination of parameters scales it, and
+singular value of the derivatives of K and M, over the greatest, below which they depend."""
 
 RIGID = 1e-3  # frequency over the greatest one below which a measured mode is one of a rigid body
 SETTLED = 1e-3  # relative change of an eigenvalue at which power iteration ends
@@ -66,8 +64,28 @@ class Scale:
 
     @cached_property
     def scalings(self) -> list[Scaling]:
-        """Changes that scale matrices as a whole, looked for when they are first asked for."""
-        return whole_scalings(self.model, self.theta, self.unit) if self.model else []
+        """Changes of the parameters that scale K, M, or both as a whole, if there are any.
+
+        Of several that do, it is the one nearest to theta, in units. They are looked for when they
+        are first asked for.
+        """
+        theta, unit, model = self.theta, self.unit, self.model
+        if model is None:
+            return []
+        (RK, K), (RM, M) = (_rows(matrix, theta) for matrix in (model.stiffness, model.mass))
+        both = np.vstack([RK, RM])
+        scaled = {
+            "stiffness matrix": (K, 0 * M),
+            "mass matrix": (0 * K, M),
+            "stiffness matrix and the mass matrix": (K, M),
+        }
+        out = []
+        for of, parts in scaled.items():
+            b = np.concatenate(parts)
+            y = theta + unit * np.linalg.lstsq(both * unit, b - both @ theta, rcond=WHOLE)[0]
+            if np.linalg.norm(both @ y - b) <= WHOLE * np.linalg.norm(b):
+                out.append(Scaling(of, y))
+        return out
 
 
 def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
@@ -182,27 +200,6 @@ def _diagonals(matrix: DenseAffine | SparseAffine) -> Floats:
     if isinstance(matrix, DenseAffine):
         return np.asarray(np.einsum("tii->it", matrix.terms))
     return np.asarray(matrix.diagonals.toarray())
-
-
-def whole_scalings(model: MatrixModel, theta: Floats, unit: Floats) -> list[Scaling]:
-    """Return the changes of the parameters that scale K, M, or both as a whole, if there are any.
-
-    Of several that do, it is the one nearest to theta, in units (parameters,).
-    """
-    (RK, K), (RM, M) = (_rows(matrix, theta) for matrix in (model.stiffness, model.mass))
-    both = np.vstack([RK, RM])
-    scaled = {
-        "stiffness matrix": (K, 0 * M),
-        "mass matrix": (0 * K, M),
-        "stiffness matrix and the mass matrix": (K, M),
-    }
-    out = []
-    for of, parts in scaled.items():
-        b = np.concatenate(parts)
-        y = theta + unit * np.linalg.lstsq(both * unit, b - both @ theta, rcond=RANK)[0]
-        if np.linalg.norm(both @ y - b) <= WHOLE * np.linalg.norm(b):
-            out.append(Scaling(of, y))
-    return out
 
 
 def _rows(matrix: DenseAffine | SparseAffine, theta: Floats) -> tuple[Floats, Floats]:

@@ -28,8 +28,11 @@ from modefront.front.options import Pareto, ParetoOptions, Weighted
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, Point
 from modefront.front.search import Search
-from modefront.identifiability.combinations import Identifiability, unchanged_groups
-from modefront.identifiability.sensitivity import superfluous
+from modefront.identifiability.combinations import (
+    Identifiability,
+    superfluous,
+    unchanged_groups,
+)
 from modefront.inputs import wrong
 from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text
