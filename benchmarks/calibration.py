@@ -288,7 +288,7 @@ def jeffreys(problem: mf.UpdatingProblem, starts: Sequence[Floats]) -> tuple[Flo
         solve(problem, programme, begin(problem.evaluate(theta, second=True)), TIGHT)
         for theta in starts
     ]
-    for minimum in accepted(problem, [x for x in minima if x.converged], a, sizes):
+    for minimum in accepted(problem, [x for x in minima if x.converged], programme):
         point = with_second_order(problem, minimum.evaluation)
         found = None if point is None else laplace(problem, point, a)
         if found is not None:

@@ -100,8 +100,9 @@ class _Run:
             extent = (options.population, options.evaluations)
             evolved = evolve_front(self.problem, options.method, *extent, rng, self._needed)
         bests = self._reported("last")
-        optimal = self._optimal(bests, evolved or self._points(target, bests)[0])
-        arguments = (self.problem, self.a, sizes, self._weighted()[-1].solution)
+        programme = LogSum(self.a, vanishing=EXACT * sizes)
+        optimal = self._optimal(programme, bests, evolved or self._points(target, bests)[0])
+        arguments = (self.problem, programme, self._weighted()[-1].solution)
         (iterated,) = self._run([Task(("iterated-weights",), iterate_weights, arguments)])
         # At the budget, no search has started from some incumbents.
         rest = [x for x in self.state.places if not x.incumbent.evaluation.derivatives]
@@ -341,14 +342,14 @@ class _Run:
         bounded = self.options.programme == "bounds"
         return gaps(self.problem, points, target, bounded, self._run)
 
-    def _optimal(self, bests: Sequence[Solution], points: Sequence[Solution]) -> list[Solution]:
+    def _optimal(
+        self, programme: LogSum, bests: Sequence[Solution], points: Sequence[Solution]
+    ) -> list[Solution]:
         """Return the regular minima of the optimally weighted residuals, each once, best first."""
-        problem, a, sizes = self.problem, self.a, self.sizes
-        starts = [x.solution for x in self._weighted()] + [*bests, *least_along(points, a, sizes)]
-        programme = LogSum(a, vanishing=EXACT * sizes)
+        starts = [x.solution for x in self._weighted()] + [*bests, *least_along(points, programme)]
         tasks = [
-            Task(("optimal-weights", k), solve, (problem, programme, x, TIGHT))
+            Task(("optimal-weights", k), solve, (self.problem, programme, x, TIGHT))
             for k, x in enumerate(starts, 1)
         ]
         minima = self.state.distinct(x for x in self._run(tasks) if x and x.converged)
-        return accepted(problem, minima, a, sizes)
+        return accepted(self.problem, minima, programme)
