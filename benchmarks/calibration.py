@@ -44,8 +44,8 @@ from modefront.front.weights import accepted
 from modefront.identification.methods import ambient
 from modefront.identification.sets import combine
 from modefront.optim.lexicographic import EXACT
+from modefront.optim.problem import with_second_order
 from modefront.optim.scalarisation import LogSum
-from modefront.optim.second import with_second_order
 from modefront.optim.sqp import TIGHT, begin, solve
 from modefront.results.assemble import DETERMINED
 from modefront.uncertainty.inference import CHANCE, lack_of_fit, most_probable, refused

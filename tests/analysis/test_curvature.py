@@ -8,7 +8,7 @@ from problems import Derivatives, Known, box, concave, disconnected
 import modefront as mf
 from modefront._typing import Floats
 from modefront.analysis.front import _local
-from modefront.optim.second import with_second_order
+from modefront.optim.problem import with_second_order
 from modefront.work.task import Costs
 
 K = ("k1", "k2", "k3")

@@ -80,7 +80,7 @@ def test_an_end_that_is_not_known_is_said_and_is_no_number(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def unknown(_: object, points: list[Solution], *__: object, **___: object) -> list[Gap]:
-        return [Gap(points[2], points[3], None, points[3])]
+        return [Gap((points[2].J[0] + points[3].J[0]) / 2, None, points[3])]
 
     monkeypatch.setattr(pareto, "gaps", unknown)
     data = solved()

@@ -24,9 +24,8 @@ from modefront.front.subproblems import LatticePoint, near_best
 from modefront.identifiability.combinations import Identifiability, without_effect
 from modefront.identifiability.scale import scale_at
 from modefront.optim.lexicographic import EXACT, TIE
-from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.problem import Evaluation, Problem, with_second_order
 from modefront.optim.scalarisation import Scalarisation, weighted
-from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.noise import Noise, Source, Uncertainty, noise

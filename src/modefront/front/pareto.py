@@ -114,8 +114,12 @@ class _Run:
         points, places, beta = self._points(target, bests)
         edges, weighted = self._edges(), self._weighted()
         weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
-        method, ends = self.options.method, zip(self.problem.objectives, bests, strict=True)
+        ends = zip(self.problem.objectives, bests, strict=True)
+        method, between = options.method, list[Gap]()
         along = [Point(Kind.FRONT, x, method, i + 1) for i, x in enumerate(evolved or points)]
+        if self.n == 2 and target is not None and len(points) > 1 and method == "nbi":
+            bounded = options.programme == "bounds"
+            between = gaps(self.problem, points, target, bounded, self._run)
         return Front(
             method,
             [*along, *(Point(Kind.EDGE, x, name) for name, x in ends), *weighted],
@@ -124,7 +128,7 @@ class _Run:
             iterated,
             tuple(edge.best.J[i] <= EXACT * sizes[i] for i, edge in enumerate(edges)),
             target,
-            self._gaps(points, target),
+            between,
             beta,
             places,
             self.state.archive.J,
@@ -334,13 +338,6 @@ class _Run:
             arguments = (self.problem, bests[i], i, tolerance, self.sizes, starts)
             tasks.append(Task(("near", name), near_best, arguments, turn=("near", turn)))
         return [x or best for x, best in zip(self._run(tasks), bests, strict=True)]
-
-    def _gaps(self, points: Sequence[Solution], target: Payoff | None) -> Sequence[Gap]:
-        """Return the gaps of a front of two objectives."""
-        if self.n != 2 or target is None or len(points) < 2 or self.options.method != "nbi":
-            return []
-        bounded = self.options.programme == "bounds"
-        return gaps(self.problem, points, target, bounded, self._run)
 
     def _optimal(
         self, programme: LogSum, bests: Sequence[Solution], points: Sequence[Solution]
