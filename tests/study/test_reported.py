@@ -111,7 +111,7 @@ def test_an_end_that_is_not_known_is_said_and_is_no_number(
 
 
 def test_a_flat_part_that_is_not_cut_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    part = Identifiable(np.array([0, 0]), np.array([0, 3]), [], None, [])
+    part = Identifiable(np.array([0, 0]), np.array([0, 3]))
 
     def uncut(_: object, front: Front, *__: object) -> object:
         return replace(part, ends=[edge.best for edge in front.edges])

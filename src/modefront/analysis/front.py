@@ -164,7 +164,14 @@ def analyse_front(
     solved = [SolvedPoint(reference.label, reference.solution, Role("optimal"))]
     if sizes is not None:
         solved = _solved_points(problem, front, part, pareto, identifiability.flat)
-    known = _locals(problem, solved, sizes, source, work)
+    own = {x.label: x for x in solved if x.role.kind != "end"}
+    tasks = [
+        Task(("second-derivatives", text), _local, (problem, x, sizes, source))
+        for text, x in own.items()
+    ]
+    found = zip(own, work.run(tasks), strict=True)
+    # what the scatter of points follows from, where it is defined
+    known = {text: local for text, local in found if local is not None}
     posterior = None
     if reference.kind is Kind.OPTIMAL and reference.label in known:
         posterior = laplace(problem, known[reference.label].evaluation, a)
@@ -174,8 +181,7 @@ def analyse_front(
         scatter = front_scatter(problem, front, solved, known, a, sizes)
         seeds = [(b, seed_sequence(seed, "bootstrap", b)) for b in range(1, samples + 1)]
         again = (problem, solved, sizes, source)
-        tasks = [Task(("bootstrap", b), solve_again, again, each) for b, each in seeds]
-        replicates = work.run(tasks)
+        replicates = work.run([Task(("bootstrap", b), solve_again, again, x) for b, x in seeds])
     flat, slopes = identifiability.flat, {name: local.slopes for name, local in known.items()}
     return FrontAnalysis(part, flat, manifolds, source, scatter, slopes, posterior, replicates)
 
@@ -263,31 +269,13 @@ def _solved_points(
     return out
 
 
-def _locals(
-    problem: UpdatingProblem,
-    points: Sequence[SolvedPoint],
-    sizes: Floats | None,
-    source: Source | None,
-    work: Executor,
-) -> dict[str, Local]:
-    """Return what the scatter of points follows from, by label, where it is defined."""
-    tasks = []
-    for point in points:
-        w = None
-        if sizes is not None and point.role.kind == "edge":
-            w = edge_weights(point.role.objective, sizes)
-        if point.role.kind != "end":
-            arguments = (problem, point.solution.evaluation, w, source)
-            tasks.append(Task(("second-derivatives", point.label), _local, arguments))
-    found = zip(tasks, work.run(tasks), strict=True)
-    return {str(task.key[1]): local for task, local in found if local is not None}
-
-
 def _local(
-    problem: UpdatingProblem, evaluation: Evaluation, w: Floats | None, source: Source | None
+    problem: UpdatingProblem, of: SolvedPoint, sizes: Floats | None, source: Source | None
 ) -> Local | None:
-    """Return what the scatter follows from at a point, or at the minimum of w^T J, if any."""
-    if w is not None:
+    """Return what the scatter of a point follows from, of an edge that is kept regular, if any."""
+    evaluation = of.solution.evaluation
+    if sizes is not None and of.role.kind == "edge":
+        w = edge_weights(of.role.objective, sizes)
         evaluation = solve(problem, weighted(w), begin(evaluation)).evaluation
     point = with_second_order(problem, evaluation)
     if point is None:

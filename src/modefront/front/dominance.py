@@ -6,19 +6,19 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Bools, Floats
+from modefront.optim.lexicographic import TIE
 from modefront.optim.sqp import Solution
 
 TRADE = 1e-9
 """Loss in one objective, over the gain in another one, that counts as none: no proper trade-off."""
 
-SAME = 1e-6  # gain in an objective, over its range, that counts as none: solvers leave as much
-COPY = 10 * SAME
+COPY = 10 * TIE
 """Distance of two points, over the ranges of the objectives, below which they are copies."""
 
 BLOCK = 1_000_000  # differences of objectives that are held at once
 
 
-def nondominated(J: Floats, tolerance: float = SAME, scale: Floats | None = None) -> Bools:
+def nondominated(J: Floats, tolerance: float = TIE, scale: Floats | None = None) -> Bools:
     """Return which rows of J (points, n) no other row dominates, equation (4).
 
     A row dominates another one if it is nowhere greater and somewhere less. So that two results of
@@ -40,7 +40,7 @@ def nondominated(J: Floats, tolerance: float = SAME, scale: Floats | None = None
     return undominated(J, J, scale, tolerance)
 
 
-def undominated(J: Floats, known: Floats, scale: Floats, tolerance: float = SAME) -> Bools:
+def undominated(J: Floats, known: Floats, scale: Floats, tolerance: float = TIE) -> Bools:
     """Return which rows of J (points, n) no row of ``known`` (models, n) dominates.
 
     Gains and losses count as in `nondominated`; ``scale`` (n,) are the ranges of the objectives.

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from modefront.optim.problem import AT_BOUND, Evaluation, Problem
+from modefront.optim.problem import Evaluation, Problem, at_bounds
 from modefront.optim.scalarisation import LogSum, weighted
 from modefront.optim.sqp import Options, Solution, Status, solve
 
@@ -32,9 +32,8 @@ def is_minimum(problem: Problem, evaluation: Evaluation, programme: LogSum) -> b
     """
     if not evaluation.exact:
         return True
-    span = problem.upper - problem.lower
-    u = (evaluation.theta - problem.lower) / span
-    within = np.diag(span)[:, (u > AT_BOUND) & (u < 1 - AT_BOUND)]
+    inside = at_bounds(evaluation.theta, problem.lower, problem.upper) == 0
+    within = np.diag(problem.upper - problem.lower)[:, inside]
     J, dJ = evaluation.J, evaluation.dJ
     w = programme.gradient(J)
     lam, V = np.linalg.eigh(within.T @ np.tensordot(w, evaluation.gauss_newton, axes=1) @ within)
