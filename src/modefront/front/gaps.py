@@ -116,11 +116,10 @@ def branches_of(
     """Return the optimal points of each branch of a front, with its ends at gaps."""
     J = np.array([solution.J for solution in points])
     number = branch_numbers(J, optimal, gaps)
+    ends = [None, *(end for gap in gaps for end in (gap.end, gap.start)), None]
     out = []
-    for k in range(len(gaps) + 1):
-        start = gaps[k - 1].start if k else None
-        end = gaps[k].end if k < len(gaps) else None
-        within = (points[i] for i in np.flatnonzero(number == k + 1).tolist())
+    for k, (start, end) in enumerate(zip(ends[::2], ends[1::2], strict=True), 1):
+        within = (points[i] for i in np.flatnonzero(number == k).tolist())
         out.append([solution for solution in (start, *within, end) if solution is not None])
     return out
 
