@@ -14,7 +14,6 @@ A combination of parameters that scales all of K or all of M is looked for in th
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 from weakref import ref
 
 import numpy as np
@@ -45,13 +44,6 @@ SHIFT = 1e-3
 """Share of the least measured eigenvalue that is added to a K with rigid-body modes, times M."""
 
 
-class Scaling(NamedTuple):
-    """A change of the parameters that scales matrices as a whole."""
-
-    of: str  # "stiffness matrix", "mass matrix", or both
-    change: Floats  # (p,) change of theta for a factor of e, to first order
-
-
 @dataclass(frozen=True)
 class Scale:
     """Units of changes of the parameters at one model."""
@@ -63,15 +55,15 @@ class Scale:
     model: MatrixModel | None = None
 
     @cached_property
-    def scalings(self) -> list[Scaling]:
-        """Changes of the parameters that scale K, M, or both as a whole, if there are any.
+    def scalings(self) -> dict[str, Floats]:
+        """Changes (p,) of the parameters for a factor of e of the whole K, M, or both, by its name.
 
-        Of several that do, it is the one nearest to theta, in units. They are looked for when they
-        are first asked for.
+        Of several that do, to first order, it is the one nearest to theta, in units. They are
+        looked for when they are first asked for.
         """
         theta, unit, model = self.theta, self.unit, self.model
         if model is None:
-            return []
+            return {}
         (RK, K), (RM, M) = (_rows(matrix, theta) for matrix in (model.stiffness, model.mass))
         both = np.vstack([RK, RM])
         scaled = {
@@ -79,12 +71,12 @@ class Scale:
             "mass matrix": (0 * K, M),
             "stiffness matrix and the mass matrix": (K, M),
         }
-        out = []
+        out = {}
         for of, parts in scaled.items():
             b = np.concatenate(parts)
             y = theta + unit * np.linalg.lstsq(both * unit, b - both @ theta, rcond=WHOLE)[0]
             if np.linalg.norm(both @ y - b) <= WHOLE * np.linalg.norm(b):
-                out.append(Scaling(of, y))
+                out[of] = y
         return out
 
 
