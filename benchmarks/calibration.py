@@ -49,8 +49,8 @@ from modefront.front.weights import accepted
 from modefront.identification.methods import ambient
 from modefront.identification.sets import combine
 from modefront.optim.lexicographic import EXACT
+from modefront.optim.problem import with_second_order
 from modefront.optim.scalarisation import LogSum
-from modefront.optim.second import with_second_order
 from modefront.optim.sqp import TIGHT, begin, solve
 from modefront.results.assemble import DETERMINED
 from modefront.uncertainty.inference import CHANCE, lack_of_fit, most_probable, refused
@@ -339,7 +339,7 @@ def jeffreys(problem: mf.UpdatingProblem, starts: Sequence[Floats]) -> tuple[Flo
         solve(problem, programme, begin(problem.evaluate(theta, second=True)), TIGHT)
         for theta in starts
     ]
-    for minimum in accepted(problem, [x for x in minima if x.converged], a, sizes):
+    for minimum in accepted(problem, [x for x in minima if x.converged], programme):
         point = with_second_order(problem, minimum.evaluation)
         found = None if point is None else laplace(problem, point, a)
         if found is not None:

@@ -8,7 +8,9 @@ from problems import Derivatives, Known, box, concave, disconnected
 import modefront as mf
 from modefront._typing import Floats
 from modefront.analysis.front import _local
-from modefront.optim.second import with_second_order
+from modefront.optim.problem import with_second_order
+from modefront.optim.sqp import given
+from modefront.uncertainty.points import Role, SolvedPoint
 from modefront.work.task import Costs
 
 K = ("k1", "k2", "k3")
@@ -46,7 +48,7 @@ def test_scatter_takes_one_eigenproblem_besides_a_solution(costs: Costs) -> None
     problem = chain()
     evaluation = problem.evaluate(np.array([1.1, 0.9, 1.2]), second=True)
     before = costs.eigenproblems
-    local = _local(problem, evaluation, None, "std")
+    local = _local(problem, SolvedPoint("x", given(evaluation), Role("optimal")), None, "std")
     assert costs.eigenproblems == before + 1
     assert local is not None
     assert local.noise.J.shape == (5, 2)

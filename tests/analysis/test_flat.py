@@ -47,20 +47,21 @@ def solutions(front: Front, kind: Kind) -> list[Solution]:
 def test_a_flat_part_is_found_and_the_rest_covered_by_itself() -> None:
     problem = box(flat, [0, -1], [4, 1])
     front = whole_front(problem, np.array([16.0, 1.0]))
-    edges, along = (solutions(front, kind) for kind in (Kind.EDGE, Kind.FRONT))
+    along = solutions(front, Kind.FRONT)
     part = identifiable_part(problem, front, 0.01, 19)
-    assert part is not None
     least = 1 + np.exp(-16.0)
     J = np.array([point.J for point in along])
     assert part.flat.tolist() == [0, (J[:, 1] <= 1.01 * least).sum() - 1]
     assert part.flat[1] >= 8
-    assert part.ends[0] is edges[0]
+    (end,) = of_kind(part.points, Kind.IDENTIFIABLE_EDGE)
+    assert end.name == problem.objectives[1]
     # J2 = 1.01 of the least at exp(-4 x) = 0.01 and a little
     cut = -np.log(1.01 * least - 1) / 4
     # The least J2 is known to a share of 1e-6, a tie, which counts here where J2 is flat.
-    assert part.ends[1].theta == pytest.approx([cut, 0], abs=1e-4)
-    chosen = np.array([point.J for point in part.points])
-    assert all(point.converged for point in part.points)
+    assert end.solution.theta == pytest.approx([cut, 0], abs=1e-4)
+    points = [point.solution for point in of_kind(part.points, Kind.IDENTIFIABLE)]
+    chosen = np.array([point.J for point in points])
+    assert all(point.converged for point in points)
     assert chosen[:, 0].max() == pytest.approx(cut**2, rel=1e-4)
     assert chosen[:, 1] == pytest.approx(1 + np.exp(-4 * np.sqrt(chosen[:, 0])), abs=1e-6)
     # Even along the front in units of its range: what was one point is twenty.
@@ -93,19 +94,19 @@ def test_a_flat_part_of_which_the_end_is_not_found_is_counted_and_not_cut() -> N
     assert front.scale is not None
     beside = flat_points(J, np.array([0.0, 1 + np.exp(-16.0)]), 0.01, front.scale)
     part = identifiable_part(box(holed, [0, -1], [4, 1]), front, 0.01, 19)
-    assert part is not None
     assert beside[1] >= 8
     assert part.flat.tolist() == [0, 0]
     assert part.uncut.tolist() == beside.tolist()
     assert part.target is None
     assert len(part.points) == 0
-    assert part.reported(problem.objectives) == []
-    assert part.ends[1] is solutions(front, Kind.EDGE)[1]
 
 
 def test_a_front_that_bends_everywhere_is_left_alone() -> None:
     problem = box(circles, [-2, -2], [2, 2])
-    assert identifiable_part(problem, whole_front(problem, np.ones(2)), 0.01, 19) is None
+    part = identifiable_part(problem, whole_front(problem, np.ones(2)), 0.01, 19)
+    assert not part.points
+    assert not part.flat.any()
+    assert not part.uncut.any()
 
 
 def test_an_objective_that_is_fitted_exactly_has_no_flat_part() -> None:
@@ -136,12 +137,12 @@ def test_a_flat_patch_of_three_objectives_is_left_out() -> None:
     front = whole_front(problem, np.ones(3), 9)
     edges, along = (solutions(front, kind) for kind in (Kind.EDGE, Kind.FRONT))
     part = identifiable_part(problem, front, 0.01, 9)
-    assert part is not None
     level = 1.01 * edges[2].J[2]
     J = np.array([point.J for point in along])
     assert part.flat.tolist() == [0, 0, (J[:, 2] <= level).sum() - 1]
     assert part.flat[2] >= 5
-    assert part.ends[:2] == edges[:2]
+    (end,) = of_kind(part.points, Kind.IDENTIFIABLE_EDGE)
+    assert end.name == problem.objectives[2]
     # The end is the best of J1 and J2 over their ranges at that level: on the curve of the level.
     y = np.linspace(0.4, 0.6, 200_001)
     room = level - 1 - (y - 0.5) ** 2
@@ -149,9 +150,10 @@ def test_a_flat_patch_of_three_objectives_is_left_out() -> None:
     assert front.scale is not None
     J1, J2 = x**2 + y**2 / 4, x**2 / 4 + (y - 1) ** 2
     k = np.argmin(J1 / front.scale[0] + J2 / front.scale[1])
-    assert part.ends[2].theta == pytest.approx([x[k], y[k]], abs=1e-5)
-    chosen = np.array([point.J for point in part.points])
-    assert all(point.converged for point in part.points)
+    assert end.solution.theta == pytest.approx([x[k], y[k]], abs=1e-5)
+    points = [point.solution for point in of_kind(part.points, Kind.IDENTIFIABLE)]
+    chosen = np.array([point.J for point in points])
+    assert all(point.converged for point in points)
     assert chosen[:, 2].min() >= level * (1 - 1e-6)
     assert len(chosen) > 1.2 * (J[:, 2] > level).sum(), "more of them where the front bends"
     # Beyond the new simplex too: next to the level, but away from its end.

@@ -9,10 +9,11 @@ from interruptions import interrupt_after
 from problems import box, circles, disconnected
 
 from modefront._typing import Floats
+from modefront.front.dominance import Archive
 from modefront.front.front import Front
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
-from modefront.front.state import Archive, State, recorded
+from modefront.front.search import State, recorded
 from modefront.optim.problem import Evaluation, Problem
 from modefront.work.store import Run, Store
 from modefront.work.task import IMMEDIATE, Costs, Executor, Task
@@ -84,7 +85,7 @@ def test_a_task_ends_where_its_evaluations_are_spent_and_its_models_are_known() 
 
 def test_tasks_share_what_is_left_of_the_budget() -> None:
     problem = box(circles, [-1, -1], [2, 2])
-    state = State(problem, 1e-3)
+    state = State(problem)
     tasks = [Task(("test", k), middle, (problem, share)) for k, share in enumerate((0.3, 0.6))]
     assert not any(x.spent for x in state.run(tasks, 7))
     assert state.evaluations == 4

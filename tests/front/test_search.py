@@ -33,9 +33,18 @@ from modefront.front.point import Kind, of_kind
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Minima, Starts
-from modefront.front.search import USUAL, Loop, Offer, Proposer, Search, at, evaluate_all
+from modefront.front.search import (
+    USUAL,
+    Offer,
+    Outcome,
+    Place,
+    Search,
+    State,
+    at,
+    evaluate_all,
+    recorded,
+)
 from modefront.front.simplex import lattice, payoff
-from modefront.front.state import Outcome, Place, State, recorded
 from modefront.front.subproblems import SAMPLE, LatticePoint, Least, Subproblem, Weights
 from modefront.optim.problem import Evaluation, Problem, infeasible
 from modefront.optim.sqp import Solution, Status, begin
@@ -327,18 +336,12 @@ def test_where_nothing_is_dominated_both_programmes_agree() -> None:
 
 def state_of(problem: Known, subproblems: list[Subproblem], thetas: list[list[float]]) -> State:
     """Return a state in which models at some parameters are known, with derivatives."""
-    state = State(problem, TOLERANCE)
+    state = State(problem)
     for theta in thetas:
         solution = begin(problem.evaluate(np.array(theta)))
         state.archive.add(solution.J, solution)
     state.add(subproblems)
     return state
-
-
-def run(state: State, *proposers: Proposer, search: Search | None = None) -> Loop:
-    loop = Loop(state, search or Search())
-    loop.run("test", proposers)
-    return loop
 
 
 def anchors(problem: Known) -> list[Subproblem]:
@@ -362,7 +365,7 @@ def test_polish_closes_every_incumbent() -> None:
     state = state_of(problem, [*anchors(problem), *between], [[0.1, 0.3], [1.2, 0.9]])
     assert not any(place.closed for place in state.places)
     polish = Polish()
-    run(state, polish)
+    state.search("test", [polish])
     assert all(place.closed for place in state.places)
     assert all(place.incumbent.converged for place in state.places)
     J = np.array([place.incumbent.J for place in state.places])
@@ -374,15 +377,15 @@ def test_a_point_beside_its_normal_is_solved_from_the_nearest_that_lies_on_its_o
     problem = box(circles, [-2, -2], [2, 2])
     edges = [[0.0, 0.0], [1.0, 0.0]]
     state = state_of(problem, points_between(problem, edges, 5), edges)
-    run(state, Polish())
+    state.search("test", [Polish()])
     assert not list(Polish().offers(state, 6)), "all lie on their normals"
     first, before, middle, behind, _ = state.places
     found, middle.incumbent = middle.incumbent, first.incumbent
     (offer,) = Polish().offers(state, 6)
-    assert offer.place == 2
+    assert offer.place is middle
     assert any(offer.start is x.incumbent for x in (before, behind))
     polish = Polish()
-    run(state, polish)
+    state.search("test", [polish])
     assert middle.incumbent.J == pytest.approx(found.J, abs=1e-6)
     assert polish.idle == 0, "the search from there has gained"
     assert not list(polish.offers(state, 6))
@@ -475,7 +478,7 @@ def test_starts_find_all_minima_and_then_stop() -> None:
     problem = box(wells, [-3.0], [3.0], 1)
     state = state_of(problem, [Least(0, np.ones(1), "J1")], [[0.0]])
     starts = Starts(np.random.default_rng(0))
-    run(state, Polish(), starts)
+    state.search("test", [Polish(), starts])
     known = starts.of(state.places[0])
     ends = sorted(round(float(x.theta[0]), 1) for x in known.ends)
     assert ends == [-1.7, 0.0, 1.7]
@@ -520,7 +523,7 @@ def test_children_lie_within_the_bounds(seed: int) -> None:
     assert children.shape == (USUAL, 2)
     assert (children >= problem.lower).all()
     assert (children <= problem.upper).all()
-    assert offer.place == -1
+    assert offer.place is None
     outcome = recorded(offer.function, None, problem, *offer.arguments)
     assert outcome.evaluations == USUAL
 
@@ -537,7 +540,7 @@ def test_evolution_alone_comes_close_to_an_edge() -> None:
             place.closed = True
         offer = next(evolution.offers(state, 6))
         (outcome,) = state.run([Task(("children",), offer.function, (problem, *offer.arguments))])
-        state.tell(-1, offer.start, outcome)
+        state.tell(None, offer.start, outcome)
     assert np.abs(state.places[0].incumbent.theta).max() < 0.5
 
 
@@ -566,7 +569,7 @@ def test_a_proposer_from_outside_is_asked_and_told() -> None:
     edges = [[0.0, -1.0], [1.0, 1.0]]
     state = state_of(problem, points_between(problem, edges, 9), edges)
     mine = Given(np.array([[0.5, 0.0], [0.8, 0.0], [-1.0, -1.5]]))
-    run(state, Polish(), mine)
+    state.search("test", [Polish(), mine])
     assert mine.asked >= 2
     ((outcome, _),) = mine.told
     assert outcome.evaluations == 3
@@ -592,10 +595,10 @@ def test_offers_below_the_doubt_are_not_made_and_the_likeliest_come_first() -> N
         Hoping(np.ones((2, 2)), chance=0.06),
     )
     three = Hoping(np.ones((3, 2)), chance=0.5)
-    loop = run(state, one, two, three)
+    state.search("test", [one, two, three])
     assert not one.told
     assert one.asked == two.asked == 2
-    assert loop.turn == 1
+    assert state.turn == 1
     assert state.evaluations == 5
     assert at(np.ones(2)).theta.tolist() == [1.0, 1.0]
 
@@ -620,7 +623,8 @@ def test_what_gains_most_for_its_cost_comes_first() -> None:
     class Cheap(Costly):
         pass
 
-    run(state, Costly(np.zeros((0, 2)), count=30), Cheap(np.zeros((0, 2)), count=2))
+    costly, cheap = Costly(np.zeros((0, 2)), count=30), Cheap(np.zeros((0, 2)), count=2)
+    state.search("test", [costly, cheap])
     assert order == [30, 2, 2, 30, 2, 30], "nothing is known of the first ones"
 
 
@@ -644,12 +648,12 @@ def test_a_start_that_is_better_than_its_solution_stays() -> None:
     start = place.incumbent
     worse = begin(problem.evaluate(np.array([0.5, 0.1]), second=True))
     lost = point.gain(start.J, worse)
-    state.tolerance = 0.9 * lost
+    state.limits = Search(tolerance=0.9 * lost)
     outcome = Outcome(worse, worse.theta[None], worse.J[None], 1)
-    state.tell(0, start, outcome)
+    state.tell(place, start, outcome)
     assert place.incumbent is start
-    state.tolerance, place.closed = 1.1 * lost, False
-    state.tell(0, start, outcome)
+    state.limits, place.closed = Search(tolerance=1.1 * lost), False
+    state.tell(place, start, outcome)
     assert place.incumbent is worse
 
 
@@ -658,9 +662,9 @@ def test_at_the_budget_models_that_wait_for_evaluation_are_of_all_places() -> No
     state = state_of(problem, anchors(problem), [[0.5, 0.0]])
     for place in state.places:
         place.closed = True
-    state.evaluations = 1
-    loop = run(state, Given(np.ones((1, 2))), search=Search(evaluations=1))
-    assert loop.open == {place.subproblem.key for place in state.places}
+    state.evaluations, state.limits = 1, Search(evaluations=1)
+    state.search("test", [Given(np.ones((1, 2)))])
+    assert state.open == {place.subproblem.key for place in state.places}
 
 
 def test_models_that_cannot_be_evaluated_do_not_compete() -> None:
@@ -672,7 +676,7 @@ def test_models_that_cannot_be_evaluated_do_not_compete() -> None:
     state = state_of(problem, anchors(problem), [[0.1, 0.1]])
     before = [place.incumbent for place in state.places]
     outcome = recorded(lambda of: begin(of.evaluate(np.array([1.0, 0.0]))), None, problem)
-    assert state.tell(0, before[0], outcome) == 0.0
+    assert state.tell(state.places[0], before[0], outcome) == 0.0
     assert all(x is place.incumbent for x, place in zip(before, state.places, strict=True))
     assert len(state.archive.models) == 1
 
@@ -703,8 +707,8 @@ def test_what_gained_until_the_limit_of_iterations_is_searched_on(
         better = of.evaluate(share * place.incumbent.theta)
         return replace(begin(better), status=Status[status])
 
-    state.tell(0, place.incumbent, recorded(moved, None, problem, 0.5))
+    state.tell(place, place.incumbent, recorded(moved, None, problem, 0.5))
     assert place.incumbent.theta.tolist() == [0.25, 0.25]
     assert place.closed == closed
-    state.tell(0, place.incumbent, recorded(moved, None, problem, 1.0))
+    state.tell(place, place.incumbent, recorded(moved, None, problem, 1.0))
     assert place.closed, "it gains no more"

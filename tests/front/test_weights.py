@@ -11,20 +11,14 @@ from modefront._typing import Floats
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind
-from modefront.front.weights import (
-    accepted,
-    is_minimum,
-    iterate_weights,
-    least_along,
-    regular,
-)
+from modefront.front.weights import accepted, is_minimum, iterate_weights, least_along
 from modefront.optim.lexicographic import EXACT
 from modefront.optim.problem import Evaluation
 from modefront.optim.scalarisation import LogSum, weighted
 from modefront.optim.sqp import TIGHT, Solution, begin, solve
 
 ONES = np.ones(2)
-SIZES = np.full(2, 4.0)
+SUM = LogSum(ONES, vanishing=EXACT)
 
 
 def solution_at(J: Sequence[float]) -> Solution:
@@ -59,21 +53,21 @@ def test_a_minimum_is_accepted_by_its_own_curvature(
     there = problem.evaluate(np.zeros(2))
     exact = replace(there, exact=True)
     found = begin(exact)
-    assert is_minimum(problem, found.evaluation, ONES) == holds
-    assert len(accepted(problem, [found], ONES, ONES)) == holds
+    assert is_minimum(problem, found.evaluation, SUM) == holds
+    assert len(accepted(problem, [found], SUM)) == holds
 
 
 def test_regular_minima_are_accepted_best_first_and_no_exact_fit() -> None:
-    problem, a = quadratic((0.6, 1.0)), np.array([3.0, 1.0])
+    problem, programme = quadratic((0.6, 1.0)), LogSum(np.array([3.0, 1.0]), vanishing=EXACT)
     first, other, exact = (solution_at(J) for J in ([0.1, 0.2], [0.2, 0.1], [1e-11, 0.2]))
-    assert labels(accepted(problem, [other, exact, first], a, ONES)) == [[0.1, 0.2], [0.2, 0.1]]
+    assert labels(accepted(problem, [other, exact, first], programme)) == [[0.1, 0.2], [0.2, 0.1]]
 
 
 def test_starts_along_a_front_are_where_the_sum_is_least_among_neighbours() -> None:
     along = [
         solution_at(J) for J in ([1e-12, 2.0], [0.1, 1.0], [0.5, 0.5], [0.6, 0.2], [1.0, 0.19])
     ]
-    result = least_along(along, ONES, ONES)
+    result = least_along(along, SUM)
     assert labels(result) == [[0.1, 1.0], [0.6, 0.2]]
 
 
@@ -90,7 +84,7 @@ def minima_of(problem: Known, a: Floats) -> list[Solution]:
 def test_on_a_front_of_exact_fits_the_sum_falls_without_bound() -> None:
     """On the segment between the circles' centres, sum ln J is least at its ends, exact fits."""
     problem = box(circles, [-1.0, -1.0], [3.0, 3.0])
-    assert all(not regular(x.J, ONES) for x in minima_of(problem, ONES))
+    assert all(SUM.value(x.J) == -np.inf for x in minima_of(problem, ONES))
 
 
 # ---- the fixed point of the iteration --------------------------------------------------------
@@ -108,7 +102,7 @@ def test_optimal_weights_are_a_over_J_and_the_iteration_agrees() -> None:
     again = solve(problem, weighted(a / best.J), begin(best.evaluation))
     assert again.theta == pytest.approx(best.theta, abs=1e-6)
     start = solve(problem, weighted(np.ones(2)), begin(problem.evaluate(problem.start)))
-    iterated = iterate_weights(problem, a, SIZES, start)
+    iterated = iterate_weights(problem, LogSum(a, vanishing=4 * EXACT), start)
     assert iterated is not None
     assert iterated.converged
     assert iterated.theta == pytest.approx(best.theta, abs=1e-5)
@@ -121,8 +115,7 @@ def test_optimal_weights_are_a_over_J_and_the_iteration_agrees() -> None:
 def test_an_exact_fit_has_no_weights() -> None:
     problem = box(circles, [-2, -2], [2, 2])
     exact = begin(problem.evaluate(np.zeros(2)))
-    assert iterate_weights(problem, ONES, SIZES, exact) is None
-    assert not regular(exact.J, SIZES)
+    assert iterate_weights(problem, SUM, exact) is None
 
 
 @pytest.mark.parametrize("points", [3, 5, 11])

@@ -21,9 +21,9 @@ from modefront.identifiability.combinations import (
     index,
     optimal_weights,
     pairs,
+    sparse_basis,
 )
 from modefront.identifiability.scale import Scale
-from modefront.identifiability.sparse import sparse_basis
 from modefront.work.task import counted
 
 NAMES = ("k1", "k2", "k3")

@@ -23,7 +23,7 @@ from modefront.identifiability.combinations import (
     unchanged_groups,
     without_effect,
 )
-from modefront.identifiability.scale import scale_at, whole_scalings
+from modefront.identifiability.scale import Scale, scale_at
 from modefront.linalg.affine import SparseAffine
 from modefront.models.matrices import MatrixModel
 from modefront.study.check import determined, refuse_unchanged_groups
@@ -102,9 +102,8 @@ def test_the_unit_of_a_spring_is_what_it_is(form: str, k: Floats) -> None:
     result = scale_at(problem, theta)
     expected = K0 * k if form == "N/m" else k
     assert result.unit == pytest.approx(expected, rel=1e-9)
-    (scaling,) = result.scalings
-    assert scaling.change == pytest.approx(expected, rel=1e-7)
-    assert scaling.of == "stiffness matrix"
+    assert list(result.scalings) == ["stiffness matrix"]
+    assert result.scalings["stiffness matrix"] == pytest.approx(expected, rel=1e-7)
 
 
 def test_the_unit_is_that_of_the_generalised_eigenproblem_for_sparse_matrices_too() -> None:
@@ -330,7 +329,7 @@ def test_a_base_that_stays_leaves_no_scaling_of_the_stiffness() -> None:
     fixed = mf.matrices(
         ["k1"], {"base": spring(2, 0), "k1": spring(2, 1)}, {"base": np.eye(2)}, {"f": 0}
     )
-    assert whole_scalings(fixed, np.ones(1), np.ones(1)) == []
+    assert Scale(np.ones(1), np.ones(1), np.ones(1, dtype=bool), fixed).scalings == {}
     both = mf.chain(
         ("k", "m"),
         [1.0, 2.0],
@@ -338,13 +337,11 @@ def test_a_base_that_stays_leaves_no_scaling_of_the_stiffness() -> None:
         stiffness_parameters=["k"] * 2,
         mass_parameters=["m"] * 2,
     )
-    result = whole_scalings(both, np.array([2.0, 3.0]), np.ones(2))
-    assert [combination.of for combination in result] == [
-        "stiffness matrix",
-        "mass matrix",
-        "stiffness matrix and the mass matrix",
-    ]
-    assert result[2].change == pytest.approx([2.0, 3.0])
+    theta = np.array([2.0, 3.0])
+    result = Scale(theta, np.ones(2), np.ones(2, dtype=bool), both).scalings
+    whole = "stiffness matrix and the mass matrix"
+    assert list(result) == ["stiffness matrix", "mass matrix", whole]
+    assert result[whole] == pytest.approx([2.0, 3.0])
 
 
 def test_without_matrices_changes_are_over_the_range() -> None:
@@ -363,7 +360,7 @@ def test_without_matrices_changes_are_over_the_range() -> None:
     opaque = replace(problem, model=model)
     scale = scale_at(opaque, opaque.start)
     assert scale.unit == pytest.approx(problem.upper - problem.lower)
-    assert scale.scalings == []
+    assert scale.scalings == {}
     result = combinations(opaque, opaque.start, 1)
     text = free_in_words(result, problem.model.parameters, scale, ())
     assert text == ["k1, k2, k3 and k4 cannot be told apart"]

@@ -14,8 +14,7 @@ from modefront._typing import Floats
 from modefront.optim.linearised import augmented, projected, surplus
 from modefront.optim.problem import Evaluation, Residual
 from modefront.optim.scalarisation import Scalarisation, achievement, below, weighted
-from modefront.optim.second import learned_from
-from modefront.optim.sqp import Options, Solution, Status, begin, solve
+from modefront.optim.sqp import Options, Solution, Status, begin, learned_from, solve
 
 SEEDS = st.integers(0, 2**31)
 

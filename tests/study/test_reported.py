@@ -16,13 +16,12 @@ from modefront.analysis import front as analysis
 from modefront.analysis.front import Identifiable
 from modefront.cli.show import as_json, print_results
 from modefront.front import pareto
-from modefront.front.front import Front
+from modefront.front.dominance import distinct_points
 from modefront.front.gaps import Gap
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, of_kind
 from modefront.front.search import Search
-from modefront.front.state import distinct_points
 from modefront.identifiability.combinations import Identifiability
 from modefront.optim.problem import Evaluation
 from modefront.optim.sqp import Solution, Status, begin
@@ -80,7 +79,7 @@ def test_an_end_that_is_not_known_is_said_and_is_no_number(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def unknown(_: object, points: list[Solution], *__: object, **___: object) -> list[Gap]:
-        return [Gap(points[2], points[3], None, points[3])]
+        return [Gap((points[2].J[0] + points[3].J[0]) / 2, None, points[3])]
 
     monkeypatch.setattr(pareto, "gaps", unknown)
     data = solved()
@@ -111,12 +110,8 @@ def test_an_end_that_is_not_known_is_said_and_is_no_number(
 
 
 def test_a_flat_part_that_is_not_cut_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    part = Identifiable(np.array([0, 0]), np.array([0, 3]), [], None, [])
-
-    def uncut(_: object, front: Front, *__: object) -> object:
-        return replace(part, ends=[edge.best for edge in front.edges])
-
-    monkeypatch.setattr(analysis, "identifiable_part", uncut)
+    part = Identifiable(np.array([0, 0]), np.array([0, 3]))
+    monkeypatch.setattr(analysis, "identifiable_part", lambda *_: part)
     data = solved()
     (message,) = [text for text in data["finding"].values.tolist() if "flat" in text]
     assert message == (

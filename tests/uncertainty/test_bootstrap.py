@@ -1,11 +1,14 @@
 """Data that are drawn again."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import modefront as mf
 from modefront.errors import UnfinishedError
-from modefront.uncertainty.points import redraw
+from modefront.optim.sqp import given
+from modefront.uncertainty.points import Role, SolvedPoint, redraw, solve_again
 
 
 def data_of(sets: int) -> mf.ModalData:
@@ -61,3 +64,19 @@ def test_values_are_drawn_with_their_standard_deviations() -> None:
 def test_a_source_that_the_data_do_not_have_is_refused() -> None:
     with pytest.raises(mf.InputError, match="source: expected a mode measured in two data sets"):
         mf.Uncertainty("sets").of(data_of(1))
+
+
+def test_a_level_that_does_not_hold_its_objective_is_solved_again_without_a_warning() -> None:
+    names, one = ("a", "b"), [1.0, 1.0]
+    model = mf.chain(names, one, [100.0, 100.0], stiffness_parameters=names)
+    modes = model.modes(np.ones(2), 2, derivatives=False)
+    f, phi = 1.02 * modes.frequency, modes.phi.T + np.diag([0.1, 0.05])
+    data = mf.modal_data(f, phi, model.sensors, frequency_std=0.01 * f, shape_std=0 * phi + 0.02)
+    groups = mf.Group("f", frequency="all"), mf.Group("s", shape="all")
+    bounds = dict.fromkeys(names, (0.5, 2.0))
+    problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(names, 1.0))
+    start = given(problem.evaluate(problem.start))
+    role = Role("level", objective=1, tolerance=0.05)
+    point = SolvedPoint("end", replace(start, weights=np.array([1.0, 0.0])), role)
+    solved = solve_again(problem, [point], np.ones(2), "std", rng=np.random.default_rng(0))
+    assert solved["end"].converged

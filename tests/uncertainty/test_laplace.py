@@ -9,9 +9,8 @@ import scipy.stats
 from exact import Residuals, Squares, squares
 
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation
+from modefront.optim.problem import Evaluation, with_second_order
 from modefront.optim.scalarisation import LogSum
-from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Options, begin, solve
 from modefront.uncertainty.prediction import draw
 from modefront.uncertainty.scatter import Posterior, laplace

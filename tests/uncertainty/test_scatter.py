@@ -12,9 +12,8 @@ from modefront._typing import Floats
 from modefront.front.front import Edge, Front
 from modefront.front.simplex import payoff
 from modefront.front.subproblems import LatticePoint, active_bounds
-from modefront.optim.problem import Evaluation
+from modefront.optim.problem import Evaluation, with_second_order
 from modefront.optim.scalarisation import LogSum, Scalarisation, below, weighted
-from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.points import Role, SolvedPoint

@@ -13,9 +13,8 @@ from modefront.front.front import Edge, Front
 from modefront.front.point import Kind, Point
 from modefront.front.simplex import payoff
 from modefront.front.subproblems import LatticePoint
-from modefront.optim.problem import Evaluation
+from modefront.optim.problem import Evaluation, with_second_order
 from modefront.optim.scalarisation import weighted
-from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Status, begin, solve
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.points import Role, SolvedPoint

@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from problems import Known, box, circles
 
 from modefront._typing import Floats
-from modefront.front.state import Archive, Outcome, recorded
+from modefront.front.dominance import Archive
+from modefront.front.search import Outcome, recorded
 from modefront.optim.problem import Problem
 from modefront.work.progress import Progress, State, together
 from modefront.work.store import Run, Store

@@ -81,22 +81,19 @@ def certified_front(
         here = Within(work, turn=("round", number))
         front = search(work=here, known=known)
         best = best_minima(front, problem.properties, CLOSE)
-        candidates = _each_once([*_of_the_front(front), *(x for *_, some in best for x in some)])
+        candidates = _models(front, (x for *_, some in best for x in some))
         enough = model.tolerance if known else AIM * model.tolerance
         is_last = number == ROUNDS or last.columns >= model.capacity
-        taken = [] if is_last else _improve(model, candidates, enough, here)
-        if not taken:
+        taken = None if is_last else _improve(model, candidates, enough, here)
+        if taken is None:
             front = replace(front, known=np.zeros((0, len(problem.objectives))))  # of the basis
             minima = [x for edge in front.edges for x in edge.minima]
-            reported = _each_once([*_of_the_front(front), *minima, *front.optimal])
-            certify(problem, reported, here, "front")
-            needed = _each_once([*_of_the_front(front), *_rivals(problem, model, front)])
-            mended = None if is_last else _mended(problem, model, needed, here)
-            if mended is None:
+            certify(problem, _models(front, [*minima, *front.optimal]), here, "front")
+            needed = _models(front, _rivals(problem, model, front))
+            taken = None if is_last else _mended(problem, model, needed, here)
+            if taken is None:
                 break
-            taken = [mended]
-        last = taken[-1]
-        known = front if max(each.error for each in taken) <= POOR else None
+        last, known = taken, front if taken.error <= POOR else None
     return front
 
 
@@ -168,17 +165,18 @@ def _reduced(problem: UpdatingProblem) -> ReducedModel | None:
 
 def _improve(
     model: ReducedModel, candidates: Sequence[Solution], enough: float, work: Executor
-) -> list[SnapshotTaken]:
-    """Take snapshots of what the basis knows least, as long as they add something; return these."""
-    out: list[SnapshotTaken] = []
+) -> SnapshotTaken | None:
+    """Take snapshots of what the basis knows least, as long as they add something.
+
+    Return the last one, or the first one before which the basis was poor.
+    """
+    last = None
     for count in range(AHEAD):
         taken = _take(model, "ahead", count + 1, _snapshot(candidates, enough), work)
-        if taken is None:
+        last = taken or last
+        if taken is None or taken.error > POOR or taken.columns >= model.capacity:
             break
-        out.append(taken)
-        if taken.error > POOR or taken.columns >= model.capacity:
-            break
-    return out
+    return last
 
 
 def _mended(
@@ -251,15 +249,12 @@ def _errors(problem: UpdatingProblem, basis: Basis, solution: Solution) -> tuple
     return certificate.eigenvalue[place], certificate.shape[place]
 
 
-def _of_the_front(front: Front) -> Iterator[Solution]:
-    """Return the models that are reported, but for minima that are not the best ones."""
-    yield from (point.solution for point in front.points)
-    yield from (edge.best for edge in front.edges)
-    yield from front.optimal[:1]
-    if front.iterated:
-        yield front.iterated
-    for gap in front.gaps:
-        yield from gap.ends
+def _models(front: Front, others: Iterable[Solution]) -> list[Solution]:
+    """Return the models that are reported, but for minima, and others, each once."""
+    every = [point.solution for point in front.points] + [edge.best for edge in front.edges]
+    every += [*front.optimal[:1], *([front.iterated] if front.iterated else [])]
+    every += [*(end for gap in front.gaps for end in gap.ends), *others]
+    return list({_key(solution): solution for solution in every}.values())
 
 
 def _rivals(problem: UpdatingProblem, model: ReducedModel, front: Front) -> Iterator[Solution]:
@@ -281,11 +276,6 @@ def _rivals(problem: UpdatingProblem, model: ReducedModel, front: Front) -> Iter
         least, most = roots(solution)[0], roots(front.optimal[0])[1]
         if not least.all() or value(least**2) <= value(most**2):
             yield solution
-
-
-def _each_once(solutions: Iterable[Solution]) -> list[Solution]:
-    """Return solutions, each model once."""
-    return list({_key(solution): solution for solution in solutions}.values())
 
 
 def _paired(solution: Solution) -> Ints:

@@ -12,21 +12,20 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.analysis.manifold import Manifold, equivalent_models
+from modefront.front.dominance import distinct_points
 from modefront.front.front import Front, best_minima
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
 from modefront.front.point import WEIGHTED, Kind, Point, of_kind
 from modefront.front.proposers.polish import Polish
-from modefront.front.search import Loop, Search
+from modefront.front.search import State
 from modefront.front.simplex import Payoff, default_points, lattice, payoff
-from modefront.front.state import State, distinct_points
 from modefront.front.subproblems import LatticePoint, near_best
 from modefront.identifiability.combinations import Identifiability, without_effect
 from modefront.identifiability.scale import scale_at
 from modefront.optim.lexicographic import EXACT, TIE
-from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.problem import Evaluation, Problem, with_second_order
 from modefront.optim.scalarisation import Scalarisation, weighted
-from modefront.optim.second import with_second_order
 from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.noise import Noise, Source, Uncertainty, noise
@@ -39,21 +38,15 @@ SPREAD = 0.2  # share of the range of another objective over which a flat part e
 
 @dataclass(frozen=True)
 class Identifiable:
-    """The part of a front that is not flat."""
+    """The part of a front that is not flat, where there is one that is."""
 
     # (n,) how many points of the whole front lie in the flat part at each edge, besides it
     flat: Ints
     # (n,) likewise, where the end of the flat part was not found, so that it is not cut
     uncut: Ints
-    ends: Sequence[Solution]  # where the part ends, one solution an objective
-    target: Payoff | None = None  # the simplex between them; None where the part is one point
-    points: Sequence[Solution] = ()  # along it; empty where it is one point
-
-    def reported(self, names: Sequence[str]) -> list[Point]:
-        """Return its points and those of its ends that are no edges, of objectives with names."""
-        along = [Point(Kind.IDENTIFIABLE, x, index=i) for i, x in enumerate(self.points, 1)]
-        ends = zip(names, self.ends, self.flat.tolist(), strict=True)
-        return along + [Point(Kind.IDENTIFIABLE_EDGE, x, name) for name, x, cut in ends if cut]
+    # along it, unless it is one point, and its ends that are no edges
+    points: Sequence[Point] = ()
+    target: Payoff | None = None  # the simplex between its ends; None where the part is one point
 
 
 def flat_points(J: Floats, least: Floats, tolerance: float, sizes: Floats) -> Ints:
@@ -82,22 +75,23 @@ def same(solution: Solution, other: Solution) -> bool:
 
 def identifiable_part(
     problem: Problem, front: Front, tolerance: float, divisions: int, work: Executor = IMMEDIATE
-) -> Identifiable | None:
-    """Return the part of a front that is not flat; None where nothing is flat.
+) -> Identifiable:
+    """Return the part of a front that is not flat.
 
     A flat part of which the end is not found is not cut, and counted. ``divisions`` are the steps
     along each edge of the simplex.
     """
     known = [point.solution for point in front.points]
-    points = [point.solution for point in of_kind(front.points, Kind.FRONT)]
+    along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
     edges = [point.solution for point in of_kind(front.points, Kind.EDGE)]
-    if not points or front.scale is None:
-        return None
+    flat = np.zeros(len(edges), dtype=int)
+    if not along or front.scale is None:
+        return Identifiable(flat, flat)
     least = np.array([solution.J[i] for i, solution in enumerate(edges)])
-    J, sizes = np.array([solution.J for solution in points]), front.scale
+    J, sizes = np.array([solution.J for solution in along]), front.scale
     flat = flat_points(J, least, tolerance, sizes)
     if not flat.any():
-        return None
+        return Identifiable(flat, flat)
     ends = list(edges)
     for i in np.flatnonzero(flat).tolist():
         arguments = (problem, edges[i], i, tolerance, sizes, known)
@@ -106,25 +100,28 @@ def identifiable_part(
     moved = [not same(solution, edge) for solution, edge in zip(ends, edges, strict=True)]
     flat, uncut = np.where(moved, flat, 0), np.where(moved, 0, flat)
     target = payoff(ends, sizes) if flat.any() else None
+    places = zip(problem.objectives, ends, flat.tolist(), strict=True)
+    cuts = [Point(Kind.IDENTIFIABLE_EDGE, x, name) for name, x, cut in places if cut]
     if target is None:
-        return Identifiable(flat, uncut, ends)
-    state = State(problem, Search().tolerance, work)
-    for solution in [*ends, *known, *points]:
+        return Identifiable(flat, uncut, cuts)
+    state = State(problem, work=work)
+    for solution in [*ends, *known, *along]:
         state.archive.add(solution.J, solution)
     counts = lattice(len(edges), divisions)
     state.add([LatticePoint(row / divisions, tuple(row.tolist()), target) for row in counts])
-    Loop(state, Search()).run("identifiable", [Polish()])
+    state.search("identifiable", [Polish()])
     along = distinct_points([place.incumbent for place in state.places], target.scale)
     floor = np.where(flat > 0, (1 - TIE) * target.utopia, 0.0)
-    return Identifiable(flat, uncut, ends, target, [x for x in along if (floor <= x.J).all()])
+    along = [x for x in along if (floor <= x.J).all()]
+    points = [Point(Kind.IDENTIFIABLE, x, index=i) for i, x in enumerate(along, 1)]
+    return Identifiable(flat, uncut, [*points, *cuts], target)
 
 
 @dataclass(frozen=True)
 class FrontAnalysis:
     """Identifiable part, equivalent models and uncertainty of a front."""
 
-    points: Sequence[Point]  # of the identifiable part of the front, and its ends
-    identifiable: Identifiable | None  # that part; None where nothing is flat
+    identifiable: Identifiable
     tolerance: float  # the share within which objectives count as the same in a flat part
     # of equivalent models, by group or method; ``twin`` of one is a position in what `followed`
     # returns
@@ -157,17 +154,24 @@ def analyse_front(
     samples = uncertainty.bootstrap
     solutions = 1 if sizes is None else len(front.points)
     work.expect({"second-derivatives": (solutions,) * 2, "bootstrap": (samples, samples)})
-    part = None
+    none = np.zeros(len(problem.objectives), dtype=int)
+    part = Identifiable(none, none)
     if identifiability.flat > 0 and METHODS[front.method].programme == "boundary":
         divisions = (pareto.points or default_points(len(problem.objectives))) - 1
         part = identifiable_part(problem, front, identifiability.flat, divisions, work)
-    points = part.reported(problem.objectives) if part else []
     manifolds = _manifolds(problem, front, identifiability, work)
     reference = front.reference
     solved = [SolvedPoint(reference.label, reference.solution, Role("optimal"))]
     if sizes is not None:
         solved = _solved_points(problem, front, part, pareto, identifiability.flat)
-    known = _locals(problem, solved, sizes, source, work)
+    own = {x.label: x for x in solved if x.role.kind != "end"}
+    tasks = [
+        Task(("second-derivatives", text), _local, (problem, x, sizes, source))
+        for text, x in own.items()
+    ]
+    found = zip(own, work.run(tasks), strict=True)
+    # what the scatter of points follows from, where it is defined
+    known = {text: local for text, local in found if local is not None}
     posterior = None
     if reference.kind is Kind.OPTIMAL and reference.label in known:
         posterior = laplace(problem, known[reference.label].evaluation, a)
@@ -177,12 +181,9 @@ def analyse_front(
         scatter = front_scatter(problem, front, solved, known, a, sizes)
         seeds = [(b, seed_sequence(seed, "bootstrap", b)) for b in range(1, samples + 1)]
         again = (problem, solved, sizes, source)
-        tasks = [Task(("bootstrap", b), solve_again, again, each) for b, each in seeds]
-        replicates = work.run(tasks)
+        replicates = work.run([Task(("bootstrap", b), solve_again, again, x) for b, x in seeds])
     flat, slopes = identifiability.flat, {name: local.slopes for name, local in known.items()}
-    return FrontAnalysis(
-        points, part, flat, manifolds, source, scatter, slopes, posterior, replicates
-    )
+    return FrontAnalysis(part, flat, manifolds, source, scatter, slopes, posterior, replicates)
 
 
 def _manifolds(
@@ -223,7 +224,7 @@ def followed(
 
 
 def _solved_points(
-    problem: Problem, front: Front, part: Identifiable | None, pareto: Pareto, flat: float
+    problem: Problem, front: Front, part: Identifiable, pareto: Pareto, flat: float
 ) -> list[SolvedPoint]:
     """Return the points with what each of them solves, as far as that is a programme.
 
@@ -245,12 +246,11 @@ def _solved_points(
         worst = target.worst if target else ()
         return Role("end", (at[0],)) if at else Role("boundary", tuple(ends), worst)
 
-    extra = part.reported(problem.objectives) if part else []
-    cuts = {point.name: point for point in of_kind(extra, Kind.IDENTIFIABLE_EDGE)}
+    cuts = {point.name: point for point in of_kind(part.points, Kind.IDENTIFIABLE_EDGE)}
     whole = {edge.label: edge.solution for edge in edges}
     ends = {x.label: x.solution for x in (cuts.get(edge.name, edge) for edge in edges)}
     along = METHODS[front.method].programme
-    for point in [*front.points, *extra]:
+    for point in [*front.points, *part.points]:
         role, kind = None, point.kind
         if kind is Kind.OPTIMAL:
             role = Role("optimal")
@@ -259,7 +259,7 @@ def _solved_points(
         elif kind is Kind.FRONT and along == "boundary":
             role = between(point.solution, whole, front.target)
             role = replace(role, equations=pareto.programme == "equations")
-        elif kind is Kind.IDENTIFIABLE and part:
+        elif kind is Kind.IDENTIFIABLE:
             role = between(point.solution, ends, part.target)
         elif kind is Kind.IDENTIFIABLE_EDGE:
             objective = problem.objectives.index(point.name)
@@ -269,31 +269,13 @@ def _solved_points(
     return out
 
 
-def _locals(
-    problem: UpdatingProblem,
-    points: Sequence[SolvedPoint],
-    sizes: Floats | None,
-    source: Source | None,
-    work: Executor,
-) -> dict[str, Local]:
-    """Return what the scatter of points follows from, by label, where it is defined."""
-    tasks = []
-    for point in points:
-        w = None
-        if sizes is not None and point.role.kind == "edge":
-            w = edge_weights(point.role.objective, sizes)
-        if point.role.kind != "end":
-            arguments = (problem, point.solution.evaluation, w, source)
-            tasks.append(Task(("second-derivatives", point.label), _local, arguments))
-    found = zip(tasks, work.run(tasks), strict=True)
-    return {str(task.key[1]): local for task, local in found if local is not None}
-
-
 def _local(
-    problem: UpdatingProblem, evaluation: Evaluation, w: Floats | None, source: Source | None
+    problem: UpdatingProblem, of: SolvedPoint, sizes: Floats | None, source: Source | None
 ) -> Local | None:
-    """Return what the scatter follows from at a point, or at the minimum of w^T J, if any."""
-    if w is not None:
+    """Return what the scatter of a point follows from, of an edge that is kept regular, if any."""
+    evaluation = of.solution.evaluation
+    if sizes is not None and of.role.kind == "edge":
+        w = edge_weights(of.role.objective, sizes)
         evaluation = solve(problem, weighted(w), begin(evaluation)).evaluation
     point = with_second_order(problem, evaluation)
     if point is None:

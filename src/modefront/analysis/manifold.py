@@ -40,7 +40,7 @@ from modefront.optim.lexicographic import EXACT, TIE
 from modefront.optim.problem import AT_BOUND, DISTINCT, Evaluation, Problem, SpentError, Wrapped
 from modefront.optim.qp import HALVINGS
 from modefront.optim.scalarisation import Scalarisation
-from modefront.optim.sqp import GOOD, Options
+from modefront.optim.sqp import GOOD, SADDLE, Options
 from modefront.work.codec import record
 from modefront.work.progress import note
 
@@ -63,10 +63,6 @@ SPEND = 10  # evaluations for the manifolds of a programme, over the number of m
 FLAT = 1e-5
 """Eigenvalue of B over the greatest one, below which a direction may be flat: more than what the
 distance from the manifold leaves."""
-
-TURNING = 1e-3
-"""Eigenvalue of G over the greatest one of B, from which residuals turn in a direction of the null
-space of B; up to `UNCHANGED` none changes there. Slopes of residuals are its roots."""
 
 ARRIVED = Options().step  # correction in u below which a point lies on the manifold
 
@@ -154,13 +150,16 @@ class Context:
         return B + dJ.T @ self.programme.hessian(J) @ dJ if evaluation.exact else B
 
     def tangents(self, evaluation: Evaluation) -> Floats:
-        """Return a basis (p, .) of the null space of B, without what is weakly determined."""
+        """Return a basis (p, .) of the null space of B, without what is weakly determined.
+
+        There residuals do not change in it, or turn clearly: their slopes are roots of those of G.
+        """
         N = np.eye(self.held.size)[:, ~self.held]
         lam, V = np.linalg.eigh(N.T @ self._across(evaluation) @ N)
         N = N @ V[:, np.abs(lam) <= FLAT * self.top]
         G = self._weighted(evaluation, evaluation.gauss_newton)
         gamma, V = np.linalg.eigh(N.T @ G @ N)
-        return N @ V[:, (gamma <= UNCHANGED * self.top) | (gamma >= TURNING * self.top)]
+        return N @ V[:, (gamma <= UNCHANGED * self.top) | (gamma >= SADDLE * self.top)]
 
     def corrected(self, start: TangentPoint, u: Floats, held: Bools) -> TangentPoint | None:
         """Return the point of the manifold next to u, to which a step from ``start`` led, or None.

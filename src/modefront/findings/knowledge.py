@@ -7,9 +7,16 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.findings.record import Finding, found
-from modefront.identifiability.combinations import NONE, WEAK, Combination, Determination, pairs
+from modefront.identifiability.combinations import (
+    NONE,
+    SAME,
+    WEAK,
+    Combination,
+    Determination,
+    pairs,
+    sparse_basis,
+)
 from modefront.identifiability.scale import Scale
-from modefront.identifiability.sparse import SAME, sparse_basis
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.inference import Freed, excluding
 
@@ -74,7 +81,7 @@ def free_in_words(
         return []
     if kept.shape[1] > MOST:
         return [f"{kept.shape[1]} combinations of parameters can have any values"]
-    whole = [x / scale.unit for x in (*(y.change for y in scale.scalings), scale.theta)]
+    whole = [x / scale.unit for x in (*scale.scalings.values(), scale.theta)]
     shares = np.array([combination.share for combination in combinations])
     V = np.array([combination.direction for combination in combinations])
 
@@ -143,11 +150,11 @@ def direction_in_words(v: Floats, names: Sequence[str], scale: Scale) -> str:
     ratio = powers if scale.positive[members].all() else amounts
     ratio = ratio / ratio[np.argmax(np.abs(ratio))]
     named = _named(members, ratio, names)
-    for scaling in scale.scalings:
-        whole = scaling.change / scale.unit
+    for of, change in scale.scalings.items():
+        whole = change / scale.unit
         along = v * (whole @ v) / (v @ v)
         if np.linalg.norm(whole - along) <= SAME * np.linalg.norm(whole):
-            return f"{named} can scale the {scaling.of} as a whole"
+            return f"{named} can scale the {of} as a whole"
     return f"{named} cannot be told apart"
 
 

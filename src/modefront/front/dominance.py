@@ -1,17 +1,24 @@
-"""Which points are Pareto optimal among the points of a set."""
+"""Which models are Pareto optimal among those of a set, and which points are different."""
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from modefront._typing import Bools, Floats
+from modefront.optim.lexicographic import TIE
+from modefront.optim.sqp import Solution
 
 TRADE = 1e-9
 """Loss in one objective, over the gain in another one, that counts as none: no proper trade-off."""
 
-SAME = 1e-6  # gain in an objective, over its range, that counts as none: solvers leave as much
+COPY = 10 * TIE
+"""Distance of two points, over the ranges of the objectives, below which they are copies."""
+
 BLOCK = 1_000_000  # differences of objectives that are held at once
 
 
-def nondominated(J: Floats, tolerance: float = SAME, scale: Floats | None = None) -> Bools:
+def nondominated(J: Floats, tolerance: float = TIE, scale: Floats | None = None) -> Bools:
     """Return which rows of J (points, n) no other row dominates, equation (4).
 
     A row dominates another one if it is nowhere greater and somewhere less. So that two results of
@@ -33,7 +40,7 @@ def nondominated(J: Floats, tolerance: float = SAME, scale: Floats | None = None
     return undominated(J, J, scale, tolerance)
 
 
-def undominated(J: Floats, known: Floats, scale: Floats, tolerance: float = SAME) -> Bools:
+def undominated(J: Floats, known: Floats, scale: Floats, tolerance: float = TIE) -> Bools:
     """Return which rows of J (points, n) no row of ``known`` (models, n) dominates.
 
     Gains and losses count as in `nondominated`; ``scale`` (n,) are the ranges of the objectives.
@@ -52,4 +59,40 @@ def undominated(J: Floats, known: Floats, scale: Floats, tolerance: float = SAME
         loss, gain = apart.max(axis=2), -apart.min(axis=2)
         dominates = (gain > tolerance) & (loss <= np.minimum(tolerance, TRADE * gain))
         out[chunk] = ~dominates.any(axis=0)
+    return out
+
+
+class Archive:
+    """The models that no other evaluated model dominates, with their objectives ``J`` (., n).
+
+    They are in the order in which they were evaluated; of equal ones the last is there.
+    """
+
+    def __init__(self, objectives: int) -> None:
+        self.models: list[Any] = []
+        self.J: Floats = np.zeros((0, objectives))
+
+    def add(self, J: Floats, model: Any) -> None:
+        """Keep a model unless another one dominates it, and drop those that it dominates."""
+        dominating = (self.J <= J).all(axis=1) & (self.J < J).any(axis=1)
+        if not np.isfinite(J).all() or dominating.any():
+            return
+        kept = (self.J < J).any(axis=1)
+        if not kept.all():
+            self.models = [self.models[k] for k in np.flatnonzero(kept)]
+        self.models.append(model)
+        self.J = np.vstack([self.J[kept], J])
+
+
+def distinct_points(points: Sequence[Solution], scale: Floats) -> list[Solution]:
+    """Return points of a front, each once: objectives over ``scale`` (n,) tell copies apart."""
+    out: list[Solution] = []
+    J = np.zeros((len(points), scale.size))  # of those that are kept
+    for x in points:
+        same = np.flatnonzero((np.abs(J[: len(out)] - x.J) <= COPY * scale).all(axis=1)).tolist()
+        if not same:
+            J[len(out)] = x.J
+            out.append(x)
+        elif x.converged and not out[same[0]].converged:
+            out[same[0]], J[same[0]] = x, x.J
     return out

@@ -27,8 +27,7 @@ from modefront.work.task import IMMEDIATE, Task
 class Gap:
     """A gap of the front."""
 
-    last: Solution  # last, first: the points of the front before the gap and behind it
-    first: Solution
+    middle: float  # first objective in the middle of it
     end: Solution | None  # where the branch before it ends; None where that is not known
     start: Solution | None  # where the branch behind it starts; None where that is not known
 
@@ -36,11 +35,6 @@ class Gap:
     def ends(self) -> list[Solution]:
         """The end and the start, as far as they are known."""
         return [solution for solution in (self.end, self.start) if solution is not None]
-
-    @property
-    def middle(self) -> float:
-        """The first objective in the middle of the gap."""
-        return float((self.end or self.last).J[0] + (self.start or self.first).J[0]) / 2
 
 
 def gaps(
@@ -78,7 +72,7 @@ def gaps(
             if not any(known) or np.abs((own.J - beyond.J) / scale).max() <= RHO:
                 continue  # the branch goes on to the other side
             end, start = (end, None) if known[0] else (None, start)
-        out.append(Gap(last, first, end, start))
+        out.append(Gap(float((end or last).J[0] + (start or first).J[0]) / 2, end, start))
     return out
 
 
@@ -122,11 +116,10 @@ def branches_of(
     """Return the optimal points of each branch of a front, with its ends at gaps."""
     J = np.array([solution.J for solution in points])
     number = branch_numbers(J, optimal, gaps)
+    ends = [None, *(end for gap in gaps for end in (gap.end, gap.start)), None]
     out = []
-    for k in range(len(gaps) + 1):
-        start = gaps[k - 1].start if k else None
-        end = gaps[k].end if k < len(gaps) else None
-        within = (points[i] for i in np.flatnonzero(number == k + 1).tolist())
+    for k, (start, end) in enumerate(zip(ends[::2], ends[1::2], strict=True), 1):
+        within = (points[i] for i in np.flatnonzero(number == k).tolist())
         out.append([solution for solution in (start, *within, end) if solution is not None])
     return out
 

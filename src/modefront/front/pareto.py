@@ -9,6 +9,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import UnfinishedError
+from modefront.front.dominance import distinct_points
 from modefront.front.front import Edge, Front
 from modefront.front.gaps import Gap, gaps
 from modefront.front.methods import METHODS, evolve_front
@@ -17,9 +18,8 @@ from modefront.front.point import Kind, Point, label
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.starts import SURE, Starts
-from modefront.front.search import EDGES, POINTS, Loop, Proposer, Search, at, evaluated
+from modefront.front.search import EDGES, POINTS, Place, Proposer, Search, State, at, evaluated
 from modefront.front.simplex import Payoff, default_points, is_flat, lattice, nearest, payoff
-from modefront.front.state import Place, State, distinct_points
 from modefront.front.subproblems import LOOSE, LatticePoint, Least, Weights, near_best, sample
 from modefront.front.weights import accepted, iterate_weights, least_along
 from modefront.optim.lexicographic import EXACT, TIE
@@ -70,14 +70,13 @@ class _Run:
         self.n, self.sizes = len(self.problem.objectives), np.zeros(0)
         named = [(Kind.GIVEN, name, w) for name, w in self.given]
         self.weighted = [*named, (Kind.EQUAL, "", np.ones(self.n))]
-        self.state, self.cut = State(self.problem, self.search.tolerance, self.work), False
+        self.state, self.cut = State(self.problem, self.search, self.work), False
         rng = np.random.default_rng(seed_sequence(self.seed, "search"))
         self.children = np.random.default_rng(seed_sequence(self.seed, "evolution"))
         names, edges = self.problem.objectives, self.known.edges if self.known else ()
         pairs = zip(names, edges, strict=False)
         again: dict[Key, Sequence[Solution]] = {("edge", x): edge.minima for x, edge in pairs}
         self.starts = Starts(rng, again if self.known else None)
-        self.loop = Loop(self.state, self.search)
 
     def front(self) -> Front:
         """Return all that is found."""
@@ -101,8 +100,9 @@ class _Run:
             extent = (options.population, options.evaluations)
             evolved = evolve_front(self.problem, options.method, *extent, rng, self._needed)
         bests = self._reported("last")
-        optimal = self._optimal(bests, evolved or self._points(target, bests)[0])
-        arguments = (self.problem, self.a, sizes, self._weighted()[-1].solution)
+        programme = LogSum(self.a, vanishing=EXACT * sizes)
+        optimal = self._optimal(programme, bests, evolved or self._points(target, bests)[0])
+        arguments = (self.problem, programme, self._weighted()[-1].solution)
         (iterated,) = self._run([Task(("iterated-weights",), iterate_weights, arguments)])
         # At the budget, no search has started from some incumbents.
         rest = [x for x in self.state.places if not x.incumbent.evaluation.derivatives]
@@ -114,8 +114,12 @@ class _Run:
         points, places, beta = self._points(target, bests)
         edges, weighted = self._edges(), self._weighted()
         weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
-        method, ends = self.options.method, zip(self.problem.objectives, bests, strict=True)
+        ends = zip(self.problem.objectives, bests, strict=True)
+        method, between = options.method, list[Gap]()
         along = [Point(Kind.FRONT, x, method, i + 1) for i, x in enumerate(evolved or points)]
+        if self.n == 2 and target is not None and len(points) > 1 and method == "nbi":
+            bounded = options.programme == "bounds"
+            between = gaps(self.problem, points, target, bounded, self._run)
         return Front(
             method,
             [*along, *(Point(Kind.EDGE, x, name) for name, x in ends), *weighted],
@@ -124,7 +128,7 @@ class _Run:
             iterated,
             tuple(edge.best.J[i] <= EXACT * sizes[i] for i, edge in enumerate(edges)),
             target,
-            self._gaps(points, target),
+            between,
             beta,
             places,
             self.state.archive.J,
@@ -140,14 +144,14 @@ class _Run:
         """
         evolution = () if self.known else (Evolution(self.children, self.starts.unseen, not more),)
         polish = Polish()
-        self.loop.run(stage, (polish, *more, *evolution), share)
-        self.loop.run(stage, (polish,), (1 + share) / 2)
+        self.state.search(stage, (polish, *more, *evolution), share)
+        self.state.search(stage, (polish,), (1 + share) / 2)
 
     def _open(self) -> tuple[str, ...]:
         """Return what the search had not finished at its budget, as labels; once for all points."""
         names: dict[Key, str] = {("edge", x): label(Kind.EDGE, x) for x in self.problem.objectives}
         names |= {("weights", k.value, x): label(k, x) for k, x, _ in self.weighted}
-        left = self.loop.open | {x.subproblem.key for x in self.state.places if not x.closed}
+        left = self.state.open | {x.subproblem.key for x in self.state.places if not x.closed}
         more = ("points between the edges",) * bool(left - names.keys())
         more += ("what follows from the points",) * self.cut
         return (*(text for key, text in names.items() if key in left), *more)
@@ -164,7 +168,7 @@ class _Run:
         outcomes = self.state.run(tasks, most)
         for outcome in outcomes:
             self.cut |= outcome.spent
-            self.state.tell(-1, None, outcome)
+            self.state.tell(None, None, outcome)
         return [outcome.result for outcome in outcomes]
 
     def _sizes(self) -> Floats:
@@ -294,7 +298,7 @@ class _Run:
             if self.known:
                 out.append(replace(self.known.edges[k], best=place.incumbent, minima=minima))
                 continue
-            rare = known.hits(place, self.state.tolerance) < SURE
+            rare = known.hits(place, self.search.tolerance) < SURE
             doubtful = rare and known.unseen() >= self.search.doubt
             out.append(Edge(place.incumbent, minima, known.tries, len(known.ends), doubtful))
         return out
@@ -335,21 +339,14 @@ class _Run:
             tasks.append(Task(("near", name), near_best, arguments, turn=("near", turn)))
         return [x or best for x, best in zip(self._run(tasks), bests, strict=True)]
 
-    def _gaps(self, points: Sequence[Solution], target: Payoff | None) -> Sequence[Gap]:
-        """Return the gaps of a front of two objectives."""
-        if self.n != 2 or target is None or len(points) < 2 or self.options.method != "nbi":
-            return []
-        bounded = self.options.programme == "bounds"
-        return gaps(self.problem, points, target, bounded, self._run)
-
-    def _optimal(self, bests: Sequence[Solution], points: Sequence[Solution]) -> list[Solution]:
+    def _optimal(
+        self, programme: LogSum, bests: Sequence[Solution], points: Sequence[Solution]
+    ) -> list[Solution]:
         """Return the regular minima of the optimally weighted residuals, each once, best first."""
-        problem, a, sizes = self.problem, self.a, self.sizes
-        starts = [x.solution for x in self._weighted()] + [*bests, *least_along(points, a, sizes)]
-        programme = LogSum(a, vanishing=EXACT * sizes)
+        starts = [x.solution for x in self._weighted()] + [*bests, *least_along(points, programme)]
         tasks = [
-            Task(("optimal-weights", k), solve, (problem, programme, x, TIGHT))
+            Task(("optimal-weights", k), solve, (self.problem, programme, x, TIGHT))
             for k, x in enumerate(starts, 1)
         ]
         minima = self.state.distinct(x for x in self._run(tasks) if x and x.converged)
-        return accepted(problem, minima, a, sizes)
+        return accepted(self.problem, minima, programme)

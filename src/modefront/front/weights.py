@@ -1,8 +1,9 @@
 """Weighted residuals with optimal weights, equation (8) (`docs/methods/weighted.md`).
 
-A minimum is accepted if it is regular itself, whatever is known of other models: no objective
-vanishes at it, and the second derivatives are positive in all directions in which residuals change
-and no bound holds it.
+What is minimised is I, minus infinity where an objective is fitted exactly, compared with its
+typical size. A minimum is accepted if it is regular itself, whatever is known of other models: I is
+finite, and its second derivatives are positive in all directions in which residuals change and no
+bound holds it.
 """
 
 from collections.abc import Sequence
@@ -10,62 +11,47 @@ from dataclasses import replace
 
 import numpy as np
 
-from modefront._typing import Floats
-from modefront.optim.lexicographic import EXACT
-from modefront.optim.problem import AT_BOUND, Evaluation, Problem
+from modefront.optim.problem import Evaluation, Problem, at_bounds
 from modefront.optim.scalarisation import LogSum, weighted
 from modefront.optim.sqp import Options, Solution, Status, solve
 
 UNCHANGED = 1e-12  # eigenvalue over the greatest one below which a direction changes no residual
 
 
-def regular(J: Floats, sizes: Floats) -> bool:
-    """Return whether no objective is fitted exactly, compared with its typical size."""
-    return bool((EXACT * sizes < J).all())
-
-
-def accepted(
-    problem: Problem, minima: Sequence[Solution], a: Floats, sizes: Floats
-) -> list[Solution]:
+def accepted(problem: Problem, minima: Sequence[Solution], programme: LogSum) -> list[Solution]:
     """Return the minima of I that are regular, best first; see the module."""
-    out = [x for x in minima if regular(x.J, sizes) and is_minimum(problem, x.evaluation, a)]
-    return sorted(out, key=lambda minimum: LogSum(a).value(minimum.J))
+    finite = [x for x in minima if np.isfinite(programme.value(x.J))]
+    out = [x for x in finite if is_minimum(problem, x.evaluation, programme)]
+    return sorted(out, key=lambda minimum: programme.value(minimum.J))
 
 
-def is_minimum(problem: Problem, evaluation: Evaluation, a: Floats) -> bool:
+def is_minimum(problem: Problem, evaluation: Evaluation, programme: LogSum) -> bool:
     """Return whether I has positive second derivatives in all directions that residuals determine.
 
     ``evaluation`` has second derivatives; where only a part of these is known, that is not tested.
     """
     if not evaluation.exact:
         return True
-    span = problem.upper - problem.lower
-    u = (evaluation.theta - problem.lower) / span
-    within = np.diag(span)[:, (u > AT_BOUND) & (u < 1 - AT_BOUND)]
-    w = a / evaluation.J
+    inside = at_bounds(evaluation.theta, problem.lower, problem.upper) == 0
+    within = np.diag(problem.upper - problem.lower)[:, inside]
+    J, dJ = evaluation.J, evaluation.dJ
+    w = programme.gradient(J)
     lam, V = np.linalg.eigh(within.T @ np.tensordot(w, evaluation.gauss_newton, axes=1) @ within)
     Q = within @ V[:, lam > UNCHANGED * lam.max(initial=0.0)]
-    second = np.tensordot(w, evaluation.H, axes=1) - evaluation.dJ.T @ (
-        (a / evaluation.J**2)[:, None] * evaluation.dJ
-    )
+    second = np.tensordot(w, evaluation.H, axes=1) + dJ.T @ programme.hessian(J) @ dJ
     return bool((np.linalg.eigvalsh(Q.T @ second @ Q) > 0).all())
 
 
-def least_along(points: Sequence[Solution], a: Floats, sizes: Floats) -> list[Solution]:
-    """Return the points of a front in their order next to which I is greater, or not regular."""
-    programme = LogSum(a)
-    J = [point.J for point in points]
-    values = [programme.value(row) if regular(row, sizes) else np.inf for row in J]
-    padded = [np.inf, *values, np.inf]
-    return [
-        point
-        for k, point in enumerate(points)
-        if np.isfinite(values[k]) and values[k] <= min(padded[k], padded[k + 2])
-    ]
+def least_along(points: Sequence[Solution], programme: LogSum) -> list[Solution]:
+    """Return the points of a front in their order next to which I is greater, or not finite."""
+    values = np.array([np.inf, *(programme.value(x.J) for x in points), np.inf])
+    values[~np.isfinite(values)] = np.inf
+    least = np.isfinite(values[1:-1]) & (values[1:-1] <= np.minimum(values[:-2], values[2:]))
+    return [points[k] for k in np.flatnonzero(least).tolist()]
 
 
 def iterate_weights(
-    problem: Problem, a: Floats, sizes: Floats, start: Solution, limit: int = 200
+    problem: Problem, programme: LogSum, start: Solution, limit: int = 200
 ) -> Solution | None:
     """Return the fixed point of w = a / J, from a start; None where an objective vanishes.
 
@@ -74,9 +60,9 @@ def iterate_weights(
     options = Options()
     evaluations, status = 0, Status.EXHAUSTED
     for _ in range(limit):
-        if not regular(start.J, sizes):
+        if not np.isfinite(programme.value(start.J)):
             return None
-        w = a / start.J
+        w = programme.gradient(start.J)
         solution = solve(problem, weighted(w / w.sum()), start, options)
         evaluations += solution.evaluations
         moved = (solution.theta - start.theta) / (problem.upper - problem.lower)

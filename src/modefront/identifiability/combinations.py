@@ -7,14 +7,16 @@ singular values hardly change any residual. With its columns scaled to length on
 G)}` (Brun, Reichert & Künsch 2001, doi:10.1029/2000WR900350, eq. 2; they call 10 to 20 critical).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
+import scipy.linalg
 
 from modefront._typing import Bools, Floats
 from modefront.identifiability.scale import Scale, scale_at
+from modefront.optim.lexicographic import TIE
 from modefront.optim.problem import Evaluation
 from modefront.options import Checked, number, whole
 from modefront.residuals.problem import UpdatingProblem
@@ -22,7 +24,8 @@ from modefront.residuals.problem import UpdatingProblem
 WEAK = 1e-2  # singular value over the greatest one, below which a combination is weakly determined
 
 ROUNDING = 1e-9
-"""Change of residuals over the measured values, for a unit of a parameter, that is rounding."""
+"""Change of residuals over the measured values, for a unit of a parameter, that is rounding, and
+difference of singular values over the greatest one."""
 
 CRITICAL = 10.0  # collinearity index from which parameters count as not told apart
 _LARGEST = 1e8  # greatest collinearity index; columns beyond it are parallel but for rounding
@@ -30,7 +33,9 @@ _LARGEST = 1e8  # greatest collinearity index; columns beyond it are parallel bu
 NONE = 1e-7
 """Singular value over the greatest one, below which a combination is not determined at all."""
 
-SHARE = number("a share from 0 to 1", least=0, most=1)
+SAME = 1e-3
+"""Difference of two parts of a direction, over its greatest part, below which they are equal."""
+
 STEP = number("a share of the ranges from 0.001 to 0.5", least=1e-3, most=0.5)
 
 
@@ -49,7 +54,7 @@ class Identifiability(Checked):
         0.5
     """
 
-    flat: Annotated[float, SHARE] = 0.01
+    flat: Annotated[float, number("a share from 0 to 1", least=0, most=1)] = 0.01
     models: Annotated[int, whole(0, 10**6)] = 100
     step: Annotated[float, STEP] = 0.05
 
@@ -164,10 +169,6 @@ def unchanged_groups(problem: UpdatingProblem) -> list[int]:
     return np.flatnonzero(still).tolist()
 
 
-EQUAL = 1e-9  # difference of singular values, over the greatest one, up to which they are equal
-TIE = 1e-6  # relative difference of components up to which they are equally great
-
-
 def decompose(G: Floats, least: float = 0.0) -> list[Combination]:
     """Return the combinations that a Jacobian (rows, parameters) determines, best first.
 
@@ -180,7 +181,7 @@ def decompose(G: Floats, least: float = 0.0) -> list[Combination]:
     padded = np.vstack([G, np.zeros((max(0, p - len(G)), p))])
     _, sigma, Vt = np.linalg.svd(padded, full_matrices=False)
     share = np.where(sigma > least, sigma, 0.0) / (sigma[0] if sigma[0] > 0 else 1.0)
-    starts = np.flatnonzero(np.diff(share, prepend=np.inf) < -EQUAL)
+    starts = np.flatnonzero(np.diff(share, prepend=np.inf) < -ROUNDING)
     Vt = np.concatenate([_told_apart(part) for part in np.split(Vt, starts[1:])])
     return [
         Combination(v, float(s), float(part)) for s, part, v in zip(sigma, share, Vt, strict=True)
@@ -212,6 +213,57 @@ def _told_apart(Vt: Floats) -> Floats:
 def _first_greatest(values: Floats) -> int:
     """Return the place of the greatest value, the first of those that rounding tells apart."""
     return int(np.argmax(values >= values.max() * (1 - TIE)))
+
+
+def sparse_basis(N: Floats, whole: Sequence[Floats], holds: Callable[[Floats], bool]) -> Floats:
+    """Return a basis of the span of the columns of N (p, d) of directions that are short in words.
+
+    First single parameters; then those of the directions ``whole`` (p,) that are in the span; then
+    pairs of parameters; the rest has as many zeros as elimination makes. ``holds`` tells whether a
+    simple direction is not determined indeed.
+    """
+    p, d = N.shape
+    Q = np.linalg.qr(N)[0]
+    outside = np.eye(p) - Q @ Q.T
+    alone = [j for j in range(p) if outside[j, j] <= SAME**2 and holds(np.eye(p)[j])]
+    basis = [np.eye(p)[j] for j in alone]
+    for direction in whole:
+        others = direction.copy()
+        others[alone] = 0.0
+        size = float(np.linalg.norm(others))
+        if size > 0 and np.linalg.norm(outside @ others) <= SAME * size and holds(others):
+            basis = _longer(basis, others / size)
+    for v in _pairs_within(outside, alone):
+        if len(basis) < d and holds(v):
+            basis = _longer(basis, v)
+    pivots = scipy.linalg.qr(Q.T, mode="r", pivoting=True)[1][:d]
+    eliminated = np.linalg.solve(Q[pivots].T, Q.T)
+    for row in sorted(eliminated, key=lambda row: int((np.abs(row) > SAME).sum())):
+        basis = _longer(basis, row / np.linalg.norm(row)) if len(basis) < d else basis
+    return np.array(basis).T
+
+
+def _longer(basis: list[Floats], v: Floats) -> list[Floats]:
+    """Return a basis with another direction of length 1, if that does not depend on it."""
+    longer = [*basis, v]
+    return longer if np.linalg.matrix_rank(np.array(longer), tol=SAME) == len(longer) else basis
+
+
+def _pairs_within(outside: Floats, alone: Sequence[int]) -> list[Floats]:
+    """Return the directions of two parameters that a projector (p, p) takes to nothing."""
+    p, out = len(outside), []
+    d = np.diag(outside)
+    # The lesser eigenvalue of two rows and columns, but for rounding, rules most pairs out at once.
+    mean, half = np.add.outer(d, d) / 2, np.subtract.outer(d, d) / 2
+    possible = np.triu(mean - np.hypot(half, outside) <= 2 * SAME**2, 1)
+    possible[list(alone)] = possible[:, list(alone)] = False
+    for i, j in np.argwhere(possible).tolist():
+        lam, V = np.linalg.eigh(outside[np.ix_([i, j], [i, j])])
+        if lam[0] <= SAME**2:
+            v = np.zeros(p)
+            v[[i, j]] = V[:, 0] * np.sign(V[np.argmax(np.abs(V[:, 0])), 0])
+            out.append(v)
+    return out
 
 
 LEAST = 1e-3  # root of the mean square of residuals that no measurement is taken to be better than
@@ -252,3 +304,57 @@ def determination(problem: UpdatingProblem, evaluation: Evaluation) -> Determina
     H = np.tensordot(weights, evaluation.gauss_newton, axes=1)
     effects = H / 2 * np.outer(unit, unit)
     return Determination(scale, idle, of, effects)
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """Sensitivities of the measured modes to each parameter.
+
+    Parameters with 0 among their values are changed by a hundredth of their range instead of one
+    percent.
+    """
+
+    parameters: tuple[str, ...]  # names
+    modes: tuple[int, ...]  # measured modes
+    frequency: Floats  # (parameters, modes) percent of the frequency for a percent of the parameter
+    # (parameters,) percent of all shapes together, at the sensors and without the change of scale
+    shape: Floats
+    superfluous: tuple[str, ...]  # parameters to fix, so that the data determine the others
+
+
+def sensitivities(problem: UpdatingProblem) -> Sensitivities:
+    """Return the sensitivities at the nominal parameters.
+
+    Raises ModelError where the model has no modes there.
+    """
+    modes, pairs = problem.modes(problem.start)
+    unit = np.where(problem.lower > 0, problem.start, problem.upper - problem.lower)
+    slopes = modes.dfrequency[pairs.index].T * unit[:, None]
+    phi, dphi = modes.phi[:, pairs.index], modes.dphi[:, pairs.index] * unit
+    with np.errstate(divide="ignore", invalid="ignore"):
+        frequency = slopes / modes.frequency[pairs.index]
+        phi = phi / np.linalg.norm(phi, axis=0)
+        dphi = dphi / np.linalg.norm(modes.phi[:, pairs.index], axis=0)[:, None]
+    frequency, phi, dphi = (np.where(np.isfinite(x), x, 0.0) for x in (frequency, phi, dphi))
+    across = dphi - phi[:, :, None] * np.einsum("sr,srj->rj", phi, dphi)
+    names, fixed = problem.model.parameters, superfluous(problem, problem.evaluate(problem.start))
+    shape = np.linalg.norm(across, axis=(0, 1))
+    return Sensitivities(names, problem.data.modes, frequency, shape, fixed)
+
+
+def superfluous(problem: UpdatingProblem, nominal: Evaluation) -> tuple[str, ...]:
+    """Return the parameters with an effect of which the others leave least at the nominal model.
+
+    Without them no combination is hardly determined (singular value below 1 % of the greatest).
+    """
+    scale, names = scale_at(problem, problem.start), problem.model.parameters
+    idle = without_effect(problem, nominal, scale)
+    roots = np.sqrt(optimal_weights(problem.properties, nominal.J))
+    residuals = zip(roots, nominal.residuals, strict=True)
+    G = np.concatenate([w * residual.dr for w, residual in residuals]) * scale.unit
+    kept = np.setdiff1d(np.flatnonzero(G.any(axis=0)), idle)
+    chosen = kept[scipy.linalg.qr(G[:, kept], mode="r", pivoting=True)[1]].tolist()
+    out: list[str] = []
+    while len(chosen) > 1 and decompose(G[:, chosen])[-1].share < WEAK:
+        out.append(names[chosen.pop()])
+    return tuple(out)

@@ -14,7 +14,6 @@ A combination of parameters that scales all of K or all of M is looked for in th
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 from weakref import ref
 
 import numpy as np
@@ -35,23 +34,14 @@ SINGULAR = 1e-13
 """Eigenvalue of K with a unit diagonal, over the greatest and their number, that is rounding."""
 
 WHOLE = 1e-6
-"""Remainder of a matrix, over all of it, below which a combination of parameters scales it."""
-
-RANK = 1e-6
-"""Singular value of the derivatives of K and M, over the greatest, below which they depend."""
+"""Remainder of a matrix, over all of it, below which a combination of parameters scales it, and
+singular value of the derivatives of K and M, over the greatest, below which they depend."""
 
 RIGID = 1e-3  # frequency over the greatest one below which a measured mode is one of a rigid body
 SETTLED = 1e-3  # relative change of an eigenvalue at which power iteration ends
 
 SHIFT = 1e-3
 """Share of the least measured eigenvalue that is added to a K with rigid-body modes, times M."""
-
-
-class Scaling(NamedTuple):
-    """A change of the parameters that scales matrices as a whole."""
-
-    of: str  # "stiffness matrix", "mass matrix", or both
-    change: Floats  # (p,) change of theta for a factor of e, to first order
 
 
 @dataclass(frozen=True)
@@ -65,9 +55,29 @@ class Scale:
     model: MatrixModel | None = None
 
     @cached_property
-    def scalings(self) -> list[Scaling]:
-        """Changes that scale matrices as a whole, looked for when they are first asked for."""
-        return whole_scalings(self.model, self.theta, self.unit) if self.model else []
+    def scalings(self) -> dict[str, Floats]:
+        """Changes (p,) of the parameters for a factor of e of the whole K, M, or both, by its name.
+
+        Of several that do, to first order, it is the one nearest to theta, in units. They are
+        looked for when they are first asked for.
+        """
+        theta, unit, model = self.theta, self.unit, self.model
+        if model is None:
+            return {}
+        (RK, K), (RM, M) = (_rows(matrix, theta) for matrix in (model.stiffness, model.mass))
+        both = np.vstack([RK, RM])
+        scaled = {
+            "stiffness matrix": (K, 0 * M),
+            "mass matrix": (0 * K, M),
+            "stiffness matrix and the mass matrix": (K, M),
+        }
+        out = {}
+        for of, parts in scaled.items():
+            b = np.concatenate(parts)
+            y = theta + unit * np.linalg.lstsq(both * unit, b - both @ theta, rcond=WHOLE)[0]
+            if np.linalg.norm(both @ y - b) <= WHOLE * np.linalg.norm(b):
+                out[of] = y
+        return out
 
 
 def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
@@ -182,27 +192,6 @@ def _diagonals(matrix: DenseAffine | SparseAffine) -> Floats:
     if isinstance(matrix, DenseAffine):
         return np.asarray(np.einsum("tii->it", matrix.terms))
     return np.asarray(matrix.diagonals.toarray())
-
-
-def whole_scalings(model: MatrixModel, theta: Floats, unit: Floats) -> list[Scaling]:
-    """Return the changes of the parameters that scale K, M, or both as a whole, if there are any.
-
-    Of several that do, it is the one nearest to theta, in units (parameters,).
-    """
-    (RK, K), (RM, M) = (_rows(matrix, theta) for matrix in (model.stiffness, model.mass))
-    both = np.vstack([RK, RM])
-    scaled = {
-        "stiffness matrix": (K, 0 * M),
-        "mass matrix": (0 * K, M),
-        "stiffness matrix and the mass matrix": (K, M),
-    }
-    out = []
-    for of, parts in scaled.items():
-        b = np.concatenate(parts)
-        y = theta + unit * np.linalg.lstsq(both * unit, b - both @ theta, rcond=RANK)[0]
-        if np.linalg.norm(both @ y - b) <= WHOLE * np.linalg.norm(b):
-            out.append(Scaling(of, y))
-    return out
 
 
 def _rows(matrix: DenseAffine | SparseAffine, theta: Floats) -> tuple[Floats, Floats]:

@@ -8,7 +8,13 @@ maximum counts, the weights w of the objectives and the Hessian of the Lagrangia
     B = \sum_i w_i H_i + \partial J^T f'' \partial J .
 
 :math:`H_i` is taken with or without the part S besides Gauss-Newton's, whichever predicted the last
-step better; what a problem does not know of S is learned (`modefront.optim.second`).
+step better. What a problem does not know of S is learned: a step s tells that
+
+.. math:: S s = y, \qquad y = \partial J(\theta + s) - \partial J(\theta) - H(\theta + s)\, s .
+
+The least symmetric change makes it so (Powell's; Dennis & Schnabel, *Numerical Methods for
+Unconstrained Optimization*, 1983, section 9.2). Before, S is sized, as it vanishes with the
+residuals (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965), unless H knows nothing.
 
 Steps solve a quadratic programme within a box, the trust region (`modefront.optim.qp`), and are
 judged by the augmented Lagrangian (`modefront.optim.linearised`, which has the other symbols). In a
@@ -30,7 +36,6 @@ from modefront.optim.linearised import PENALTY, Linearised, UnitBox, augmented
 from modefront.optim.problem import DISTINCT, Evaluation, Problem, room
 from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
-from modefront.optim.second import learned_from
 from modefront.work.codec import record
 from modefront.work.progress import note_iteration
 
@@ -40,8 +45,8 @@ longer: the usual values (Nocedal & Wright, *Numerical Optimization*, 2006, algo
 reduction is taken, as a derivative costs as much."""
 
 SADDLE = 1e-3
-"""Negative curvature, over the greatest one, above which a stationary point is left again, and
-slope, over that, up to which a bound does not hold a variable on the way."""
+"""Curvature, over the greatest one, that is clearly some: where it is negative, a stationary point
+is left again. A bound does not hold a variable up to that slope on the way."""
 
 
 @record
@@ -223,6 +228,21 @@ def solve(
                 radius = min(2 * radius, 1.0)
         else:
             radius, rejected = far / 4, True
+
+
+def learned_from(S: Floats, before: Evaluation, after: Evaluation) -> Floats:
+    """Return S (n, p, p) with what the difference of two evaluations tells of it."""
+    s = after.theta - before.theta
+    if not s.any():
+        return S
+    y = after.dJ - before.dJ - after.H @ s
+    claimed = np.abs(S @ s @ s)
+    size = np.minimum(np.abs(y @ s), claimed) / np.where(claimed > 0, claimed, 1.0)
+    size[~after.H.any(axis=(1, 2))] = 1.0
+    S = size[:, None, None] * S
+    v, u = y - S @ s, s / (s @ s)
+    vu = v[:, :, None] * u
+    return np.asarray(S + vu + vu.transpose(0, 2, 1) - (v @ s)[:, None, None] * np.outer(u, u))
 
 
 def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:

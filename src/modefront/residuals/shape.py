@@ -154,8 +154,8 @@ class ShapeResiduals:
             X, dX = modes.phi[places] / unit[:, None], modes.dphi[places] / unit[:, None, None]
             if inverse is not None:
                 psi, X, dX = inverse @ psi, inverse @ X, np.tensordot(inverse, dX, 1)
-            fit = _fitted(X[None], dX[None], psi[None])
-            projection, dprojection = fit.r[0] + psi, fit.dr[0]
+            _, _, (r0,), (dprojection,) = _fitted(X[None], dX[None], psi[None])
+            projection = r0 + psi
             w, s, ds = 1.0, 1.0, np.zeros(dX.shape[-1])
             if relative:
                 a = psi @ psi
@@ -223,20 +223,18 @@ class ShapeResiduals:
 
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, (rows, p), which are 0 of a shape that is."""
-        fit, _ = self._fit(modes, pairs)
-        return fit.r[self.rows.there], fit.dr[self.rows.there]
+        _, _, _, r, dr = self._fit(modes, pairs)
+        return r[self.rows.there], dr[self.rows.there]
 
     def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, base.Curvature]:
         """Return these and what is needed of second derivatives."""
-        fit, dX = self._fit(modes, pairs)
-        of_dX = (fit.r[:, None] @ dX.reshape(*fit.r.shape, -1)).reshape(-1, dX.shape[3])
-        v, own = np.zeros(modes.phi.shape), 2 * of_dX.T @ fit.dc.reshape(of_dX.shape)
-        rows, r = self.rows, fit.r
-        if rows.inverse is not None:
-            r = np.einsum("rab,ra->rb", rows.inverse, r)
-        np.add.at(v, self._places(pairs), 2 * (rows.weight * r)[:, :, None] * fit.c[:, None])
+        rows, (dX, c, dc, r, dr) = self.rows, self._fit(modes, pairs)
+        of_dX = (r[:, None] @ dX.reshape(*r.shape, -1)).reshape(-1, dX.shape[3])
+        v, own = np.zeros(modes.phi.shape), 2 * of_dX.T @ dc.reshape(of_dX.shape)
+        turned = r if rows.inverse is None else np.einsum("rab,ra->rb", rows.inverse, r)
+        np.add.at(v, self._places(pairs), 2 * (rows.weight * turned)[:, :, None] * c[:, None])
         curvature = base.Curvature(np.zeros(modes.lam.size), v, own + own.T)
-        return fit.r[rows.there], fit.dr[rows.there], curvature
+        return r[rows.there], dr[rows.there], curvature
 
     def _places(self, pairs: Pairs) -> tuple[Ints, Ints]:
         """Return sensors and model modes of the entries of X, (shapes, components, m)."""
@@ -250,20 +248,11 @@ class ShapeResiduals:
             return out
         return (inverse @ out.reshape(*out.shape[:2], -1)).reshape(out.shape)
 
-    def _fit(self, modes: Modes, pairs: Pairs) -> "tuple[_Fit, Floats]":
-        """Return the fit, and dX (shapes, components, m, p)."""
+    def _fit(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """Return dX (shapes, components, m, p), and what `_fitted` does."""
         places = self._places(pairs)
         dX = self._over(modes.dphi[places])
-        return _fitted(self._over(modes.phi[places]), dX, self.rows.psi), dX
-
-
-class _Fit(NamedTuple):
-    """Fits X c of shapes: c (shapes, m), r = X c - psi (shapes, components), and by parameters."""
-
-    c: Floats
-    dc: Floats
-    r: Floats
-    dr: Floats
+        return dX, *_fitted(self._over(modes.phi[places]), dX, self.rows.psi)
 
 
 def _inverse(X: Floats) -> Floats:
@@ -274,15 +263,15 @@ def _inverse(X: Floats) -> Floats:
     return np.divide(X, b, out=np.zeros(X.shape), where=b > 0).transpose(0, 2, 1)
 
 
-def _fitted(X: Floats, dX: Floats, psi: Floats) -> _Fit:
-    """Return the fits of psi (shapes, components) by X (shapes, components, m)."""
+def _fitted(X: Floats, dX: Floats, psi: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return c (shapes, m) of the fits X c of psi (shapes, components), dc, r = X c - psi, dr."""
     inverse, (n, rows, m, p) = _inverse(X), dX.shape
     c = inverse @ psi[:, :, None]
     r = X @ c - psi[:, :, None]
     along = (c.transpose(0, 2, 1)[:, None] @ dX)[:, :, 0]
     turned = (r.transpose(0, 2, 1) @ dX.reshape(n, rows, -1)).reshape(n, m, p)
     dc = -inverse @ (along + inverse.transpose(0, 2, 1) @ turned)
-    return _Fit(c[:, :, 0], dc, r[:, :, 0], along + X @ dc)
+    return c[:, :, 0], dc, r[:, :, 0], along + X @ dc
 
 
 @dataclass(frozen=True)

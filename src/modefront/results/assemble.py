@@ -1,6 +1,5 @@
 """A front, its analysis, and what the posterior says of the parameters, as one dataset."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -37,18 +36,16 @@ TRUST = ("determined", "partly", "not determined")  # what the data say of a par
 
 
 def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> ArrayDataset:
-    """Return a front and its analysis as a dataset with names, units and meanings."""
-    front = replace(front, points=[*front.points, *analysis.points])
+    """Return a front, with all points that are reported, and its analysis as a dataset."""
     reported = [front.reference, *of_kind(front.points, Kind.EDGE)]
     determined = [(x.label, determination(problem, x.solution.evaluation)) for x in reported]
     boundary = METHODS[front.method].programme == "boundary"
     parts = dict.fromkeys((Kind.IDENTIFIABLE, Kind.IDENTIFIABLE_EDGE), "identifiable")
     parts[Kind.FRONT] = "whole" if boundary else ""
-    part = analysis.identifiable
     values = _points(problem, front, analysis) | _minima(problem, front)
     values |= _branches(problem, front) | lattice_values(front)
     values["front_part"] = [parts.get(point.kind, "") for point in front.points]
-    values["flat"] = part.flat if part else np.zeros(len(problem.objectives), dtype=int)
+    values["flat"] = analysis.identifiable.flat
     values |= _identifiability(determined) | _equivalent(analysis)
     values |= _scatter(problem, front, analysis) | _posterior(front, analysis)
     values |= _replicates(problem, front, analysis)

@@ -74,11 +74,9 @@ def _search(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
 
 def _flat(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Iterator[Finding]:
     part = analysis.identifiable
-    if part is None:
-        return
     total = len(of_kind(front.points, Kind.FRONT))
     said: dict[str, Any] = {"points": total, "tolerance": 100 * analysis.tolerance}
-    then: dict[str, Any] = {"then": "" if part.points else "; without them it is one point"}
+    then: dict[str, Any] = {"then": "" if part.target else "; without them it is one point"}
     for kind, counts, more in (("flat", part.flat, then), ("uncut", part.uncut, {})):
         for name, count in zip(problem.objectives, counts.tolist(), strict=True):
             if count:

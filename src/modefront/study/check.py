@@ -26,8 +26,14 @@ from modefront.diagnosis.search import diagnose
 from modefront.errors import Fault, ModelError, refuse
 from modefront.findings import knowledge
 from modefront.findings.record import Finding, Severity, found
-from modefront.identifiability.combinations import NONE, WEAK, determination, unchanged_groups
-from modefront.identifiability.sensitivity import Sensitivities, sensitivities
+from modefront.identifiability.combinations import (
+    NONE,
+    WEAK,
+    Sensitivities,
+    determination,
+    sensitivities,
+    unchanged_groups,
+)
 from modefront.inputs import available_memory
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel

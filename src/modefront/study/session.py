@@ -28,8 +28,11 @@ from modefront.front.options import Pareto, ParetoOptions, Weighted
 from modefront.front.pareto import pareto_front
 from modefront.front.point import Kind, Point
 from modefront.front.search import Search
-from modefront.identifiability.combinations import Identifiability, unchanged_groups
-from modefront.identifiability.sensitivity import superfluous
+from modefront.identifiability.combinations import (
+    Identifiability,
+    superfluous,
+    unchanged_groups,
+)
 from modefront.inputs import wrong
 from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished, write_text
@@ -223,9 +226,9 @@ def worked(study: Study, work: Run) -> Dataset:
     options = study.pareto, study.identifiability, study.uncertainty
     analysis = analyse_front(problem, front, *options, seed, work)
     (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
-    analysis = replace(analysis, points=[*analysis.points, Point(Kind.NOMINAL, given(nominal))])
-    certify(problem, [point.solution for point in analysis.points], work)
-    data = dataset(problem, front, analysis)
+    more = [*analysis.identifiable.points, Point(Kind.NOMINAL, given(nominal))]
+    certify(problem, [point.solution for point in more], work)
+    data = dataset(problem, replace(front, points=[*front.points, *more]), analysis)
     theta, paired = data["theta"].values, data["paired_mode"].values
     # A refined front has further points: what is kept is that of the points before.
     mark = hashlib.sha256(theta.tobytes() + paired.tobytes()).hexdigest()[:16]

@@ -102,8 +102,8 @@ def _again(
         best = solve(problem, weighted(edge_weights(role.objective, sizes)), start)
         if role.kind != "level" or not best.feasible:
             return best
-        is_own = np.arange(sizes.size) == role.objective
-        sizes = np.where(is_own, sizes, 1 / point.solution.weights)  # as it was solved with
+        others = np.arange(sizes.size) != role.objective  # as it was solved with
+        sizes = np.divide(1, point.solution.weights, out=sizes.copy(), where=others)
         return near_best(problem, best, role.objective, role.tolerance, sizes, [start])
     target = payoff([solved[label] for label in role.ends], sizes, role.worst)
     beta = point.solution.beta

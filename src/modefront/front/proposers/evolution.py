@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.front.search import USUAL, Offer, evaluate_all
-from modefront.front.state import Outcome, State
+from modefront.front.search import USUAL, Offer, Outcome, State, evaluate_all
 
 INDEX = 20.0  # distribution index of mutations: the usual value
 
@@ -38,7 +37,7 @@ class Evolution:
 
     def learn(self, state: State, _: Offer, __: Outcome, gain: float) -> None:
         """Count the generation."""
-        self.idle = 0 if gain > state.tolerance else self.idle + 1
+        self.idle = 0 if gain > state.limits.tolerance else self.idle + 1
 
     def _children(self, state: State) -> Floats:
         """Return the parameters of a generation, (children, p)."""

@@ -6,8 +6,7 @@ from itertools import islice
 
 import numpy as np
 
-from modefront.front.search import Offer, solve_from
-from modefront.front.state import Outcome, State
+from modefront.front.search import Offer, Outcome, State, solve_from
 from modefront.front.subproblems import LatticePoint
 from modefront.work.task import Key
 
@@ -30,25 +29,25 @@ class Polish:
     def offers(self, state: State, most: int) -> Iterator[Offer]:
         """Yield the searches from incumbents that are open, the nearest first."""
         spread = state.orders.spread(np.array([x.incumbent.J for x in state.places]))
-        nearest_first = np.argsort(spread, kind="stable").tolist()
-        for k in [k for k in nearest_first if not state.places[k].closed][:most]:
-            place = state.places[k]
-            yield solve_from(k, place, place.incumbent, 1.0)
-        pairs = [(k, x.incumbent, x.subproblem) for k, x in enumerate(state.places)]
-        met = [x for _, x, of in pairs if isinstance(of, LatticePoint) and of.met(x)]
+        nearest_first = [state.places[k] for k in np.argsort(spread, kind="stable")]
+        for place in [x for x in nearest_first if not x.closed][:most]:
+            yield solve_from(place, place.incumbent, 1.0)
+        points = [(x, x.subproblem) for x in state.places if isinstance(x.subproblem, LatticePoint)]
+        met = [x.incumbent for x, of in points if of.met(x.incumbent)]
         J = np.array([x.J for x in met]).reshape(-1, len(state.problem.objectives))
-        for k, x, of in pairs:
-            if isinstance(of, LatticePoint) and state.places[k].closed and not of.met(x):
+        for place, of in points:
+            if place.closed and not of.met(place.incumbent):
                 nearest = [met[m] for m in of.order.spread(J).argsort(kind="stable").tolist()]
                 chance, count = 1 / (self.idle + 2), 1
                 if of.equations:
                     chance, count = 1.0, J.shape[1]
                     nearest = nearest[:count]
                 new = (y for y in nearest if (of.key, y.theta.tobytes()) not in self._tried)
-                yield from (solve_from(k, state.places[k], y, chance) for y in islice(new, count))
+                yield from (solve_from(place, y, chance) for y in islice(new, count))
 
     def learn(self, state: State, offer: Offer, _: Outcome, gain: float) -> None:
         """Remember from which model a place was solved, and count what others have led to."""
-        self._tried.add((state.places[offer.place].subproblem.key, offer.start.theta.tobytes()))
+        if offer.place:
+            self._tried.add((offer.place.subproblem.key, offer.start.theta.tobytes()))
         if offer.chance < 1:
-            self.idle = 0 if gain > state.tolerance else self.idle + 1
+            self.idle = 0 if gain > state.limits.tolerance else self.idle + 1

@@ -19,8 +19,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.front.search import USUAL, Offer, at, solve_from
-from modefront.front.state import Outcome, Place, State
+from modefront.front.search import USUAL, Offer, Outcome, Place, State, at, solve_from
 from modefront.optim.sqp import Solution, Status
 from modefront.work.task import Key
 
@@ -88,11 +87,11 @@ class Starts:
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
         """Yield random starts of each place."""
-        for k, place in enumerate(state.places):
+        for place in state.places:
             known = self.of(place)
             if self.again is not None:
                 left = self.again.get(place.subproblem.key, ())[known.tries :]
-                yield from (solve_from(k, place, at(x.theta), 1.0) for x in left[:most])
+                yield from (solve_from(place, at(x.theta), 1.0) for x in left[:most])
                 continue
             known.thetas = known.thetas or [state.problem.start]
             while len(known.thetas) < known.tries + most:
@@ -102,23 +101,24 @@ class Starts:
                 u = (cells + self.rng.uniform(size=cells.shape)) / USUAL
                 known.thetas += list(state.problem.lower + state.span * u)
             for ahead in range(most):
-                chance = known.chance(place, state.tolerance, ahead)
+                chance = known.chance(place, state.limits.tolerance, ahead)
                 start = at(known.thetas[known.tries + ahead])
-                yield solve_from(k, place, start, chance, chance / (len(known.ends) + 1))
+                yield solve_from(place, start, chance, chance / (len(known.ends) + 1))
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
         """Count the start, and keep its minimum if it is new."""
-        place = state.places[offer.place]
+        place, tolerance = offer.place, state.limits.tolerance
+        assert place is not None, "starts are of places"
         known = self.of(place)
         known.tries += 1
-        known.gains += gain > state.tolerance
-        met = known.note(place, outcome.result, state.tolerance)
-        known.lost += not met and gain <= state.tolerance
+        known.gains += gain > tolerance
+        met = known.note(place, outcome.result, tolerance)
+        known.lost += not met and gain <= tolerance
 
     def unseen(self, state: State) -> float:
         """Return the chance that a start gains at most, of the places that have had some."""
         tried = [x for x in state.places if x.subproblem.key in self.minima]
-        return max(self.of(x).chance(x, state.tolerance) for x in tried) if tried else 0.0
+        return max(self.of(x).chance(x, state.limits.tolerance) for x in tried) if tried else 0.0
 
     def of(self, place: Place) -> Minima:
         """Return the minima of a subproblem."""
