@@ -42,7 +42,7 @@ def test_ascii_functions_are_read_with_either_exponent(tmp_path: Path, letter: s
     path = tmp_path / "a.uff"
     text = _ascii58(_values(letter), 9)
     path.write_text(text.replace("E+0", f"{letter}+0").replace("E-0", f"{letter}-0"))
-    (channel,) = read_uff(path).channels
+    (channel,) = read_uff(path)
     assert (channel.response, channel.reference, channel.quantity) == ("3Z", "7Z", "accelerance")
     assert channel.frequency == pytest.approx(1 + 0.5 * np.arange(9))
     assert channel.H == pytest.approx(-(np.arange(1, 19, 2) + 1j * np.arange(2, 20, 2)))
@@ -56,7 +56,7 @@ def test_binary_functions_are_read(tmp_path: Path) -> None:
     header = f"{58:6d}b{1:6d}{2:6d}{len(lines):12d}{len(body):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
     text = "\n".join(["    -1", header, *lines]) + "\n"
     path.write_bytes(text.encode() + body + b"\n    -1\n")
-    (result,) = read_uff(path).channels
+    (result,) = read_uff(path)
     assert result.quantity == "receptance"
     assert result.H == pytest.approx(-H, rel=1e-6)
 
@@ -92,7 +92,7 @@ def test_binary_functions_of_pyuff_are_read_though_it_writes_a_wrong_size(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ResourceWarning)
             pyuff.UFF(str(path)).write_sets([written], "add")
-    channels = read_uff(path).channels
+    channels = read_uff(path)
     assert [channel.response for channel in channels] == ["1Z", "2Z"]
     assert np.array([channel.H for channel in channels]) == pytest.approx(H)
     assert channels[0].frequency == pytest.approx(x)

@@ -12,10 +12,9 @@ import numpy as np
 
 from modefront import options as opt
 from modefront._typing import Floats
-from modefront.data.csv import COLUMNS, read_numbers, read_test_csv, renamed
-from modefront.data.impact import EVEN, TIME, Blow, Windows, averaged
-from modefront.data.responses import EXPECTED, ORDERS, Channel, DataSet, assemble
-from modefront.data.uff import TIME as OF_TIME
+from modefront.data.csv import COLUMNS, SECONDS, read_numbers, read_test_csv, renamed
+from modefront.data.impact import EVEN, Blow, Windows, averaged, blows_of
+from modefront.data.responses import EXPECTED, FRF, ORDERS, TIME, Channel, DataSet, assemble
 from modefront.data.uff import is_universal, read_functions, read_uff
 from modefront.errors import Fault, InputError, noted, refuse, suggestion
 from modefront.inputs import MOST_DATA, file_size, is_hdf5, wrong
@@ -137,15 +136,15 @@ def _of_file(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float]
     if ending == ".csv":
         own, values = read_numbers(path, WHAT)
         header, _ = renamed(own, setup.columns, ())
-        if header.count(TIME) != 1 or len(header) < 2:
+        if header.count(SECONDS) != 1 or len(header) < 2:
             expected = "a column 'time' in s, and one for every sensor"
             expected += " ('columns' in [[set]] renames others)"
             raise wrong(path, expected, ", ".join(header[:6]), "line 1")
-        column = header.index(TIME)
-        names = [name for name in header if name != TIME]
+        column = header.index(SECONDS)
+        names = [name for name in header if name != SECONDS]
         rows = np.nan_to_num(np.delete(values, column, axis=1).T, nan=0.0)  # empty columns
         return names, rows, _rate(path, values[:, column])
-    functions = [x for kind, _, x in read_functions(path) if kind == OF_TIME]
+    functions = [x for x in read_functions(path) if x.kind == TIME]
     if not functions:
         expected = "records in time (functions of type 1) in dataset 58"
         raise wrong(path, expected, "none", "dataset 58")
@@ -321,10 +320,14 @@ def _data_set(root: opt.Table, known: SetFiles) -> DataSet:
     channels, blows, used = list[Channel](), list[Blow](), set[str]()
     for file, reference in zip(known.files, known.references, strict=True):
         with noted(root.faults):
-            found = read_uff(file) if is_universal(file) else read_test_csv(file, known.columns)
-            channels += [replace(x, reference=reference or x.reference) for x in found.channels]
-            blows += [replace(x, reference=reference or x.reference) for x in found.blows]
-            used |= found.used
+            if is_universal(file):
+                found = read_uff(file)
+            else:
+                found, of_file = read_test_csv(file, known.columns)
+                used |= of_file
+            found = [replace(x, reference=reference or x.reference) for x in found]
+            channels += [x for x in found if x.kind == FRF]
+            blows += blows_of(x for x in found if x.kind == TIME)
     refuse(root.faults)
     place = f"[[set]] {known.name!r}"
     for unused in sorted(known.columns.keys() - used):
