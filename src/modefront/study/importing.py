@@ -266,7 +266,7 @@ def _runs(
 
 def model_of(terms: Terms) -> MatrixModel:
     """Return the model of terms, without sensors that mean anything."""
-    K, M = (terms.of(x) for x in QUANTITIES)
+    K, M = (terms.matrices[x] for x in QUANTITIES)
     return matrices(terms.parameters, K, M, {"first": 0}, floating=True)
 
 
@@ -278,7 +278,7 @@ def _frequencies(
     if modes == 0 or (modes is None and size > LARGE):
         notes.append("frequencies are not computed (--modes computes them)")
         return None, False
-    if not (mass := terms.of("mass")):
+    if not (mass := terms.matrices["mass"]):
         raise InputError(Fault("", "mass", "a mass matrix that is not zero", "only zeros"))
     progress("computing the frequencies of the nominal model")
     model = model_of(terms)
@@ -303,7 +303,7 @@ def _study(imported: Imported, folder: Path) -> str:
     quoted = partial(json.dumps, ensure_ascii=False)  # TOML has texts as JSON has them
     for quantity in QUANTITIES:
         files: dict[str, str] = {}
-        for name, A in imported.terms.of(quantity).items():
+        for name, A in imported.terms.matrices[quantity].items():
             files[name] = file_name(f"{quantity}-{name}", files.values())
             with output(folder / f"{files[name]}.npz") as stream:
                 scipy.sparse.save_npz(stream, A, compressed=False)
