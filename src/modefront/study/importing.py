@@ -36,7 +36,6 @@ from modefront.programs.changes import (
     Change,
     changes,
     deck_text,
-    other_factor,
     text_of,
     write_changes,
 )
@@ -189,8 +188,9 @@ def import_model(
     changed: dict[str, list[Change]] = {}  # by the first run of each parameter
     for name, path, theta in runs:
         factor = float(theta[theta != 1][0])
-        changed.setdefault(name, changes(name, nominal_path, path, factor))
-        if differs := other_factor(nominal_path, path, factor):
+        of_run, differs = changes(name, nominal_path, path, factor)
+        changed.setdefault(name, of_run)
+        if differs:
             by, line = differs
             notes.append(
                 f"{name}: the decks differ by a factor of {by:g} (line {line}), but the run is "
