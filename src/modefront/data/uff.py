@@ -237,11 +237,13 @@ def write_uff55(
     """Write modes as complex eigenvectors of first order, dataset 55 (analysis type 3).
 
     ``modes`` holds, for every data set, poles in rad/s and complex shapes at the sensors; sensors
-    that are named by node and direction keep both, others are numbered from 1, in X. ``pairs``
-    holds positions of modes of one pole, for every data set; none unless given.
+    that are named by node and direction keep both, others have the first numbers that are left, in
+    X. ``pairs`` holds positions of modes of one pole, for every data set; none unless given.
     """
     matches = [re.fullmatch(r"([0-9]+)([XYZ])", name) for name in sensors]
-    numbers = [int(match[1]) if match else i for i, match in enumerate(matches, start=1)]
+    taken = {int(match[1]) for match in matches if match}
+    left = (number for number in range(1, 2 * len(sensors) + 1) if number not in taken)
+    numbers = [int(match[1]) if match else next(left) for match in matches]
     axes = ["XYZ".index(match[2]) if match else 0 for match in matches]
     nodes = list(dict.fromkeys(numbers))
     rows = [nodes.index(number) for number in numbers]
