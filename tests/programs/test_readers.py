@@ -392,6 +392,21 @@ def test_no_file_raises_anything_else(tmp_path: Path, program: str, content: byt
             read(program, tmp_path / name)
 
 
+@pytest.mark.parametrize("spring", ["CELAS2,2,50.,1,1", "CELAS2,2,50.,,,1,1", "CBUSH,2,8,1"])
+def test_springs_of_nastran_to_the_ground_strain_in_a_translation(
+    tmp_path: Path, spring: str
+) -> None:
+    k = np.diag([100.0, 100, 100, 10, 10, 10])
+    stiffness = np.block([[k, -k], [-k, k]])
+    stiffness[0, 0] += 50.0
+    write_op4(tmp_path / "a.op4", {"KAA": stiffness, "MAA": np.eye(12)}, "sparse")
+    lines = ["BEGIN BULK", "GRID,1,,0.,0.,0.", "GRID,2,,0.,0.,0.", "CBUSH,1,7,1,2"]
+    (tmp_path / "a.bdf").write_text("\n".join([*lines, spring, "ENDDATA", ""]))
+    assert read("nastran", tmp_path / "a.op4").dofs.sensor(2, "y") == [(7, 1.0)]
+    (tmp_path / "a.bdf").write_text("\n".join([*lines, "ENDDATA", ""]))
+    refused("nastran", tmp_path / "a.op4", "a force at node 1 x in a translation of the whole")
+
+
 @pytest.mark.parametrize("default", [False, True])
 def test_a_node_of_nastran_says_what_holds_it_and_its_directions(
     tmp_path: Path, default: bool
