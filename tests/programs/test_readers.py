@@ -304,6 +304,16 @@ def test_supports_of_abaqus_are_left_out(tmp_path: Path) -> None:
         job.dofs.sensor(3, "y")
 
 
+def test_sets_of_abaqus_may_be_those_of_elements(tmp_path: Path) -> None:
+    write_abaqus(tmp_path / "a", K, M, labels())
+    nodes = "".join(f"{node}, {node}., 0., 0.\n" for node in {node for node, _ in labels()})
+    sets = "*NSET, NSET=ENDS, ELSET=BEAM\n*NSET, NSET=OTHERS, INPUT=others.inp\n"
+    (tmp_path / "a.inp").write_text(f"*NODE\n{nodes}{sets}")
+    assert read("abaqus", tmp_path / "a").mesh is not None
+    (tmp_path / "a.inp").write_text(f"*NODE\n{nodes}*NSET, NSET=ENDS\n")
+    refused("abaqus", tmp_path / "a", "no nodes in it")
+
+
 # OpenSees
 
 

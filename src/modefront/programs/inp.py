@@ -166,7 +166,7 @@ def _elements(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> Non
 
 
 def _add_set(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None:
-    if not options.get("NSET") or not rows:
+    if not options.get("NSET") or not (rows or options.keys() & {"ELSET", "INPUT"}):
         raise ValueError("no name NSET of the set, or no nodes in it")
     chosen = deck.sets.setdefault(options["NSET"].upper(), [])
     for row in rows:
