@@ -314,6 +314,21 @@ def test_sets_of_abaqus_may_be_those_of_elements(tmp_path: Path) -> None:
     refused("abaqus", tmp_path / "a", "no nodes in it")
 
 
+def test_a_deck_of_abaqus_as_its_manual_has_it(tmp_path: Path) -> None:
+    write_abaqus(tmp_path / "a", K, M, labels())
+    nodes = "".join(f"{node}, {node}.D0, 0., 1-3\n" for node in {node for node, _ in labels()})
+    (tmp_path / "a.inp").write_text(f"*NODE,\nNSET=ALL\n{nodes}")
+    mesh = read("abaqus", tmp_path / "a").mesh
+    assert mesh is not None
+    assert mesh.coordinates[:, 2].tolist() == [1e-3] * len(mesh.number)
+    assert mesh.coordinates[:, 0].tolist() == mesh.number.tolist()
+    spring = "*ELEMENT, TYPE=SPRINGA, ELSET=S\n1, Part-1-1.5, Part-2-1.9\n"
+    (tmp_path / "a.inp").write_text(f"*PART, NAME=P\n*NODE\n{nodes}*END PART\n{spring}")
+    job = read("abaqus", tmp_path / "a")
+    assert job.mesh is None
+    assert "the deck numbers nodes in parts: coordinates are left out" in job.notes
+
+
 # OpenSees
 
 
