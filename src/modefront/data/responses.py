@@ -58,17 +58,6 @@ class FrequencyResponses:
     decay: float = 0.0  # what an exponential window added to the decay rate of every pole, in 1/s
     force_noise: tuple[ForceNoise, ...] = ()  # at each reference, where all are known
 
-    def __post_init__(self) -> None:
-        """Raise ValueError where the arrays do not fit."""
-        expected = (len(self.references), len(self.responses), len(self.frequency))
-        for what, values in (("H", self.H), ("variance", self.variance)):
-            if values is not None and values.shape != expected:
-                raise ValueError(f"expected {what} of shape {expected}, found {values.shape}")
-        if self.quantity not in ORDERS:
-            raise ValueError(f"expected one of {', '.join(ORDERS)}, found {self.quantity!r}")
-        if not (np.isfinite(self.frequency).all() and (np.diff(self.frequency) > 0).all()):
-            raise ValueError("expected ascending frequencies")
-
     @property
     def measured(self) -> Bools:
         """Which lines of which functions were measured, of the shape of ``H``."""
