@@ -168,6 +168,14 @@ def test_a_study_takes_modes_from_a_universal_file(tmp_path: Path) -> None:
     assert any("floor2 is reversed" in text for text in check(loaded).warnings)
 
 
+def test_a_universal_file_of_a_study_is_known_by_its_content(tmp_path: Path) -> None:
+    file = study(tmp_path, PLACES)
+    before = load(file).problem.data
+    (tmp_path / "modes.uff").rename(tmp_path / "modes.dat")
+    file.write_text(file.read_text(encoding="utf-8").replace("modes.uff", "modes.dat"), "utf-8")
+    np.testing.assert_array_equal(load(file).problem.data.shape, before.shape)
+
+
 @pytest.mark.parametrize(
     ("sensors", "says"),
     [
