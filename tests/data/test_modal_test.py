@@ -317,3 +317,9 @@ def test_records_that_never_move_are_left_out(tmp_path: Path, value: str) -> Non
     assert np.isnan(data.H[0, data.responses.index("still")]).all()
     assert np.isfinite(data.H[0, data.responses.index("top")]).all()
     assert "'still': empty or only zeros; the channel is left out" in "\n".join(data_set.warnings)
+
+
+def test_records_without_times_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("time,force,a\n,0,1\n,1,2\n,0,3\n")
+    with pytest.raises(InputError, match="columns: expected a time axis of even steps"):
+        read_test(tmp_path / "a.csv")

@@ -222,7 +222,7 @@ def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], li
         elif len(quantities) > 1:
             found = ", ".join(sorted(each or "others" for each in quantities))
             faults.append(force.fault("responses of one quantity", found))
-        elif len(steps) < 2 or steps.min() <= 0 or np.ptp(steps) > EVEN * steps.mean():
+        elif len(steps) < 2 or not steps.min() > 0 or np.ptp(steps) > EVEN * steps.mean():
             faults.append(force.fault("a time axis of even steps", "another"))
         elif len(t) != len(time) or abs(np.ptp(t) / np.ptp(time) - 1) > EVEN:
             here, there = (f"{len(x)} samples over {np.ptp(x):.6g} s" for x in (t, time))

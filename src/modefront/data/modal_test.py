@@ -190,7 +190,7 @@ def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float
 def _rate(path: Path, time: Floats) -> float:
     """Return the samples per second of a time axis that is even but for its digits."""
     count, length = len(time) - 1, float(time[-1] - time[0])
-    if count < 2 or length <= 0:
+    if count < 2 or not length > 0:  # nor where the column is empty
         raise wrong(path, "ascending times", "others", "time")
     # Digits of times may move a sample by a part of a step.
     off = np.abs(time - time[0] - np.arange(count + 1) * (length / count)).max()
