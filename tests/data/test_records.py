@@ -111,6 +111,7 @@ def test_arrays_need_a_rate_names_and_the_right_shape(tmp_path: Path) -> None:
     for shape, kind, more, message in (
         ((5, 5), float, "", "'rate' and 'sensors' in its"),
         ((5, 5), float, two, "samples by 2 sensors, which are real numbers, found 5 x 5 of float"),
+        ((0, 2), float, two, "which are real numbers, found 0 x 2 of float64"),
         ((5, 2), complex, two, "which are real numbers, found 5 x 2 of complex128"),
     ):
         np.save(tmp_path / "y.npy", np.zeros(shape, kind))

@@ -178,7 +178,8 @@ def _of_array(path: Path, setup: SetFiles) -> tuple[Sequence[str], Floats, float
         raise wrong(path, expected, "nothing", "records")
     read, _ = isolated(f"{__name__}:read_arrays", path, "an array of numbers")
     arrays, count = list(read.values()), len(setup.sensors)
-    tables = [x for x in arrays if x.ndim == 2 and x.dtype.kind in "fiu" and count in x.shape]
+    real = [x for x in arrays if x.size and x.dtype.kind in "fiu"]
+    tables = [x for x in real if x.ndim == 2 and count in x.shape]
     if len(tables) != 1:
         expected = f"one array of samples by {count} sensors, which are real numbers"
         found = [f"{' x '.join(map(str, x.shape))} of {x.dtype}" for x in arrays]
