@@ -167,6 +167,15 @@ def test_a_pair_that_was_hit_once_is_weighted_too(tmp_path: Path) -> None:
     assert weighting(data) == "residuals"
 
 
+@pytest.mark.filterwarnings("error")
+def test_numbers_beyond_all_are_refused_without_a_warning_of_arithmetic(tmp_path: Path) -> None:
+    path = tmp_path / "a.uff"
+    H = accelerances()[0, 0]
+    path.write_text(uff58(H, 1, 1).replace(f"{H[3].imag:13.5E}", "   9.0000E999", 1))
+    with pytest.raises(InputError, match=r"finite numbers up to 1e\+100, found "):
+        read_test(path)
+
+
 @pytest.mark.parametrize("number", ["-1.23456E+100", " -1.23456+100"])
 def test_numbers_that_overflow_are_refused(tmp_path: Path, number: str) -> None:
     path = tmp_path / "a.uff"

@@ -360,7 +360,7 @@ def _data_set(root: opt.Table, known: SetFiles) -> DataSet:
     for channel in channels:
         response, sign = channel_name(channel.response, names)
         reference, other = channel_name(channel.reference, names)
-        H = sign * other * channel.H
+        H = channel.H if sign == other else -channel.H
         named.append(replace(channel, reference=reference, response=response, H=H))
     out = assemble(named, known.quantity, known.name, turned, decay)
     return replace(out, warnings=(*warnings, *out.warnings))

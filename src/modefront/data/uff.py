@@ -183,7 +183,7 @@ def _function(block: Block) -> list[Channel]:
     if kind == TIME and ordinate in (9, 13):  # reaction and excitation forces
         quantity, reference = FORCE, response
     named = str(block.file), place, reference, response
-    return [Channel(*named, x, sign * data, quantity, kind)]
+    return [Channel(*named, x, data if sign > 0 else -data, quantity, kind)]
 
 
 def _values(block: Block, body: bytes, record: tuple[int, int, int]) -> tuple[Floats, Any]:
@@ -216,7 +216,8 @@ def _values(block: Block, body: bytes, record: tuple[int, int, int]) -> tuple[Fl
         raise ValueError("a line with fewer values than one behind it")
     rows = numbers.reshape(-1, columns).T
     of_y = rows[1 - even :]
-    return rows[0], of_y[0] + 1j * of_y[1] if is_complex else of_y[0]
+    y = np.ascontiguousarray(of_y.T)
+    return rows[0], (y.view(complex) if is_complex else y)[:, 0]
 
 
 def _dof(node: str, direction: str) -> tuple[str, int]:
@@ -406,8 +407,10 @@ def _mode(block: Block) -> list[_Mode]:
     once(file, place, "each node", nodes)
     phi = np.array(values).reshape(-1, size, REAL[data]).astype(complex)
     shape = np.zeros((len(nodes), 6))
-    psi = phi @ [1, 1j][: REAL[data]]
-    shape[:, :size] = (psi * np.exp(-0.5j * np.angle((psi**2).sum()))).real  # the nearest real one
+    with np.errstate(all="ignore"):  # numbers that are too great are refused below
+        psi = phi @ [1, 1j][: REAL[data]]
+        turned = psi * np.exp(-0.5j * np.angle((psi**2).sum()))  # the nearest real one
+        shape[:, :size] = turned.real
     checks = [
         (not frequency > 0, "a frequency above 0 Hz", f"{frequency:g}"),
         (not 0 <= damping < 1, "a damping ratio from 0 to below 1", f"{damping:g}"),
