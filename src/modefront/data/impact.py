@@ -212,9 +212,9 @@ def averaged(blows: Sequence[Blow], windows: Windows) -> tuple[list[Channel], li
     groups: dict[tuple[str, ...], list[Blow]] = {}
     for blow in blows:
         force, t = blow[FORCE], blow[FORCE].frequency
-        names = tuple(name for name in blow if name != FORCE)
-        groups.setdefault((force.reference, *names), []).append(blow)
-        steps, quantities = np.diff(t), {blow[name].quantity for name in names}
+        responses = [name for name in blow if name != FORCE]
+        groups.setdefault((force.reference, *responses), []).append(blow)
+        steps, quantities = np.diff(t), {blow[name].quantity for name in responses}
         short = [record for record in blow.values() if len(record.H) != len(force.H)]
         if short:
             expected = f"{len(force.H)} samples, as the force of {force.place}"

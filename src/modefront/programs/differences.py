@@ -271,10 +271,8 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
         stiffness[name], gone[part] = _eliminated(stiffness[name], internal[part], group[part])
     kept = np.setdiff1d(np.arange(terms.dofs.size), internal[gone])
 
-    rows = {
-        quantity: {name: A[kept][:, kept].tocsr() for name, A in of.items()}
-        for quantity, of in (("stiffness", stiffness), ("mass", mass))
-    }
+    both: dict[Quantity, Mapping[str, Matrix]] = {"stiffness": stiffness, "mass": mass}
+    rows = {x: {name: A[kept][:, kept].tocsr() for name, A in of.items()} for x, of in both.items()}
     matrices = {x: {name: A for name, A in of.items() if A.nnz} for x, of in rows.items()}
     dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
     left = replace(terms, matrices=matrices, dofs=dofs)
