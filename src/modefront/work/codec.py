@@ -67,4 +67,4 @@ def decode(value: Any, arrays: Mapping[str, Floats]) -> Any:
     kind: Any = _REGISTERED[value.get("enum") or value["record"]]
     if "enum" in value:
         return kind[value["member"]]
-    return kind(**{name: decode(part, arrays) for name, part in value["fields"].items()})
+    return kind(**{name: decode(part, arrays) for name, part in dict(value["fields"]).items()})
