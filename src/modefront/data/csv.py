@@ -406,10 +406,10 @@ def read_test_csv(
         for name, *each in [*twice, *said][:LISTED]
     )
     if is_blow:
-        time, place = column[SECONDS], (file, "columns", "")
-        force = Channel(*place, FORCE, time, column[FORCE], FORCE, TIME)
+        time, known = column[SECONDS], (file, "columns", "")
+        force = Channel(*known, FORCE, time, column[FORCE], FORCE, TIME)
         rows = ((name, np.nan_to_num(column[name], nan=0.0)) for name in names)  # empty columns
-        return [force, *(Channel(*place, name, time, x, "", TIME) for name, x in rows)], used
+        return [force, *(Channel(*known, name, time, x, "", TIME) for name, x in rows)], used
     channels = []
     for name, pair in forms.items():
         first, second = (name + end for end in pair)

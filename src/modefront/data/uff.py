@@ -216,8 +216,8 @@ def _values(block: Block, body: bytes, record: tuple[int, int, int]) -> tuple[Fl
         raise ValueError("a line with fewer values than one behind it")
     rows = numbers.reshape(-1, columns).T
     of_y = rows[1 - even :]
-    y = np.ascontiguousarray(of_y.T)
-    return rows[0], (y.view(complex) if is_complex else y)[:, 0]
+    pairs = np.ascontiguousarray(of_y.T)
+    return rows[0], (pairs.view(complex) if is_complex else pairs)[:, 0]
 
 
 def _dof(node: str, direction: str) -> tuple[str, int]:
