@@ -238,7 +238,9 @@ def write_covariance(path: Path, data: ModalData) -> None:
     write_table(path, rows)
 
 
-def write_csv(path: Path, data: ModalData, damping_std: Floats | None = None) -> None:
+def write_csv(
+    path: Path, data: ModalData, damping_std: Floats | None = None, digits: int = 9
+) -> None:
     """Write modal data with standard deviations, those of damping where given; whole or not at all.
 
     Modes of which a data set has neither frequency nor shape are left out.
@@ -253,7 +255,7 @@ def write_csv(path: Path, data: ModalData, damping_std: Floats | None = None) ->
         here = [data.modes[r] for r in np.flatnonzero(np.isfinite(values).any(axis=1))]
         for mode, row in zip(data.modes, np.hstack([values, stds]), strict=True):
             if mode in here:
-                texts = ["" if math.isnan(value) else f"{value:.9g}" for value in row]
+                texts = ["" if math.isnan(value) else f"{value:.{digits}g}" for value in row]
                 partner = str(other[mode]) if other.get(mode) in here else ""
                 rows.append([name, str(mode), *texts, *[partner] * bool(data.pairs)])
     write_table(path, rows)
